@@ -1,0 +1,96 @@
+// Sample time stamping: the complex transfer function of a digital output sensor from the four series of one excitation
+// step, paper eqs. (3) and (4) (section 2.3), in the project's convention
+//
+//   H = (P_dos / P_ref) * U(P_sync_acs) / U(P_sync_dau,true),   U(z) = z / |z|,   H = |H| e^{i psi}
+//
+// psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} = H (errata T1-T5).
+// arg P_sync_dau,true = arg P_sync_dau - arg G, G = gain e^{-i phase_lag} the response of the DAU's sync ADC: its amplitude
+// must not enter |H|.
+// In each system the frequency is refined on its sync channel in that system's own clock, and both of its channels are
+// evaluated at that frequency and the same reference instant, which removes unknown epochs and constant rate errors.
+// Fails as sine_fit.hpp does; the message names the series.
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/frequency.hpp"
+#include "analysis/sine_fit.hpp"
+
+namespace dyncal::analysis {
+
+struct AdcResponse { // of the DAU's sync ADC at the excitation frequency
+  double gain = 1.0;
+  double phase_lag_rad = 0.0;
+  double u_gain = 0.0;
+  double u_phase_lag_rad = 0.0;
+};
+
+struct SystematicUncertainty { // standard uncertainties that no residual shows
+  double reference_magnitude_rel = 0.0;
+  double reference_phase_rad = 0.0;
+  double acs_delay_s = 0.0;      // residual delay between the ACS channels
+  double dau_jitter_s = 0.0;     // white stamp noise common to sync and DOS (tick included)
+  double dau_tick_s = 0.0;       // quantum of the DAU's stamps, 0: none
+};
+
+struct ChannelSamples {
+  std::string name;
+  std::span<const double> values;
+  double resolution = 0.0; // one quantisation step; 0: none
+};
+
+struct SampleStampingInput {
+  Frequency frequency;             // nominal
+  double frequency_search_rel = 1e-3;
+  std::span<const std::int64_t> acs_stamps_ns;
+  ChannelSamples reference;
+  ChannelSamples sync_acs;
+  std::span<const std::int64_t> dau_stamps_ns;
+  ChannelSamples sync_dau;
+  std::vector<ChannelSamples> dut; // one result each
+  AdcResponse adc;
+  SystematicUncertainty systematic;
+};
+
+struct Contribution { // one line of the uncertainty budget; standard uncertainties
+  std::string name;
+  std::string distribution;      // "normal", "rectangular", ...
+  double degrees_of_freedom = 0.0; // 0: infinite
+  double u_magnitude_rel = 0.0;
+  double u_phase_rad = 0.0;
+};
+
+struct SeriesFit { // what was fitted to one of the four series
+  std::string series;
+  Frequency frequency;
+  double u_frequency_hz = 0.0;
+  std::int64_t reference_ns = 0;
+  SineFit fit;
+};
+
+struct TransferPoint {
+  std::string channel;
+  std::complex<double> h;
+  double magnitude = 0.0;
+  double u_magnitude = 0.0;
+  double phase_rad = 0.0;   // (-pi, pi]
+  double u_phase_rad = 0.0;
+  std::vector<Contribution> budget;
+  SeriesFit dut;
+};
+
+struct SampleStampingResult {
+  SeriesFit reference;
+  SeriesFit sync_acs;
+  SeriesFit sync_dau;
+  std::vector<TransferPoint> points; // in the order of `dut`
+};
+
+[[nodiscard]] Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input);
+
+} // namespace dyncal::analysis

@@ -1,0 +1,147 @@
+// The bus: typed messages of idl/dyncal.idl over DDS, whichever vendor carries them.
+//
+// A process has one Participant. Writers and readers are made from it for one topic, one of four QoS profiles and one
+// partition (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name or type appears here.
+//
+// QoS profiles (idl/README.md has the exact settings):
+//   samples  reliable, keep all, transient local with bounded depth: blocks; a late joiner gets the most recent ones
+//   results  reliable, transient local, the newest of every key
+//   state    reliable, transient local, the newest of every key
+//   command  reliable, volatile, every one
+//
+// Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one thread at a time, except
+// Reader's wake-up, which comes from the vendor's threads and only notifies. write() may block (up to 1.5 s at 20 % packet loss;
+// for the lease of a reader that was killed): the thread that listens to a device never calls it.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "services/bus/type_support.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::bus {
+
+enum class Vendor { fast_dds, cyclone_dds };
+enum class Profile { samples, results, state, command };
+
+struct ParticipantOptions {
+  Vendor vendor = Vendor::fast_dds;
+  int domain = 0;
+  std::string name;                // shown by discovery tools
+  std::vector<std::string> peers;  // addresses to find others at when multicast cannot be used
+  bool multicast = true;           // false: discovery by `peers` alone
+  std::string interface_name;      // network interface or its address; empty: the vendor's choice
+  std::function<void(const std::string&)> warn; // one sentence, e.g. a host limit that is too low; may be empty
+};
+
+// A bell that readers ring when something has come. One thread waits, any thread rings.
+class WakeUp {
+public:
+  void ring();
+  // True when it rang since the last wait; false when the time ran out.
+  bool wait_until(std::chrono::steady_clock::time_point deadline);
+
+private:
+  std::mutex mutex_;
+  std::condition_variable condition_;
+  bool rung_ = false;
+};
+
+enum class WriteOutcome { written, timed_out, failed };
+
+struct SampleInfo {
+  bool valid = true;      // false: only the key members are set, the instance has ended
+  std::int64_t source_utc_ns = 0;
+};
+
+// What an adapter implements; use Writer<T> and Reader<T>.
+class UntypedWriter {
+public:
+  virtual ~UntypedWriter() = default;
+  virtual WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) = 0;
+  virtual bool unregister(const void* sample) = 0;
+  [[nodiscard]] virtual int matched_readers() const = 0;
+  virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
+};
+
+class UntypedReader {
+public:
+  virtual ~UntypedReader() = default;
+  virtual std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) = 0;
+  [[nodiscard]] virtual int matched_writers() const = 0;
+};
+
+class UntypedParticipant {
+public:
+  virtual ~UntypedParticipant() = default;
+  virtual services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type, const std::string& topic, Profile profile,
+                                                                    const std::string& partition) = 0;
+  virtual services::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type, const std::string& topic, Profile profile,
+                                                                    const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
+};
+
+template <class T>
+class Writer {
+public:
+  explicit Writer(std::unique_ptr<UntypedWriter> untyped) : untyped_(std::move(untyped)) {}
+  // Returns when the sample is in the writer's history, or when `limit` has passed without room for it (it then may be tried again).
+  WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) { return untyped_->write(&sample, limit); }
+  bool unregister(const T& sample) { return untyped_->unregister(&sample); }
+  [[nodiscard]] int matched_readers() const { return untyped_->matched_readers(); }
+  // Acknowledged by all readers that are there; true as well when there is none.
+  bool wait_for_acknowledgments(std::chrono::nanoseconds limit) { return untyped_->wait_for_acknowledgments(limit); }
+
+private:
+  std::unique_ptr<UntypedWriter> untyped_;
+};
+
+template <class T>
+class Reader {
+public:
+  explicit Reader(std::unique_ptr<UntypedReader> untyped) : untyped_(std::move(untyped)) {}
+  // Hands over everything that has come, in order, and returns how many that were.
+  template <class Consume>
+  std::size_t take(Consume&& consume) {
+    return untyped_->take([&](const void* sample, const SampleInfo& info) { consume(*static_cast<const T*>(sample), info); });
+  }
+  [[nodiscard]] int matched_writers() const { return untyped_->matched_writers(); }
+
+private:
+  std::unique_ptr<UntypedReader> untyped_;
+};
+
+class Participant {
+public:
+  // Fails (network) when the vendor is not in this build or cannot use the domain, interface or peers.
+  [[nodiscard]] static services::Expected<Participant> create(const ParticipantOptions& options);
+
+  template <class T>
+  [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile, const std::string& partition) {
+    return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) { return Writer<T>(std::move(w)); });
+  }
+  template <class T>
+  [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile, const std::string& partition,
+                                                     std::shared_ptr<WakeUp> wake_up) {
+    return untyped_->reader(type_support<T>(), topic, profile, partition, std::move(wake_up)).map([](auto r) {
+      return Reader<T>(std::move(r));
+    });
+  }
+
+private:
+  explicit Participant(std::unique_ptr<UntypedParticipant> untyped) : untyped_(std::move(untyped)) {}
+  std::unique_ptr<UntypedParticipant> untyped_;
+};
+
+// "fastdds" or "cyclonedds" (the words of --dds). Fails (bad_argument) on any other word, naming those of this build.
+[[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& word);
+[[nodiscard]] std::string vendor_word(Vendor vendor);
+[[nodiscard]] std::vector<Vendor> vendors_in_this_build();
+
+} // namespace dyncal::bus
