@@ -59,8 +59,9 @@ struct RegularClock {
   std::int64_t interval_denominator = 1;
 
   [[nodiscard]] std::int64_t stamp_ns(std::uint64_t sample) const {
-    const __int128 scaled = static_cast<__int128>(sample) * interval_numerator_ns * 2 + interval_denominator;
-    return origin_ns + static_cast<std::int64_t>(scaled / (2 * static_cast<__int128>(interval_denominator)));
+    __extension__ using Wide = __int128; // 64 bits do not hold sample * numerator for long records
+    const Wide scaled = static_cast<Wide>(sample) * interval_numerator_ns * 2 + interval_denominator;
+    return origin_ns + static_cast<std::int64_t>(scaled / (2 * static_cast<Wide>(interval_denominator)));
   }
 };
 

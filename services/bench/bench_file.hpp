@@ -1,0 +1,126 @@
+// The bench file: one TOML file that says what a bench consists of, what is excited, how it is evaluated, with which
+// corrections and uncertainties. The same file serves the source programs, `dyncal run` and `dyncal analyse`.
+//
+// Whatever cannot be meant is refused here, with file, line and key: unknown keys (with the nearest known one), wrong types, values that
+// are not possible, units that are not D-SI, roles that name no source, a file that a correction needs and that is not there.
+// Units are in the keys: _s, _hz, _rad, _ns; `level` is in m/s^2 (or the reference's unit).
+// Any thread; a BenchFile is plain data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/sample_block.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+// "source/channel", as the roles of [method] name a channel.
+struct ChannelName {
+  std::string source;
+  std::string channel;
+
+  [[nodiscard]] std::string text() const { return source + "/" + channel; }
+  friend bool operator==(const ChannelName&, const ChannelName&) = default;
+};
+
+// Splits "source/channel"; nothing when it is not of that form.
+[[nodiscard]] std::optional<ChannelName> parse_channel_name(const std::string& text);
+
+struct NetworkSettings {
+  std::vector<std::string> peers;
+  bool multicast = true;
+  std::string interface_name;
+};
+
+struct ExcitationSettings {
+  std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
+  std::vector<double> levels_m_s2;         // one per frequency
+  int repetitions = 1;
+  double settling_s = 1.0;
+  double duration_s = 3.0;
+};
+
+struct GeneratorSettings {
+  std::string driver; // "scpi" or "none"
+  std::string address;
+  double level_per_volt = 1.0; // m/s^2 per V
+};
+
+enum class SourceDriver { smartup, socket, file };
+
+struct SourceSettings {
+  std::string name;
+  SourceDriver driver = SourceDriver::file;
+  std::string listen;                          // smartup
+  std::optional<std::uint32_t> sensor;         // smartup
+  std::optional<std::uint32_t> sync_sensor;    // smartup: sensor id that carries the sync ADC of later firmware
+  std::string address;                         // socket
+  std::filesystem::path path;                  // file, absolute
+  double play_speed = 0.0;                     // file: times real time; 0: at once
+  std::optional<double> sample_rate_hz;        // file without a time column
+  std::map<std::string, std::string> channels; // device's name -> ours
+  std::map<std::string, std::string> units;    // our name -> D-SI
+  drivers::TimeBase time_base = drivers::TimeBase::utc;
+  std::string where; // "bench.toml:21", for messages
+};
+
+enum class EvaluationMethod { analogue, sample_timestamping, series_timestamping, absolute_time };
+
+struct MethodSettings {
+  EvaluationMethod kind = EvaluationMethod::sample_timestamping;
+  ChannelName reference;
+  ChannelName sync_acs;
+  ChannelName sync_dau;
+  std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
+  std::optional<ChannelName> temperature;
+};
+
+enum class PhaseSign { lag, lead };
+
+struct AdcCorrectionSettings {
+  std::filesystem::path file;
+  std::string channel;
+  PhaseSign phase_sign = PhaseSign::lag;
+  std::optional<double> test_amplitude_vpp;
+};
+
+struct CorrectionSettings {
+  std::optional<AdcCorrectionSettings> adc;
+  double dso_delay_s = 0.0;
+  double u_dso_delay_s = 0.0;
+};
+
+struct UncertaintySettings { // standard uncertainties
+  double reference_magnitude_rel = 0.0;
+  double reference_phase_rad = 0.0;
+  double acs_delay_s = 0.0;
+};
+
+struct BenchFile {
+  std::filesystem::path path;
+  std::string text;
+  std::string sha256;
+  std::string bench;
+  NetworkSettings network;
+  ExcitationSettings excitation;
+  GeneratorSettings generator;
+  std::vector<SourceSettings> sources;
+  MethodSettings method;
+  CorrectionSettings corrections;
+  UncertaintySettings uncertainty;
+
+  [[nodiscard]] const SourceSettings* source(const std::string& name) const;
+};
+
+// Fails (bad_file) with one sentence that begins "FILE:LINE: key 'table.key' ...".
+[[nodiscard]] Expected<BenchFile> read_bench_file(const std::filesystem::path& path);
+
+// The same from text that did not come from a file; `path` is for messages and as the folder of relative paths.
+[[nodiscard]] Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path);
+
+} // namespace dyncal::services

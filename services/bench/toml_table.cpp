@@ -1,0 +1,257 @@
+#include "services/bench/toml_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+namespace {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0U : 1U)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::string nearest(const std::string& word, const std::set<std::string>& known) {
+  std::string best;
+  std::size_t least = word.size() / 2 + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string unit_phrase(const std::string& unit) {
+  return unit.empty() ? "a number" : fmt::format("a number in {}", unit);
+}
+
+} // namespace
+
+TomlTable::TomlTable(const toml::table& table, std::string name, std::string file, std::string& problem)
+    : table_(table), name_(std::move(name)), file_(std::move(file)), problem_(problem) {}
+
+const toml::node* TomlTable::find(const std::string& key) {
+  known_.insert(key);
+  return table_.get(key);
+}
+
+const toml::node* TomlTable::node(const std::string& key) {
+  return find(key);
+}
+
+std::string TomlTable::full_name(const std::string& key) const {
+  return name_.empty() ? key : name_ + "." + key;
+}
+
+std::string TomlTable::where(const std::string& key) const {
+  const toml::node* found = table_.get(key);
+  const toml::source_region& region = found != nullptr ? found->source() : table_.source();
+  return fmt::format("{}:{}", file_, std::max(region.begin.line, toml::source_index{1}));
+}
+
+void TomlTable::record(const std::string& place, const std::string& sentence) {
+  if (problem_.empty()) {
+    problem_ = fmt::format("{}: {}", place, sentence);
+  }
+}
+
+void TomlTable::refuse(const std::string& key, const std::string& what) {
+  record(where(key), fmt::format("key '{}' {}", full_name(key), what));
+}
+
+std::string TomlTable::required_text(const std::string& key) {
+  if (find(key) == nullptr) {
+    refuse(key, "is missing");
+    return {};
+  }
+  std::string value = text(key);
+  if (value.empty()) {
+    refuse(key, "must not be empty");
+  }
+  return value;
+}
+
+std::string TomlTable::text(const std::string& key, const std::string& otherwise) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return otherwise;
+  }
+  if (const auto value = found->value_exact<std::string>()) {
+    return *value;
+  }
+  refuse(key, "must be text in quotes");
+  return otherwise;
+}
+
+std::optional<double> TomlTable::optional_number(const std::string& key, const std::string& unit) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return std::nullopt;
+  }
+  const auto value = found->is_number() ? found->value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) {
+    refuse(key, fmt::format("must be {}", unit_phrase(unit)));
+    return std::nullopt;
+  }
+  return value;
+}
+
+double TomlTable::number(const std::string& key, double otherwise, const std::string& unit) {
+  return optional_number(key, unit).value_or(otherwise);
+}
+
+int TomlTable::whole_number(const std::string& key, int otherwise, int least) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return otherwise;
+  }
+  const auto value = found->value_exact<std::int64_t>();
+  if (!value || *value < least || *value > std::numeric_limits<int>::max()) {
+    refuse(key, fmt::format("must be a whole number, {} or more", least));
+    return otherwise;
+  }
+  return static_cast<int>(*value);
+}
+
+bool TomlTable::yes_no(const std::string& key, bool otherwise) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return otherwise;
+  }
+  if (const auto value = found->value_exact<bool>()) {
+    return *value;
+  }
+  refuse(key, "must be true or false");
+  return otherwise;
+}
+
+std::vector<std::string> TomlTable::texts(const std::string& key) {
+  std::vector<std::string> values;
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return values;
+  }
+  const toml::array* list = found->as_array();
+  if (list == nullptr) {
+    refuse(key, "must be a list of texts, for example [\"a\", \"b\"]");
+    return values;
+  }
+  for (const toml::node& entry : *list) {
+    const auto value = entry.value_exact<std::string>();
+    if (!value) {
+      refuse(key, "must be a list of texts in quotes, for example [\"a\", \"b\"]");
+      return values;
+    }
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, const std::string& unit) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return {};
+  }
+  if (found->is_number()) {
+    return {number(key, 0.0, unit)};
+  }
+  std::vector<double> values;
+  const toml::array* list = found->as_array();
+  if (list != nullptr) {
+    for (const toml::node& entry : *list) {
+      const auto value = entry.is_number() ? entry.value<double>() : std::nullopt;
+      if (!value || !std::isfinite(*value)) {
+        break;
+      }
+      values.push_back(*value);
+    }
+  }
+  if (list == nullptr || values.size() != list->size()) {
+    refuse(key, fmt::format("must be {} or a list of them", unit_phrase(unit)));
+    return {};
+  }
+  return values;
+}
+
+std::map<std::string, std::string> TomlTable::text_map(const std::string& key) {
+  std::map<std::string, std::string> values;
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return values;
+  }
+  const toml::table* entries = found->as_table();
+  if (entries == nullptr) {
+    refuse(key, "must be a table, for example { Data_11 = \"sync\" }");
+    return values;
+  }
+  for (const auto& [name, entry] : *entries) {
+    const auto value = entry.value_exact<std::string>();
+    if (!value || value->empty()) {
+      refuse(key, fmt::format("must name a text for '{}'", name.str()));
+      return values;
+    }
+    values.emplace(name.str(), *value);
+  }
+  return values;
+}
+
+std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& words, const std::string& otherwise) {
+  if (!has(key) && otherwise.empty()) {
+    refuse(key, fmt::format("is missing: one of {}", fmt::join(words, ", ")));
+  }
+  std::string value = text(key, otherwise);
+  if (std::find(words.begin(), words.end(), value) == words.end()) {
+    refuse(key, fmt::format("is \"{}\" but must be one of {}", value, fmt::join(words, ", ")));
+  }
+  return value;
+}
+
+std::optional<TomlTable> TomlTable::table(const std::string& key) {
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return std::nullopt;
+  }
+  if (const toml::table* inner = found->as_table()) {
+    return TomlTable(*inner, full_name(key), file_, problem_);
+  }
+  refuse(key, "must be a table");
+  return std::nullopt;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> names;
+  for (const auto& entry : table_) {
+    names.emplace_back(entry.first.str());
+  }
+  return names;
+}
+
+void TomlTable::finish() {
+  for (const auto& entry : table_) {
+    const std::string key(entry.first.str());
+    if (!known_.contains(key)) {
+      const std::string hint = nearest(key, known_);
+      refuse(key, hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
+      return;
+    }
+  }
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,112 @@
+#include "services/bench/bench_file.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dyncal::services {
+namespace {
+
+using testing::HasSubstr;
+
+const char* const complete = R"(bench = "acc-1"
+[excitation]
+frequencies_hz = ["10", "12.5"]
+level = 10.0
+repetitions = 3
+settling_s = 0.5
+duration_s = 2
+[generator]
+driver = "scpi"
+address = "127.0.0.1:5025"
+level_per_volt = 50.0
+[sources.dau]
+driver = "smartup"
+listen = "0.0.0.0:7654"
+sensor = "0xbccb0100"
+channels = { Data_11 = "sync" }
+[sources.acs]
+driver = "socket"
+address = "127.0.0.1:5026"
+units = { reference = "m/s^2" }
+[method]
+kind = "sample-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+dut = ["dau/acceleration_z"]
+[uncertainty]
+reference_magnitude_rel = 1e-3
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+std::string problem_of(const std::string& text) {
+  const auto file = parse_bench_file(text, "bench.toml");
+  EXPECT_FALSE(file) << text;
+  return file ? "" : file.error().message;
+}
+
+TEST(BenchFile, GivesWhatTheFileSays) {
+  const auto file = parse_bench_file(complete, "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(file->bench, "acc-1");
+  EXPECT_EQ(file->excitation.frequencies_hz, (std::vector<std::string>{"10", "12.5"}));
+  EXPECT_EQ(file->excitation.levels_m_s2, (std::vector<double>{10.0, 10.0}));
+  EXPECT_EQ(file->excitation.repetitions, 3);
+  EXPECT_DOUBLE_EQ(file->excitation.duration_s, 2.0);
+  ASSERT_NE(file->source("dau"), nullptr);
+  EXPECT_EQ(file->source("dau")->sensor, 0xbccb0100U);
+  EXPECT_EQ(file->source("dau")->channels.at("Data_11"), "sync");
+  EXPECT_EQ(file->source("acs")->units.at("reference"), R"(\metre\second\tothe{-2})");
+  EXPECT_EQ(file->method.dut.front().text(), "dau/acceleration_z");
+  EXPECT_EQ(file->sha256.size(), 64U);
+}
+
+TEST(BenchFile, NamesFileLineAndKeyOfAnUnknownKeyAndTheOneThatWasMeant) {
+  EXPECT_EQ(problem_of(replaced(complete, "settling_s", "setling_s")),
+            "bench.toml:6: key 'excitation.setling_s' is not known; did you mean 'settling_s'?");
+}
+
+TEST(BenchFile, RefusesAUnitThatIsNone) {
+  EXPECT_THAT(problem_of(replaced(complete, "\"m/s^2\"", "\"furlong\"")), HasSubstr("bench.toml:20: key 'sources.acs.units' gives channel 'reference'"));
+}
+
+TEST(BenchFile, RefusesAKeyWithTheWrongUnit) {
+  EXPECT_THAT(problem_of(replaced(complete, "duration_s", "duration_ms")), HasSubstr("did you mean 'duration_s'"));
+  EXPECT_THAT(problem_of(replaced(complete, "duration_s = 2", "duration_s = \"2 s\"")), HasSubstr("must be a number in seconds"));
+}
+
+TEST(BenchFile, RefusesARoleWhoseSourceDoesNotExist) {
+  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "asc/reference")), HasSubstr("names source 'asc', which [sources] does not have (it has: acs, dau)"));
+  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "reference")), HasSubstr("must be \"source/channel\""));
+}
+
+TEST(BenchFile, RefusesFrequenciesThatAreNotPositiveNumbers) {
+  EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "\"12,5\"")), HasSubstr("holds \"12,5\""));
+  EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "12.5")), HasSubstr("list of texts"));
+  EXPECT_THAT(problem_of(replaced(complete, "level = 10.0", "level = [1.0, 2.0, 3.0]")), HasSubstr("lists 3 levels for 2 frequencies"));
+}
+
+TEST(BenchFile, RefusesASourceFileThatDoesNotExist) {
+  const std::string text = replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"", "driver = \"file\"\npath = \"nowhere.csv\"");
+  EXPECT_THAT(problem_of(text), HasSubstr("nowhere.csv, which does not exist"));
+}
+
+TEST(BenchFile, RefusesMissingTablesAndBrokenToml) {
+  EXPECT_THAT(problem_of("bench = \"a\"\n"), HasSubstr("key 'excitation' is missing"));
+  EXPECT_THAT(problem_of("bench = \"a\n"), HasSubstr("bench.toml:1: not valid TOML"));
+  EXPECT_THAT(read_bench_file("no-such-file.toml").error().message, HasSubstr("no-such-file.toml: cannot read"));
+}
+
+TEST(BenchFile, RefusesASensorIdThatIsNone) {
+  EXPECT_THAT(problem_of(replaced(complete, "0xbccb0100", "bccb")), HasSubstr("must be a sensor id such as"));
+}
+
+} // namespace
+} // namespace dyncal::services
