@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds dyncal with a preset of CMakePresets.json and prints nothing of weight when there is nothing to do:
+#
+#   deploy/build.sh PRESET with-tests|programs
+#
+# CMake is called only for a build directory that is new, or that lacks the tests now asked for; ninja sees to the rest.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=$1
+directory=build
+[[ $preset == release ]] || directory=build-$preset
+
+has_tests() { grep -qx 'DYNCAL_BUILD_TESTS:BOOL=ON' "$directory/CMakeCache.txt"; }
+
+case $2 in
+  with-tests)
+    if [[ ! -f $directory/build.ninja ]] || ! has_tests; then
+      cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=ON
+    fi
+    targets=(all)
+    ;;
+  programs)
+    [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
+    targets=(dyncal dyncal-dau dyncal-acs dyncal-analysis dyncal-virtual-bench)
+    ;;
+  *)
+    echo "build.sh: '$2' is neither with-tests nor programs" >&2
+    exit 2
+    ;;
+esac
+cmake --build "$directory" --parallel "$(nproc)" --target "${targets[@]}"
