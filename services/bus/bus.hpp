@@ -34,10 +34,10 @@ enum class Profile { samples, results, state, command };
 struct ParticipantOptions {
   Vendor vendor = Vendor::fast_dds;
   int domain = 0;
-  std::string name;                // shown by discovery tools
-  std::vector<std::string> peers;  // addresses to find others at when multicast cannot be used
-  bool multicast = true;           // false: discovery by `peers` alone
-  std::string interface_name;      // network interface or its address; empty: the vendor's choice
+  std::string name;                             // shown by discovery tools
+  std::vector<std::string> peers;               // addresses to find others at when multicast cannot be used
+  bool multicast = true;                        // false: discovery by `peers` alone
+  std::string interface_name;                   // network interface or its address; empty: the vendor's choice
   std::function<void(const std::string&)> warn; // one sentence, e.g. a host limit that is too low; may be empty
 };
 
@@ -57,7 +57,7 @@ private:
 enum class WriteOutcome { written, timed_out, failed };
 
 struct SampleInfo {
-  bool valid = true;      // false: only the key members are set, the instance has ended
+  bool valid = true; // false: only the key members are set, the instance has ended
   std::int64_t source_utc_ns = 0;
 };
 
