@@ -1,0 +1,259 @@
+#include "analysis/excitation_window.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::int64_t longest_frame_ns = 100'000'000;
+constexpr double most_periods = 50.0;          // more, and a frequency 1e-3 off would fade within the frame
+constexpr std::size_t fewest_samples = 8;      // of a frame that can be judged
+constexpr double largest_residual_power = 0.1; // of the power of the sine: 10 dB
+constexpr double phase_margin_rad = 0.15;
+constexpr double slice_s = 0.05;
+
+std::int64_t frame_length_ns(const Frequency& frequency) {
+  const double period_ns = 1e9 / frequency.hz();
+  return std::llround(std::max(period_ns, std::min(static_cast<double>(longest_frame_ns), most_periods * period_ns)));
+}
+
+std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
+  const std::int64_t quotient = value / divisor;
+  return value % divisor < 0 ? quotient - 1 : quotient;
+}
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * pi);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Design { // of one frame: sine and cosine of every sample, and their sums about the mean
+  std::vector<double> sine;
+  std::vector<double> cosine;
+  double mean_sine = 0.0;
+  double mean_cosine = 0.0;
+};
+
+} // namespace
+
+ExcitationWindowFinder::ExcitationWindowFinder(const Frequency& frequency, const ExcitationWindowSettings& settings)
+    : frequency_(frequency), settings_(settings), frame_ns_(frame_length_ns(frequency)) {}
+
+void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) {
+  assert(stamps_ns.size() == sync.size());
+  for (std::size_t i = 0; i < stamps_ns.size() && !ended_; ++i) {
+    if (!std::isfinite(sync[i]) || (origin_ns_ && stamps_ns[i] <= last_stamp_ns_)) {
+      ++ignored_samples_;
+      continue;
+    }
+    const std::int64_t index = floor_divide(stamps_ns[i], frame_ns_);
+    if (!origin_ns_) {
+      origin_ns_ = index * frame_ns_;
+      first_stamp_ns_ = stamps_ns[i];
+      open_index_ = index;
+    }
+    last_stamp_ns_ = stamps_ns[i];
+    if (index != open_index_) {
+      close_frame();
+      open_index_ = index;
+      if (ended_) return;
+    }
+    stamps_ns_.push_back(stamps_ns[i]);
+    values_.push_back(sync[i]);
+  }
+}
+
+void ExcitationWindowFinder::finish() {
+  if (ended_) return;
+  close_frame();
+  if (!ended_) close_run();
+}
+
+std::optional<ExcitationWindow> ExcitationWindowFinder::window() const {
+  return steady_part();
+}
+
+void ExcitationWindowFinder::close_frame() {
+  const Frame frame = approximate();
+  stamps_ns_.clear();
+  values_.clear();
+  if (frame.usable) take(frame);
+}
+
+// Three-parameter sine approximation about the mean, then the residuals.
+ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
+  Frame frame;
+  frame.index = open_index_;
+  const std::size_t n = stamps_ns_.size();
+  if (n < fewest_samples || stamps_ns_.back() - stamps_ns_.front() < frame_ns_ / 2) return frame;
+
+  const std::int64_t centre_ns = open_index_ * frame_ns_ + frame_ns_ / 2;
+  const double count = static_cast<double>(n);
+  Design design;
+  design.sine.resize(n);
+  design.cosine.resize(n);
+  double mean_value = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2.0 * pi * frequency_.reduced_turns(stamps_ns_[i] - centre_ns);
+    design.sine[i] = std::sin(angle);
+    design.cosine[i] = std::cos(angle);
+    design.mean_sine += design.sine[i] / count;
+    design.mean_cosine += design.cosine[i] / count;
+    mean_value += (values_[i] - values_[0]) / count;
+  }
+  mean_value += values_[0];
+
+  double ss = 0.0, sc = 0.0, cc = 0.0, ys = 0.0, yc = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double s = design.sine[i] - design.mean_sine;
+    const double c = design.cosine[i] - design.mean_cosine;
+    const double y = values_[i] - mean_value;
+    ss += s * s;
+    sc += s * c;
+    cc += c * c;
+    ys += y * s;
+    yc += y * c;
+  }
+  const double determinant = ss * cc - sc * sc;
+  if (determinant < 1e-3 * count * count / 4.0) return frame; // sine and cosine look alike at these instants
+  const double sine = (cc * ys - sc * yc) / determinant;
+  const double cosine = (ss * yc - sc * ys) / determinant;
+
+  const auto slices = static_cast<std::size_t>(std::max(10.0, std::ceil(static_cast<double>(frame_ns_) * 1e-9 / slice_s)));
+  std::vector<double> slice_power(slices, 0.0);
+  std::vector<double> slice_count(slices, 0.0);
+  double power = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double residual =
+        values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
+    power += residual * residual;
+    frame.largest_residual = std::max(frame.largest_residual, std::abs(residual));
+    const double place = static_cast<double>(stamps_ns_[i] - open_index_ * frame_ns_) / static_cast<double>(frame_ns_);
+    const auto slice = std::min(slices - 1, static_cast<std::size_t>(place * static_cast<double>(slices)));
+    slice_power[slice] += residual * residual;
+    slice_count[slice] += 1.0;
+  }
+  double before = 0.0;
+  for (std::size_t k = 0; k < slices; ++k) {
+    const double rms = slice_count[k] > 0.0 ? std::sqrt(slice_power[k] / slice_count[k]) : 0.0;
+    frame.largest_neighbours_rms = std::max(frame.largest_neighbours_rms, std::min(before, rms));
+    before = rms;
+  }
+  frame.amplitude = std::hypot(sine, cosine);
+  frame.residual_rms = std::sqrt(power / (count - 3.0));
+  frame.u_amplitude = frame.residual_rms * std::sqrt(0.5 * (ss + cc) / determinant);
+  frame.phase_rad = wrapped(std::atan2(cosine, sine) - 2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
+  frame.usable = true;
+  return frame;
+}
+
+bool ExcitationWindowFinder::starts(const Frame& frame) const {
+  const double residual_power = frame.residual_rms * frame.residual_rms;
+  return frame.amplitude > 0.0 && residual_power < largest_residual_power * 0.5 * frame.amplitude * frame.amplitude;
+}
+
+double ExcitationWindowFinder::mean_advance_rad() const {
+  constexpr std::size_t recent = 50;
+  const Frame& last = run_.back();
+  const Frame& first = run_[run_.size() > recent ? run_.size() - recent : 0];
+  return last.index == first.index ? 0.0 : (last.phase_rad - first.phase_rad) / static_cast<double>(last.index - first.index);
+}
+
+bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad) const {
+  const Frame& last = run_.back();
+  const double step = static_cast<double>(frame.index - last.index);
+  if ((step - 1.0) * static_cast<double>(frame_ns_) * 1e-9 > settings_.longest_gap_s) return false;
+  if (static_cast<double>(frame.index - run_.front().index) * static_cast<double>(frame_ns_) * 1e-9 > settings_.longest_s) return false;
+  if (!starts(frame) || frame.amplitude < 0.5 * last.amplitude) return false;
+  // An off-phase within a frame shows as neighbouring slices that the sine does not describe.
+  if (frame.largest_neighbours_rms > std::max(0.1 * frame.amplitude, 4.0 * last.residual_rms)) return false;
+
+  const double noise = 4.0 * std::hypot(frame.u_amplitude / frame.amplitude, last.u_amplitude / last.amplitude);
+  const double most_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 * settings_.frequency_tolerance_rel;
+  const bool slope_known = run_.size() >= 3;
+  const double advance = slope_known ? mean_advance_rad() : 0.0;
+  const double span = static_cast<double>(last.index - run_.front().index);
+  const double tolerance =
+      phase_margin_rad + noise + (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : most_advance * step);
+  const double deviation = wrapped(frame.phase_rad - last.phase_rad - advance * step);
+  if (tolerance >= pi || std::abs(deviation) > tolerance) return false;
+  unwrapped_rad = last.phase_rad + advance * step + deviation;
+  const double frequency_margin = most_advance + (phase_margin_rad + noise) / (span + step);
+  return std::abs(unwrapped_rad - run_.front().phase_rad) <= frequency_margin * (span + step);
+}
+
+void ExcitationWindowFinder::take(const Frame& frame) {
+  if (run_.empty()) {
+    if (starts(frame)) run_.push_back(frame);
+    return;
+  }
+  double unwrapped_rad = 0.0;
+  if (continues(frame, unwrapped_rad)) {
+    run_.push_back(frame);
+    run_.back().phase_rad = unwrapped_rad;
+    return;
+  }
+  close_run();
+  if (!ended_ && starts(frame)) run_.push_back(frame);
+}
+
+// Keeps the run when it holds a step, forgets it otherwise.
+void ExcitationWindowFinder::close_run() {
+  ended_ = steady_part().has_value();
+  if (!ended_) run_.clear();
+}
+
+std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
+  if (run_.size() < 2) return std::nullopt;
+  std::vector<double> late_amplitudes;
+  for (std::size_t i = run_.size() / 2; i < run_.size(); ++i)
+    late_amplitudes.push_back(run_[i].amplitude);
+  const double plateau = median(std::move(late_amplitudes));
+
+  std::size_t best_begin = 0, best_end = 0, begin = 0;
+  for (std::size_t i = 0; i <= run_.size(); ++i) {
+    const bool steady =
+        i < run_.size() && std::abs(run_[i].amplitude - plateau) <= settings_.amplitude_tolerance_rel * plateau + 4.0 * run_[i].u_amplitude;
+    if (steady) continue;
+    if (i - begin > best_end - best_begin) {
+      best_begin = begin;
+      best_end = i;
+    }
+    begin = i + 1;
+  }
+  if (best_end - best_begin < 2) return std::nullopt;
+
+  // A frame at the edge that the sine fills only in part has residuals that its neighbours have not.
+  if (best_end - best_begin > 3) {
+    std::vector<double> residuals;
+    for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i)
+      residuals.push_back(run_[i].largest_residual);
+    const double usual = median(std::move(residuals));
+    if (run_[best_begin].largest_residual > 1.6 * usual) ++best_begin;
+    if (run_[best_end - 1].largest_residual > 1.6 * usual) --best_end;
+  }
+  ExcitationWindow window;
+  window.begin_ns = std::max(first_stamp_ns_, run_[best_begin].index * frame_ns_);
+  window.end_ns = (run_[best_end - 1].index + 1) * frame_ns_;
+  window.excited_begin_ns = std::max(first_stamp_ns_, run_.front().index * frame_ns_);
+  window.off_ns = (run_.back().index + 1) * frame_ns_;
+  window.ended = ended_;
+  window.amplitude = plateau;
+  window.frequency_offset_rel =
+      (run_[best_end - 1].phase_rad - run_[best_begin].phase_rad) /
+      (2.0 * pi * frequency_.hz() * static_cast<double>((run_[best_end - 1].index - run_[best_begin].index) * frame_ns_) * 1e-9);
+  window.frames = best_end - best_begin;
+  if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.shortest_s) return std::nullopt;
+  return window;
+}
+
+} // namespace dyncal::analysis

@@ -1,0 +1,103 @@
+// Where in a source's own clock an excitation step took place, found from its sync channel alone.
+//
+// The stream is cut into frames of length L = one period, or 100 ms if that is longer, but at most 50 periods. Frame k is
+// [k L, (k+1) L) of the device's own time, so the result depends on the samples only, never on how they were cut into
+// blocks. In each frame a sine of the nominal frequency is approximated (paper eq. (1)); frames belong to one excitation
+// while their residual is small, their amplitude stays and their phase goes on as a frequency within `frequency_tolerance_rel`
+// of the nominal one demands. A neighbouring frequency fails on its residual and its phase, an off-phase on its amplitude,
+// an off-phase shorter than a frame on the residual of the frame it lies in (it must be >= 0.2 s).
+// Of such a run of frames the steady part is the longest stretch whose amplitude is within `amplitude_tolerance_rel` of the
+// plateau; frames at its edges that are only partly excited are dropped, so that it holds nothing but the steady sine. It is
+// up to two frames at each end shorter than the excitation.
+// Lost samples leave frames thinner or empty; an excitation goes on across a gap when its phase does.
+//
+// Units: stamps int64 ns of any epoch; the window is half-open. Cost: O(samples), about one sine and cosine a sample; memory:
+// the samples of one frame and some 80 bytes for each frame of the excitation (bounded by `longest_s`).
+// Samples that are not finite or not later than the one before are left out and counted.
+// Fails (no window): no stretch of at least two frames and `shortest_s` was found; the frame holds fewer than eight samples or
+// cannot tell sine from cosine (frequency at a multiple of half the sample rate).
+// One thread; no state shared between objects.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/frequency.hpp"
+
+namespace dyncal::analysis {
+
+struct ExcitationWindowSettings {
+  double frequency_tolerance_rel = 1.5e-3; // generator and both clocks together
+  double amplitude_tolerance_rel = 0.03;   // of the steady part
+  double shortest_s = 0.25;                // a shorter steady part is not a step
+  double longest_gap_s = 1.0;              // missing samples longer than this end the excitation
+  double longest_s = 3600.0;               // an excitation that lasts longer is closed there
+};
+
+struct ExcitationWindow {
+  std::int64_t begin_ns = 0;         // steady sine from here ...
+  std::int64_t end_ns = 0;           // ... to here, exclusive
+  std::int64_t excited_begin_ns = 0; // start of the first frame that holds the sine, settling included
+  std::int64_t off_ns = 0;           // end of the last frame that holds it: where to look for the next step
+  bool ended = false;                // the excitation is over; otherwise all of this may still grow
+  double amplitude = 0.0;            // of the plateau, in the unit of the channel
+  double frequency_offset_rel = 0.0; // of the sine in this clock against the nominal frequency
+  std::size_t frames = 0;            // of the steady part
+};
+
+class ExcitationWindowFinder {
+public:
+  explicit ExcitationWindowFinder(const Frequency& frequency, const ExcitationWindowSettings& settings = {});
+
+  // The next samples of the stream, in order. REQUIRES: equal sizes. Ignored once the excitation has ended.
+  void push(std::span<const std::int64_t> stamps_ns, std::span<const double> sync);
+
+  // The stream is over: the open frame counts and the excitation, if there is one, has ended.
+  void finish();
+
+  // The first excitation found, ended or still going on; empty while there is none.
+  [[nodiscard]] std::optional<ExcitationWindow> window() const;
+  [[nodiscard]] bool ended() const { return ended_; }
+
+  [[nodiscard]] std::int64_t frame_ns() const { return frame_ns_; }
+  [[nodiscard]] std::uint64_t ignored_samples() const { return ignored_samples_; }
+
+private:
+  struct Frame {
+    std::int64_t index = 0;
+    double amplitude = 0.0;
+    double u_amplitude = 0.0;
+    double phase_rad = 0.0; // against the nominal frequency from origin_ns_ on, at the frame's centre; unwrapped in a run
+    double residual_rms = 0.0;
+    double largest_residual = 0.0;
+    double largest_neighbours_rms = 0.0; // the larger of each two adjacent slices' smaller one
+    bool usable = false;
+  };
+
+  void close_frame();
+  [[nodiscard]] Frame approximate() const;
+  void take(const Frame& frame);
+  [[nodiscard]] bool starts(const Frame& frame) const;
+  [[nodiscard]] bool continues(const Frame& frame, double& unwrapped_rad) const;
+  void close_run();
+  [[nodiscard]] std::optional<ExcitationWindow> steady_part() const;
+  [[nodiscard]] double mean_advance_rad() const;
+
+  Frequency frequency_;
+  ExcitationWindowSettings settings_;
+  std::int64_t frame_ns_;
+  std::optional<std::int64_t> origin_ns_; // start of the first frame
+  std::int64_t first_stamp_ns_ = 0;
+  std::int64_t last_stamp_ns_ = 0;
+  std::int64_t open_index_ = 0;
+  std::vector<std::int64_t> stamps_ns_; // of the open frame
+  std::vector<double> values_;
+  std::vector<Frame> run_;
+  bool ended_ = false;
+  std::uint64_t ignored_samples_ = 0;
+};
+
+} // namespace dyncal::analysis
