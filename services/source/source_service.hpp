@@ -34,7 +34,7 @@ struct SourceServiceOptions {
 class SourceService {
 public:
   // `participant` outlives the service.
-  [[nodiscard]] static Expected<std::unique_ptr<SourceService>> create(bus::Participant& participant, SourceServiceOptions options);
+  [[nodiscard]] static std::unique_ptr<SourceService> create(bus::Participant& participant, SourceServiceOptions options);
   ~SourceService(); // stops
 
   SourceService(const SourceService&) = delete;

@@ -1,0 +1,72 @@
+#include "services/source/block_ring.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace dyncal::services {
+
+std::size_t held_bytes(const drivers::SampleBlock& block) {
+  return sizeof(RingEntry) + block.values.capacity() * sizeof(double) + block.stamps_ns.capacity() * sizeof(std::int64_t) +
+         block.stamp_uncertainty_ns.capacity() * sizeof(std::uint32_t) + block.flags.capacity();
+}
+
+bool BlockRing::has_room(const RingEntry& entry) const {
+  if (entries_.empty() || entry.block.samples == 0) return true;
+  return bytes_ + held_bytes(entry.block) <= limits_.bytes && entry.offered - entries_.front().offered <= limits_.span;
+}
+
+void BlockRing::append(RingEntry entry) {
+  bytes_ += held_bytes(entry.block);
+  entries_.push_back(std::move(entry));
+}
+
+bool BlockRing::offer(RingEntry entry) {
+  const std::lock_guard lock(mutex_);
+  if (!has_room(entry)) {
+    dropped_samples_ += entry.block.samples;
+    return false;
+  }
+  append(std::move(entry));
+  return true;
+}
+
+bool BlockRing::offer_waiting(RingEntry entry, const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (!room_.wait(lock, stop, [&] { return has_room(entry); })) return false;
+  append(std::move(entry));
+  return true;
+}
+
+std::optional<RingEntry> BlockRing::take() {
+  std::optional<RingEntry> entry;
+  {
+    const std::lock_guard lock(mutex_);
+    if (entries_.empty()) return std::nullopt;
+    entry = std::move(entries_.front());
+    entries_.pop_front();
+    bytes_ -= held_bytes(entry->block);
+  }
+  room_.notify_all();
+  return entry;
+}
+
+bool BlockRing::empty() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.empty();
+}
+
+double BlockRing::fill() const {
+  const std::lock_guard lock(mutex_);
+  if (entries_.empty()) return 0.0;
+  const double span = std::chrono::duration<double>(entries_.back().offered - entries_.front().offered).count();
+  const double by_span = span / std::chrono::duration<double>(limits_.span).count();
+  const double by_bytes = static_cast<double>(bytes_) / static_cast<double>(limits_.bytes);
+  return std::clamp(std::max(by_span, by_bytes), 0.0, 1.0);
+}
+
+std::uint64_t BlockRing::dropped_samples() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_samples_;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,132 @@
+#include "services/source/messages.hpp"
+
+#include <utility>
+
+#include "services/bus/topics.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+dyncal::SourceKind to_contract(SourceKind kind) {
+  switch (kind) {
+  case SourceKind::dau:
+    return SOURCE_DAU;
+  case SourceKind::acs:
+    return SOURCE_ACS;
+  case SourceKind::can:
+    return SOURCE_CAN;
+  }
+  return SOURCE_DAU;
+}
+
+dyncal::StampInstant to_contract(drivers::StampInstant instant) {
+  switch (instant) {
+  case drivers::StampInstant::unknown:
+    return STAMP_UNKNOWN;
+  case drivers::StampInstant::data_ready_edge:
+    return STAMP_DATA_READY_EDGE;
+  case drivers::StampInstant::conversion:
+    return STAMP_CONVERSION;
+  case drivers::StampInstant::trigger_edge:
+    return STAMP_TRIGGER_EDGE;
+  case drivers::StampInstant::frame_start:
+    return STAMP_FRAME_START;
+  case drivers::StampInstant::frame_end:
+    return STAMP_FRAME_END;
+  }
+  return STAMP_UNKNOWN;
+}
+
+dyncal::ChannelDescription to_contract(const drivers::ChannelDescription& channel) {
+  dyncal::ChannelDescription message;
+  message.name(channel.name);
+  message.quantity(channel.quantity);
+  message.unit(channel.unit);
+  message.minimum(channel.minimum);
+  message.maximum(channel.maximum);
+  message.resolution(channel.resolution);
+  return message;
+}
+
+} // namespace
+
+const char* sample_topic(SourceKind kind) {
+  switch (kind) {
+  case SourceKind::dau:
+    return bus::topics::dau_samples;
+  case SourceKind::acs:
+    return bus::topics::acs_samples;
+  case SourceKind::can:
+    return bus::topics::can_samples;
+  }
+  return bus::topics::dau_samples;
+}
+
+dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t session, const std::string& software,
+                                     const drivers::SourceDescription& description) {
+  dyncal::SourceDescription message;
+  message.bench(source.bench);
+  message.source(source.source);
+  message.session(session);
+  message.kind(to_contract(source.kind));
+  message.device(description.device);
+  message.serial(description.serial);
+  message.driver(description.driver);
+  message.software(software);
+  for (const auto& channel : description.channels)
+    message.channels().push_back(to_contract(channel));
+  message.nominal_rate_hz(description.nominal_rate_hz);
+  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_UTC : TIME_LOCAL);
+  message.stamp_instant(to_contract(description.stamp_instant));
+  message.tick_s(description.tick_s);
+  message.stamp_uncertainty_s(description.stamp_uncertainty_s);
+  return message;
+}
+
+dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t session, std::uint64_t block_number, drivers::SampleBlock block) {
+  dyncal::SampleBlock message;
+  message.bench(source.bench);
+  message.source(source.source);
+  message.session(session);
+  message.block(block_number);
+  message.first_sample(block.first_sample);
+  message.sample_count(static_cast<std::uint32_t>(block.samples));
+  message.channel_count(block.samples == 0 ? 0 : static_cast<std::uint32_t>(block.values.size() / block.samples));
+  if (block.clock) {
+    message.origin_ns(block.clock->origin_ns);
+    message.interval_numerator_ns(block.clock->interval_numerator_ns);
+    message.interval_denominator(block.clock->interval_denominator);
+  }
+  message.stamps_ns(std::move(block.stamps_ns));
+  message.stamp_uncertainty_ns(std::move(block.stamp_uncertainty_ns));
+  message.flags(std::move(block.flags));
+  message.values(std::move(block.values));
+  message.received_utc_ns(block.received_utc_ns);
+  return message;
+}
+
+dyncal::SourceStatus to_message(const SourceOptions& source, const SourcePublisher::Snapshot& snapshot) {
+  const SourceCounts& counts = snapshot.counts;
+  dyncal::SourceStatus message;
+  message.bench(source.bench);
+  message.source(source.source);
+  message.session(snapshot.session);
+  message.received(counts.received);
+  message.lost_in_device(counts.lost_in_device);
+  message.lost_on_way(counts.lost_on_way);
+  message.duplicates(counts.duplicates);
+  message.rejected(counts.rejected);
+  message.stamps_not_trusted(counts.stamps_not_trusted);
+  for (const auto& [name, value] : counts.causes) {
+    dyncal::NamedCount count;
+    count.name(name);
+    count.value(value);
+    message.causes().push_back(std::move(count));
+  }
+  message.clock_uncertainty_s(counts.clock_uncertainty_s);
+  message.message(snapshot.message);
+  return message;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,161 @@
+#include "services/source/source_channel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "services/bus/topics.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+constexpr int kBlocksPerStep = 16;                    // so that one source cannot starve the others
+constexpr auto kRateWindow = std::chrono::seconds(3); // over which the rate of the status is taken
+constexpr std::size_t kRunsToAnswer = 16;             // a run asks again, so a forgotten one is not lost
+
+std::int64_t utc_now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+Expected<std::unique_ptr<SourceChannel>> SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
+                                                               std::string software) {
+  const SourceOptions& options = publisher->options();
+  auto description = participant.writer<dyncal::SourceDescription>(bus::topics::source_description, bus::Profile::state, options.bench);
+  if (!description) return tl::unexpected(description.error());
+  auto status = participant.writer<dyncal::SourceStatus>(bus::topics::source_status, bus::Profile::state, options.bench);
+  if (!status) return tl::unexpected(status.error());
+  auto samples = participant.writer<dyncal::SampleBlock>(sample_topic(options.kind), bus::Profile::samples, options.bench);
+  if (!samples) return tl::unexpected(samples.error());
+  return std::make_unique<SourceChannel>(std::move(publisher), std::move(software),
+                                         SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
+}
+
+SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software, SourceWriters writers)
+    : publisher_(std::move(publisher)), software_(std::move(software)), writers_(std::move(writers)),
+      session_(publisher_->snapshot().session) {}
+
+void SourceChannel::answer(const std::string& run) {
+  if (std::ranges::count(runs_to_answer_, run) != 0) return;
+  runs_to_answer_.push_back(run);
+  if (runs_to_answer_.size() > kRunsToAnswer) runs_to_answer_.pop_front();
+}
+
+void SourceChannel::begin_session(std::uint64_t session) {
+  session_ = session;
+  block_number_ = 0;
+  next_sample_ = 0;
+  ended_ = false;
+  description_due_ = description_.has_value();
+}
+
+bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
+  if (auto changed = publisher_->take_changed_description()) {
+    description_ = std::move(changed);
+    description_due_ = true;
+  }
+  if (!description_due_) return true;
+  if (writers_.description.write(to_message(publisher_->options(), session_, software_, *description_), limit) !=
+      bus::WriteOutcome::written)
+    return false;
+  description_due_ = false;
+  return true;
+}
+
+// Takes the next thing to be written into pending_. False when there is none.
+bool SourceChannel::next_message() {
+  if (auto entry = publisher_->ring().take()) {
+    if (entry->session != session_) begin_session(entry->session);
+    if (entry->block.samples > 0)
+      next_sample_ = entry->block.first_sample;
+    else
+      entry->block.first_sample = next_sample_;
+    next_sample_ += entry->block.samples;
+    pending_ = to_message(publisher_->options(), session_, block_number_++, std::move(entry->block));
+    pending_->end_of_stream(entry->end_of_stream);
+    return true;
+  }
+  if (const auto session = publisher_->snapshot().session; session != session_) begin_session(session);
+  if (runs_to_answer_.empty() || !description_) return false;
+  drivers::SampleBlock answer;
+  answer.first_sample = next_sample_;
+  answer.received_utc_ns = utc_now_ns();
+  pending_ = to_message(publisher_->options(), session_, block_number_++, std::move(answer));
+  pending_->answers_run(runs_to_answer_.front());
+  runs_to_answer_.pop_front();
+  return true;
+}
+
+bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
+  // The session of the block to be written decides what the description in front of it says.
+  if (!pending_ && !next_message()) return false;
+  if (!write_description(limit)) return false;
+  const auto outcome = writers_.samples.write(*pending_, limit);
+  if (outcome == bus::WriteOutcome::timed_out) return false;
+  if (outcome == bus::WriteOutcome::failed) {
+    ++failed_writes_;
+    samples_not_written_ += pending_->sample_count();
+  }
+  if (pending_->end_of_stream()) ended_ = true;
+  pending_.reset();
+  return true;
+}
+
+bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
+  if (!write_description(write_limit)) return false;
+  if (!description_ && !flushing_) return false;
+  for (int i = 0; i < kBlocksPerStep; ++i) {
+    if (!write_next(write_limit)) return false;
+    if (ended_) write_status(Clock::now(), write_limit); // ENDED is seen even if the next session follows at once
+  }
+  return true;
+}
+
+dyncal::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot, Clock::time_point now) const {
+  if (snapshot.stage == SourceStage::failed) return SOURCE_FAILED;
+  if (ended_ && snapshot.stage == SourceStage::starting) return SOURCE_ENDED;
+  if (ended_ && snapshot.stage == SourceStage::ended) return SOURCE_ENDED;
+  const bool watched = snapshot.silent_after > std::chrono::nanoseconds(0) && snapshot.stage != SourceStage::ended;
+  if (watched && now - snapshot.last_offer > snapshot.silent_after) return SOURCE_SILENT;
+  return snapshot.stage == SourceStage::starting ? SOURCE_STARTING : SOURCE_RUNNING;
+}
+
+void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
+  rate_points_.push_back({now, offered_samples});
+  while (rate_points_.size() > 2 && now - rate_points_.front().time > kRateWindow)
+    rate_points_.pop_front();
+  const double elapsed_s = std::chrono::duration<double>(now - rate_points_.front().time).count();
+  rate_hz_ = elapsed_s > 0.0 ? static_cast<double>(offered_samples - rate_points_.front().samples) / elapsed_s : 0.0;
+}
+
+void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
+  const auto snapshot = publisher_->snapshot();
+  measure_rate(snapshot.offered_samples, now);
+  auto message = to_message(publisher_->options(), snapshot);
+  message.session(session_);
+  message.state(state(snapshot, now));
+  message.published_utc_ns(utc_now_ns());
+  message.rate_hz(rate_hz_);
+  message.dropped_in_service(publisher_->ring().dropped_samples() + samples_not_written_);
+  message.buffer_fill(publisher_->ring().fill());
+  message.matched_readers(static_cast<std::uint32_t>(std::max(0, writers_.samples.matched_readers())));
+  if (failed_writes_ > 0) {
+    dyncal::NamedCount failed;
+    failed.name("writes refused by the bus");
+    failed.value(failed_writes_);
+    message.causes().push_back(failed);
+  }
+  if (writers_.status.write(message, limit) != bus::WriteOutcome::written) return; // the next one is due soon anyway
+  published_state_ = message.state();
+  status_written_ = now;
+}
+
+SourceChannel::Clock::time_point SourceChannel::step_status(std::chrono::nanoseconds interval, std::chrono::nanoseconds write_limit) {
+  const auto now = Clock::now();
+  const bool changed = state(publisher_->snapshot(), now) != published_state_;
+  if (!status_written_ || changed || now - *status_written_ >= interval) write_status(now, write_limit);
+  return (status_written_ ? *status_written_ : now) + interval;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,89 @@
+// The publishing thread's side of one source: its three writers, its place in the stream, and what is due to be written.
+//
+// Everything it does is one short step that may block for `write_limit` at most, so that a reader that hangs on one source does not hold
+// up the others: what could not be written stays and is tried again at the next step.
+// Used by the publishing thread alone.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "services/bus/bus.hpp"
+#include "services/error.hpp"
+#include "services/source/messages.hpp"
+#include "services/source/source_publisher.hpp"
+
+namespace dyncal::services {
+
+struct SourceWriters {
+  bus::Writer<dyncal::SourceDescription> description;
+  bus::Writer<dyncal::SourceStatus> status;
+  bus::Writer<dyncal::SampleBlock> samples;
+};
+
+class SourceChannel {
+public:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] static Expected<std::unique_ptr<SourceChannel>> create(bus::Participant& participant,
+                                                                       std::shared_ptr<SourcePublisher> publisher, std::string software);
+  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software, SourceWriters writers);
+
+  [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
+
+  // Somebody arms for this run: an empty block that names it is written as soon as the source has a description.
+  void answer(const std::string& run);
+
+  // Writes a few of the things that wait. True when there is more to do at once.
+  bool step(std::chrono::nanoseconds write_limit);
+
+  // Blocks are published even if the source never got a description: the service stops.
+  void flush() { flushing_ = true; }
+  [[nodiscard]] bool blocked() const { return pending_.has_value() || description_due_; }
+  [[nodiscard]] bool idle() const { return !pending_ && publisher_->ring().empty(); }
+
+  // Writes the status when its state has changed or `interval` has passed; returns when it is next due.
+  Clock::time_point step_status(std::chrono::nanoseconds interval, std::chrono::nanoseconds write_limit);
+
+  void wait_for_acknowledgments(std::chrono::nanoseconds limit) { writers_.samples.wait_for_acknowledgments(limit); }
+
+private:
+  bool write_description(std::chrono::nanoseconds limit);
+  bool write_next(std::chrono::nanoseconds limit);
+  bool next_message();
+  void begin_session(std::uint64_t session);
+  void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
+  [[nodiscard]] dyncal::SourceState state(const SourcePublisher::Snapshot& snapshot, Clock::time_point now) const;
+  void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
+
+  const std::shared_ptr<SourcePublisher> publisher_;
+  const std::string software_;
+  SourceWriters writers_;
+
+  std::optional<drivers::SourceDescription> description_;
+  bool description_due_ = false;
+  bool flushing_ = false;
+  std::uint64_t session_;
+  std::uint64_t block_number_ = 0; // of the next block of the session
+  std::uint64_t next_sample_ = 0;
+  bool ended_ = false; // the end of the session's stream has been written
+  std::uint64_t failed_writes_ = 0;
+  std::uint64_t samples_not_written_ = 0;
+  std::optional<dyncal::SampleBlock> pending_;
+  std::deque<std::string> runs_to_answer_;
+
+  dyncal::SourceState published_state_ = SOURCE_STARTING;
+  std::optional<Clock::time_point> status_written_;
+  struct RatePoint {
+    Clock::time_point time;
+    std::uint64_t samples;
+  };
+  std::deque<RatePoint> rate_points_;
+  double rate_hz_ = 0.0;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,160 @@
+#include "services/source/source_publisher.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "services/bus/bus.hpp"
+
+namespace dyncal::services {
+
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+std::uint64_t random_session() {
+  std::random_device device;
+  std::uint64_t session = 0;
+  while (session == 0)
+    session = (std::uint64_t{device()} << 32U) | device();
+  return session;
+}
+
+bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDescription& b) {
+  return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
+         a.resolution == b.resolution;
+}
+
+bool same_description(const drivers::SourceDescription& a, const drivers::SourceDescription& b) {
+  return a.device == b.device && a.serial == b.serial && a.driver == b.driver && a.nominal_rate_hz == b.nominal_rate_hz &&
+         a.time_base == b.time_base && a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
+         a.stamp_uncertainty_s == b.stamp_uncertainty_s && std::ranges::equal(a.channels, b.channels, same_channel);
+}
+
+} // namespace
+
+SourcePublisher::SourcePublisher(SourceOptions options, std::shared_ptr<bus::WakeUp> wake_up)
+    : options_(std::move(options)), wake_up_(std::move(wake_up)), ring_(options_.ring) {
+  state_.session = random_session();
+  state_.last_offer = Clock::now();
+}
+
+void SourcePublisher::describe(drivers::SourceDescription description) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (description_ && same_description(*description_, description)) return;
+    description_ = std::move(description);
+    description_changed_ = true;
+  }
+  wake_up_->ring();
+}
+
+void SourcePublisher::start_session() {
+  const std::lock_guard lock(mutex_);
+  if (!session_used_) return;
+  state_.session = random_session();
+  state_.stage = SourceStage::starting;
+  state_.last_offer = Clock::now();
+  session_used_ = false;
+  gap_count_ = 0;
+}
+
+RingEntry SourcePublisher::next_entry(drivers::SampleBlock block) {
+  const auto now = Clock::now();
+  const std::lock_guard lock(mutex_);
+  if (session_used_) gaps_[gap_count_++ % gaps_.size()] = now - state_.last_offer;
+  session_used_ = true;
+  state_.stage = SourceStage::streaming;
+  state_.offered_samples += block.samples;
+  state_.last_offer = now;
+  return {.block = std::move(block), .session = state_.session, .end_of_stream = false, .offered = now};
+}
+
+bool SourcePublisher::offer(drivers::SampleBlock block) {
+  const bool taken = ring_.offer(next_entry(std::move(block)));
+  wake_up_->ring();
+  return taken;
+}
+
+bool SourcePublisher::offer_waiting(drivers::SampleBlock block, const std::stop_token& stop) {
+  const bool taken = ring_.offer_waiting(next_entry(std::move(block)), stop);
+  wake_up_->ring();
+  return taken;
+}
+
+void SourcePublisher::close_stream(SourceStage stage) {
+  RingEntry mark;
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_.stage == SourceStage::ended || state_.stage == SourceStage::failed) return;
+    state_.stage = stage;
+    session_used_ = true;
+    mark.session = state_.session;
+  }
+  mark.end_of_stream = true;
+  mark.offered = Clock::now();
+  ring_.offer(std::move(mark));
+  wake_up_->ring();
+}
+
+void SourcePublisher::end() {
+  close_stream(SourceStage::ended);
+}
+
+void SourcePublisher::fail(std::string message) {
+  say(std::move(message));
+  close_stream(SourceStage::failed);
+}
+
+void SourcePublisher::report(SourceCounts counts) {
+  const std::lock_guard lock(mutex_);
+  state_.counts = std::move(counts);
+}
+
+void SourcePublisher::say(std::string message) {
+  const std::lock_guard lock(mutex_);
+  state_.message = std::move(message);
+}
+
+std::optional<std::string> SourcePublisher::wait_for_run(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  std::optional<std::string> found;
+  running_changed_.wait(lock, stop, [&] {
+    const auto fresh = std::ranges::find_if(running_, [&](const auto& run) { return std::ranges::count(returned_, run) == 0; });
+    if (fresh != running_.end()) found = *fresh;
+    return found.has_value();
+  });
+  // Only runs that are still RUNNING need to be remembered, so this stays as short as that list.
+  std::erase_if(returned_, [&](const auto& run) { return std::ranges::count(running_, run) == 0; });
+  if (found) returned_.push_back(*found);
+  return found;
+}
+
+void SourcePublisher::note_running(const std::vector<std::string>& runs) {
+  {
+    const std::lock_guard lock(mutex_);
+    running_ = runs;
+  }
+  running_changed_.notify_all();
+}
+
+std::chrono::nanoseconds SourcePublisher::usual_gap() const {
+  const auto known = std::min(gap_count_, gaps_.size());
+  // The shortest of the last gaps: one long pause does not make a quick source look slow.
+  return known == 0 ? std::chrono::nanoseconds(0) : *std::min_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(known));
+}
+
+SourcePublisher::Snapshot SourcePublisher::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  Snapshot snapshot = state_;
+  if (options_.silent_after > std::chrono::nanoseconds(0)) snapshot.silent_after = std::max(options_.silent_after, 4 * usual_gap());
+  return snapshot;
+}
+
+std::optional<drivers::SourceDescription> SourcePublisher::take_changed_description() {
+  const std::lock_guard lock(mutex_);
+  if (!description_changed_) return std::nullopt;
+  description_changed_ = false;
+  return description_;
+}
+
+} // namespace dyncal::services
