@@ -77,7 +77,7 @@ dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t 
   for (const auto& channel : description.channels)
     message.channels().push_back(to_contract(channel));
   message.nominal_rate_hz(description.nominal_rate_hz);
-  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_UTC : TIME_LOCAL);
+  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_BASE_UTC : TIME_BASE_LOCAL);
   message.stamp_instant(to_contract(description.stamp_instant));
   message.tick_s(description.tick_s);
   message.stamp_uncertainty_s(description.stamp_uncertainty_s);
