@@ -90,6 +90,8 @@ public:
 template <class T>
 class Writer {
 public:
+  using Message = T;
+
   explicit Writer(std::unique_ptr<UntypedWriter> untyped) : untyped_(std::move(untyped)) {}
   // Returns when the sample is in the writer's history, or when `limit` has passed without room for it (it then may be tried again).
   WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) { return untyped_->write(&sample, limit); }

@@ -1,0 +1,40 @@
+// What every program of dyncal does alike: options of the network, log lines, stopping on signals, one line for what went wrong.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "services/bus/bus.hpp"
+#include "services/error.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace dyncal::services {
+
+struct NetworkOptions {
+  std::string dds = "fastdds";
+  int domain = 0;
+  std::vector<std::string> peers;
+  bool no_multicast = false;
+  std::string interface_name;
+};
+
+// --dds, --domain, --peer, --no-multicast, --interface
+void add_network_options(CLI::App& app, NetworkOptions& options);
+
+// Warnings of the network go to the log.
+[[nodiscard]] Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program);
+
+// Lines of time, level and text on standard error.
+void set_up_log(const std::string& program);
+
+// True once SIGINT or SIGTERM has come. REQUIRES: called before threads start; the same object at every call.
+[[nodiscard]] const std::atomic<bool>& stop_on_signals();
+
+// Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the error.
+[[nodiscard]] int fail(const Error& error);
+
+} // namespace dyncal::services
