@@ -1,0 +1,56 @@
+#include "drivers/acs/file_channels.hpp"
+
+#include <algorithm>
+
+namespace dyncal::drivers::acs {
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text.empty() ? "none" : text;
+}
+
+tl::unexpected<Error> unknown(const FileSettings& settings, const char* what, const std::string& name,
+                              const std::vector<std::string>& known) {
+  return tl::unexpected(
+      Error{ErrorCode::not_found, settings.path.string() + ": no " + what + " '" + name + "'; the file has: " + listed(known)});
+}
+
+} // namespace
+
+Expected<SourceDescription> describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names) {
+  for (const auto& [file_name, name] : settings.channels) {
+    if (std::find(names.begin(), names.end(), file_name) == names.end()) {
+      return unknown(settings, "channel", file_name, names);
+    }
+  }
+  SourceDescription description;
+  description.device = "file " + settings.path.filename().string();
+  description.driver = "file";
+  description.time_base = settings.time_base;
+  description.nominal_rate_hz = settings.sample_rate ? settings.sample_rate->hz() : 0.0;
+  std::vector<std::string> ours;
+  for (const std::string& name : names) {
+    const auto renamed = settings.channels.find(name);
+    ChannelDescription channel;
+    channel.name = renamed == settings.channels.end() ? name : renamed->second;
+    if (std::find(ours.begin(), ours.end(), channel.name) != ours.end()) {
+      return tl::unexpected(Error{ErrorCode::invalid_setting, settings.path.string() + ": two channels are called '" + channel.name + "'"});
+    }
+    ours.push_back(channel.name);
+    const auto unit = settings.units.find(channel.name);
+    channel.unit = unit == settings.units.end() ? "" : unit->second;
+    description.channels.push_back(channel);
+  }
+  for (const auto& [name, unit] : settings.units) {
+    if (std::find(ours.begin(), ours.end(), name) == ours.end()) {
+      return unknown(settings, "channel", name, ours);
+    }
+  }
+  return description;
+}
+
+} // namespace dyncal::drivers::acs

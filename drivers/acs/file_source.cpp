@@ -1,0 +1,93 @@
+#include "drivers/acs/file_source.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "drivers/acs/csv_reader.hpp"
+#include "drivers/acs/wav_reader.hpp"
+
+namespace dyncal::drivers::acs {
+namespace {
+
+constexpr std::size_t longest_block = 4096; // samples
+constexpr double paced_block_s = 0.05;
+
+std::int64_t host_utc_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::int64_t stamp_of(const SampleBlock& block, std::size_t i) {
+  return block.clock ? block.clock->stamp_ns(block.first_sample + i) : block.stamps_ns[i];
+}
+
+template <class Reader>
+Expected<std::unique_ptr<SampleReader>> open_as(const FileSettings& settings) {
+  auto reader = Reader::open(settings);
+  if (!reader) {
+    return tl::unexpected(reader.error());
+  }
+  return std::unique_ptr<SampleReader>(std::move(*reader));
+}
+
+Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings) {
+  std::string extension = settings.path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".wav" ? open_as<WavReader>(settings) : open_as<CsvReader>(settings);
+}
+
+} // namespace
+
+Expected<SourceDescription> FileSource::describe() {
+  auto reader = open_reader(settings_);
+  if (!reader) {
+    return tl::unexpected(reader.error());
+  }
+  reader_ = std::move(*reader);
+  // Two samples tell the pace, and a file that is wrong from its first row on is refused before anything is announced.
+  auto first = reader_->read(2);
+  if (!first) {
+    return tl::unexpected(first.error());
+  }
+  if (first->samples == 0) {
+    return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ": no samples below the names of the columns"});
+  }
+  first_ = std::move(*first);
+  return reader_->description();
+}
+
+std::size_t FileSource::block_samples() const {
+  const auto interval_ns = first_.samples < 2 ? 0 : stamp_of(first_, 1) - stamp_of(first_, 0);
+  if (settings_.speed <= 0.0 || interval_ns <= 0) {
+    return longest_block;
+  }
+  const double samples = paced_block_s * 1e9 * settings_.speed / static_cast<double>(interval_ns);
+  return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(longest_block)));
+}
+
+bool FileSource::wait_for_due_time(const SampleBlock& block, std::chrono::steady_clock::time_point started) const {
+  if (settings_.speed <= 0.0) {
+    return !stop_.raised();
+  }
+  const std::int64_t played_ns = stamp_of(block, block.samples - 1) - stamp_of(first_, 0);
+  const auto due = started + std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(played_ns) / settings_.speed));
+  return !stop_.wait_for(std::max(due - std::chrono::steady_clock::now(), std::chrono::steady_clock::duration::zero()));
+}
+
+Expected<void> FileSource::run(BlockSink& sink) {
+  const auto started = std::chrono::steady_clock::now();
+  const std::size_t samples = block_samples();
+  sink.begin_session(reader_->description());
+  SampleBlock block = first_;
+  while (block.samples > 0 && wait_for_due_time(block, started)) {
+    block.received_utc_ns = host_utc_ns();
+    sink.take(std::move(block));
+    auto next = reader_->read(samples);
+    if (!next) {
+      return tl::unexpected(next.error());
+    }
+    block = std::move(*next);
+  }
+  return {};
+}
+
+} // namespace dyncal::drivers::acs

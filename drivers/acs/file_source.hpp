@@ -1,0 +1,58 @@
+// A recorded series played as a source: CSV (time column or constant rate) or WAV, of any kind of instrument.
+//
+// The file is read as it is played, never as a whole. Where the stamps of a block are exactly equidistant the block carries a
+// RegularClock, otherwise one stamp a sample; either way the stamps are those of the file. Pace: at once, in real time or x times
+// faster by the stamps. README.md has the formats.
+// Fails: not_found (file or column), malformed (with file and line), invalid_setting (no time column and no rate).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "drivers/acs/acs_driver.hpp"
+#include "drivers/acs/sample_rate.hpp"
+#include "drivers/tcp_connection.hpp"
+
+namespace dyncal::drivers::acs {
+
+struct FileSettings {
+  std::filesystem::path path;
+  double speed = 0.0;                          // times real time; 0: at once
+  std::optional<SampleRate> sample_rate;       // needed when there is no time column; nominal rate otherwise
+  std::map<std::string, std::string> channels; // name in the file -> name of the channel
+  std::map<std::string, std::string> units;    // name of the channel -> D-SI
+  TimeBase time_base = TimeBase::utc;
+};
+
+// Reads one format; FileSource does the pacing.
+class SampleReader {
+public:
+  virtual ~SampleReader() = default;
+  [[nodiscard]] virtual const SourceDescription& description() const = 0;
+  // The next samples, at most `samples` of them, not beyond a gap; no samples: the end of the file.
+  [[nodiscard]] virtual Expected<SampleBlock> read(std::size_t samples) = 0;
+};
+
+class FileSource : public AcsDriver {
+public:
+  explicit FileSource(FileSettings settings) : settings_(std::move(settings)) {}
+
+  [[nodiscard]] Expected<SourceDescription> describe() override;
+  [[nodiscard]] Expected<void> run(BlockSink& sink) override;
+  void stop() override { stop_.raise(); }
+
+private:
+  [[nodiscard]] std::size_t block_samples() const;
+  // False when a stop was asked for.
+  [[nodiscard]] bool wait_for_due_time(const SampleBlock& block, std::chrono::steady_clock::time_point started) const;
+
+  FileSettings settings_;
+  StopSignal stop_;
+  std::unique_ptr<SampleReader> reader_;
+  SampleBlock first_;
+};
+
+} // namespace dyncal::drivers::acs

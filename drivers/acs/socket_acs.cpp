@@ -1,0 +1,184 @@
+#include "drivers/acs/socket_acs.hpp"
+
+#include <array>
+#include <bit>
+#include <cstring>
+
+namespace dyncal::drivers::acs {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t longest_description = 65536;
+constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
+constexpr std::uint32_t most_samples = 65536;
+constexpr milliseconds retry_interval{500};
+constexpr milliseconds frame_limit{3'600'000}; // an instrument may be silent as long as it likes; who reads the status sees it
+constexpr double shortest_block_s = 0.02;
+
+static_assert(std::endian::native == std::endian::little, "frames are little-endian and read as they are");
+
+template <class T>
+T load(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+std::int64_t host_utc_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+Expected<void> SocketAcs::connect(milliseconds limit) {
+  const auto address = parse_address(settings_.address);
+  if (!address) {
+    return tl::unexpected(address.error());
+  }
+  auto connection = TcpConnection::connect(*address, limit, stop_);
+  if (!connection) {
+    return tl::unexpected(connection.error());
+  }
+  const auto line = connection->read_line(longest_description, limit);
+  if (!line) {
+    return tl::unexpected(line.error());
+  }
+  auto stream = parse_stream_description(*line);
+  if (!stream) {
+    return tl::unexpected(Error{stream.error().code, settings_.address + ": " + stream.error().message});
+  }
+  stream_ = std::move(*stream);
+  connection_.emplace(std::move(*connection));
+  return {};
+}
+
+Expected<SourceDescription> SocketAcs::describe() {
+  const auto deadline = std::chrono::steady_clock::now() + settings_.connect_limit;
+  for (;;) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto connected = connect(left);
+    if (connected) {
+      return stream_.source;
+    }
+    // An instrument that is just being switched on refuses; everything else will not get better by trying.
+    const bool later = connected.error().code == ErrorCode::refused || connected.error().code == ErrorCode::disconnected;
+    if (!later || left <= retry_interval || stop_.wait_for(retry_interval)) {
+      return tl::unexpected(connected.error());
+    }
+  }
+}
+
+Expected<void> SocketAcs::connect_again() {
+  connection_.reset();
+  while (!stop_.wait_for(retry_interval)) {
+    const auto connected = connect(settings_.connect_limit);
+    if (connected || connected.error().code == ErrorCode::malformed) {
+      return connected;
+    }
+  }
+  return {};
+}
+
+Expected<void> SocketAcs::run(BlockSink& sink) {
+  for (;;) {
+    const auto ended = read_session(sink);
+    if (ended || stop_.raised()) {
+      return {};
+    }
+    if (ended.error().code != ErrorCode::disconnected) {
+      return tl::unexpected(ended.error());
+    }
+    if (auto again = connect_again(); !again) {
+      return again;
+    }
+    if (stop_.raised()) {
+      return {};
+    }
+  }
+}
+
+// Returns at the end of the stream; the error `disconnected` when the instrument has gone.
+Expected<void> SocketAcs::read_session(BlockSink& sink) {
+  sink.begin_session(stream_.source);
+  SampleBlock pending;
+  const auto hand_over = [&] {
+    if (pending.samples > 0) {
+      pending.clock = stream_.clock;
+      pending.received_utc_ns = host_utc_ns();
+      sink.take(std::exchange(pending, SampleBlock{}));
+    }
+  };
+  std::uint64_t next_sample = 0;
+  for (;;) {
+    auto frame = read_frame();
+    if (!frame || frame->samples == 0) {
+      hand_over();
+      return frame ? Expected<void>{} : Expected<void>(tl::unexpected(frame.error()));
+    }
+    if (frame->first_sample < next_sample) {
+      hand_over();
+      return tl::unexpected(Error{ErrorCode::malformed, settings_.address + ": sample numbers go back from " + std::to_string(next_sample) +
+                                                            " to " + std::to_string(frame->first_sample) + " within a connection"});
+    }
+    if (frame->first_sample != next_sample) {
+      hand_over();
+    }
+    next_sample = frame->first_sample + frame->samples;
+    join(pending, std::move(*frame));
+    if (static_cast<double>(pending.samples) >= shortest_block_s * stream_.source.nominal_rate_hz || pending.samples >= most_samples) {
+      hand_over();
+    }
+  }
+}
+
+Expected<SampleBlock> SocketAcs::read_frame() {
+  std::array<char, 16> header{}; // magic, samples, first_sample
+  if (auto read = connection_->read_exactly(header, frame_limit); !read) {
+    return tl::unexpected(read.error());
+  }
+  SampleBlock frame;
+  frame.samples = load<std::uint32_t>(header.data() + 4);
+  frame.first_sample = load<std::uint64_t>(header.data() + 8);
+  if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > most_samples) {
+    return tl::unexpected(Error{ErrorCode::malformed, settings_.address + ": what comes is not a frame of the ACS stream"});
+  }
+  const std::size_t channels = stream_.scale.size();
+  const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);
+  payload_.resize(frame.samples * channels * width);
+  if (auto read = connection_->read_exactly(payload_, frame_limit); !read) {
+    return tl::unexpected(read.error());
+  }
+  frame.values.resize(frame.samples * channels);
+  for (std::size_t i = 0; i < frame.samples; ++i) {
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      const char* raw = payload_.data() + (i * channels + channel) * width;
+      frame.values[channel * frame.samples + i] =
+          stream_.float64 ? load<double>(raw) : static_cast<double>(load<std::int32_t>(raw)) * stream_.scale[channel];
+    }
+  }
+  return frame;
+}
+
+// Appends `frame` to `pending`; both are column major.
+void SocketAcs::join(SampleBlock& pending, SampleBlock frame) const {
+  if (pending.samples == 0) {
+    pending = std::move(frame);
+    return;
+  }
+  const std::size_t channels = stream_.scale.size();
+  std::vector<double> values;
+  values.reserve(pending.values.size() + frame.values.size());
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    const auto append = [&](const SampleBlock& block) {
+      const auto begin = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(block.samples));
+    };
+    append(pending);
+    append(frame);
+  }
+  pending.values = std::move(values);
+  pending.samples += frame.samples;
+}
+
+} // namespace dyncal::drivers::acs

@@ -1,0 +1,83 @@
+#include "drivers/acs/wav_reader.hpp"
+
+#include <cmath>
+#include <sndfile.h>
+
+#include "drivers/acs/file_channels.hpp"
+
+namespace dyncal::drivers::acs {
+namespace {
+
+// One step of an integer format on the scale -1..1; 0 for float.
+double resolution_of(int format) {
+  switch (format & SF_FORMAT_SUBMASK) {
+  case SF_FORMAT_PCM_16:
+    return std::ldexp(1.0, -15);
+  case SF_FORMAT_PCM_24:
+    return std::ldexp(1.0, -23);
+  case SF_FORMAT_PCM_32:
+    return std::ldexp(1.0, -31);
+  default:
+    return 0.0;
+  }
+}
+
+} // namespace
+
+void WavReader::Close::operator()(sf_private_tag* file) const {
+  sf_close(file);
+}
+
+Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& settings) {
+  std::unique_ptr<WavReader> reader(new WavReader());
+  reader->path_ = settings.path.string();
+  if (!std::filesystem::is_regular_file(settings.path)) {
+    return tl::unexpected(Error{ErrorCode::not_found, reader->path_ + ": cannot read this file; does it exist, and may you read it?"});
+  }
+  SF_INFO info{};
+  reader->file_.reset(sf_open(reader->path_.c_str(), SFM_READ, &info));
+  if (!reader->file_) {
+    return tl::unexpected(Error{ErrorCode::malformed, reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")"});
+  }
+  std::vector<std::string> names;
+  for (int channel = 1; channel <= info.channels; ++channel) {
+    names.push_back("channel_" + std::to_string(channel));
+  }
+  auto description = describe_file_channels(settings, names);
+  if (!description) {
+    return tl::unexpected(description.error());
+  }
+  reader->description_ = *description;
+  reader->rate_ = settings.sample_rate.value_or(SampleRate{info.samplerate, 1});
+  reader->description_.nominal_rate_hz = reader->rate_.hz();
+  for (ChannelDescription& channel : reader->description_.channels) {
+    channel.minimum = -1.0;
+    channel.maximum = 1.0;
+    channel.resolution = resolution_of(info.format);
+  }
+  return reader;
+}
+
+Expected<SampleBlock> WavReader::read(std::size_t samples) {
+  const std::size_t channels = description_.channels.size();
+  frames_.resize(samples * channels);
+  const sf_count_t count = sf_readf_double(file_.get(), frames_.data(), static_cast<sf_count_t>(samples));
+  if (sf_error(file_.get()) != SF_ERR_NO_ERROR) {
+    return tl::unexpected(
+        Error{ErrorCode::malformed, path_ + ": sample " + std::to_string(next_sample_) + ": " + sf_strerror(file_.get())});
+  }
+  SampleBlock block;
+  block.first_sample = next_sample_;
+  block.samples = static_cast<std::size_t>(count);
+  block.clock = rate_.clock(0);
+  block.values.resize(block.samples * channels);
+  for (std::size_t i = 0; i < block.samples; ++i) {
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      block.values[channel * block.samples + i] = frames_[i * channels + channel];
+    }
+  }
+  next_sample_ += block.samples;
+  return block;
+}
+
+} // namespace dyncal::drivers::acs

@@ -1,0 +1,260 @@
+#include "drivers/tcp_connection.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <memory>
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace dyncal::drivers {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+tl::unexpected<Error> failure(ErrorCode code, std::string message) {
+  return tl::unexpected(Error{code, std::move(message)});
+}
+
+int milliseconds_until(Clock::time_point deadline) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+  return static_cast<int>(std::clamp<long long>(left, 0, 3'600'000));
+}
+
+enum class Ready { yes, stopped, timed_out };
+
+Ready wait_for_events(int descriptor, short events, int stop_descriptor, Clock::time_point deadline) {
+  for (;;) {
+    pollfd watched[2] = {{descriptor, events, 0}, {stop_descriptor, POLLIN, 0}};
+    const int count = poll(watched, 2, milliseconds_until(deadline));
+    if (count < 0 && errno == EINTR) {
+      continue;
+    }
+    if (watched[1].revents != 0) {
+      return Ready::stopped;
+    }
+    if (count > 0) {
+      return Ready::yes;
+    }
+    return Ready::timed_out;
+  }
+}
+
+Expected<std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>> resolve(const Address& address) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int status = getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
+  if (status != 0) {
+    return failure(ErrorCode::not_found, address.text() + ": no host of this name (" + gai_strerror(status) + ")");
+  }
+  return std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>(found, &freeaddrinfo);
+}
+
+// The outcome of one non-blocking connect: 0, or an errno value.
+int connect_once(int socket, const addrinfo& target, int stop_descriptor, Clock::time_point deadline) {
+  if (::connect(socket, target.ai_addr, target.ai_addrlen) == 0) {
+    return 0;
+  }
+  if (errno != EINPROGRESS) {
+    return errno;
+  }
+  switch (wait_for_events(socket, POLLOUT, stop_descriptor, deadline)) {
+  case Ready::stopped:
+    return ECANCELED;
+  case Ready::timed_out:
+    return ETIMEDOUT;
+  case Ready::yes:
+    break;
+  }
+  int status = 0;
+  socklen_t size = sizeof(status);
+  getsockopt(socket, SOL_SOCKET, SO_ERROR, &status, &size);
+  return status;
+}
+
+} // namespace
+
+Expected<Address> parse_address(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  Address address;
+  bool whole = colon != std::string_view::npos && colon > 0;
+  if (whole) {
+    const char* end = text.data() + text.size();
+    const auto [rest, status] = std::from_chars(text.data() + colon + 1, end, address.port);
+    whole = status == std::errc() && rest == end;
+  }
+  if (!whole) {
+    return failure(ErrorCode::malformed, "\"" + std::string(text) + "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
+  }
+  std::string_view host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  }
+  address.host = host;
+  return address;
+}
+
+Descriptor::~Descriptor() {
+  if (number_ >= 0) {
+    close(number_);
+  }
+}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
+}
+
+StopSignal::StopSignal() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+
+void StopSignal::raise() {
+  eventfd_write(event_.number(), 1);
+}
+
+bool StopSignal::raised() const {
+  return wait_for(std::chrono::nanoseconds(0));
+}
+
+bool StopSignal::wait_for(std::chrono::nanoseconds limit) const {
+  const auto deadline = Clock::now() + limit;
+  for (;;) {
+    pollfd watched{event_.number(), POLLIN, 0};
+    const int count = poll(&watched, 1, milliseconds_until(deadline));
+    if (count > 0) {
+      return true;
+    }
+    if (count == 0 && Clock::now() >= deadline) {
+      return false;
+    }
+  }
+}
+
+Expected<TcpConnection> TcpConnection::connect(const Address& address, std::chrono::milliseconds limit, const StopSignal& stop) {
+  const auto deadline = Clock::now() + limit;
+  auto targets = resolve(address);
+  if (!targets) {
+    return tl::unexpected(targets.error());
+  }
+  int status = ECONNREFUSED;
+  for (const addrinfo* target = targets->get(); target != nullptr; target = target->ai_next) {
+    Descriptor socket(::socket(target->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!socket.open()) {
+      status = errno;
+      continue;
+    }
+    status = connect_once(socket.number(), *target, stop.descriptor(), deadline);
+    if (status == 0) {
+      const int on = 1;
+      setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+      return TcpConnection(std::move(socket), address, stop);
+    }
+  }
+  if (status == ECANCELED) {
+    return failure(ErrorCode::disconnected, address.text() + ": stopped while connecting");
+  }
+  if (status == ETIMEDOUT) {
+    return failure(ErrorCode::timeout, address.text() + ": no answer; is the instrument switched on and in this network?");
+  }
+  return failure(ErrorCode::refused, address.text() + ": " + std::strerror(status) + "; is the instrument switched on?");
+}
+
+Expected<void> TcpConnection::wait(short events, Clock::time_point deadline) {
+  switch (wait_for_events(socket_.number(), events, stop_->descriptor(), deadline)) {
+  case Ready::stopped:
+    return failure(ErrorCode::disconnected, address_.text() + ": stopped");
+  case Ready::timed_out:
+    return failure(ErrorCode::timeout, address_.text() + ": the instrument does not answer");
+  case Ready::yes:
+    break;
+  }
+  return {};
+}
+
+Expected<void> TcpConnection::send_all(std::string_view bytes, std::chrono::milliseconds limit) {
+  const auto deadline = Clock::now() + limit;
+  while (!bytes.empty()) {
+    const ssize_t sent = send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent > 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      if (auto ready = wait(POLLOUT, deadline); !ready) {
+        return ready;
+      }
+    } else if (errno != EINTR) {
+      return failure(ErrorCode::disconnected, address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+    }
+  }
+  return {};
+}
+
+Expected<std::size_t> TcpConnection::receive(std::span<char> bytes, Clock::time_point deadline) {
+  for (;;) {
+    const ssize_t count = recv(socket_.number(), bytes.data(), bytes.size(), 0);
+    if (count > 0) {
+      return static_cast<std::size_t>(count);
+    }
+    if (count == 0) {
+      return failure(ErrorCode::disconnected, address_.text() + ": the instrument has closed the connection");
+    }
+    if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      if (auto ready = wait(POLLIN, deadline); !ready) {
+        return tl::unexpected(ready.error());
+      }
+    } else if (errno != EINTR) {
+      return failure(ErrorCode::disconnected, address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+    }
+  }
+}
+
+Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono::milliseconds limit) {
+  const auto deadline = Clock::now() + limit;
+  std::size_t searched = 0;
+  for (;;) {
+    const std::size_t end = received_.find('\n', searched);
+    if (end != std::string::npos && end <= longest) {
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
+      if (!line.empty() && line.back() == '\r') {
+        line.pop_back();
+      }
+      return line;
+    }
+    if (received_.size() > longest) {
+      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " + std::to_string(longest) + " octets");
+    }
+    searched = received_.size();
+    char chunk[4096];
+    auto count = receive(chunk, deadline);
+    if (!count) {
+      return tl::unexpected(count.error());
+    }
+    received_.append(chunk, *count);
+  }
+}
+
+Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) {
+  const auto deadline = Clock::now() + limit;
+  const std::size_t waiting = std::min(bytes.size(), received_.size());
+  std::copy_n(received_.begin(), waiting, bytes.begin());
+  received_.erase(0, waiting);
+  bytes = bytes.subspan(waiting);
+  while (!bytes.empty()) {
+    auto count = receive(bytes, deadline);
+    if (!count) {
+      return tl::unexpected(count.error());
+    }
+    bytes = bytes.subspan(*count);
+  }
+  return {};
+}
+
+} // namespace dyncal::drivers
