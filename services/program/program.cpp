@@ -1,7 +1,10 @@
 #include "services/program/program.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <memory>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -11,10 +14,8 @@
 namespace dyncal::services {
 namespace {
 
-std::atomic<bool> stop_requested{false};
+constexpr int interrupted_status = 130; // 128 + SIGINT, as shells say it
 std::string program_name = "dyncal";
-
-extern "C" void request_stop(int) { stop_requested.store(true); }
 
 std::vector<std::string> vendor_words() {
   std::vector<std::string> words;
@@ -62,17 +63,26 @@ void set_up_log(const std::string& program) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-const std::atomic<bool>& stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  return stop_requested;
+std::stop_token stop_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::stop_source stop;
+  std::thread([signals, stop]() mutable {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    stop.request_stop();
+    sigwait(&signals, &signal);
+    _exit(interrupted_status);
+  }).detach();
+  return stop.get_token();
 }
 
 int fail(const Error& error) {
   fmt::print(stderr, "{}: {}\n", program_name, error.message);
-  return error.code == ErrorCode::interrupted ? 130 : error.code == ErrorCode::bad_argument ? 2 : 1;
+  return error.code == ErrorCode::interrupted ? interrupted_status : error.code == ErrorCode::bad_argument ? 2 : 1;
 }
 
 } // namespace dyncal::services

@@ -1,7 +1,7 @@
 // What every program of dyncal does alike: options of the network, log lines, stopping on signals, one line for what went wrong.
 #pragma once
 
-#include <atomic>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -31,8 +31,9 @@ void add_network_options(CLI::App& app, NetworkOptions& options);
 // Lines of time, level and text on standard error.
 void set_up_log(const std::string& program);
 
-// True once SIGINT or SIGTERM has come. REQUIRES: called before threads start; the same object at every call.
-[[nodiscard]] const std::atomic<bool>& stop_on_signals();
+// Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called once, before other threads start, since
+// the signals are blocked in all threads and waited for in one of their own, which lasts as long as the process.
+[[nodiscard]] std::stop_token stop_on_signals();
 
 // Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the error.
 [[nodiscard]] int fail(const Error& error);
