@@ -41,10 +41,6 @@ services::Expected<Participant> Participant::create(const ParticipantOptions& op
   if (options.domain < 0 || options.domain > highest_domain)
     return tl::unexpected(network_error("DDS domain " + std::to_string(options.domain) + " does not exist: choose one from 0 to " +
                                         std::to_string(highest_domain)));
-  if (!options.multicast && options.peers.empty() && options.warn)
-    options.warn(
-        "DDS discovery without multicast and without peers finds programs on this machine only: list the addresses of the others as peers");
-
   services::Expected<std::unique_ptr<UntypedParticipant>> untyped =
       tl::unexpected(network_error(vendor_word(options.vendor) + " is not in this build, which has " + words_of_this_build()));
 #ifdef DYNCAL_HAVE_FAST_DDS

@@ -1,7 +1,8 @@
 // The bus: typed messages of idl/dyncal.idl over DDS, whichever vendor carries them.
 //
-// A process has one Participant. Writers and readers are made from it for one topic, one of four QoS profiles and one
-// partition (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name or type appears here.
+// A process has one Participant, kept for as long as it runs; writers and readers keep it alive. Writers and readers are made from it for
+// one topic, one of four QoS profiles and one partition (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name
+// or type appears here.
 //
 // QoS profiles (idl/README.md has the exact settings):
 //   samples  reliable, keep all, transient local with bounded depth: blocks; a late joiner gets the most recent ones
@@ -23,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "services/bus/names.hpp"
 #include "services/bus/type_support.hpp"
 #include "services/error.hpp"
 
@@ -124,10 +126,13 @@ public:
   // Fails (network) when the vendor is not in this build or cannot use the domain, interface or peers.
   [[nodiscard]] static services::Expected<Participant> create(const ParticipantOptions& options);
 
+  // Fail (bad_argument) when the partition cannot be a bench's name (services/bus/names.hpp), or (network) when the vendor refuses.
   template <class T>
   [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile, const std::string& partition) {
+    if (const auto name = check_bench_name(partition); !name) return tl::unexpected(name.error());
     return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) { return Writer<T>(std::move(w)); });
   }
+  // `wake_up` rings whenever something may have come, and once at the beginning; it may be empty.
   template <class T>
   [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile, const std::string& partition,
                                                      std::shared_ptr<WakeUp> wake_up) {

@@ -1,0 +1,91 @@
+#include "services/bus/fast_dds_participant_qos.hpp"
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "services/bus/host_network.hpp"
+#include "services/bus/qos_profiles.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+constexpr const char* discovery_group = "239.255.0.1"; // DDSI-RTPS 9.6.1.4.1
+constexpr std::uint32_t discovery_port(int domain) {
+  return 7400U + 250U * static_cast<std::uint32_t>(domain);
+}
+constexpr std::uint32_t locators_per_participant = 16; // hosts with containers easily have more than the default of 4
+
+rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, address);
+  locator.port = port;
+  return locator;
+}
+
+void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = wanted_receive_buffer_bytes;
+  udp->receiveBufferSize = wanted_receive_buffer_bytes;
+  // It also caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
+  udp->maxMessageSize = longest_udp_payload_bytes;
+  udp->maxInitialPeersRange = participants_per_host;
+  if (!address.empty()) udp->interfaceWhiteList.push_back(address);
+  qos.transport().use_builtin_transports = false; // no shared memory: it throttles blocks and leaves files behind
+  qos.transport().user_transports.push_back(udp);
+}
+
+void set_discovery(const ParticipantOptions& options, const std::string& own_address, const std::vector<std::string>& peers,
+                   dds::DomainParticipantQos& qos) {
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.discovery_config.leaseDuration = {static_cast<std::int32_t>(lease.count()), 0};
+  builtin.discovery_config.leaseDuration_announcementperiod = {static_cast<std::int32_t>(lease_announcement.count()), 0};
+  builtin.discovery_config.initial_announcements = {5, {0, 200'000'000}};
+  if (options.multicast)
+    builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(options.domain)));
+  else
+    builtin.metatrafficUnicastLocatorList.push_back(rtps::Locator_t()); // one empty locator: no multicast socket
+  // The port is left to Fast DDS, which tries those of the first participants of the host. Its own host is always a peer, so that
+  // programs on a machine without a network find each other.
+  builtin.initialPeersList.push_back(locator(own_address, 0));
+  for (const std::string& peer : peers)
+    builtin.initialPeersList.push_back(locator(peer, 0));
+}
+
+} // namespace
+
+services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const ParticipantOptions& options) {
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  factory->load_profiles();
+  dds::DomainParticipantQos qos;
+  factory->get_default_participant_qos(qos);
+  qos.name(options.name);
+  if (!(factory->get_default_participant_qos() == dds::DomainParticipantQos())) {
+    if (options.warn && (!options.peers.empty() || !options.multicast || !options.interface_name.empty()))
+      options.warn("the profiles file of Fast DDS has a default participant profile: peers, multicast and interface are taken from there");
+    return qos;
+  }
+
+  std::string address;
+  if (!options.interface_name.empty()) {
+    auto found = interface_address(options.interface_name);
+    if (!found) return tl::unexpected(found.error());
+    address = *found;
+  }
+  const auto peers = resolve_peers(options.peers);
+  if (!peers) return tl::unexpected(peers.error());
+
+  set_transport(address, qos);
+  set_discovery(options, address.empty() ? "127.0.0.1" : address, *peers, qos);
+  qos.allocation().locators.max_unicast_locators = locators_per_participant;
+  if (const auto warning = receive_buffer_warning(wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
+      !warning.empty() && options.warn)
+    options.warn(warning);
+  return qos;
+}
+
+} // namespace dyncal::bus

@@ -1,0 +1,75 @@
+#include "services/bus/host_network.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <memory>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace dyncal::bus {
+namespace {
+
+services::Error network_error(std::string message) {
+  return {services::ErrorCode::network, std::move(message)};
+}
+
+std::string text_of(const sockaddr* address) {
+  char text[INET_ADDRSTRLEN] = {};
+  const auto* ipv4 = reinterpret_cast<const sockaddr_in*>(address);
+  return inet_ntop(AF_INET, &ipv4->sin_addr, text, sizeof text) != nullptr ? text : "";
+}
+
+} // namespace
+
+services::Expected<std::string> interface_address(const std::string& name_or_address) {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return tl::unexpected(network_error("this machine does not tell its network interfaces"));
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
+
+  std::string known;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    const std::string address = text_of(entry->ifa_addr);
+    if (name_or_address == entry->ifa_name || name_or_address == address) return address;
+    known += (known.empty() ? "" : ", ") + std::string(entry->ifa_name) + " (" + address + ")";
+  }
+  return tl::unexpected(
+      network_error("network interface \"" + name_or_address + "\" is not one with an IPv4 address on this machine, which has " + known));
+}
+
+services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {
+  std::vector<std::string> addresses;
+  for (const std::string& host : hosts) {
+    addrinfo wanted{};
+    wanted.ai_family = AF_INET;
+    wanted.ai_socktype = SOCK_DGRAM;
+    addrinfo* found = nullptr;
+    if (const int status = getaddrinfo(host.c_str(), nullptr, &wanted, &found); status != 0)
+      return tl::unexpected(network_error("peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status)));
+    addresses.push_back(text_of(found->ai_addr));
+    freeaddrinfo(found);
+  }
+  return addresses;
+}
+
+int granted_receive_buffer(int wanted_bytes) {
+  const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_fd < 0) return 0;
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  const bool told = setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted_bytes, sizeof wanted_bytes) == 0 &&
+                    getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) == 0;
+  close(socket_fd);
+  // Linux reports twice what was asked for, its own bookkeeping included.
+  return told ? granted / 2 : 0;
+}
+
+std::string receive_buffer_warning(int wanted_bytes, int granted_bytes) {
+  if (granted_bytes == 0 || granted_bytes >= wanted_bytes) return "";
+  return "this host allows socket buffers of " + std::to_string(granted_bytes) + " bytes only, DDS wants " + std::to_string(wanted_bytes) +
+         ": it works, but bursts need repairs; to allow more: sysctl -w net.core.rmem_max=" + std::to_string(2 * wanted_bytes);
+}
+
+} // namespace dyncal::bus
