@@ -1,0 +1,139 @@
+#include "analysis/sine_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "analysis/sine_pass.hpp"
+#include "analysis/sine_solve.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+using namespace kernel;
+
+// The start value comes from groups of eight samples spread over the record; a short record is its own start.
+constexpr Selection pilot_selection(std::size_t samples) {
+  constexpr std::size_t groups = 16;
+  if (samples < 2 * groups * lanes) return {};
+  return {lanes, samples / groups};
+}
+
+// Parameters that leave residuals of the size of the noise, or the plain level when the groups do not tell more.
+Expected<std::vector<Parameters>> pilot(const Record& record, const Frequency& frequency) {
+  std::vector<Parameters> start;
+  for (const auto& channel : record.channels())
+    start.push_back({0.0, 0.0, channel.front()});
+  const auto sums = accumulate(record, frequency, start, pilot_selection(record.size()));
+  if (!sums) return tl::unexpected(sums.error());
+  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
+  const NormalMatrix matrix(sums->samples, sums->design);
+  for (std::size_t j = 0; j < start.size(); ++j) {
+    if (matrix.smallest > 1e-2) {
+      start[j] = solve(matrix, sums->channels[j], start[j]).p;
+    } else {
+      start[j].offset += sums->channels[j].e / sums->samples;
+    }
+  }
+  return start;
+}
+
+// Another pass about the result is worth its time when the start was far off, so that the last digits of the sums matter.
+bool too_far(const NormalMatrix& matrix, const Solution& solution) {
+  constexpr double rounding = 1e-15;
+  const double step = std::hypot(solution.step.sine, solution.step.cosine);
+  const double size = std::hypot(solution.p.sine, solution.p.cosine);
+  return solution.ee > 4.0 * solution.rss + rounding * rounding * size * size * matrix.n || step * 1e-2 > matrix.smallest * size;
+}
+
+SineFit fit_from(const Record& record, const NormalMatrix& matrix, const Solution& solution) {
+  SineFit fit;
+  fit.sine = solution.p.sine;
+  fit.cosine = solution.p.cosine;
+  fit.offset = solution.p.offset;
+  fit.rss = solution.rss;
+  fit.samples = record.size();
+  fit.degrees_of_freedom = static_cast<double>(record.size()) - 3.0;
+  fit.covariance = unit_covariance(matrix);
+  for (double& element : fit.covariance)
+    element *= solution.rss / fit.degrees_of_freedom;
+  return fit;
+}
+
+Error ill_conditioned(const Record& record, const Frequency& frequency) {
+  return {ErrorCode::ill_conditioned, "sine, cosine and constant of " + std::to_string(frequency.hz()) +
+                                          " Hz cannot be told apart in this record of " + std::to_string(record.span_s()) +
+                                          " s; record more of a period, or at instants that differ in phase"};
+}
+
+} // namespace
+
+double SineFit::amplitude() const {
+  return std::hypot(sine, cosine);
+}
+
+double SineFit::phase_rad() const {
+  return std::atan2(cosine, sine);
+}
+
+double SineFit::u_amplitude() const {
+  const double size = amplitude();
+  if (size == 0.0) return std::sqrt(std::max(covariance[0], covariance[3]));
+  const double a = sine / size;
+  const double b = cosine / size;
+  return std::sqrt(std::max(0.0, a * a * covariance[0] + 2.0 * a * b * covariance[1] + b * b * covariance[3]));
+}
+
+double SineFit::u_phase_rad() const {
+  const double size = amplitude();
+  if (size == 0.0) return std::numeric_limits<double>::infinity();
+  const double a = sine / size;
+  const double b = cosine / size;
+  return std::sqrt(std::max(0.0, b * b * covariance[0] - 2.0 * a * b * covariance[1] + a * a * covariance[3])) / size;
+}
+
+double SineFit::residual_sd() const {
+  return degrees_of_freedom > 0.0 ? std::sqrt(rss / degrees_of_freedom) : 0.0;
+}
+
+Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                                        std::span<const std::span<const double>> channels) {
+  const auto record = Record::make(stamps_ns, channels, 3);
+  if (!record) return tl::unexpected(record.error());
+  if (const auto carried = record->carries(frequency); !carried) return tl::unexpected(carried.error());
+  std::int64_t shift_ns = 0;
+  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+    return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
+  }
+  auto start = pilot(*record, frequency);
+  if (!start) return tl::unexpected(start.error());
+
+  std::vector<SineFit> fits(channels.size());
+  constexpr int most_passes = 3;
+  for (int pass = 1; pass <= most_passes; ++pass) {
+    const auto sums = accumulate(*record, frequency, *start);
+    if (!sums) return tl::unexpected(sums.error());
+    if (!all_finite(*sums)) return tl::unexpected(record->not_finite());
+    const NormalMatrix matrix(sums->samples, sums->design);
+    if (!matrix.well_conditioned()) return tl::unexpected(ill_conditioned(*record, frequency));
+    bool again = false;
+    for (std::size_t j = 0; j < fits.size(); ++j) {
+      const Solution solution = solve(matrix, sums->channels[j], (*start)[j]);
+      fits[j] = fit_from(*record, matrix, solution);
+      (*start)[j] = solution.p;
+      again |= too_far(matrix, solution);
+    }
+    if (!again) break;
+  }
+  if (std::none_of(fits.begin(), fits.end(), stands_out)) {
+    return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +
+                                                              " Hz stands out of the noise in any channel; check frequency and window"});
+  }
+  const double turns = frequency.reduced_turns(shift_ns);
+  for (SineFit& fit : fits)
+    rotate(fit, turns);
+  return fits;
+}
+
+} // namespace dyncal::analysis

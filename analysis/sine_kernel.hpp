@@ -1,0 +1,89 @@
+// The inner loops of the sine approximation: sums over one block of samples, by the widest instructions the processor has.
+//
+// Phase of sample i in turns: x_i = frac((t_i - origin) * (high + low)), by an error-free product, so that no digit is lost
+// however long the record; s_i = sin(2 pi x_i), c_i = cos(2 pi x_i), u_i = (t_i - origin) * inverse_scale.
+// Every variant keeps eight logical lanes (sample i in lane i mod 8), uses the fused multiply-add at the same places and
+// adds the lanes up as ((0+1)+(2+3))+((4+5)+(6+7)): the bits do not depend on the instruction set. Without fused
+// multiply-add in hardware it is composed of exact additions and products (correct for |products| in 1e-290..1e290).
+// Blocks hold at most block_samples. REQUIRES: |t_i - origin| < 2^51 ns (26 days), less than 2^40 turns.
+// No state but what the caller passes; any thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace dyncal::analysis::kernel {
+
+inline constexpr std::size_t lanes = 8;
+inline constexpr std::size_t block_samples = 512;
+
+struct TimeAxis {
+  double turns_per_ns_high;
+  double turns_per_ns_low;
+  std::int64_t origin_ns;
+  double inverse_scale; // 1/ns
+};
+
+// Basis of one block; rows past the last sample up to a multiple of eight are zero.
+struct alignas(64) BlockBasis {
+  double sine[block_samples];
+  double cosine[block_samples];
+  double u[block_samples];
+};
+
+// Sums over the block. "us" is sum of u_i s_i, "usc" of u_i s_i c_i, and so on.
+struct DesignSums {
+  double s, c, ss, sc;
+};
+struct SlopeSums {
+  double u, uu, us, uc, uss, usc, uus, uuc, uuss, uusc;
+};
+
+struct Parameters {
+  double sine, cosine, offset;
+};
+// Of e_i = y_i - (sine s_i + cosine c_i + offset).
+struct ResidualSums {
+  double e, es, ec, ee;
+};
+struct ResidualSlopeSums {
+  double eus, euc;
+};
+
+// Orders 0..moment_order of u in the block, for series in the frequency (streaming).
+inline constexpr std::size_t moment_order = 6;
+inline constexpr std::size_t moment_count = moment_order + 1;
+struct DesignMoments {
+  double u[moment_count];
+  double us[moment_count], uc[moment_count];   // sum u^m s, u^m c
+  double uss[moment_count], usc[moment_count]; // sum u^m s^2, u^m s c
+};
+struct ResidualMoments {
+  double e, ee;
+  double us[moment_count], uc[moment_count]; // sum e u^m s, e u^m c
+};
+
+struct SineKernel {
+  const char* name;
+  // Fills sine and cosine (and u). False when the stamps do not increase strictly within the block.
+  bool (*design)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums);
+  bool (*design_with_slope)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,
+                            SlopeSums& slope);
+  void (*residuals)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums);
+  void (*residuals_with_slope)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums,
+                               ResidualSlopeSums& slope);
+  bool (*design_moments)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments);
+  void (*residual_moments)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualMoments& moments);
+};
+
+extern const SineKernel baseline_kernel;
+extern const SineKernel avx2_kernel;   // REQUIRES: avx2 and fma
+extern const SineKernel avx512_kernel; // REQUIRES: avx512f and avx512dq
+
+// The fastest one that this processor runs; chosen once.
+[[nodiscard]] const SineKernel& best_kernel();
+
+// All that this processor runs, slowest first; nullptr ends the list.
+[[nodiscard]] const SineKernel* const* supported_kernels();
+
+} // namespace dyncal::analysis::kernel

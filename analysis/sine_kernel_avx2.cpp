@@ -1,0 +1,99 @@
+// Compiled for AVX2 and FMA; entered only when the processor has them.
+#include "analysis/sine_kernel.hpp"
+#include "analysis/sine_polynomial.hpp"
+
+#include <immintrin.h>
+
+namespace {
+
+struct Lanes {
+  __m256d a, b; // lanes 0..3 and 4..7
+
+  static Lanes all(double value) { return {_mm256_set1_pd(value), _mm256_set1_pd(value)}; }
+  static Lanes load(const double* from) { return {_mm256_loadu_pd(from), _mm256_loadu_pd(from + 4)}; }
+  static Lanes mask(std::size_t count) {
+    const __m256i n = _mm256_set1_epi64x(static_cast<long long>(count));
+    return {_mm256_castsi256_pd(_mm256_cmpgt_epi64(n, _mm256_setr_epi64x(0, 1, 2, 3))),
+            _mm256_castsi256_pd(_mm256_cmpgt_epi64(n, _mm256_setr_epi64x(4, 5, 6, 7)))};
+  }
+  void store(double* to) const {
+    _mm256_storeu_pd(to, a);
+    _mm256_storeu_pd(to + 4, b);
+  }
+
+  double total() const {
+    const __m256d pairs = _mm256_hadd_pd(a, b); // 0+1, 4+5, 2+3, 6+7
+    const __m128d fours = _mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(fours, _mm_unpackhi_pd(fours, fours)));
+  }
+};
+
+inline Lanes operator+(Lanes x, Lanes y) {
+  return {_mm256_add_pd(x.a, y.a), _mm256_add_pd(x.b, y.b)};
+}
+inline Lanes operator-(Lanes x, Lanes y) {
+  return {_mm256_sub_pd(x.a, y.a), _mm256_sub_pd(x.b, y.b)};
+}
+inline Lanes operator*(Lanes x, Lanes y) {
+  return {_mm256_mul_pd(x.a, y.a), _mm256_mul_pd(x.b, y.b)};
+}
+inline Lanes operator&(Lanes x, Lanes y) {
+  return {_mm256_and_pd(x.a, y.a), _mm256_and_pd(x.b, y.b)};
+}
+inline Lanes fused(Lanes x, Lanes y, Lanes z) {
+  return {_mm256_fmadd_pd(x.a, y.a, z.a), _mm256_fmadd_pd(x.b, y.b, z.b)};
+}
+inline Lanes fused_less(Lanes x, Lanes y, Lanes z) {
+  return {_mm256_fnmadd_pd(x.a, y.a, z.a), _mm256_fnmadd_pd(x.b, y.b, z.b)};
+}
+inline Lanes fused_minus(Lanes x, Lanes y, Lanes z) {
+  return {_mm256_fmsub_pd(x.a, y.a, z.a), _mm256_fmsub_pd(x.b, y.b, z.b)};
+}
+
+inline __m256i load_four(const std::int64_t* stamps) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(stamps));
+}
+
+// |difference| < 2^51: the integer is put into the mantissa of rounding_shift.
+inline __m256d four_differences(const std::int64_t* stamps, std::int64_t origin) {
+  const __m256d shift = _mm256_set1_pd(dyncal::analysis::kernel::rounding_shift);
+  const __m256i difference = _mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin));
+  return _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(difference, _mm256_castpd_si256(shift))), shift);
+}
+
+inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
+  return {four_differences(stamps, origin), four_differences(stamps + 4, origin)};
+}
+
+inline void turn_four(__m256d shifted, __m256d& sine, __m256d& cosine) {
+  const __m256i k = _mm256_castpd_si256(shifted);
+  const __m256d odd = _mm256_castsi256_pd(_mm256_slli_epi64(k, 63)); // blendv reads the top bit
+  const __m256d upper = _mm256_castsi256_pd(_mm256_slli_epi64(k, 62));
+  const __m256d sign = _mm256_set1_pd(-0.0);
+  const __m256d s = _mm256_blendv_pd(sine, cosine, odd);
+  const __m256d c = _mm256_blendv_pd(cosine, sine, odd);
+  sine = _mm256_xor_pd(s, _mm256_and_pd(upper, sign));
+  cosine = _mm256_xor_pd(c, _mm256_and_pd(_mm256_xor_pd(odd, upper), sign));
+}
+
+inline void turn_quadrants(Lanes shifted, Lanes& sine, Lanes& cosine) {
+  turn_four(shifted.a, sine.a, cosine.a);
+  turn_four(shifted.b, sine.b, cosine.b);
+}
+
+struct StepCheck {
+  __m256i forward = _mm256_set1_epi64x(-1);
+  void see(const std::int64_t* stamps, const std::int64_t* next) {
+    forward = _mm256_and_si256(forward, _mm256_cmpgt_epi64(load_four(next), load_four(stamps)));
+    forward = _mm256_and_si256(forward, _mm256_cmpgt_epi64(load_four(next + 4), load_four(stamps + 4)));
+  }
+  bool increasing() const { return _mm256_movemask_pd(_mm256_castsi256_pd(forward)) == 0xf; }
+};
+
+} // namespace
+
+#include "analysis/sine_kernel_body.hpp"
+
+namespace dyncal::analysis::kernel {
+const SineKernel avx2_kernel{"avx2", design, design_with_slope, residuals, residuals_with_slope, design_moments, residual_moments};
+}

@@ -1,0 +1,236 @@
+// The loops of sine_kernel.hpp, written once over a type of eight lanes. Each translation unit that includes this file is
+// compiled for one instruction set and defines `Lanes` in an unnamed namespace before; nothing here has external linkage and
+// nothing of the standard library is instantiated, so that no wide instruction leaks into shared inline functions.
+//
+// Lanes provides: load, store, all(value), mask(count), operators + - * &, fused(a,b,c) = a b + c, fused_less(a,b,c) = c - a b,
+// fused_minus(a,b,c) = a b - c, time_difference(stamps, origin), turn_quadrants(k, s, c), total(), and StepCheck with see(stamps, next) and
+// increasing().
+
+namespace {
+
+using namespace dyncal::analysis::kernel;
+
+struct SineCosine {
+  Lanes sine, cosine;
+};
+
+inline SineCosine sine_cosine_of_time(Lanes dt, Lanes high, Lanes low) {
+  const Lanes product = dt * high;
+  const Lanes rest = fused(dt, low, fused_minus(dt, high, product));
+  const Lanes shifted = fused(product, Lanes::all(4.0), Lanes::all(rounding_shift));
+  const Lanes quarters = shifted - Lanes::all(rounding_shift);
+  const Lanes r = fused_less(quarters, Lanes::all(0.25), product) + rest;
+  const Lanes z = r * r;
+  Lanes s = Lanes::all(sine_coefficients[6]);
+  Lanes c = Lanes::all(cosine_coefficients[6]);
+  for (int i = 5; i >= 0; --i) {
+    s = fused(s, z, Lanes::all(sine_coefficients[i]));
+    c = fused(c, z, Lanes::all(cosine_coefficients[i]));
+  }
+  SineCosine result{s * r, fused(c, z, Lanes::all(1.0))};
+  turn_quadrants(shifted, result.sine, result.cosine);
+  return result;
+}
+
+// The last one to eight samples of a block, padded: rows past the end are masked to zero.
+struct StampTail {
+  std::int64_t stamps[2 * lanes];
+  StampTail(const std::int64_t* from, std::size_t count) {
+    for (std::size_t i = 0; i < 2 * lanes; ++i) {
+      stamps[i] = i < count ? from[i] : from[count - 1] + static_cast<std::int64_t>(i - count + 1);
+    }
+  }
+};
+struct ValueTail {
+  double values[lanes];
+  ValueTail(const double* from, std::size_t count) {
+    for (std::size_t i = 0; i < lanes; ++i)
+      values[i] = i < count ? from[i] : 0.0;
+  }
+};
+
+inline std::size_t full_groups(std::size_t n) {
+  return (n - 1) / lanes * lanes;
+}
+
+// Calls row(first index, basis of eight samples, dt) for every eight samples, after storing sine and cosine.
+template <class Row>
+inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, Row row) {
+  const Lanes high = Lanes::all(axis.turns_per_ns_high);
+  const Lanes low = Lanes::all(axis.turns_per_ns_low);
+  const std::size_t full = full_groups(n);
+  StepCheck steps;
+  for (std::size_t i = 0; i < full; i += lanes) {
+    const Lanes dt = time_difference(stamps + i, axis.origin_ns);
+    steps.see(stamps + i, stamps + i + 1);
+    const SineCosine sc = sine_cosine_of_time(dt, high, low);
+    sc.sine.store(basis.sine + i);
+    sc.cosine.store(basis.cosine + i);
+    row(i, sc, dt);
+  }
+  const StampTail tail(stamps + full, n - full);
+  const Lanes mask = Lanes::mask(n - full);
+  const Lanes dt = time_difference(tail.stamps, axis.origin_ns);
+  steps.see(tail.stamps, tail.stamps + 1);
+  SineCosine sc = sine_cosine_of_time(dt, high, low);
+  sc.sine = sc.sine & mask;
+  sc.cosine = sc.cosine & mask;
+  sc.sine.store(basis.sine + full);
+  sc.cosine.store(basis.cosine + full);
+  row(full, sc, dt & mask);
+  return steps.increasing();
+}
+
+bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums) {
+  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
+  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t, const SineCosine& row, Lanes) {
+    s = s + row.sine;
+    c = c + row.cosine;
+    ss = fused(row.sine, row.sine, ss);
+    sc = fused(row.sine, row.cosine, sc);
+  });
+  sums = {s.total(), c.total(), ss.total(), sc.total()};
+  return increasing;
+}
+
+bool design_with_slope(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,
+                       SlopeSums& slope) {
+  const Lanes scale = Lanes::all(axis.inverse_scale);
+  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
+  Lanes u1 = s, u2 = s, us = s, uc = s;
+  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine& row, Lanes dt) {
+    const Lanes u = dt * scale;
+    u.store(basis.u + i);
+    s = s + row.sine;
+    c = c + row.cosine;
+    ss = fused(row.sine, row.sine, ss);
+    sc = fused(row.sine, row.cosine, sc);
+    u1 = u1 + u;
+    u2 = fused(u, u, u2);
+    us = fused(u, row.sine, us);
+    uc = fused(u, row.cosine, uc);
+  });
+  sums = {s.total(), c.total(), ss.total(), sc.total()};
+  Lanes uss = Lanes::all(0.0), usc = uss, uus = uss, uuc = uss, uuss = uss, uusc = uss;
+  for (std::size_t i = 0; i < n; i += lanes) {
+    const Lanes u = Lanes::load(basis.u + i);
+    const Lanes us_i = u * Lanes::load(basis.sine + i);
+    const Lanes uc_i = u * Lanes::load(basis.cosine + i);
+    uss = fused(us_i, Lanes::load(basis.sine + i), uss);
+    usc = fused(us_i, Lanes::load(basis.cosine + i), usc);
+    uus = fused(us_i, u, uus);
+    uuc = fused(uc_i, u, uuc);
+    uuss = fused(us_i, us_i, uuss);
+    uusc = fused(us_i, uc_i, uusc);
+  }
+  slope = {u1.total(), u2.total(), us.total(), uc.total(), uss.total(), usc.total(), uus.total(), uuc.total(), uuss.total(), uusc.total()};
+  return increasing;
+}
+
+struct StartLanes {
+  Lanes sine, cosine, offset;
+  explicit StartLanes(const Parameters& p) : sine(Lanes::all(p.sine)), cosine(Lanes::all(p.cosine)), offset(Lanes::all(p.offset)) {}
+  Lanes residual(Lanes y, Lanes s, Lanes c) const { return fused_less(sine, s, fused_less(cosine, c, y - offset)); }
+};
+
+// Calls row(i, e, s, c) for every eight samples of a channel.
+template <class Row>
+inline void for_each_residual_row(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, Row row) {
+  const StartLanes model(start);
+  const std::size_t full = full_groups(n);
+  for (std::size_t i = 0; i < full; i += lanes) {
+    const Lanes s = Lanes::load(basis.sine + i);
+    const Lanes c = Lanes::load(basis.cosine + i);
+    row(i, model.residual(Lanes::load(values + i), s, c), s, c);
+  }
+  const ValueTail tail(values + full, n - full);
+  const Lanes s = Lanes::load(basis.sine + full);
+  const Lanes c = Lanes::load(basis.cosine + full);
+  row(full, model.residual(Lanes::load(tail.values), s, c) & Lanes::mask(n - full), s, c);
+}
+
+void residuals(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums) {
+  Lanes sum = Lanes::all(0.0), es = sum, ec = sum, ee = sum;
+  for_each_residual_row(values, n, basis, start, [&](std::size_t, Lanes e, Lanes s, Lanes c) {
+    sum = sum + e;
+    es = fused(e, s, es);
+    ec = fused(e, c, ec);
+    ee = fused(e, e, ee);
+  });
+  sums = {sum.total(), es.total(), ec.total(), ee.total()};
+}
+
+void residuals_with_slope(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums,
+                          ResidualSlopeSums& slope) {
+  Lanes sum = Lanes::all(0.0), es = sum, ec = sum, ee = sum, eus = sum, euc = sum;
+  for_each_residual_row(values, n, basis, start, [&](std::size_t i, Lanes e, Lanes s, Lanes c) {
+    const Lanes eu = e * Lanes::load(basis.u + i);
+    sum = sum + e;
+    es = fused(e, s, es);
+    ec = fused(e, c, ec);
+    ee = fused(e, e, ee);
+    eus = fused(eu, s, eus);
+    euc = fused(eu, c, euc);
+  });
+  sums = {sum.total(), es.total(), ec.total(), ee.total()};
+  slope = {eus.total(), euc.total()};
+}
+
+bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments) {
+  const Lanes scale = Lanes::all(axis.inverse_scale);
+  const bool increasing =
+      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) { (dt * scale).store(basis.u + i); });
+  const Lanes zero = Lanes::all(0.0);
+  Lanes um[moment_count], us[moment_count], uc[moment_count], uss[moment_count], usc[moment_count];
+  for (std::size_t m = 0; m < moment_count; ++m)
+    um[m] = us[m] = uc[m] = uss[m] = usc[m] = zero;
+  for (std::size_t i = 0; i < n; i += lanes) {
+    const Lanes u = Lanes::load(basis.u + i);
+    const Lanes s = Lanes::load(basis.sine + i);
+    const Lanes c = Lanes::load(basis.cosine + i);
+    Lanes power = Lanes::all(1.0) & Lanes::mask(n - i);
+    for (std::size_t m = 0; m < moment_count; ++m) {
+      const Lanes ps = power * s;
+      um[m] = um[m] + power;
+      us[m] = us[m] + ps;
+      uc[m] = fused(power, c, uc[m]);
+      uss[m] = fused(ps, s, uss[m]);
+      usc[m] = fused(ps, c, usc[m]);
+      power = power * u;
+    }
+  }
+  for (std::size_t m = 0; m < moment_count; ++m) {
+    moments.u[m] = um[m].total();
+    moments.us[m] = us[m].total();
+    moments.uc[m] = uc[m].total();
+    moments.uss[m] = uss[m].total();
+    moments.usc[m] = usc[m].total();
+  }
+  return increasing;
+}
+
+void residual_moments(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualMoments& moments) {
+  const Lanes zero = Lanes::all(0.0);
+  Lanes sum = zero, ee = zero, us[moment_count], uc[moment_count];
+  for (std::size_t m = 0; m < moment_count; ++m)
+    us[m] = uc[m] = zero;
+  for_each_residual_row(values, n, basis, start, [&](std::size_t i, Lanes e, Lanes s, Lanes c) {
+    const Lanes u = Lanes::load(basis.u + i);
+    sum = sum + e;
+    ee = fused(e, e, ee);
+    Lanes weighted = e;
+    for (std::size_t m = 0; m < moment_count; ++m) {
+      us[m] = fused(weighted, s, us[m]);
+      uc[m] = fused(weighted, c, uc[m]);
+      weighted = weighted * u;
+    }
+  });
+  moments.e = sum.total();
+  moments.ee = ee.total();
+  for (std::size_t m = 0; m < moment_count; ++m) {
+    moments.us[m] = us[m].total();
+    moments.uc[m] = uc[m].total();
+  }
+}
+
+} // namespace

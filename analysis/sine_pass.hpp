@@ -1,0 +1,66 @@
+// One pass over a record: blocks of samples go through the kernel, their sums are added up in order.
+//
+// The phase origin is the middle of the record, so that every time difference is exact and w and theta are uncorrelated; a fit
+// is turned to the caller's reference instant afterwards. Fails as sine_fit.hpp says. No threads; does not own the samples.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/frequency.hpp"
+#include "analysis/sine_kernel.hpp"
+
+namespace dyncal::analysis::kernel {
+
+using Channels = std::span<const std::span<const double>>;
+
+class Record {
+public:
+  // Checks what needs no pass: sizes, the span of the stamps. `parameters`: how many a channel has.
+  [[nodiscard]] static Expected<Record> make(std::span<const std::int64_t> stamps_ns, Channels channels, std::size_t parameters);
+
+  [[nodiscard]] std::span<const std::int64_t> stamps() const { return stamps_; }
+  [[nodiscard]] Channels channels() const { return channels_; }
+  [[nodiscard]] std::size_t size() const { return stamps_.size(); }
+  [[nodiscard]] std::int64_t origin_ns() const { return origin_ns_; }
+  [[nodiscard]] double span_s() const { return span_s_; }
+  [[nodiscard]] double half_span_ns() const { return span_s_ * 0.5e9; }
+
+  // More than half a turn per mean sample interval cannot be told from its alias.
+  [[nodiscard]] Expected<void> carries(const Frequency& frequency) const;
+  [[nodiscard]] TimeAxis axis(const Frequency& frequency) const;
+
+  // The errors of which only a pass tells that they are there; these find the place.
+  [[nodiscard]] Error not_increasing() const;
+  [[nodiscard]] Error not_finite() const;
+
+private:
+  Record(std::span<const std::int64_t> stamps, Channels channels);
+  std::span<const std::int64_t> stamps_;
+  Channels channels_;
+  std::int64_t origin_ns_ = 0;
+  double span_s_ = 0.0;
+};
+
+// Which samples a pass looks at: `length` of every `step`, from the first.
+struct Selection {
+  std::size_t length = block_samples;
+  std::size_t step = block_samples;
+};
+
+struct PassSums {
+  double samples = 0.0;
+  DesignSums design{};
+  std::vector<ResidualSums> channels;
+};
+
+// Sums about the start values. Fails: stamps_not_increasing.
+[[nodiscard]] Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
+                                            Selection selection = {});
+
+[[nodiscard]] bool all_finite(const PassSums& sums);
+
+} // namespace dyncal::analysis::kernel
