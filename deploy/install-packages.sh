@@ -22,7 +22,7 @@ run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libprotobuf-lite32 libssl3 libsndfile1
 )
 test_packages=(
-  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
   clang-14 libclang-rt-14-dev                  # libFuzzer
   nftables iproute2                            # packet loss between network namespaces
   python3-numpy python3-scipy python3-mpmath   # independent reference values
