@@ -33,9 +33,10 @@ struct AdcResponse { // of the DAU's sync ADC at the excitation frequency
 struct SystematicUncertainty { // standard uncertainties that no residual shows
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
-  double acs_delay_s = 0.0;      // residual delay between the ACS channels
-  double dau_jitter_s = 0.0;     // white stamp noise common to sync and DOS (tick included)
-  double dau_tick_s = 0.0;       // quantum of the DAU's stamps, 0: none
+  double acs_delay_s = 0.0;       // residual delay between the ACS channels
+  double dau_jitter_s = 0.0;      // white stamp noise common to sync and DOS (tick included)
+  double dau_tick_s = 0.0;        // quantum of the DAU's stamps, 0: none
+  double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync, which its stamp does not show
 };
 
 struct ChannelSamples {
@@ -45,21 +46,21 @@ struct ChannelSamples {
 };
 
 struct SampleStampingInput {
-  Frequency frequency;             // nominal
-  double frequency_search_rel = 1e-3;
-  std::span<const std::int64_t> acs_stamps_ns;
-  ChannelSamples reference;
-  ChannelSamples sync_acs;
-  std::span<const std::int64_t> dau_stamps_ns;
-  ChannelSamples sync_dau;
-  std::vector<ChannelSamples> dut; // one result each
-  AdcResponse adc;
-  SystematicUncertainty systematic;
+  Frequency frequency;                // nominal
+  double frequency_search_rel = 1e-3; // 0: the frequency is known exactly in both clocks and not refined
+  std::span<const std::int64_t> acs_stamps_ns{};
+  ChannelSamples reference{};
+  ChannelSamples sync_acs{};
+  std::span<const std::int64_t> dau_stamps_ns{};
+  ChannelSamples sync_dau{};
+  std::vector<ChannelSamples> dut{}; // one result each
+  AdcResponse adc{};
+  SystematicUncertainty systematic{};
 };
 
 struct Contribution { // one line of the uncertainty budget; standard uncertainties
   std::string name;
-  std::string distribution;      // "normal", "rectangular", ...
+  std::string distribution;        // "normal", "rectangular", ...
   double degrees_of_freedom = 0.0; // 0: infinite
   double u_magnitude_rel = 0.0;
   double u_phase_rad = 0.0;
@@ -74,13 +75,13 @@ struct SeriesFit { // what was fitted to one of the four series
 };
 
 struct TransferPoint {
-  std::string channel;
-  std::complex<double> h;
+  std::string channel{};
+  std::complex<double> h{};
   double magnitude = 0.0;
   double u_magnitude = 0.0;
-  double phase_rad = 0.0;   // (-pi, pi]
+  double phase_rad = 0.0; // (-pi, pi]
   double u_phase_rad = 0.0;
-  std::vector<Contribution> budget;
+  std::vector<Contribution> budget{};
   SeriesFit dut;
 };
 
