@@ -1,0 +1,26 @@
+// From combined standard uncertainty to coverage interval: Student's t, Welch-Satterthwaite (GUM G.4).
+// Degrees of freedom are real numbers; 0 stands for infinite, as in a Contribution. Any thread.
+#pragma once
+
+#include <span>
+
+namespace dyncal::analysis {
+
+// Probability of |x| <= 2 sigma of a normal distribution.
+inline constexpr double two_sigma_probability = 0.95449973610364158;
+
+// Probability that Student's t with `degrees_of_freedom` is <= t.
+[[nodiscard]] double student_probability(double t, double degrees_of_freedom);
+
+// k so that |t| <= k with the given probability; 2 for infinite degrees of freedom.
+[[nodiscard]] double coverage_factor(double degrees_of_freedom, double probability = two_sigma_probability);
+
+struct UncertaintyPart {
+  double u = 0.0;
+  double degrees_of_freedom = 0.0; // 0: infinite
+};
+
+// nu_eff = u_c^4 / sum(u_i^4 / nu_i); 0 when all are infinite.
+[[nodiscard]] double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts);
+
+} // namespace dyncal::analysis

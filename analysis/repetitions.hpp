@@ -1,0 +1,56 @@
+// One transfer function value from repeated measurements at the same frequency.
+//
+// Mean: of the phasors, H = sum(H_i) / n. Scatter: e_i = H_i / H - 1, real part relative magnitude, imaginary part phase, sample
+// standard deviations s with n - 1 degrees of freedom.
+// Uncertainty: what is common to all repetitions (reference, ADC, delays) does not average out; the rest is taken twice and the
+// larger counts: (a) observed, s / sqrt(n) with n - 1 degrees of freedom, (b) expected from the fits, rms(u_random) / sqrt(n).
+//   u_c^2 = u_a^2 + u_common^2, nu_eff by Welch-Satterthwaite, U = k(nu_eff) u_c at 95.45 % (GUM G.4; k = 4.53 for n = 3)
+// `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader applies covers 95.45 % although n is small;
+// u_c, nu_eff and k are given as well.
+// A mean that hardly stands out of its uncertainty (below 10 u) has the phase uncertainty of phasor.hpp.
+// Fails: invalid_argument (no repetition), not_finite. Any thread.
+#pragma once
+
+#include <complex>
+#include <span>
+
+#include "analysis/error.hpp"
+#include "analysis/sample_stamping.hpp"
+
+namespace dyncal::analysis {
+
+struct Repetition {
+  std::complex<double> h;
+  double u_random_magnitude_rel = 0.0; // independent from repetition to repetition
+  double u_random_phase_rad = 0.0;
+  double u_common_magnitude_rel = 0.0; // the same in all of them
+  double u_common_phase_rad = 0.0;
+};
+
+// Divides a budget: rows with finite degrees of freedom were estimated from this repetition's own samples and are random; the
+// others are taken as common to all repetitions.
+[[nodiscard]] Repetition make_repetition(std::complex<double> h, std::span<const Contribution> budget);
+
+struct CombinedUncertainty {
+  double u = 0.0;                  // combined standard uncertainty u_c
+  double degrees_of_freedom = 0.0; // nu_eff, 0: infinite
+  double k = 2.0;                  // at 95.45 %
+};
+
+struct RepetitionMean {
+  std::complex<double> h;
+  double magnitude = 0.0;
+  double u_magnitude = 0.0;             // U / 2
+  double phase_rad = 0.0;               // (-pi, pi]
+  double u_phase_rad = 0.0;             // U / 2
+  double u_independent_phase_rad = 0.0; // U / 2 without the common part: for the regression over frequency
+  double scatter_magnitude = 0.0;       // s of one repetition, in the unit of the magnitude; 0 for n = 1
+  double scatter_phase_rad = 0.0;
+  std::size_t repetitions = 0;
+  CombinedUncertainty magnitude_rel;
+  CombinedUncertainty phase;
+};
+
+[[nodiscard]] Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions);
+
+} // namespace dyncal::analysis

@@ -1,0 +1,135 @@
+// The sample clock of a sensor from the stamps of its samples: direct sample interval evaluation, paper sections 3 and 4.2.
+//
+// Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an integer in ns; mean, standard
+// deviation (n - 1), median, MAD and quantiles (linear between order statistics) are those of the integers, exactly.
+// Histogram: in whole ticks of the stamping counter when it is known, because all intervals then lie on its lattice
+// (L = |mean e^{2 pi i d / tick}| near 1), and narrower bins would make a comb of any distribution; else in bins of
+// max(1 ns, quarter of the robust standard deviation). Modes: peaks after the triangular kernel of two stamps' quantisation is
+// taken out, that stand out of the valley beside them by five standard deviations of the counts and one per cent of the highest.
+// Events, with m the median and s = 1.4826 MAD: "duplicate" d <= 0.02 m; "gap" |d - k m| < max(8 s sqrt(k), 0.02 m), k >= 2, k - 1
+// samples missing; "pair" |d - m| > 6 s, followed by the opposite to within 9 s; "step" otherwise: the clock has moved for good.
+// Temperature: of the sample that begins an interval; only intervals without event count.
+// Allan deviation: overlapping, at octaves m tau_0, sum (t_{i+2m} - 2 t_{i+m} + t_i)^2 / (2 m^2 tau_0^2 (N - 2m)), inside stretches
+// without lost samples.
+// Memory is bounded (settings); what does not depend on a bound is exact however the stream was cut. One thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dyncal::analysis {
+
+struct SampleClockSettings {
+  double nominal_rate_hz = 0.0;     // 0: not known
+  double tick_s = 0.0;              // of the stamping counter, 0: not known
+  double stamp_uncertainty_s = 0.0; // standard uncertainty of one stamp against the time base
+  std::size_t most_buckets = 1000;  // of the overview over time
+  std::size_t most_events = 1000;   // listed; all are counted
+  std::size_t most_scatter = 4000;  // temperature-interval pairs kept
+  std::size_t most_temperature_bins = 100;
+  std::size_t close_up = 40; // intervals on each side of the first pair
+  std::size_t longest_allan_samples = 1u << 18;
+  std::size_t most_distinct_intervals = 1u << 20;
+};
+
+struct IntervalHistogramBin {
+  std::int64_t ticks = 0; // interval in ticks (in bins where the tick is not known)
+  double interval_ns = 0.0;
+  std::uint64_t count = 0;
+};
+
+struct IntervalBucket {
+  double time_s = 0.0; // of its first interval, since the first sample
+  double minimum_ns = 0.0;
+  double maximum_ns = 0.0;
+  double mean_ns = 0.0;
+};
+
+struct IntervalEvent {
+  std::string kind;         // "duplicate", "gap", "pair", "step"
+  std::uint64_t sample = 0; // number of the sample that begins the interval
+  double time_s = 0.0;      // since the first sample
+  double size_ns = 0.0;     // deviation from the median
+  std::uint32_t missing = 0;
+};
+
+struct TemperatureBin {
+  double temperature_degc = 0.0; // centre
+  double mean_interval_ns = 0.0;
+  double sd_interval_ns = 0.0;
+  std::uint64_t count = 0;
+};
+
+struct AllanPoint {
+  double tau_s = 0.0;
+  double deviation = 0.0;
+};
+
+struct SampleClockStatistics {
+  std::uint64_t intervals = 0;
+  double mean_interval_s = 0.0;
+  double u_mean_interval_s = 0.0; // sqrt(2) u(stamp) / n
+  double sd_s = 0.0;
+  double minimum_s = 0.0;
+  double maximum_s = 0.0;
+  double median_s = 0.0;
+  double mad_sd_s = 0.0;       // 1.4826 MAD
+  double quantile_001_s = 0.0; // 0.1 %
+  double quantile_01_s = 0.0;  // 1 %
+  double quantile_50_s = 0.0;
+  double quantile_99_s = 0.0;
+  double quantile_999_s = 0.0;
+  double core_mean_s = 0.0; // without events
+  double core_sd_s = 0.0;
+  double nominal_rate_hz = 0.0;
+  double mean_rate_hz = 0.0;
+  double tick_s = 0.0;
+  double lattice_statistic = 0.0;
+  std::vector<double> modes_s;
+  std::vector<IntervalHistogramBin> histogram; // bins that are not empty, rising
+  std::vector<IntervalBucket> over_time;
+  double close_up_first_time_s = 0.0;
+  std::vector<double> close_up_ns;
+  std::vector<IntervalEvent> events;
+  std::uint64_t event_count = 0;
+  std::uint64_t pair_count = 0;
+  double pair_period_samples = 0.0; // median distance, 0 with fewer than three pairs
+  double pair_period_s = 0.0;
+  double pair_regularity = 0.0; // Rayleigh's mean resultant length at that period: 1 regular, towards 0 by chance
+  std::vector<TemperatureBin> over_temperature;
+  std::vector<double> scatter_temperature_degc;
+  std::vector<double> scatter_interval_ns;
+  double temperature_correlation = 0.0;
+  double temperature_slope_s_per_degc = 0.0;
+  std::vector<AllanPoint> allan;
+  std::uint64_t lost = 0;      // samples missing from the numbering
+  std::uint64_t untrusted = 0; // samples whose stamp was flagged
+};
+
+class SampleClock {
+public:
+  explicit SampleClock(const SampleClockSettings& settings = {});
+  ~SampleClock();
+  SampleClock(SampleClock&&) noexcept;
+  SampleClock& operator=(SampleClock&&) noexcept;
+
+  // The next samples. `first_sample` is the number of the first of them; a number that does not follow on the last one starts a new
+  // stretch (missing ones are counted as lost; a smaller one is a restart of the numbering). `flags` (a value that is not 0: stamp
+  // not trusted) and `temperature_degc` are either empty or as long as `stamps_ns`.
+  void push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns, std::span<const std::uint8_t> flags = {},
+            std::span<const double> temperature_degc = {});
+
+  // Empty with fewer than two intervals.
+  [[nodiscard]] std::optional<SampleClockStatistics> statistics() const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace dyncal::analysis
