@@ -1,0 +1,28 @@
+#include <filesystem>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "services/bench/bench_file.hpp"
+
+namespace dyncal::services {
+namespace {
+
+TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
+  std::set<std::string> benches;
+  std::set<std::string> ports;
+  for (const auto& entry : std::filesystem::directory_iterator(EXAMPLE_LAB)) {
+    if (entry.path().extension() != ".toml") continue;
+    const auto file = read_bench_file(entry.path());
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_TRUE(benches.insert(file->bench).second) << file->bench << " is there twice";
+    for (const auto& source : file->sources) {
+      if (source.driver != SourceDriver::smartup) continue;
+      EXPECT_TRUE(ports.insert(source.listen).second) << source.listen << " is there twice";
+    }
+  }
+  EXPECT_EQ(benches, (std::set<std::string>{"acc-1", "acc-2"}));
+}
+
+} // namespace
+} // namespace dyncal::services
