@@ -1,0 +1,267 @@
+#include "drivers/smartup/receiver.hpp"
+
+#include <arpa/inet.h>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <utility>
+
+namespace dyncal::drivers::smartup {
+
+namespace {
+
+constexpr std::size_t kBatch = 64;             // datagrams per recvmmsg
+constexpr std::size_t kLongestDatagram = 2048; // a unit sends 1000 bytes at most
+constexpr int kTick_ms = 25;
+constexpr int kRest_ms = 2;
+constexpr std::size_t kRestWorthwhile = 2; // datagrams at one wake-up, from which on batches pay
+
+template <class Clock>
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+}
+
+HostTime host_time() {
+  return {now_ns<std::chrono::steady_clock>(), now_ns<std::chrono::system_clock>()};
+}
+
+sockaddr_in socket_address(ListenAddress listen) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(listen.address);
+  address.sin_port = htons(listen.port);
+  return address;
+}
+
+// The sockets interface takes every address family through this one type.
+sockaddr* generic(sockaddr_in& address) {
+  return reinterpret_cast<sockaddr*>(&address);
+}
+
+Error cannot_listen(const std::string& listen, int error) {
+  std::string reason = std::strerror(error);
+  if (error == EADDRINUSE) reason = "another program uses this port already: stop it, or give this source another port";
+  if (error == EADDRNOTAVAIL) reason = "this host has no such address: use one of its own, or 0.0.0.0 for all";
+  if (error == EACCES) reason = "not permitted: use a port above 1023, or run with the right to use lower ones";
+  return {ErrorCode::refused, "cannot listen at UDP " + listen + ": " + reason};
+}
+
+} // namespace
+
+Expected<ListenAddress> parse_listen_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  const auto bad = [&] {
+    return tl::unexpected(Error{ErrorCode::invalid_setting, "cannot listen at '" + text + "': write IPV4-ADDRESS:PORT, e.g. 0.0.0.0:7654"});
+  };
+  if (colon == std::string::npos) return bad();
+  ListenAddress listen;
+  const char* begin = text.data() + colon + 1;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(begin, end, listen.port);
+  if (error != std::errc() || rest != end || begin == end) return bad();
+  if (colon == 0) return listen;
+  in_addr address{};
+  if (inet_pton(AF_INET, text.substr(0, colon).c_str(), &address) != 1) return bad();
+  listen.address = ntohl(address.s_addr);
+  return listen;
+}
+
+// Memory for one call of recvmmsg.
+class Receiver::Batch {
+public:
+  Batch() {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      parts_[i] = {bytes_.data() + i * kLongestDatagram, kLongestDatagram};
+      headers_[i].msg_hdr.msg_iov = &parts_[i];
+      headers_[i].msg_hdr.msg_iovlen = 1;
+      headers_[i].msg_hdr.msg_name = &senders_[i];
+    }
+  }
+
+  // Datagrams received, 0 when there are none.
+  std::size_t receive(int descriptor) {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      headers_[i].msg_hdr.msg_namelen = sizeof senders_[i];
+      headers_[i].msg_hdr.msg_control = controls_[i].data();
+      headers_[i].msg_hdr.msg_controllen = controls_[i].size();
+    }
+    const int count = recvmmsg(descriptor, headers_.data(), kBatch, MSG_DONTWAIT, nullptr);
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+
+  [[nodiscard]] std::span<const std::uint8_t> datagram(std::size_t i) const {
+    return {bytes_.data() + i * kLongestDatagram, headers_[i].msg_len};
+  }
+  [[nodiscard]] bool cut_off(std::size_t i) const { return (headers_[i].msg_hdr.msg_flags & MSG_TRUNC) != 0; }
+  [[nodiscard]] Sender sender(std::size_t i) const { return {ntohl(senders_[i].sin_addr.s_addr), ntohs(senders_[i].sin_port)}; }
+
+  // The socket's own count of datagrams that did not fit its buffer, as it was when this one came (32 bits, wraps).
+  [[nodiscard]] std::optional<std::uint32_t> dropped(std::size_t i) {
+    for (cmsghdr* part = CMSG_FIRSTHDR(&headers_[i].msg_hdr); part != nullptr; part = CMSG_NXTHDR(&headers_[i].msg_hdr, part)) {
+      if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_RXQ_OVFL) continue;
+      std::uint32_t count = 0;
+      std::memcpy(&count, CMSG_DATA(part), sizeof count);
+      return count;
+    }
+    return std::nullopt;
+  }
+
+private:
+  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kBatch * kLongestDatagram);
+  std::array<iovec, kBatch> parts_{};
+  std::array<mmsghdr, kBatch> headers_{};
+  std::array<sockaddr_in, kBatch> senders_{};
+  std::array<std::array<char, CMSG_SPACE(sizeof(std::uint32_t))>, kBatch> controls_{};
+};
+
+class Receiver::Socket {
+public:
+  static Expected<std::unique_ptr<Socket>> open(Endpoint endpoint) {
+    auto listen = parse_listen_address(endpoint.listen);
+    if (!listen) return tl::unexpected(listen.error());
+    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (descriptor < 0) return tl::unexpected(cannot_listen(endpoint.listen, errno));
+    auto opened = std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.sink));
+    const int wanted = endpoint.receive_buffer_bytes;
+    const int on = 1;
+    // The first needs a privilege and passes the system's limit, the second is capped by it.
+    if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0)
+      setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+    setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+    sockaddr_in address = socket_address(*listen);
+    if (bind(descriptor, generic(address), sizeof address) != 0) return tl::unexpected(cannot_listen(endpoint.listen, errno));
+    return opened;
+  }
+
+  ~Socket() { close(descriptor_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  [[nodiscard]] std::uint16_t port() const {
+    sockaddr_in address{};
+    socklen_t length = sizeof address;
+    return getsockname(descriptor_, generic(address), &length) == 0 ? ntohs(address.sin_port) : std::uint16_t{0};
+  }
+
+  [[nodiscard]] int receive_buffer_bytes() const {
+    int bytes = 0;
+    socklen_t length = sizeof bytes;
+    return getsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &bytes, &length) == 0 ? bytes : 0;
+  }
+
+  // Everything that waits in the socket; how many datagrams that were.
+  std::size_t drain(Batch& batch) {
+    std::size_t total = 0;
+    std::size_t count = kBatch;
+    // Bounded, so that a flood at this socket cannot starve the others and the stop.
+    for (int round = 0; round < kRounds && count == kBatch; ++round) {
+      count = batch.receive(descriptor_);
+      const HostTime now = host_time();
+      for (std::size_t i = 0; i < count; ++i)
+        take(batch, i, now);
+      total += count;
+    }
+    return total;
+  }
+
+  Reception& reception() { return reception_; }
+
+private:
+  static constexpr int kRounds = 64;
+
+  Socket(int descriptor, std::vector<SensorSettings> wanted, SampleSink& sink)
+      : descriptor_(descriptor), reception_(std::move(wanted), sink) {}
+
+  void take(Batch& batch, std::size_t i, HostTime now) {
+    if (const auto dropped = batch.dropped(i)) {
+      dropped_ += *dropped - last_dropped_; // differences of 32-bit counts survive the wrap
+      last_dropped_ = *dropped;
+      reception_.set_dropped_by_kernel(dropped_);
+    }
+    if (batch.cut_off(i))
+      reception_.add_too_long();
+    else
+      reception_.take(batch.datagram(i), batch.sender(i), now);
+  }
+
+  const int descriptor_;
+  Reception reception_;
+  std::uint32_t last_dropped_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+Receiver::Receiver() = default;
+
+Expected<std::unique_ptr<Receiver>> Receiver::create(std::vector<Endpoint> endpoints) {
+  auto receiver = std::unique_ptr<Receiver>(new Receiver());
+  for (auto& endpoint : endpoints) {
+    auto opened = Socket::open(std::move(endpoint));
+    if (!opened) return tl::unexpected(opened.error());
+    receiver->sockets_.push_back(std::move(*opened));
+  }
+  receiver->stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (receiver->stop_event_ < 0)
+    return tl::unexpected(Error{ErrorCode::refused, std::string("cannot make an event to stop the receiver: ") + std::strerror(errno)});
+  return receiver;
+}
+
+Receiver::~Receiver() {
+  stop();
+  if (stop_event_ >= 0) close(stop_event_);
+}
+
+std::uint16_t Receiver::port(std::size_t endpoint) const {
+  return sockets_.at(endpoint)->port();
+}
+
+int Receiver::receive_buffer_bytes(std::size_t endpoint) const {
+  return sockets_.at(endpoint)->receive_buffer_bytes();
+}
+
+void Receiver::start() {
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+}
+
+void Receiver::stop() {
+  if (!thread_.joinable()) return;
+  const std::uint64_t one = 1;
+  // Only fails when the counter is full, and then the event is set.
+  [[maybe_unused]] const auto written = write(stop_event_, &one, sizeof one);
+  thread_.join();
+}
+
+void Receiver::run() {
+  Batch batch;
+  std::vector<pollfd> events{{stop_event_, POLLIN, 0}};
+  for (const auto& socket : sockets_)
+    events.push_back({socket->descriptor(), POLLIN, 0});
+  std::int64_t next_tick_ns = 0;
+  while (true) {
+    poll(events.data(), events.size(), kTick_ms);
+    std::size_t received = 0;
+    for (auto& socket : sockets_)
+      received += socket->drain(batch);
+    const HostTime now = host_time();
+    if (now.monotonic_ns >= next_tick_ns) {
+      for (auto& socket : sockets_)
+        socket->reception().tick(now);
+      next_tick_ns = now.monotonic_ns + kTick_ms * std::int64_t{1'000'000};
+    }
+    if (received >= kRestWorthwhile) poll(events.data(), 1, kRest_ms); // the stop event alone
+    if ((events[0].revents & POLLIN) != 0) break;
+  }
+  for (auto& socket : sockets_)
+    socket->reception().finish(host_time());
+}
+
+} // namespace dyncal::drivers::smartup

@@ -1,0 +1,218 @@
+#include "drivers/smartup/sensor.hpp"
+
+#include <utility>
+
+#include "drivers/smartup/sensor_id.hpp"
+
+namespace dyncal::drivers::smartup {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kLongestWaitForDescription_ns = 5 * kSecond_ns; // they come every 4 s
+constexpr std::uint64_t kLongestBeginning = 16;                        // samples of one sensor in one datagram
+constexpr std::int64_t kPause_ns = 2 * kSecond_ns;
+constexpr std::int64_t kPauseInSteps = 10;
+constexpr double kTick_s = 1.0 / 108e6;
+constexpr double kStampUncertainty_s = 100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
+
+// The unit sends four standard uncertainties.
+std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
+  return sent / 4 + (sent % 4 != 0 ? 1 : 0);
+}
+
+} // namespace
+
+Sensor::Sensor(std::uint32_t sensor, std::optional<SensorSettings> settings, SampleSink& sink)
+    : sensor_(sensor), settings_(std::move(settings)), sink_(sink), blocks_(settings_ ? settings_->block_ns : SensorSettings{}.block_ns) {}
+
+void Sensor::give_sync_to(Sensor& owner) {
+  sync_of_ = &owner;
+  owner.sync_ = this;
+}
+
+// Stale samples show when the first samples are followed by a pause that is long against the steps on its other side.
+bool Sensor::all_stale_before(const DataMessage& message, std::uint64_t missing) {
+  const std::int64_t step_ns = message.stamp_ns() - beginning_.last_stamp_ns;
+  const std::int64_t step_before_ns = std::exchange(beginning_.last_step_ns, step_ns);
+  beginning_.last_stamp_ns = message.stamp_ns();
+  if (++beginning_.samples < 3 || beginning_.samples > kLongestBeginning || missing > 0) return false;
+  const auto is_pause = [](std::int64_t pause_ns, std::int64_t other_ns) {
+    return pause_ns > kPause_ns && other_ns > 0 && pause_ns > kPauseInSteps * other_ns;
+  };
+  return is_pause(step_ns, step_before_ns) || (beginning_.samples == 3 && is_pause(step_before_ns, step_ns));
+}
+
+void Sensor::discard_stale() {
+  // The sample that showed the pause counts as one of the stale ones only if it lies before it: it is taken afterwards.
+  const std::size_t waiting = join_.discard() + blocks_.discard();
+  counts_.stale += waiting;
+  counts_.received -= waiting;
+  stamps_ = StampCheck();
+}
+
+void Sensor::begin_numbering(HostTime now) {
+  ++counts_.restarts;
+  if (!session_has_blocks_ && beginning_.samples <= kLongestBeginning) {
+    discard_stale();
+  } else {
+    join_.release();
+    drain_join(now);
+    hand_over(blocks_.flush());
+    announce_new_session();
+  }
+  beginning_ = {};
+  stamps_ = StampCheck();
+}
+
+void Sensor::announce_new_session() {
+  if (session_has_blocks_) sink_.on_new_session(sensor_);
+  session_has_blocks_ = false;
+}
+
+std::optional<std::uint64_t> Sensor::take(const DataMessage& message, HostTime now) {
+  const Place place = numbering_.place(message.sample_number, message.stamp_ns());
+  switch (place.arrival) {
+  case Arrival::duplicate:
+    ++counts_.duplicates;
+    return std::nullopt;
+  case Arrival::late:
+    ++counts_.late;
+    return std::nullopt;
+  case Arrival::stale:
+    ++counts_.stale;
+    return std::nullopt;
+  case Arrival::restart:
+    begin_numbering(now);
+    break;
+  case Arrival::next:
+  case Arrival::after_gap:
+    break;
+  }
+  if (!first_sample_ns_) first_sample_ns_ = now.monotonic_ns;
+  if (all_stale_before(message, place.missing) && !session_has_blocks_) discard_stale();
+
+  SampleRow row{.sample = place.sample,
+                .stamp_ns = message.stamp_ns(),
+                .stamp_uncertainty_ns = standard_uncertainty_ns(message.time_uncertainty_ns),
+                .present = message.present,
+                .values = message.values};
+  row.flags = stamps_.check({place.sample, row.stamp_ns, message.time_uncertainty_ns, message.unix_time_s == 0});
+  ++counts_.received;
+  counts_.stamp_uncertainty_ns = row.stamp_uncertainty_ns;
+  if (row.flags != 0) ++counts_.stamps_not_trusted;
+  for (std::size_t bit = 0; bit < kStampFlags; ++bit)
+    counts_.stamp_flags[bit] += (row.flags >> bit) & 1U;
+
+  if (sync_of_ != nullptr) sync_of_->take_sync(message, now);
+  if (!settings_) return place.missing;
+  if (sync_ != nullptr) {
+    join_.add(row);
+    drain_join(now);
+  } else {
+    assemble(row, now);
+  }
+  return place.missing;
+}
+
+void Sensor::take_sync(const DataMessage& message, HostTime now) {
+  join_.add_sync(message.stamp_ns(), message.present, message.values);
+  drain_join(now);
+}
+
+void Sensor::drain_join(HostTime now) {
+  SampleRow row;
+  while (join_.take(row))
+    assemble(row, now);
+  counts_.without_sync = join_.without_sync();
+}
+
+void Sensor::assemble(const SampleRow& row, HostTime now) {
+  const Columns columns = blocks_.columns();
+  const Columns wider{static_cast<std::uint16_t>(columns.own | row.present), static_cast<std::uint16_t>(columns.sync | row.sync_present)};
+  if (wider != columns) {
+    if (session_has_blocks_) {
+      ++counts_.new_columns;
+      hand_over(blocks_.flush());
+      announce_new_session();
+    }
+    blocks_.set_columns(wider);
+    description_changed_ = true;
+    describe(now);
+  }
+  hand_over(blocks_.add(row, stamps_.period_ns(), now));
+}
+
+void Sensor::hand_over(std::optional<SampleBlock> block) {
+  if (!block) return;
+  session_has_blocks_ = true;
+  sink_.on_block(sensor_, std::move(*block));
+}
+
+void Sensor::take(const DescriptionMessage& message, HostTime now) {
+  if (!declared_.add(message)) return;
+  description_changed_ = true;
+  for (auto& warning : declared_.warnings()) {
+    if (warned_.insert(warning).second) sink_.on_warning(sensor_, warning);
+  }
+  if (sync_of_ != nullptr) {
+    sync_of_->description_changed_ = true;
+    sync_of_->describe(now);
+  }
+  describe(now);
+}
+
+// Says what is known as soon as it is whole, or when waiting for the rest has taken too long; later whenever it changes.
+void Sensor::describe(HostTime now) {
+  if (!settings_ || !description_changed_ || blocks_.columns() == Columns{}) return;
+  const bool whole = declared_.complete() && (sync_ == nullptr || sync_->declared_.complete());
+  const bool waited = first_sample_ns_ && now.monotonic_ns - *first_sample_ns_ >= kLongestWaitForDescription_ns;
+  if (!described_ && !whole && !waited) return;
+  described_ = true;
+  description_changed_ = false;
+  sink_.on_description(sensor_, description());
+}
+
+SourceDescription Sensor::description() const {
+  SourceDescription description;
+  description.device = declared_.sensor_name();
+  description.serial = sensor_text(sensor_);
+  description.driver = "smartup";
+  description.channels = declared_.channels(blocks_.columns().own, settings_->naming);
+  if (sync_ != nullptr) {
+    for (auto& channel : sync_->declared_.channels(blocks_.columns().sync, settings_->naming, "sync_"))
+      description.channels.push_back(std::move(channel));
+  }
+  description.time_base = settings_->time_base;
+  description.stamp_instant = StampInstant::data_ready_edge;
+  description.tick_s = kTick_s;
+  description.stamp_uncertainty_s = kStampUncertainty_s;
+  return description;
+}
+
+void Sensor::reject(const RejectedMessage& message) {
+  ++counts_.rejected[static_cast<std::size_t>(message.cause)];
+  if (message.sample_number) numbering_.skip(*message.sample_number);
+}
+
+void Sensor::add_loss(std::uint64_t in_unit, std::uint64_t on_way) {
+  counts_.lost_in_unit += in_unit;
+  counts_.lost_on_way += on_way;
+}
+
+void Sensor::tick(HostTime now) {
+  describe(now);
+  hand_over(blocks_.flush(now));
+}
+
+void Sensor::finish(HostTime now) {
+  join_.release();
+  drain_join(now);
+  hand_over(blocks_.flush());
+}
+
+SensorReport Sensor::report(const std::string& sender) const {
+  return {sensor_, declared_.sensor_name(), sender, settings_.has_value() || sync_of_ != nullptr, counts_};
+}
+
+} // namespace dyncal::drivers::smartup

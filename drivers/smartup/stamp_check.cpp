@@ -1,0 +1,166 @@
+#include "drivers/smartup/stamp_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "drivers/sample_block.hpp"
+
+namespace dyncal::drivers::smartup {
+
+namespace {
+
+constexpr double kSecond_ns = 1e9;
+constexpr double kTicksPerSecond[] = {108e6, 100e6};
+constexpr double kTicksOfExtension = 4294967296.0;
+constexpr double kTicksOfHalf = 65536.0;
+constexpr double kCrystalError = 1e-4; // by which a number of ticks may differ from its nominal time
+
+constexpr double kPhaseGain = 0.1;
+constexpr double kPeriodGain = 0.004; // damping 0.8: it settles without ringing
+constexpr double kResidualMemory = 1.0 / 64.0;
+
+constexpr double kToleranceInPeriods = 0.25;
+constexpr double kLargestPlainTolerance_ns = 200e3;
+constexpr double kToleranceInUsualResiduals = 10.0;
+constexpr double kPeriodDrift = 2e-5; // relative, while the model runs free
+
+constexpr double kPersistence_ns = 10e9;
+constexpr std::uint64_t kPersistenceSamples = 8;
+
+bool is_close(double value, double target, double tolerance) {
+  return std::abs(std::abs(value) - target) <= tolerance;
+}
+
+template <class Values>
+double median(Values& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+} // namespace
+
+const char* stamp_flag_name(std::size_t bit) {
+  static constexpr const char* kNames[kStampFlags] = {
+      "stamp: second slipped", "stamp: 2^32 ticks off", "stamp: 2^16 ticks off", "stamp: offset below a second",
+      "stamp: repeated",       "stamp: no uncertainty", "stamp: no fix",         "stamp: backwards"};
+  return bit < kStampFlags ? kNames[bit] : "stamp";
+}
+
+double StampCheck::residual_ns(const Stamp& stamp) const {
+  const auto samples = static_cast<double>(static_cast<std::int64_t>(stamp.sample - origin_.sample));
+  return static_cast<double>(stamp.stamp_ns - origin_.stamp_ns) - phase_ns_ - samples * period_ns_;
+}
+
+double StampCheck::tolerance_ns(const Stamp& stamp) const {
+  const double plain = std::min(kToleranceInPeriods * period_ns_, kLargestPlainTolerance_ns);
+  const double free_running_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
+  return std::max(plain, kToleranceInUsualResiduals * usual_residual_ns_) + kPeriodDrift * free_running_ns;
+}
+
+// The period is the median of the founders' steps and the phase the median of their distances from it, so that a fault among them does not
+// count.
+void StampCheck::found(const Stamp& stamp) {
+  founders_[founder_count_++] = stamp;
+  if (founder_count_ < kFounders) return;
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < kFounders; ++i) {
+    const auto samples = static_cast<double>(founders_[i].sample - founders_[i - 1].sample);
+    periods.push_back(static_cast<double>(founders_[i].stamp_ns - founders_[i - 1].stamp_ns) / samples);
+  }
+  period_ns_ = median(periods);
+  founder_count_ = 0;
+  if (!(period_ns_ > 0.0)) return;
+  origin_ = stamp;
+  phase_ns_ = 0.0;
+  std::vector<double> residuals;
+  for (const Stamp& founder : founders_)
+    residuals.push_back(residual_ns(founder));
+  phase_ns_ = median(residuals);
+  for (double& residual : residuals)
+    residual = std::abs(residual - phase_ns_);
+  usual_residual_ns_ = median(residuals);
+  distrusted_in_a_row_ = 0;
+  founded_ = true;
+}
+
+std::uint8_t StampCheck::signature(double residual, double tolerance, const Stamp& stamp) const {
+  const double seconds = std::round(std::abs(residual) / kSecond_ns);
+  for (const double rate : kTicksPerSecond) {
+    const double extension_ns = kTicksOfExtension / rate * kSecond_ns;
+    if (is_close(residual, extension_ns, tolerance + kCrystalError * extension_ns)) return stamp_counter_extension;
+    if (is_close(residual, kTicksOfHalf / rate * kSecond_ns, std::min(tolerance, kLargestPlainTolerance_ns / 10)))
+      return stamp_torn_counter;
+  }
+  if (seconds >= 1.0 && is_close(residual, seconds * kSecond_ns, tolerance)) return stamp_second_slip;
+  if (has_last_ && stamp.stamp_ns < last_.stamp_ns) return stamp_backwards;
+  return stamp_offset_below_second;
+}
+
+bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
+  const double expected_ns = static_cast<double>(stamp.sample - last_.sample) * period_ns_;
+  return std::abs(static_cast<double>(stamp.stamp_ns - last_.stamp_ns) - expected_ns) <= tolerance;
+}
+
+// Whether stamps have been off for so long that the model must be wrong. The model is then founded anew from the stamps to come.
+bool StampCheck::lasts(const Stamp& stamp) {
+  ++distrusted_in_a_row_;
+  const double since_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
+  return distrusted_in_a_row_ >= kPersistenceSamples && since_ns >= kPersistence_ns;
+}
+
+void StampCheck::follow(const Stamp& stamp, double residual) {
+  const auto samples = static_cast<double>(stamp.sample - origin_.sample);
+  // The new origin lies where the model expected this sample, moved a little towards where it was.
+  const double correction = kPhaseGain * residual;
+  const double predicted_from_stamp = -residual + correction;
+  const double whole = std::round(predicted_from_stamp);
+  origin_ = stamp;
+  origin_.stamp_ns += static_cast<std::int64_t>(whole);
+  phase_ns_ = predicted_from_stamp - whole;
+  period_ns_ += kPeriodGain * residual / samples;
+  usual_residual_ns_ += kResidualMemory * (std::abs(residual) - usual_residual_ns_);
+  distrusted_in_a_row_ = 0;
+}
+
+std::uint8_t StampCheck::check_against_model(const Stamp& stamp) {
+  const double residual = residual_ns(stamp);
+  const double tolerance = tolerance_ns(stamp);
+  if (std::abs(residual) <= tolerance) {
+    follow(stamp, residual);
+    last_was_jump_ = false;
+    return 0;
+  }
+  if (last_was_jump_ && follows_from_last(stamp, tolerance)) {
+    origin_ = stamp; // the unit had paused
+    phase_ns_ = 0.0;
+    distrusted_in_a_row_ = 0;
+    last_was_jump_ = false;
+    return 0;
+  }
+  const std::uint8_t flag = signature(residual, tolerance, stamp);
+  last_was_jump_ = flag == stamp_offset_below_second && residual > kSecond_ns;
+  if (lasts(stamp)) founded_ = false;
+  return flag;
+}
+
+std::uint8_t StampCheck::check(const Stamp& stamp) {
+  unsigned flags = 0;
+  if (stamp.time_uncertainty_ns == 0) flags |= stamp_no_uncertainty;
+  if (stamp.no_fix) {
+    flags |= stamp_no_fix; // its time says nothing about the model
+  } else if (has_last_ && stamp.stamp_ns == last_.stamp_ns) {
+    flags |= stamp_repeated;
+  } else if (founded_) {
+    flags |= check_against_model(stamp);
+  } else {
+    if (has_last_ && !last_.no_fix && stamp.stamp_ns < last_.stamp_ns) flags |= stamp_backwards;
+    found(stamp);
+  }
+  last_ = stamp;
+  has_last_ = true;
+  return static_cast<std::uint8_t>(flags);
+}
+
+} // namespace dyncal::drivers::smartup
