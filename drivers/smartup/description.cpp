@@ -45,7 +45,7 @@ std::string identifier(const std::string& text) {
 }
 
 std::string two_digits(std::size_t number) {
-  return (number < 10 ? "0" : "") + std::to_string(number);
+  return {static_cast<char>('0' + number / 10), static_cast<char>('0' + number % 10)};
 }
 
 std::string data_name(std::size_t channel) {
@@ -75,7 +75,7 @@ void make_names_unique(std::vector<ChannelDescription>& channels, const std::vec
   for (std::size_t i = 1; i < channels.size(); ++i) {
     const auto end = channels.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::find_if(channels.begin(), end, [&](const auto& other) { return other.name == channels[i].name; }) != end)
-      channels[i].name += "_" + two_digits(numbers[i] + 1);
+      channels[i].name.append("_").append(two_digits(numbers[i] + 1));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "services/bus/topics.hpp"
+#include "services/utc_clock.hpp"
 
 namespace dyncal::services {
 
@@ -12,10 +13,6 @@ namespace {
 constexpr int kBlocksPerStep = 16;                    // so that one source cannot starve the others
 constexpr auto kRateWindow = std::chrono::seconds(3); // over which the rate of the status is taken
 constexpr std::size_t kRunsToAnswer = 16;             // a run asks again, so a forgotten one is not lost
-
-std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 } // namespace
 
