@@ -3,6 +3,7 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -19,12 +20,23 @@ constexpr std::uint32_t discovery_port(int domain) {
 }
 constexpr std::uint32_t locators_per_participant = 16; // hosts with containers easily have more than the default of 4
 
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.");
+}
+
 rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
   rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
   rtps::IPLocator::setIPv4(locator, address);
   locator.port = port;
   return locator;
+}
+
+// Inside one process Fast DDS hands samples over directly by default, and a reader that has no room then never gets them.
+void deliver_through_sockets_only() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
 void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
@@ -34,21 +46,29 @@ void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
   // It also caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
   udp->maxMessageSize = longest_udp_payload_bytes;
   udp->maxInitialPeersRange = participants_per_host;
-  if (!address.empty()) udp->interfaceWhiteList.push_back(address);
+  // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to it.
+  if (!address.empty() && !is_loopback(address)) udp->interfaceWhiteList.push_back(address);
   qos.transport().use_builtin_transports = false; // no shared memory: it throttles blocks and leaves files behind
   qos.transport().user_transports.push_back(udp);
 }
 
-void set_discovery(const ParticipantOptions& options, const std::string& own_address, const std::vector<std::string>& peers,
+// Where it listens. Left alone, Fast DDS listens on every interface, multicast included, and announces all but the loopback one.
+void set_locators(int domain, bool multicast, const std::string& address, dds::DomainParticipantQos& qos) {
+  if (multicast && address.empty()) return;
+  auto& wire = qos.wire_protocol();
+  const rtps::Locator_t own = address.empty() ? rtps::Locator_t() : locator(address, 0); // empty: all; port 0: the usual one
+  wire.builtin.metatrafficUnicastLocatorList.push_back(own);
+  if (multicast) wire.builtin.metatrafficMulticastLocatorList.push_back(locator(discovery_group, discovery_port(domain)));
+  if (!address.empty()) wire.default_unicast_locator_list.push_back(own);
+}
+
+void set_discovery(int domain, bool multicast, const std::string& own_address, const std::vector<std::string>& peers,
                    dds::DomainParticipantQos& qos) {
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = {static_cast<std::int32_t>(lease.count()), 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {static_cast<std::int32_t>(lease_announcement.count()), 0};
   builtin.discovery_config.initial_announcements = {5, {0, 200'000'000}};
-  if (options.multicast)
-    builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(options.domain)));
-  else
-    builtin.metatrafficUnicastLocatorList.push_back(rtps::Locator_t()); // one empty locator: no multicast socket
+  if (multicast) builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(domain)));
   // The port is left to Fast DDS, which tries those of the first participants of the host. Its own host is always a peer, so that
   // programs on a machine without a network find each other.
   builtin.initialPeersList.push_back(locator(own_address, 0));
@@ -61,6 +81,7 @@ void set_discovery(const ParticipantOptions& options, const std::string& own_add
 services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const ParticipantOptions& options) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();
+  deliver_through_sockets_only();
   dds::DomainParticipantQos qos;
   factory->get_default_participant_qos(qos);
   qos.name(options.name);
@@ -80,7 +101,9 @@ services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const Par
   if (!peers) return tl::unexpected(peers.error());
 
   set_transport(address, qos);
-  set_discovery(options, address.empty() ? "127.0.0.1" : address, *peers, qos);
+  const bool multicast = options.multicast && !is_loopback(address);
+  set_locators(options.domain, multicast, address, qos);
+  set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, *peers, qos);
   qos.allocation().locators.max_unicast_locators = locators_per_participant;
   if (const auto warning = receive_buffer_warning(wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
       !warning.empty() && options.warn)

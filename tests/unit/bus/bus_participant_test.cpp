@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cstdlib>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/topics.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+using testing::HasSubstr;
+
+class BusParticipant : public testing::TestWithParam<Vendor> {
+protected:
+  static ParticipantOptions options() {
+    ParticipantOptions options;
+    options.vendor = GetParam();
+    options.domain = 50 + static_cast<int>(getpid() % 8);
+    options.name = "participant test";
+    return options;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(AllVendors, BusParticipant, testing::ValuesIn(vendors_in_this_build()),
+                         [](const auto& vendor) { return vendor_word(vendor.param); });
+
+TEST_P(BusParticipant, RefusesADomainThatDoesNotExist) {
+  for (const int domain : {-1, 233}) {
+    ParticipantOptions wrong = options();
+    wrong.domain = domain;
+    const auto participant = Participant::create(wrong);
+    ASSERT_FALSE(participant);
+    EXPECT_EQ(participant.error().code, services::ErrorCode::network);
+    EXPECT_THAT(participant.error().message, HasSubstr(std::to_string(domain)));
+  }
+}
+
+TEST_P(BusParticipant, RefusesAnInterfaceOrAPeerThatDoesNotExist) {
+  ParticipantOptions wrong = options();
+  wrong.interface_name = "eth99";
+  const auto without_interface = Participant::create(wrong);
+  ASSERT_FALSE(without_interface);
+  EXPECT_THAT(without_interface.error().message, HasSubstr("eth99"));
+  wrong = options();
+  wrong.peers = {"no-such-host.invalid"};
+  const auto without_peer = Participant::create(wrong);
+  ASSERT_FALSE(without_peer);
+  EXPECT_THAT(without_peer.error().message, HasSubstr("no-such-host.invalid"));
+}
+
+TEST_P(BusParticipant, RefusesAWriterForABenchWhoseNameIsTooLongOrAPattern) {
+  auto participant = Participant::create(options());
+  ASSERT_TRUE(participant);
+  for (const std::string& bench : {std::string(65, 'b'), std::string("*"), std::string()}) {
+    const auto writer = participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, bench);
+    ASSERT_FALSE(writer) << bench;
+    EXPECT_EQ(writer.error().code, services::ErrorCode::bad_argument);
+  }
+  EXPECT_TRUE(participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, std::string(64, 'b')));
+}
+
+TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
+  ParticipantOptions unicast = options();
+  unicast.domain = 58; // its settings differ from those of the other tests
+  unicast.multicast = false;
+  unicast.interface_name = "lo";
+  auto one = Participant::create(unicast);
+  ASSERT_TRUE(one) << one.error().message;
+  auto two = Participant::create(unicast);
+  ASSERT_TRUE(two) << two.error().message;
+  const std::string bench = "participant-test-" + std::to_string(getpid());
+  auto bell = std::make_shared<WakeUp>();
+  auto writer = one->writer<Command>(topics::command, Profile::state, bench);
+  auto reader = two->reader<Command>(topics::command, Profile::state, bench, bell);
+  ASSERT_TRUE(writer && reader);
+  Command command;
+  command.target("dau");
+  ASSERT_EQ(writer->write(command), WriteOutcome::written);
+  std::size_t taken = 0;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (taken == 0 && bell->wait_until(deadline))
+    taken = reader->take([](const Command&, const SampleInfo&) {});
+  EXPECT_EQ(taken, 1U);
+}
+
+TEST_P(BusParticipant, CanBeMadeAgainAfterItIsGone) {
+  for (int i = 0; i < 3; ++i)
+    EXPECT_TRUE(Participant::create(options()));
+}
+
+TEST(BusVendor, IsNamedByTheWordsOfThisBuild) {
+  for (const Vendor vendor : vendors_in_this_build())
+    EXPECT_EQ(parse_vendor(vendor_word(vendor)), vendor);
+  const auto wrong = parse_vendor("opendds");
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().code, services::ErrorCode::bad_argument);
+  EXPECT_THAT(wrong.error().message, HasSubstr("\"opendds\""));
+  for (const Vendor vendor : vendors_in_this_build())
+    EXPECT_THAT(wrong.error().message, HasSubstr(vendor_word(vendor)));
+}
+
+TEST(BusVendor, OutsideThisBuildIsRefusedByName) {
+  for (const Vendor vendor : {Vendor::fast_dds, Vendor::cyclone_dds}) {
+    const auto built = vendors_in_this_build();
+    if (std::find(built.begin(), built.end(), vendor) != built.end()) continue;
+    ParticipantOptions options;
+    options.vendor = vendor;
+    const auto participant = Participant::create(options);
+    ASSERT_FALSE(participant);
+    EXPECT_THAT(participant.error().message, HasSubstr(vendor_word(vendor)));
+  }
+}
+
+} // namespace
+} // namespace dyncal::bus
