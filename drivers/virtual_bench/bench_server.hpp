@@ -1,0 +1,74 @@
+// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP), and the pace of bench time.
+//
+// Speed x: bench time runs x times as fast as the host's clock. Speed 0 ("max"): while a client of the generator waits for a bench time
+// and the ACS stream is being read, as fast as the consumers allow; otherwise in real time. Bench time never runs ahead of what the ACS
+// client has taken by more than a tenth of a second beyond the sockets' buffers, and no more than `datagrams_per_s` leave in a second of
+// the host, so that receive buffers of the usual size hold them. One thread runs it; the StopSignal may be raised from any.
+#pragma once
+
+#include <chrono>
+
+#include "drivers/virtual_bench/datagram_path.hpp"
+#include "drivers/virtual_bench/line_clients.hpp"
+#include "drivers/virtual_bench/smartup_format.hpp"
+#include "drivers/virtual_bench/stream_client.hpp"
+#include "drivers/virtual_bench/virtual_bench.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct ServerSettings {
+  Address dau;        // where the unit's datagrams go
+  Address acs_listen; // port 0: the system chooses
+  Address generator_listen;
+  double speed = 1.0;      // 0: as fast as possible
+  double duration_s = 0.0; // bench time after which run() ends; 0: never
+  PathSettings path;
+  double datagrams_per_s = 3000.0; // of the host's seconds
+  std::uint32_t sensor_id = 0xbccb0100;
+  bool with_ticks = false;
+};
+
+class BenchServer {
+public:
+  BenchServer(VirtualBench& bench, const ServerSettings& settings);
+
+  // Fails (refused) when an address cannot be listened on.
+  [[nodiscard]] Expected<void> open();
+  [[nodiscard]] std::uint16_t acs_port() const;
+  [[nodiscard]] std::uint16_t generator_port() const;
+
+  // Returns at the end of the duration or when stopped.
+  void run(const StopSignal& stop);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  void serve_sockets();
+  void wait_for_events(const StopSignal& stop, std::chrono::milliseconds limit) const;
+  // Bench time that may be reached now; the present one: wait.
+  [[nodiscard]] double allowed_time_s();
+  [[nodiscard]] bool consumers_keep_up();
+  void hold_pace();
+  void advance_to(double time_s);
+  void send_datagram(const std::string& datagram);
+  void end_stream(const StopSignal& stop);
+
+  VirtualBench& bench_;
+  ServerSettings settings_;
+  ScpiInstrument instrument_;
+  LineClients generator_clients_;
+  StreamClient stream_;
+  SmartUpPacker packer_;
+  DatagramPath path_;
+  Descriptor acs_listener_;
+  Descriptor generator_listener_;
+  Descriptor unit_socket_;
+  AcsSamples frame_;
+  double next_description_s_ = 0.05;
+  Clock::time_point pace_host_; // bench time pace_bench_s_ belongs to this instant of the host
+  double pace_bench_s_ = 0.0;
+  double datagram_credit_ = 0.0;
+  Clock::time_point credit_at_;
+};
+
+} // namespace dyncal::drivers::virtual_bench

@@ -1,0 +1,199 @@
+#include "drivers/virtual_bench/scpi_instrument.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+
+namespace dyncal::drivers::virtual_bench {
+namespace {
+
+constexpr std::size_t most_errors = 20;
+constexpr double highest_frequency_hz = 5000.0;
+constexpr double highest_voltage_vpp = 20.0;
+
+std::string upper(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
+    text.remove_prefix(1);
+  }
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+// Long and short mnemonics, with and without the leading colon, become one form: "SOUR1:FREQ".
+std::string canonical(std::string_view header) {
+  static constexpr std::pair<const char*, const char*> short_forms[] = {
+      {"SOURCE", "SOUR"}, {"FREQUENCY", "FREQ"}, {"VOLTAGE", "VOLT"}, {"FUNCTION", "FUNC"}, {"OUTPUT", "OUTP"},
+      {"SYSTEM", "SYST"}, {"ERROR", "ERR"},      {"BENCH", "BENC"},   {"STATE", "STAT"},    {"IMPEDANCE", "IMP"}};
+  std::string text = upper(header);
+  if (!text.empty() && text.front() == ':') {
+    text.erase(0, 1);
+  }
+  for (const auto& [long_form, short_form] : short_forms) {
+    const std::size_t at = text.find(long_form);
+    if (at != std::string::npos) {
+      text.replace(at, std::string_view(long_form).size(), short_form);
+    }
+  }
+  return text;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6E", value);
+  return text;
+}
+
+} // namespace
+
+std::string ScpiInstrument::time_text(double bench_time_s) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.9f", bench_time_s);
+  return text;
+}
+
+void ScpiInstrument::complain(const char* error) {
+  if (errors_.size() + 1 == most_errors) {
+    errors_.emplace_back("-350,\"Queue overflow\"");
+  } else if (errors_.size() < most_errors) {
+    errors_.emplace_back(error);
+  }
+}
+
+ScpiInstrument::Reply ScpiInstrument::execute(std::string_view line) {
+  line = trimmed(line);
+  if (line.empty()) {
+    return {};
+  }
+  const std::size_t space = std::min(line.find(' '), line.size());
+  const std::string_view header = line.substr(0, space);
+  const std::string_view argument = trimmed(line.substr(space));
+  if (header.back() == '?') {
+    return query(canonical(header.substr(0, header.size() - 1)), argument);
+  }
+  set(canonical(header), argument);
+  return {};
+}
+
+ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::string_view argument) {
+  if (header == "*IDN") {
+    return {"dyncal virtual bench," + bench_.settings().preset.name + "," + std::to_string(bench_.settings().seed) + ",1", {}};
+  }
+  if (header == "*OPC") {
+    return {"1", {}};
+  }
+  if (header == "SYST:ERR") {
+    if (errors_.empty()) {
+      return {"0,\"No error\"", {}};
+    }
+    std::string oldest = errors_.front();
+    errors_.pop_front();
+    return {std::move(oldest), {}};
+  }
+  if (header == "SOUR1:FREQ") {
+    return {number_text(bench_.drive().frequency_hz), {}};
+  }
+  if (header == "SOUR1:VOLT") {
+    return {number_text(2.0 * bench_.drive().amplitude_v), {}};
+  }
+  if (header == "OUTP1" || header == "OUTP1:STAT") {
+    return {bench_.drive().on ? "ON" : "OFF", {}};
+  }
+  if (header == "BENC:TIME") {
+    return {time_text(bench_.now_s()), {}};
+  }
+  if (header == "BENC:WAIT") {
+    if (const auto time_s = parse_number(argument)) {
+      return {{}, *time_s};
+    }
+    complain("-104,\"Data type error\"");
+    return {};
+  }
+  complain("-113,\"Undefined header\"");
+  return {};
+}
+
+void ScpiInstrument::set(const std::string& header, std::string_view argument) {
+  if (header == "*CLS") {
+    errors_.clear();
+  } else if (header == "*RST") {
+    bench_.set_drive(Drive{});
+  } else if (header == "SOUR1:FREQ") {
+    set_frequency(argument);
+  } else if (header == "SOUR1:VOLT") {
+    set_voltage(argument);
+  } else if (header == "OUTP1" || header == "OUTP1:STAT") {
+    set_output(argument);
+  } else if (header == "SOUR1:FUNC") {
+    if (!upper(argument).starts_with("SIN")) {
+      complain("-224,\"Illegal parameter value\"");
+    }
+  } else if (header == "SOUR1:VOLT:UNIT") {
+    if (upper(argument) != "VPP") {
+      complain("-224,\"Illegal parameter value\"");
+    }
+  } else if (header == "OUTP1:LOAD" || header == "OUTP1:IMP") {
+    if (!upper(argument).starts_with("INF")) {
+      complain("-224,\"Illegal parameter value\"");
+    }
+  } else {
+    complain("-113,\"Undefined header\"");
+  }
+}
+
+void ScpiInstrument::set_frequency(std::string_view argument) {
+  const auto frequency_hz = parse_number(argument);
+  if (!frequency_hz) {
+    complain("-104,\"Data type error\"");
+  } else if (!(*frequency_hz > 0.0 && *frequency_hz <= highest_frequency_hz)) {
+    complain("-222,\"Data out of range\"");
+  } else {
+    Drive drive = bench_.drive();
+    drive.frequency_hz = *frequency_hz;
+    bench_.set_drive(drive);
+  }
+}
+
+void ScpiInstrument::set_voltage(std::string_view argument) {
+  const auto voltage_vpp = parse_number(argument);
+  if (!voltage_vpp) {
+    complain("-104,\"Data type error\"");
+  } else if (!(*voltage_vpp >= 0.0 && *voltage_vpp <= highest_voltage_vpp)) {
+    complain("-222,\"Data out of range\"");
+  } else {
+    Drive drive = bench_.drive();
+    drive.amplitude_v = 0.5 * *voltage_vpp;
+    bench_.set_drive(drive);
+  }
+}
+
+void ScpiInstrument::set_output(std::string_view argument) {
+  const std::string word = upper(argument);
+  const bool on = word == "ON" || word == "1";
+  if (!on && word != "OFF" && word != "0") {
+    complain("-224,\"Illegal parameter value\"");
+    return;
+  }
+  Drive drive = bench_.drive();
+  drive.on = on;
+  bench_.set_drive(drive);
+}
+
+} // namespace dyncal::drivers::virtual_bench

@@ -1,0 +1,43 @@
+// The generator's side of SCPI: one line in, perhaps one line out; errors wait in a queue as IEEE 488.2 has it.
+//
+// Understands (long or short form, any case) *IDN?, *RST, *CLS, *OPC?, :SOURce1:FREQuency[?], :SOURce1:VOLTage[?] (peak to peak),
+// :SOURce1:VOLTage:UNIT VPP, :SOURce1:FUNCtion SINusoid, :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity, :SYSTem:ERRor?, and of the bench
+// itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when that time has come.
+// One thread.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "drivers/virtual_bench/virtual_bench.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+class ScpiInstrument {
+public:
+  struct Reply {
+    std::optional<std::string> line;    // without line end; nothing: the command has no answer
+    std::optional<double> wait_until_s; // :BENCh:WAIT?: answer with the bench time when it has come
+  };
+
+  explicit ScpiInstrument(VirtualBench& bench) : bench_(bench) {}
+
+  [[nodiscard]] Reply execute(std::string_view line);
+
+  [[nodiscard]] static std::string time_text(double bench_time_s);
+
+private:
+  [[nodiscard]] Reply query(const std::string& header, std::string_view argument);
+  void set(const std::string& header, std::string_view argument);
+  void set_frequency(std::string_view argument);
+  void set_voltage(std::string_view argument);
+  void set_output(std::string_view argument);
+  void complain(const char* error);
+
+  VirtualBench& bench_;
+  std::deque<std::string> errors_; // at most 20, the last one says that there were more
+};
+
+} // namespace dyncal::drivers::virtual_bench

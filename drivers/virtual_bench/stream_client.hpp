@@ -1,0 +1,35 @@
+// The one client of the ACS stream: frames wait here until the client takes them. drivers/acs/README.md defines the stream.
+//
+// The socket's own buffer is kept small, so that backlog_octets() soon tells when the client does not keep up; whoever produces
+// frames stops then. One thread.
+#pragma once
+
+#include <string>
+
+#include "drivers/tcp_connection.hpp"
+#include "drivers/virtual_bench/acs_instrument.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+class StreamClient {
+public:
+  [[nodiscard]] bool connected() const { return socket_.open(); }
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
+  [[nodiscard]] std::size_t backlog_octets() const { return backlog_.size() - sent_; }
+
+  // Takes the place of a client that has gone; `description` is its first line.
+  void connect(Descriptor socket, const std::string& description);
+  void send_frame(const AcsSamples& samples);
+  void send_end();
+  // Sends what the socket takes and notices a client that has gone.
+  void serve();
+
+private:
+  void drop();
+
+  Descriptor socket_;
+  std::string backlog_;
+  std::size_t sent_ = 0; // octets of the backlog that are on their way
+};
+
+} // namespace dyncal::drivers::virtual_bench
