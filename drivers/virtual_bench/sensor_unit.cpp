@@ -82,7 +82,7 @@ void SensorUnit::describe_bma280() {
 
 float SensorUnit::quantised(double value, double step, double range) const {
   const double counts = std::clamp(std::rint(value / step), -std::rint(range / step), std::rint(range / step) - 1.0);
-  return static_cast<float>(counts * step);
+  return static_cast<float>(counts * step + 0.0); // no negative zero
 }
 
 const HarmonicGains& SensorUnit::gains(std::size_t axis, double frequency_hz) {

@@ -1,0 +1,172 @@
+#include "services/virtual_bench/bench_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <map>
+
+namespace dyncal::services::virtual_bench {
+namespace {
+
+namespace device = dyncal::drivers::virtual_bench;
+
+// The words of the command line as they come, before they are checked against each other.
+struct Words {
+  std::string preset = "mpu9250-paper";
+  std::string speed = "1";
+  std::string dau = "127.0.0.1:7654";
+  std::string acs = "127.0.0.1:0";
+  std::string generator = "127.0.0.1:0";
+  std::string sensor = "0xbccb0100";
+  std::vector<std::string> faults;
+  std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
+  std::vector<double> levels{10.0};
+};
+
+tl::unexpected<Error> refuse(std::string message) {
+  return tl::unexpected(Error{ErrorCode::bad_argument, std::move(message)});
+}
+
+void add_options(CLI::App& app, Words& words, BenchOptions& options) {
+  const auto probability = CLI::Range(0.0, 1.0);
+  app.add_option("--preset", words.preset, fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))->capture_default_str();
+  app.add_option("--seed", options.bench.seed, "everything drawn follows from it")->capture_default_str();
+  app.add_option("--speed", words.speed, "times real time, or max")->capture_default_str();
+  app.add_option("--duration", options.server.duration_s, "end after so many seconds of bench time (0: never)");
+  app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")->capture_default_str();
+  app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")->capture_default_str();
+  app.add_option("--generator-listen", words.generator, "HOST:PORT of the generator's SCPI (port 0: chosen)")->capture_default_str();
+  app.add_option("--ports-file", options.ports_file, "write the ports to this file as JSON once they are open");
+  app.add_option("--truth", options.truth_file, "write what is true to this file");
+  app.add_option("--adc-file", options.adc_file, "write the calibration of the sync ADC to this file");
+  app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")->delimiter(',');
+  app.add_option("--levels", words.levels, "in m/s^2, one or one per frequency; the highest decides the ranges")->delimiter(',');
+  app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")->check(CLI::Range(100, 1000000))->capture_default_str();
+  app.add_option("--thermal-cycle", options.bench.thermal_cycle_s, "seconds for the sensor's warm-up")->check(CLI::PositiveNumber);
+  app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel, "standard uncertainty, relative")->check(probability);
+  app.add_option("--reference-phase-rad", options.bench.reference_phase_rad, "standard uncertainty in rad")->check(probability);
+  app.add_option("--sensor", words.sensor, "id of the sensor in the unit")->capture_default_str();
+  app.add_flag("--ticks", options.server.with_ticks, "send time_ticks, as units do since 2021-07");
+  app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")->check(probability);
+  app.add_option("--duplicate", options.server.path.duplicate, "probability that a datagram comes twice")->check(probability);
+  app.add_option("--reorder", options.server.path.reorder, "probability that a datagram comes after the next one")->check(probability);
+  app.add_option("--fault", words.faults, fmt::format("NAME=PROBABILITY per sample: {}", fmt::join(device::fault_names(), ", ")));
+  app.add_option("--datagrams-per-second", options.server.datagrams_per_s, "most datagrams in a second of this host")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--record-csv", options.record_folder, "write acs.csv and dau.csv into this folder instead of opening sockets");
+  app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")->check(CLI::PositiveNumber);
+  app.add_option("--settling", options.programme.settling_s, "with --record-csv, seconds")->check(CLI::NonNegativeNumber);
+  app.add_option("--duration-per-step", options.programme.duration_s, "with --record-csv, seconds")->check(CLI::PositiveNumber);
+  app.add_flag("--exit-with-parent", options.exit_with_parent, "end when the process that started this one ends");
+}
+
+template <class Number>
+bool read_whole(const std::string& text, Number& value, int base_or_unused = 10) {
+  const char* end = text.data() + text.size();
+  std::from_chars_result result{};
+  if constexpr (std::is_integral_v<Number>) {
+    result = std::from_chars(text.data(), end, value, base_or_unused);
+  } else {
+    result = std::from_chars(text.data(), end, value);
+  }
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
+  const std::pair<const std::string*, drivers::Address*> addresses[] = {
+      {&words.dau, &server.dau}, {&words.acs, &server.acs_listen}, {&words.generator, &server.generator_listen}};
+  for (const auto& [text, address] : addresses) {
+    auto parsed = drivers::parse_address(*text);
+    if (!parsed) {
+      return refuse(parsed.error().message);
+    }
+    *address = *parsed;
+  }
+  return {};
+}
+
+Expected<void> read_faults(const Words& words, device::FaultProbabilities& faults) {
+  const std::vector<std::string>& known = device::fault_names();
+  for (const std::string& text : words.faults) {
+    const std::size_t sign = text.find('=');
+    const std::string name = text.substr(0, sign);
+    double probability = 0.0;
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      return refuse(fmt::format("--fault {}: no such fault; there are: {}", text, fmt::join(known, ", ")));
+    }
+    if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) || !(probability >= 0.0 && probability <= 1.0)) {
+      return refuse(fmt::format("--fault {}: write NAME=PROBABILITY with a probability from 0 to 1", text));
+    }
+    faults[name] = probability;
+  }
+  return {};
+}
+
+Expected<void> read_programme(const Words& words, BenchOptions& options) {
+  for (const std::string& text : words.frequencies) {
+    double frequency_hz = 0.0;
+    if (!read_whole(text, frequency_hz) || !(frequency_hz > 0.0 && frequency_hz <= 5000.0)) {
+      return refuse(fmt::format("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text));
+    }
+  }
+  if (words.levels.size() != 1 && words.levels.size() != words.frequencies.size()) {
+    return refuse(fmt::format("--levels: give one level, or one for each of the {} frequencies", words.frequencies.size()));
+  }
+  for (const double level : words.levels) {
+    if (!(level > 0.0 && level <= 500.0)) {
+      return refuse(fmt::format("--levels: {} m/s^2 is not between 0 and 500", level));
+    }
+  }
+  options.programme.frequencies_hz = words.frequencies;
+  options.programme.levels_m_s2 =
+      words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front()) : words.levels;
+  options.bench.highest_level_m_s2 = *std::max_element(words.levels.begin(), words.levels.end());
+  return {};
+}
+
+Expected<void> read_words(const Words& words, BenchOptions& options) {
+  const auto preset = device::preset_by_name(words.preset);
+  if (!preset) {
+    return refuse(fmt::format("--preset {}: no such sensor; there are: {}", words.preset, fmt::join(device::preset_names(), ", ")));
+  }
+  options.bench.preset = *preset;
+  options.server.speed = 0.0;
+  if (words.speed != "max" && (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
+    return refuse(fmt::format("--speed {}: write a number above 0, or max", words.speed));
+  }
+  const bool hexadecimal = words.sensor.starts_with("0x");
+  if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id, hexadecimal ? 16 : 10)) {
+    return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
+  }
+  return read_addresses(words, options.server).and_then([&] { return read_faults(words, options.bench.faults); }).and_then([&] {
+    return read_programme(words, options);
+  });
+}
+
+} // namespace
+
+Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) {
+  CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration system and SmartUp Unit, reached through "
+               "their real protocols."};
+  Words words;
+  BenchOptions options;
+  add_options(app, words, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {
+      app.exit(error);
+      return std::nullopt;
+    }
+    return refuse(error.what());
+  }
+  if (auto read = read_words(words, options); !read) {
+    return tl::unexpected(read.error());
+  }
+  return options;
+}
+
+} // namespace dyncal::services::virtual_bench

@@ -1,0 +1,30 @@
+// The command line of dyncal-virtual-bench, read and checked. One thread, at start.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/virtual_bench/bench_server.hpp"
+#include "drivers/virtual_bench/recording.hpp"
+#include "drivers/virtual_bench/virtual_bench.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services::virtual_bench {
+
+struct BenchOptions {
+  drivers::virtual_bench::BenchSettings bench;
+  drivers::virtual_bench::ServerSettings server;
+  drivers::virtual_bench::Programme programme; // its frequencies are those of the truth and ADC files as well
+  std::filesystem::path truth_file;            // empty: not wanted
+  std::filesystem::path adc_file;
+  std::filesystem::path ports_file;
+  std::filesystem::path record_folder; // set: files instead of sockets
+  bool exit_with_parent = false;
+};
+
+// Nothing when the command line asked for help only, which has been printed then. Fails (bad_argument).
+[[nodiscard]] Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv);
+
+} // namespace dyncal::services::virtual_bench
