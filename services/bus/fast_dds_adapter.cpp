@@ -13,6 +13,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/cdr_key.hpp"
@@ -74,10 +75,41 @@ dds::DataReaderQos reader_qos(const QosProfile& profile) {
   return qos;
 }
 
+// The lowest number that no participant of this process has. It gives the ports to listen at, and those of the first 32 are where
+// peers without multicast look; by itself Fast DDS counts on for ever.
+class ParticipantNumber {
+public:
+  ParticipantNumber() {
+    const std::lock_guard lock(mutex());
+    while (!taken().insert(value_).second)
+      ++value_;
+  }
+  ParticipantNumber(const ParticipantNumber&) = delete;
+  ParticipantNumber& operator=(const ParticipantNumber&) = delete;
+  ~ParticipantNumber() {
+    const std::lock_guard lock(mutex());
+    taken().erase(value_);
+  }
+  [[nodiscard]] int value() const { return value_; }
+
+private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  static std::set<int>& taken() {
+    static std::set<int> taken;
+    return taken;
+  }
+
+  int value_ = 0;
+};
+
 // The vendor's participant; writers and readers share it, so that the last of them takes it down.
 class FastDdsParticipantHandle {
 public:
-  explicit FastDdsParticipantHandle(dds::DomainParticipant* participant) : participant_(participant) {}
+  FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number, dds::DomainParticipant* participant)
+      : number_(std::move(number)), participant_(participant) {}
   FastDdsParticipantHandle(const FastDdsParticipantHandle&) = delete;
   FastDdsParticipantHandle& operator=(const FastDdsParticipantHandle&) = delete;
   ~FastDdsParticipantHandle() {
@@ -99,6 +131,7 @@ public:
   }
 
 private:
+  std::unique_ptr<ParticipantNumber> number_; // given back after the participant is gone
   dds::DomainParticipant* participant_;
   std::mutex mutex_;
   std::map<std::string, dds::Topic*> topics_;
@@ -267,14 +300,16 @@ private:
 } // namespace
 
 services::Expected<std::unique_ptr<UntypedParticipant>> create_fast_dds_participant(const ParticipantOptions& options) {
-  const auto qos = fast_dds_participant_qos(options);
+  auto qos = fast_dds_participant_qos(options);
   if (!qos) return tl::unexpected(qos.error());
+  auto number = std::make_unique<ParticipantNumber>();
+  qos->wire_protocol().participant_id = number->value();
   dds::DomainParticipant* participant =
       dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<std::uint32_t>(options.domain), *qos);
   if (participant == nullptr)
     return tl::unexpected(network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
                                         ": see its messages above, and check the profiles file if you set one"));
-  return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(participant));
+  return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(std::move(number), participant));
 }
 
 } // namespace dyncal::bus
