@@ -1,0 +1,125 @@
+#include "analysis/adc_calibration.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+struct TrueFrontEnd {
+  double gain = 0.16625;
+  double delay_s = 0.3e-6;
+  double corner_hz = 500e3;
+
+  [[nodiscard]] double gain_at(double f) const { return gain / std::hypot(1.0, f / corner_hz); }
+  [[nodiscard]] double lag_at(double f) const { return 2.0 * pi * f * delay_s + std::atan(f / corner_hz); }
+};
+
+std::vector<AdcCalibrationPoint> points_of(const TrueFrontEnd& adc, double vpp = 19.5) {
+  std::vector<AdcCalibrationPoint> points;
+  for (const double f : {1.0, 3.0, 10.0, 31.5, 100.0, 315.0, 1000.0, 3150.0, 10000.0, 31500.0, 100000.0})
+    points.push_back({f, vpp, adc.gain_at(f), adc.lag_at(f), 1e-5, 3e-5});
+  return points;
+}
+
+TEST(AdcCalibration, InterpolatesADelayWithALowPassExactly) {
+  const TrueFrontEnd adc;
+  const auto points = points_of(adc);
+  for (const double f : {1.0, 1.7, 10.0, 46.7, 80.0, 999.0, 5000.0, 62000.0, 100000.0}) {
+    const auto response = adc_response_at(points, f);
+    ASSERT_TRUE(response.has_value()) << f;
+    EXPECT_NEAR(response->gain, adc.gain_at(f), 1e-12) << f;
+    EXPECT_NEAR(response->phase_lag_rad, adc.lag_at(f), 1e-11) << f;
+    EXPECT_LE(response->u_phase_lag_rad, 3.01e-5) << f;
+    EXPECT_GE(response->u_phase_lag_rad, 2.1e-5) << f;
+  }
+}
+
+TEST(AdcCalibration, GivesTheVeryPointAtACalibratedFrequency) {
+  auto points = points_of({});
+  points[4].phase_lag_rad += 1e-3; // a point that lies off
+  const auto response = adc_response_at(points, 100.0);
+  ASSERT_TRUE(response.has_value());
+  EXPECT_NEAR(response->phase_lag_rad, points[4].phase_lag_rad, 1e-15);
+  EXPECT_NEAR(response->gain, points[4].gain, 1e-15);
+  EXPECT_NEAR(response->u_phase_lag_rad, 3e-5, 1e-18);
+}
+
+TEST(AdcCalibration, UncertaintyCoversWhatAStraightLineMisses) {
+  std::vector<AdcCalibrationPoint> points;
+  const auto lag = [](double f) { return 1e-3 * std::sin(f / 40.0); };
+  for (double f = 10.0; f <= 200.0; f += 10.0)
+    points.push_back({f, 19.5, 1.0, lag(f), 0.0, 0.0});
+  for (double f = 15.0; f < 200.0; f += 10.0) {
+    const auto response = adc_response_at(points, f);
+    ASSERT_TRUE(response.has_value());
+    EXPECT_LE(std::abs(response->phase_lag_rad - lag(f)), 2.0 * response->u_phase_lag_rad + 5e-7) << f;
+  }
+}
+
+TEST(AdcCalibration, ExtrapolatesNothing) {
+  const auto points = points_of({});
+  for (const double f : {0.9, 100100.0, -1.0, std::nan("")}) {
+    const auto response = adc_response_at(points, f);
+    ASSERT_FALSE(response.has_value()) << f;
+    EXPECT_EQ(response.error().code, ErrorCode::out_of_calibration);
+  }
+}
+
+TEST(AdcCalibration, NeverMixesTestAmplitudes) {
+  auto points = points_of({}, 19.5);
+  const TrueFrontEnd small{.gain = 0.1712, .delay_s = 0.5e-6};
+  for (const AdcCalibrationPoint& point : points_of(small, 1.95))
+    points.push_back(point);
+  EXPECT_EQ(adc_response_at(points, 80.0).error().code, ErrorCode::invalid_argument);
+  EXPECT_NEAR(adc_response_at(points, 80.0, 19.5)->gain, 0.16625, 1e-6);
+  EXPECT_NEAR(adc_response_at(points, 80.0, 2.0)->phase_lag_rad, small.lag_at(80.0), 1e-11);
+  EXPECT_EQ(adc_response_at(points, 80.0, 0.195).error().code, ErrorCode::out_of_calibration);
+}
+
+TEST(AdcCalibration, RefusesPointsThatCannotBe) {
+  EXPECT_EQ(adc_response_at({}, 80.0).error().code, ErrorCode::invalid_argument);
+  auto points = points_of({});
+  points[3].gain = 0.0;
+  EXPECT_EQ(adc_response_at(points, 80.0).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(AdcCalibration, RepeatedMeasurementsGiveTheirMeanAndPooledScatter) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise;
+  const TrueFrontEnd adc;
+  std::vector<AdcCalibrationPoint> measurements;
+  for (int repetition = 0; repetition < 3; ++repetition)
+    for (AdcCalibrationPoint point : points_of(adc)) {
+      point.gain *= 1.0 + 2e-5 * noise(random);
+      point.phase_lag_rad += 6e-5 * noise(random);
+      measurements.push_back(point);
+    }
+  const auto points = adc_calibration_points(measurements);
+  ASSERT_EQ(points.size(), 11u);
+  EXPECT_EQ(points[3].frequency_hz, 31.5);
+  EXPECT_NEAR(points[3].phase_lag_rad,
+              (measurements[3].phase_lag_rad + measurements[14].phase_lag_rad + measurements[25].phase_lag_rad) / 3.0, 1e-15);
+  EXPECT_NEAR(points[3].u_phase_lag_rad, 6e-5 / std::sqrt(3.0), 1.2e-5);
+  EXPECT_NEAR(points[3].u_gain / points[3].gain, 2e-5 / std::sqrt(3.0), 5e-6);
+}
+
+TEST(AdcCalibration, SingleMeasurementsTakeTheirScatterFromTheirNeighbours) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise;
+  const TrueFrontEnd adc;
+  std::vector<AdcCalibrationPoint> measurements;
+  for (double f = 100.0; f < 11000.0; f *= 1.12)
+    measurements.push_back({f, 19.5, adc.gain_at(f), adc.lag_at(f) + 5e-5 * noise(random), 0, 0});
+  const auto points = adc_calibration_points(measurements);
+  ASSERT_EQ(points.size(), measurements.size());
+  EXPECT_NEAR(points[5].u_phase_lag_rad, 5e-5, 2.5e-5);
+}
+
+} // namespace
+} // namespace dyncal::analysis
