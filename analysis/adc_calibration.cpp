@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 namespace dyncal::analysis {
@@ -116,34 +117,44 @@ Interpolated interpolate(const std::vector<double>& f, const std::vector<double>
           std::sqrt(std::pow((1.0 - weight) * u[i], 2) + std::pow(weight * u[i + 1], 2) + missed * missed)};
 }
 
-double median(std::vector<double> values) {
+double median(std::span<const double> all) {
+  std::vector<double> values(all.begin(), all.end());
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Standard deviation of single points from their distance to the line through their neighbours.
-double scatter_about_neighbours(const std::vector<double>& f, const std::vector<double>& values) {
-  std::vector<double> deviations;
+// Scatter differs by decades between 1 Hz and 100 kHz: each point takes it from this many points on either side.
+constexpr std::size_t neighbours = 4;
+
+std::span<const double> around(const std::vector<double>& values, std::size_t i) {
+  const std::size_t begin = i > neighbours ? i - neighbours : 0;
+  return std::span(values).subspan(begin, std::min(values.size(), i + neighbours + 1) - begin);
+}
+
+// Distances of single points from the line through their neighbours, in standard deviations' measure; 0 at the ends.
+std::vector<double> deviations_from_neighbours(const std::vector<double>& f, const std::vector<double>& values) {
+  std::vector<double> deviations(f.size(), 0.0);
   for (std::size_t i = 1; i + 1 < f.size(); ++i) {
     const double weight = (f[i] - f[i - 1]) / (f[i + 1] - f[i - 1]);
     const double deviation = values[i] - (1.0 - weight) * values[i - 1] - weight * values[i + 1];
-    deviations.push_back(std::abs(deviation) / std::sqrt(1.0 + weight * weight + (1.0 - weight) * (1.0 - weight)));
+    deviations[i] = std::abs(deviation) / std::sqrt(1.0 + weight * weight + (1.0 - weight) * (1.0 - weight));
   }
-  return deviations.empty() ? 0.0 : 1.4826 * median(std::move(deviations));
+  return deviations;
 }
 
-// Repeated measurements of one frequency become their mean; u_* hold the sum of squared deviations until all are known.
-struct Group {
+struct Group { // measurements of one frequency
   AdcCalibrationPoint mean;
   double count = 0.0;
+  double gain_squares = 0.0; // of the relative deviations from the mean
+  double phase_squares = 0.0;
 };
 
-std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted, double& gain_squares, double& phase_squares, double& freedom) {
+std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
   std::vector<Group> groups;
   for (std::size_t begin = 0; begin < sorted.size();) {
+    Group group{.mean = sorted[begin]};
     std::size_t end = begin;
-    Group group{sorted[begin], 0.0};
     double gain = 0.0, lag = 0.0;
     for (; end < sorted.size() && same(sorted[end].frequency_hz, group.mean.frequency_hz); ++end) {
       gain += sorted[end].gain;
@@ -153,10 +164,9 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted, double& g
     group.mean.gain = gain / group.count;
     group.mean.phase_lag_rad = lag / group.count;
     for (std::size_t i = begin; i < end; ++i) {
-      gain_squares += std::pow(sorted[i].gain / group.mean.gain - 1.0, 2);
-      phase_squares += std::pow(sorted[i].phase_lag_rad - group.mean.phase_lag_rad, 2);
+      group.gain_squares += std::pow(sorted[i].gain / group.mean.gain - 1.0, 2);
+      group.phase_squares += std::pow(sorted[i].phase_lag_rad - group.mean.phase_lag_rad, 2);
     }
-    freedom += group.count - 1.0;
     groups.push_back(group);
     begin = end;
   }
@@ -164,29 +174,32 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted, double& g
 }
 
 std::vector<AdcCalibrationPoint> points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
-  double gain_squares = 0.0, phase_squares = 0.0, freedom = 0.0;
-  const std::vector<Group> groups = gather(sorted, gain_squares, phase_squares, freedom);
+  const std::vector<Group> groups = gather(sorted);
   std::vector<AdcCalibrationPoint> points;
+  std::vector<double> f, freedom, gain_squares, phase_squares, gains, lags;
   for (const Group& group : groups)
     points.push_back(group.mean);
-  double gain_sd = 0.0, phase_sd = 0.0;
-  if (freedom >= 1.0) {
-    gain_sd = std::sqrt(gain_squares / freedom);
-    phase_sd = std::sqrt(phase_squares / freedom);
-  } else {
-    const FrontEnd model = approximate(points);
-    std::vector<double> f, gains, lags;
-    for (const AdcCalibrationPoint& point : points) {
-      f.push_back(point.frequency_hz);
-      gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));
-      lags.push_back(point.phase_lag_rad - model.lag_at(point.frequency_hz));
-    }
-    gain_sd = scatter_about_neighbours(f, gains);
-    phase_sd = scatter_about_neighbours(f, lags);
+  const FrontEnd model = approximate(points);
+  for (const Group& group : groups) {
+    f.push_back(group.mean.frequency_hz);
+    freedom.push_back(group.count - 1.0);
+    gain_squares.push_back(group.gain_squares);
+    phase_squares.push_back(group.phase_squares);
+    gains.push_back(std::log(group.mean.gain) - model.log_gain_at(f.back()));
+    lags.push_back(group.mean.phase_lag_rad - model.lag_at(f.back()));
   }
+  const auto sum = [](std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); };
+  const bool repeated = sum(freedom) >= 1.0;
+  const std::vector<double> gain_deviations = deviations_from_neighbours(f, gains);
+  const std::vector<double> lag_deviations = deviations_from_neighbours(f, lags);
+  const auto scatter = [&](const std::vector<double>& squares, const std::vector<double>& deviations, std::size_t i) {
+    if (!repeated) return f.size() < 3 ? 0.0 : 1.4826 * median(around(deviations, i));
+    const double local = sum(around(freedom, i));
+    return local >= 1.0 ? std::sqrt(sum(around(squares, i)) / local) : std::sqrt(sum(squares) / sum(freedom));
+  };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].u_gain = points[i].gain * gain_sd / std::sqrt(groups[i].count);
-    points[i].u_phase_lag_rad = phase_sd / std::sqrt(groups[i].count);
+    points[i].u_gain = points[i].gain * scatter(gain_squares, gain_deviations, i) / std::sqrt(groups[i].count);
+    points[i].u_phase_lag_rad = scatter(phase_squares, lag_deviations, i) / std::sqrt(groups[i].count);
   }
   return points;
 }

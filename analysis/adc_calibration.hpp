@@ -34,8 +34,8 @@ struct AdcCalibrationPoint {
                                                     std::optional<double> test_amplitude_vpp = std::nullopt);
 
 // Makes points from repeated or single measurements (their u_ fields are not looked at): the mean of those at the same frequency
-// and amplitude, u from their pooled scatter; where nothing was repeated, from how far each point lies from the line through
-// its neighbours (median, so that curvature at the upper end does not count). Ordered by amplitude, then frequency.
+// and amplitude, u from their scatter, pooled over four frequencies on either side; where nothing was repeated, from how far these
+// points lie from the line through their neighbours (median). Ordered by amplitude, then frequency.
 [[nodiscard]] std::vector<AdcCalibrationPoint> adc_calibration_points(std::span<const AdcCalibrationPoint> measurements);
 
 } // namespace dyncal::analysis
