@@ -160,6 +160,11 @@ Frequency Frequency::shifted_by_hz(double delta_hz) const {
   return {result.high, result.low};
 }
 
+Frequency Frequency::multiple(int order) const {
+  const DoubleDouble result = times({high_, low_}, {static_cast<double>(order), 0.0});
+  return {result.high, result.low};
+}
+
 double Frequency::hz() const {
   return std::fma(high_, 1e9, low_ * 1e9);
 }

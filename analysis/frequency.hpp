@@ -24,6 +24,9 @@ public:
   // This frequency plus a small amount in hertz, keeping the low part.
   [[nodiscard]] Frequency shifted_by_hz(double delta_hz) const;
 
+  // A harmonic of this frequency, with all its digits. REQUIRES: order >= 1.
+  [[nodiscard]] Frequency multiple(int order) const;
+
   [[nodiscard]] double hz() const;
   [[nodiscard]] double angular() const; // rad/s
   [[nodiscard]] double turns_per_ns_high() const { return high_; }

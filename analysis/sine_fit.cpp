@@ -126,7 +126,7 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
     }
     if (!again) break;
   }
-  if (std::none_of(fits.begin(), fits.end(), stands_out)) {
+  if (std::none_of(fits.begin(), fits.end(), [](const SineFit& fit) { return stands_out(fit); })) {
     return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +
                                                               " Hz stands out of the noise in any channel; check frequency and window"});
   }

@@ -8,7 +8,8 @@
 // Uncertainties come from the residuals: V = s^2 (D'D)^-1 with s^2 = rss / (n - p) (analysis of white noise; jitter and
 // systematic parts are added by uncertainty.hpp).
 // Fails: too_few_samples (n <= p), stamps_not_increasing, not_finite, frequency_out_of_range (more than half a turn per
-// mean sample interval), ill_conditioned, not_converged.
+// sample interval, unless these are so uneven that there is no alias), ill_conditioned, no_excitation (no channel has an
+// amplitude of four standard uncertainties), not_converged, invalid_argument (sizes; a record of more than 26 days).
 // No threads, no state; the same input gives the same bits.
 #pragma once
 
@@ -52,6 +53,7 @@ struct FrequencyFit {
 
 // Frequency estimated too (four parameters, one frequency shared by all channels). `start` may be wrong by many bins of
 // 1/T: a coarse search over +-search_rel (relative, e.g. 5e-3) precedes the iteration, which stops on |dw| T < 1e-9.
+// Each channel counts with its own noise: the frequency minimises sum over channels of log(rss).
 [[nodiscard]] Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double search_rel, std::int64_t reference_ns,
                                                             std::span<const std::int64_t> stamps_ns,
                                                             std::span<const std::span<const double>> channels);

@@ -12,6 +12,7 @@
 #include "analysis/error.hpp"
 #include "analysis/frequency.hpp"
 #include "analysis/sine_kernel.hpp"
+#include "analysis/sine_series.hpp"
 
 namespace dyncal::analysis::kernel {
 
@@ -29,7 +30,7 @@ public:
   [[nodiscard]] double span_s() const { return span_s_; }
   [[nodiscard]] double half_span_ns() const { return span_s_ * 0.5e9; }
 
-  // More than half a turn per mean sample interval cannot be told from its alias.
+  // More than half a turn per sample interval cannot be told from its alias, unless the intervals are so uneven that it has none.
   [[nodiscard]] Expected<void> carries(const Frequency& frequency) const;
   [[nodiscard]] TimeAxis axis(const Frequency& frequency) const;
 
@@ -62,5 +63,19 @@ struct PassSums {
                                             Selection selection = {});
 
 [[nodiscard]] bool all_finite(const PassSums& sums);
+
+// The same with the series of the whole record in the frequency (sine_series.hpp, one segment, u in units of half the span).
+// Design moments up to u^2 and residual moments up to u^1 are exact sums over the samples, higher ones follow from those of the
+// blocks: they are wrong by the square (residuals) or cube (design) of `block_half_length` only.
+struct SeriesSums {
+  DesignSeries design;
+  std::vector<ResidualSeries> channels;
+  double block_half_length = 0.0;
+
+  [[nodiscard]] Segment segment() const { return {&design, channels.data()}; }
+};
+[[nodiscard]] Expected<SeriesSums> accumulate_series(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
+                                                     Selection selection = {});
+[[nodiscard]] bool all_finite(const SeriesSums& sums);
 
 } // namespace dyncal::analysis::kernel

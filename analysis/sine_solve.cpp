@@ -84,10 +84,11 @@ SinCos sine_cosine_of_turns(double turns) {
   }
 }
 
-bool stands_out(const SineFit& fit) {
-  // Rounding alone leaves about 1e-16 of the offset.
+bool stands_out(const SineFit& fit, double picked_from) {
+  const double limit = std::sqrt(16.0 + 2.0 * std::log(picked_from));
   const double amplitude = fit.amplitude();
-  return amplitude > significant_amplitude * fit.u_amplitude() && amplitude > 1e-14 * std::abs(fit.offset);
+  // Rounding alone leaves about 1e-16 of the offset.
+  return amplitude > limit * fit.u_amplitude() && amplitude > 1e-14 * std::abs(fit.offset);
 }
 
 } // namespace dyncal::analysis::kernel

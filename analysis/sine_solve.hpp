@@ -49,8 +49,8 @@ struct SinCos {
 };
 [[nodiscard]] SinCos sine_cosine_of_turns(double turns);
 
-// A phasor stands out of the noise when its amplitude is this many standard uncertainties: noise alone does so once in 3000.
-inline constexpr double significant_amplitude = 4.0;
-[[nodiscard]] bool stands_out(const SineFit& fit);
+// A phasor stands out of the noise when its amplitude is at least four standard uncertainties: noise alone does so once in 3000.
+// When the largest of several independent frequencies was picked, the limit rises so that this stays.
+[[nodiscard]] bool stands_out(const SineFit& fit, double picked_from = 1.0);
 
 } // namespace dyncal::analysis::kernel

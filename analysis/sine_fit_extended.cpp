@@ -1,0 +1,261 @@
+#include "analysis/sine_fit_extended.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Eigen/Dense>
+
+#include "analysis/sine_basis.hpp"
+#include "analysis/sine_pass.hpp"
+#include "analysis/sine_solve.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+using namespace kernel;
+
+constexpr double smallest_rcond = 1e-10;
+constexpr int refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
+constexpr int most_reweightings = 200;
+constexpr double settled = 1e-12; // change of the parameters against their size
+
+using DesignBlock = Eigen::Matrix<double, static_cast<int>(block_samples), Eigen::Dynamic>;
+
+// Normal equations of one channel for the change of its coefficients.
+struct System {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd right;
+  double ee = 0.0; // unweighted
+};
+
+class Fitter {
+public:
+  Fitter(const Record& record, SineBasis basis) : record_(record), basis_(std::move(basis)), design_(block_samples, basis_.columns()) {}
+
+  [[nodiscard]] SineBasis& basis() { return basis_; }
+
+  // Sums about `coefficients`; weights may be empty. Residuals are stored when asked for.
+  Expected<System> pass(std::span<const double> values, const Eigen::VectorXd& coefficients, std::span<const double> weights,
+                        std::vector<double>* residuals, bool with_matrix) {
+    const auto columns = static_cast<Eigen::Index>(basis_.columns());
+    System system{Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns), 0.0};
+    Eigen::VectorXd e(block_samples);
+    for (std::size_t i = 0; i < values.size(); i += block_samples) {
+      const std::size_t n = std::min(block_samples, values.size() - i);
+      if (!basis_.fill(i, n, design_.data())) return tl::unexpected(record_.not_increasing());
+      const auto rows = static_cast<Eigen::Index>(n);
+      const auto d = design_.topRows(rows);
+      e.head(rows) = Eigen::Map<const Eigen::VectorXd>(values.data() + i, rows);
+      e.head(rows).noalias() -= d * coefficients;
+      system.ee += e.head(rows).squaredNorm();
+      if (residuals) std::copy_n(e.data(), n, residuals->data() + i);
+      if (weights.empty()) {
+        system.right.noalias() += d.transpose() * e.head(rows);
+        if (with_matrix) system.normal.noalias() += d.transpose() * d;
+      } else {
+        const Eigen::Map<const Eigen::VectorXd> w(weights.data() + i, rows);
+        system.right.noalias() += d.transpose() * e.head(rows).cwiseProduct(w);
+        if (with_matrix) system.normal.noalias() += d.transpose() * w.asDiagonal() * d;
+      }
+    }
+    if (!std::isfinite(system.ee)) return tl::unexpected(record_.not_finite());
+    return system;
+  }
+
+private:
+  const Record& record_;
+  SineBasis basis_;
+  DesignBlock design_;
+};
+
+// Solves with columns scaled to unit length; tells how well they can be told apart.
+class ScaledInverse {
+public:
+  explicit ScaledInverse(const Eigen::MatrixXd& normal) : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale_.asDiagonal() * normal * scale_.asDiagonal());
+    rcond_ = eigen.eigenvalues().minCoeff() / eigen.eigenvalues().maxCoeff();
+    if (!(rcond_ > smallest_rcond)) return;
+    inverse_ = scale_.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
+               eigen.eigenvectors().transpose() * scale_.asDiagonal();
+  }
+  [[nodiscard]] bool usable() const { return rcond_ > smallest_rcond; }
+  [[nodiscard]] const Eigen::MatrixXd& matrix() const { return inverse_; }
+
+private:
+  Eigen::VectorXd scale_;
+  double rcond_ = 0.0;
+  Eigen::MatrixXd inverse_;
+};
+
+struct ChannelSolution {
+  Eigen::VectorXd coefficients;
+  Eigen::MatrixXd inverse; // of the unweighted normal matrix
+  double rss = 0.0;
+  double variance = 0.0; // factor of the inverse
+  std::uint64_t outliers = 0;
+  int iterations = 0;
+};
+
+Error indistinct(const Frequency& frequency) {
+  return {ErrorCode::ill_conditioned, "the parts of the extended model near " + std::to_string(frequency.hz()) +
+                                          " Hz cannot be told apart in this record; leave some out or record longer"};
+}
+
+Eigen::VectorXd starting_level(std::size_t columns, double level) {
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns));
+  start[2] = level;
+  return start;
+}
+
+Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequency, std::span<const double> values) {
+  const std::size_t columns = fitter.basis().columns();
+  ChannelSolution result;
+  result.coefficients = starting_level(columns, values.front());
+  const auto first = fitter.pass(values, result.coefficients, {}, nullptr, true);
+  if (!first) return tl::unexpected(first.error());
+  const ScaledInverse inverse(first->normal);
+  if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
+  result.inverse = inverse.matrix();
+  result.coefficients += result.inverse * first->right;
+  for (int i = 0; i < refinements; ++i) {
+    const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
+    if (!again) return tl::unexpected(again.error());
+    const Eigen::VectorXd step = result.inverse * again->right;
+    result.coefficients += step;
+    result.rss = std::max(0.0, again->ee - step.dot(again->right));
+  }
+  result.variance = result.rss / (static_cast<double>(values.size()) - static_cast<double>(columns));
+  return result;
+}
+
+double scale_of(const std::vector<double>& residuals, const Eigen::VectorXd& coefficients, std::vector<double>& work) {
+  std::transform(residuals.begin(), residuals.end(), work.begin(), [](double r) { return std::abs(r); });
+  return std::max(robust_scale(work), 1e-16 * coefficients.head(3).norm() + 1e-300); // rounding is noise too
+}
+
+// Iterates the weights from `result` until the parameters stay.
+Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting weighting, std::span<const double> values,
+                        ChannelSolution& result) {
+  const std::size_t n = values.size();
+  std::vector<double> residuals(n), weights(n), work(n);
+  auto sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
+  if (!sums) return tl::unexpected(sums.error());
+  double scale = scale_of(residuals, result.coefficients, work);
+  for (int iteration = 0; iteration < most_reweightings; ++iteration) {
+    std::transform(residuals.begin(), residuals.end(), weights.begin(), [&](double r) { return robust_weight(weighting, r, scale); });
+    sums = fitter.pass(values, result.coefficients, weights, nullptr, true);
+    if (!sums) return tl::unexpected(sums.error());
+    const ScaledInverse inverse(sums->normal);
+    if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
+    const Eigen::VectorXd step = inverse.matrix() * sums->right;
+    result.coefficients += step;
+    ++result.iterations;
+    sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
+    if (!sums) return tl::unexpected(sums.error());
+    result.rss = sums->ee;
+    // Parameters that move by less than a millionth of their uncertainty stay.
+    const double uncertainty = scale * std::sqrt(inverse.matrix().diagonal().maxCoeff());
+    if (step.norm() < std::max(settled * result.coefficients.norm(), 1e-6 * uncertainty)) {
+      double psi_square = 0.0;
+      double slope = 0.0;
+      result.outliers = 0;
+      for (const double r : residuals) {
+        const double w = robust_weight(weighting, r, scale);
+        psi_square += w * r * w * r;
+        slope += robust_slope(weighting, r, scale);
+        result.outliers += w < 0.5 ? 1 : 0;
+      }
+      slope /= static_cast<double>(n);
+      result.variance = psi_square / (static_cast<double>(n) - static_cast<double>(fitter.basis().columns())) / (slope * slope);
+      return {};
+    }
+    scale = scale_of(residuals, result.coefficients, work);
+  }
+  return tl::unexpected(Error{ErrorCode::not_converged, "the robust weights did not settle; more than a few per cent of outliers?"});
+}
+
+FurtherPhasor further_phasor(const ChannelSolution& solution, std::size_t column, double hz, double turns) {
+  const auto i = static_cast<Eigen::Index>(column);
+  SineFit turned;
+  turned.sine = solution.coefficients[i];
+  turned.cosine = solution.coefficients[i + 1];
+  turned.covariance = {solution.variance * solution.inverse(i, i),
+                       solution.variance * solution.inverse(i, i + 1),
+                       0.0,
+                       solution.variance * solution.inverse(i + 1, i + 1),
+                       0.0,
+                       0.0};
+  rotate(turned, turns);
+  return {hz, turned.sine, turned.cosine, std::sqrt(turned.covariance[0]), std::sqrt(turned.covariance[3])};
+}
+
+ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const ChannelSolution& solution, std::size_t samples,
+                     std::int64_t shift_ns) {
+  const auto turns = [&](std::size_t line) { return basis.frequencies()[line].reduced_turns(shift_ns); };
+  ExtendedFit fit;
+  SineFit& f = fit.fundamental;
+  f.sine = solution.coefficients[0];
+  f.cosine = solution.coefficients[1];
+  f.offset = solution.coefficients[2];
+  f.rss = solution.rss;
+  f.samples = samples;
+  f.degrees_of_freedom = static_cast<double>(samples) - static_cast<double>(basis.columns());
+  std::size_t element = 0;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = row; column < 3; ++column)
+      f.covariance[element++] = solution.variance * solution.inverse(row, column);
+  }
+  rotate(f, turns(0));
+  for (int k = 0; k < wanted.drift_order; ++k) {
+    const auto i = static_cast<Eigen::Index>(basis.drift_column()) + k;
+    fit.drift.push_back(solution.coefficients[i]);
+    fit.u_drift.push_back(std::sqrt(solution.variance * solution.inverse(i, i)));
+  }
+  for (std::size_t line = 1; line < basis.frequencies().size(); ++line) {
+    const FurtherPhasor phasor = further_phasor(solution, basis.sine_column(line), basis.frequencies()[line].hz(), turns(line));
+    (line < static_cast<std::size_t>(wanted.highest_harmonic) ? fit.harmonics : fit.lines).push_back(phasor);
+  }
+  if (wanted.drifting_phasor) {
+    fit.phasor_drift = further_phasor(solution, basis.phasor_drift_column(), basis.frequencies()[0].hz(), turns(0));
+  }
+  fit.outliers = solution.outliers;
+  fit.iterations = solution.iterations;
+  return fit;
+}
+
+} // namespace
+
+Expected<std::vector<ExtendedFit>> fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
+                                                     std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                                                     std::span<const std::span<const double>> channels) {
+  const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
+  if (!record) return tl::unexpected(record.error());
+  auto columns = SineBasis::make(*record, frequency, basis);
+  if (!columns) return tl::unexpected(columns.error());
+  std::int64_t shift_ns = 0;
+  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+    return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
+  }
+  Fitter fitter(*record, std::move(*columns));
+  std::vector<ExtendedFit> fits;
+  for (const std::span<const double> values : channels) {
+    auto solution = least_squares(fitter, frequency, values);
+    if (!solution) return tl::unexpected(solution.error());
+    // Tukey's weights have several solutions: they start from Huber's, which has one.
+    if (weighting != Weighting::none) {
+      if (const auto done = reweight(fitter, frequency, Weighting::huber, values, *solution); !done) return tl::unexpected(done.error());
+    }
+    if (weighting == Weighting::tukey) {
+      if (const auto done = reweight(fitter, frequency, weighting, values, *solution); !done) return tl::unexpected(done.error());
+    }
+    fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
+  }
+  if (std::none_of(fits.begin(), fits.end(), [](const ExtendedFit& fit) { return stands_out(fit.fundamental); })) {
+    return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +
+                                                              " Hz stands out of the noise in any channel; check frequency and window"});
+  }
+  return fits;
+}
+
+} // namespace dyncal::analysis

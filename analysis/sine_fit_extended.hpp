@@ -1,0 +1,62 @@
+// Sine approximation beside disturbances, and against outliers.
+//
+// Model, channel j, u = (t - t_m) / (T/2) in [-1, 1], t_m the middle and T the length of the record:
+//   y_j(t) = A sin(w (t - t_ref)) + B cos(w (t - t_ref)) + C
+//          + sum_k d_k u^k                                    drift, k = 1..drift_order
+//          + sum_h (A_h sin(h w (t - t_ref)) + B_h cos(...))   harmonics, h = 2..highest_harmonic
+//          + sum_l (A_l sin(w_l (t - t_ref)) + B_l cos(...))   further lines: hum, neighbouring excitation
+//          + u (A' sin(w (t - t_ref)) + B' cos(...))           linear drift of amplitude and phase
+// C is the level in the middle of the record; with a drifting phasor A and B are those in the middle. Sign, phase and units are
+// those of sine_fit.hpp; drift coefficients carry the unit of the values. Solved by scaled normal equations with two steps of
+// refinement on the residuals; refused (ill_conditioned) when the scaled matrix has a reciprocal condition below 1e-10, e.g.
+// drift powers in a small part of a period.
+//
+// Weight functions (iteratively reweighted least squares, M-estimators of Huber and Tukey, tuning constants for 95 % efficiency
+// on normal noise; scale is 1.4826 times the median absolute residual, re-estimated in every step): the covariance is
+// s^2 (D'D)^-1 with Huber's correction, s^2 = sum psi^2 / (n - p) / mean(psi')^2. `rss` is that of the unweighted residuals.
+// Fails as sine_fit.hpp does; invalid_argument for a basis with equal or non-positive lines; not_converged.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/frequency.hpp"
+#include "analysis/robust_weights.hpp"
+#include "analysis/sine_fit.hpp"
+
+namespace dyncal::analysis {
+
+struct ExtendedBasis {
+  int drift_order = 0;
+  int highest_harmonic = 1;
+  std::vector<Frequency> lines;
+  bool drifting_phasor = false;
+};
+
+struct FurtherPhasor { // a harmonic or a line, about the reference instant
+  double frequency_hz = 0.0;
+  double sine = 0.0;
+  double cosine = 0.0;
+  double u_sine = 0.0;
+  double u_cosine = 0.0;
+};
+
+struct ExtendedFit {
+  SineFit fundamental;       // covariance and degrees of freedom of the whole model
+  std::vector<double> drift; // d_1, d_2, ...
+  std::vector<double> u_drift;
+  std::vector<FurtherPhasor> harmonics;
+  std::vector<FurtherPhasor> lines;
+  FurtherPhasor phasor_drift; // A', B' per half record; frequency 0 when not asked for
+  std::uint64_t outliers = 0; // samples with less than half the weight
+  int iterations = 0;         // of the weights
+};
+
+[[nodiscard]] Expected<std::vector<ExtendedFit>> fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis,
+                                                                   Weighting weighting, std::int64_t reference_ns,
+                                                                   std::span<const std::int64_t> stamps_ns,
+                                                                   std::span<const std::span<const double>> channels);
+
+} // namespace dyncal::analysis

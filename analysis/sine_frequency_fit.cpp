@@ -1,0 +1,179 @@
+// Four parameters: search, then passes over the samples, each followed by the solution of the whole nonlinear problem in the
+// frequency on the series of that pass (sine_series.hpp). Long records take their first passes on an eighth of the samples;
+// one pass over all of them is then enough as a rule.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "analysis/sine_fit.hpp"
+#include "analysis/sine_pass.hpp"
+#include "analysis/sine_search.hpp"
+#include "analysis/sine_series.hpp"
+#include "analysis/sine_solve.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+using namespace kernel;
+
+constexpr int most_passes = 40;
+constexpr double series_limit = 0.25;       // rad over half the record that one series may be moved
+constexpr double allowed_error_rad = 2e-12; // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
+
+struct Estimate {
+  Frequency frequency; // expansion frequency of the pass
+  std::vector<Parameters> start;
+  FrequencySolution solution;
+  int passes = 0;
+};
+
+tl::unexpected<Error> fail(ErrorCode code, std::string message) {
+  return tl::unexpected(Error{code, std::move(message)});
+}
+
+double radians_to_hz(const Record& record, double delta) {
+  return delta / (3.141592653589793 * record.span_s());
+}
+
+// What the series left out, in radians: orders of the residual moments from u^2 on, of the design from u^3 on, and its end.
+double series_error(const SeriesSums& sums, const FrequencySolution& solution) {
+  double noise = 0.0;
+  for (const Solution& channel : solution.channels) {
+    const double size = std::hypot(channel.p.sine, channel.p.cosine);
+    const double u = std::sqrt(channel.rss) / solution.matrix.n;
+    noise = std::max(noise, u < size ? u / size : 0.0);
+  }
+  const double delta = std::abs(solution.delta);
+  const double length = sums.block_half_length;
+  return 3.0 * noise * delta * length * length + std::pow(delta * length, 3) + std::pow(delta, 6) / 120.0;
+}
+
+Expected<void> pass(const Record& record, Selection selection, Estimate& estimate, double& error) {
+  const auto sums = accumulate_series(record, estimate.frequency, estimate.start, selection);
+  if (!sums) return tl::unexpected(sums.error());
+  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
+  const Segment segment = sums->segment();
+  estimate.solution = solve_frequency({&segment, 1}, estimate.start, 0.0, series_limit);
+  ++estimate.passes;
+  const FrequencySolution& solution = estimate.solution;
+  if (!solution.matrix.well_conditioned() || !std::isfinite(solution.u_delta)) {
+    return fail(ErrorCode::ill_conditioned, "frequency, sine, cosine and constant near " + std::to_string(estimate.frequency.hz()) +
+                                                " Hz cannot be told apart in this record; record more periods");
+  }
+  error = solution.settled ? series_error(*sums, solution) : series_limit;
+  return {};
+}
+
+void move_on(const Record& record, Estimate& estimate) {
+  estimate.frequency = estimate.frequency.shifted_by_hz(radians_to_hz(record, estimate.solution.delta));
+  for (std::size_t j = 0; j < estimate.start.size(); ++j)
+    estimate.start[j] = estimate.solution.channels[j].p;
+}
+
+// Passes over the selection until the error is allowed.
+Expected<void> iterate(const Record& record, Selection selection, double allowed, Estimate& estimate) {
+  while (estimate.passes < most_passes) {
+    double error = 0.0;
+    if (const auto done = pass(record, selection, estimate, error); !done) return done;
+    if (error < allowed) return {};
+    move_on(record, estimate);
+    if (!(estimate.frequency.hz() > 0.0)) break;
+  }
+  return fail(ErrorCode::not_converged,
+              "the frequency near " + std::to_string(estimate.frequency.hz()) + " Hz did not settle; check that one sine dominates");
+}
+
+SineFit channel_fit(const Record& record, const Estimate& estimate, std::size_t j, double reference_shift, double turns) {
+  const FrequencySolution& all = estimate.solution;
+  const Solution& solution = all.channels[j];
+  SineFit fit;
+  fit.sine = solution.p.sine;
+  fit.cosine = solution.p.cosine;
+  fit.offset = solution.p.offset;
+  fit.rss = solution.rss;
+  fit.samples = record.size();
+  fit.degrees_of_freedom = static_cast<double>(record.size()) - 3.0 - 1.0 / static_cast<double>(all.channels.size());
+  fit.covariance = unit_covariance(all.matrix);
+  for (double& element : fit.covariance)
+    element *= fit.rss / fit.degrees_of_freedom;
+  rotate(fit, turns);
+  // The estimated frequency moves the parameters: by the coupling in the record's middle, and by the turn to the reference.
+  const auto [s, c] = sine_cosine_of_turns(turns);
+  const Parameters& k = all.slopes[j].coupling;
+  const double along[3] = {k.sine * c - k.cosine * s - reference_shift * fit.cosine, k.sine * s + k.cosine * c + reference_shift * fit.sine,
+                           k.offset};
+  const double variance = all.u_delta * all.u_delta;
+  std::size_t element = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column)
+      fit.covariance[element++] += along[row] * along[column] * variance;
+  }
+  return fit;
+}
+
+Expected<void> check_arguments(const Record& record, const Frequency& start, double search_rel) {
+  if (!(search_rel >= 0.0 && search_rel < 1.0)) {
+    return fail(ErrorCode::invalid_argument, "the search range of the frequency must be at least 0 and below 1, relative to the start");
+  }
+  return record.carries(start);
+}
+
+Expected<Estimate> estimate_of(const Record& record, const Frequency& start, double search_rel) {
+  auto found = search_frequency(record, start, search_rel);
+  if (!found) return tl::unexpected(found.error());
+  Estimate estimate{*found, {}, {}, 0};
+  for (const auto& channel : record.channels())
+    estimate.start.push_back({0.0, 0.0, channel.front()});
+  constexpr std::size_t long_record = 16 * block_samples;
+  if (record.size() >= long_record) {
+    constexpr double close_rad = 0.02;
+    const Selection part{block_samples / 8, block_samples};
+    // A part that does not settle decides nothing; the whole record is tried all the same.
+    const auto done = iterate(record, part, close_rad, estimate);
+    if (!done && done.error().code != ErrorCode::not_converged) return tl::unexpected(done.error());
+    if (!done) estimate.frequency = *found;
+    if (done) move_on(record, estimate);
+    estimate.passes = 0;
+  }
+  if (const auto done = iterate(record, {}, allowed_error_rad, estimate); !done) return tl::unexpected(done.error());
+  return estimate;
+}
+
+} // namespace
+
+Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double search_rel, std::int64_t reference_ns,
+                                              std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
+  const auto record = Record::make(stamps_ns, channels, 4);
+  if (!record) return tl::unexpected(record.error());
+  if (const auto checked = check_arguments(*record, start, search_rel); !checked) return tl::unexpected(checked.error());
+  std::int64_t shift_ns = 0;
+  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+    return fail(ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record");
+  }
+  const auto estimate = estimate_of(*record, start, search_rel);
+  if (!estimate) return tl::unexpected(estimate.error());
+
+  FrequencyFit result{estimate->frequency.shifted_by_hz(radians_to_hz(*record, estimate->solution.delta)), 0.0, {}, estimate->passes};
+  result.u_frequency_hz = radians_to_hz(*record, estimate->solution.u_delta);
+  const double turns = result.frequency.reduced_turns(shift_ns);
+  const double reference_shift = static_cast<double>(shift_ns) / record->half_span_ns();
+  // In the middle of the record, where the covariance is that of amplitude and phase alone.
+  const double bins = 1.0 + 2.0 * search_rel * start.hz() * record->span_s();
+  bool excited = false;
+  for (std::size_t j = 0; j < channels.size(); ++j) {
+    excited |= stands_out(channel_fit(*record, *estimate, j, 0.0, 0.0), bins);
+    result.channels.push_back(channel_fit(*record, *estimate, j, reference_shift, turns));
+  }
+  if (!excited) {
+    return fail(ErrorCode::no_excitation, "no sine near " + std::to_string(start.hz()) +
+                                              " Hz stands out of the noise in any channel; check frequency, search range and window");
+  }
+  if (std::abs(result.frequency.hz() - start.hz()) > search_rel * start.hz() + 2.0 / record->span_s()) {
+    return fail(ErrorCode::not_converged, "the frequency moved to " + std::to_string(result.frequency.hz()) +
+                                              " Hz, outside of the search range; check the start frequency");
+  }
+  if (const auto carried = record->carries(result.frequency); !carried) return tl::unexpected(carried.error());
+  return result;
+}
+
+} // namespace dyncal::analysis

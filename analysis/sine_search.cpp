@@ -1,0 +1,192 @@
+#include "analysis/sine_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "analysis/sine_solve.hpp"
+
+namespace dyncal::analysis::kernel {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double basin_bins = 0.3; // from here the iteration always arrives
+constexpr double grid_step_bins = 0.2;
+constexpr double fewest_cycles = 8.0; // below, the image at -f disturbs a Fourier transform
+constexpr double fewest_bins = 4.0;   // below, a grid is cheaper
+constexpr std::size_t part_samples = 4096;
+constexpr double certain_amplitude = 8.0; // standard uncertainties
+
+Selection part_of(std::size_t samples) {
+  constexpr std::size_t group = 32;
+  const std::size_t groups = part_samples / group;
+  return samples > 2 * part_samples ? Selection{group, samples / groups} : Selection{};
+}
+
+Expected<std::vector<Parameters>> levels(const Record& record, const Frequency& frequency, Selection selection) {
+  std::vector<Parameters> start;
+  for (const auto& channel : record.channels())
+    start.push_back({0.0, 0.0, channel.front()});
+  const auto sums = accumulate(record, frequency, start, selection);
+  if (!sums) return tl::unexpected(sums.error());
+  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
+  for (std::size_t j = 0; j < start.size(); ++j)
+    start[j].offset += sums->channels[j].e / sums->samples;
+  return start;
+}
+
+struct GridPoint {
+  double bins = 0.0;
+  double misfit = std::numeric_limits<double>::infinity(); // sum of log rss
+  double significance = 0.0;                               // of the strongest channel: amplitude over its uncertainty
+};
+
+GridPoint misfit_of(const PassSums& sums, std::span<const Parameters> start, double bins) {
+  GridPoint point;
+  point.bins = bins;
+  const NormalMatrix matrix(sums.samples, sums.design);
+  if (!matrix.well_conditioned()) return point;
+  point.misfit = 0.0;
+  for (std::size_t j = 0; j < start.size(); ++j) {
+    const Solution solution = solve(matrix, sums.channels[j], start[j]);
+    const double scale = 1e-30 * solution.ee + std::numeric_limits<double>::min();
+    point.misfit += std::log(solution.rss + scale);
+    point.significance = std::max(point.significance, std::sqrt((solution.ee - solution.rss) / (solution.rss + scale) * sums.samples));
+  }
+  return point;
+}
+
+Expected<GridPoint> search_grid(const Record& record, const Frequency& start, double half_range_bins, Selection selection) {
+  const auto level = levels(record, start, selection);
+  if (!level) return tl::unexpected(level.error());
+  const int half = static_cast<int>(std::ceil(half_range_bins / grid_step_bins));
+  GridPoint best;
+  for (int i = -half; i <= half; ++i) {
+    const double bins = half_range_bins * i / std::max(half, 1);
+    const Frequency frequency = start.shifted_by_hz(bins / record.span_s());
+    if (!(frequency.hz() > 0.0)) continue;
+    const auto sums = accumulate(record, frequency, *level, selection);
+    if (!sums) return tl::unexpected(sums.error());
+    const GridPoint point = misfit_of(*sums, *level, bins);
+    if (point.misfit < best.misfit) best = point;
+  }
+  return best;
+}
+
+// In place, length a power of two.
+void fourier_transform(std::vector<Complex>& data) {
+  const std::size_t n = data.size();
+  for (std::size_t i = 1, j = 0; i < n; ++i) {
+    std::size_t bit = n >> 1;
+    for (; j & bit; bit >>= 1)
+      j ^= bit;
+    j ^= bit;
+    if (i < j) std::swap(data[i], data[j]);
+  }
+  for (std::size_t length = 2; length <= n; length *= 2) {
+    const std::size_t half = length / 2;
+    std::vector<Complex> turn(half);
+    for (std::size_t k = 0; k < half; ++k) {
+      turn[k] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+    }
+    for (std::size_t i = 0; i < n; i += length) {
+      for (std::size_t k = 0; k < half; ++k) {
+        const Complex a = data[i + k];
+        const Complex b = data[i + k + half];
+        const Complex turned{b.real() * turn[k].real() - b.imag() * turn[k].imag(), b.real() * turn[k].imag() + b.imag() * turn[k].real()};
+        data[i + k] = a + turned;
+        data[i + k + half] = a - turned;
+      }
+    }
+  }
+}
+
+struct Cells {
+  std::vector<std::vector<Complex>> phasors; // a channel; fourfold length, the rest empty
+  std::vector<double> square;                // sum of squares a channel
+  double samples = 0.0;
+};
+
+// Phasors of cells of equal time, from groups short enough that a cell has several.
+Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, std::span<const Parameters> level, std::size_t count,
+                             bool whole) {
+  const std::size_t n = record.size();
+  const std::size_t step = std::clamp<std::size_t>(n / (4 * count), 1, block_samples);
+  const std::size_t length = whole ? step : std::clamp<std::size_t>(part_samples / (4 * count), std::min<std::size_t>(step, lanes), step);
+  Cells cells;
+  cells.phasors.assign(level.size(), std::vector<Complex>(4 * count));
+  cells.square.assign(level.size(), 0.0);
+  const SineKernel& kernel = best_kernel();
+  const TimeAxis axis = record.axis(frequency);
+  const std::int64_t* stamps = record.stamps().data();
+  BlockBasis basis;
+  for (std::size_t i = 0; i < n; i += step) {
+    const std::size_t samples = std::min(length, n - i);
+    DesignSums design;
+    if (!kernel.design(stamps + i, samples, axis, basis, design)) return tl::unexpected(record.not_increasing());
+    const std::int64_t middle_ns = stamps[i] + (stamps[i + samples - 1] - stamps[i]) / 2;
+    const double position = static_cast<double>(middle_ns - stamps[0]) / (2.0 * record.half_span_ns());
+    if (!(position >= 0.0 && position <= 1.0)) return tl::unexpected(record.not_increasing());
+    const std::size_t cell = std::min(count - 1, static_cast<std::size_t>(position * static_cast<double>(count)));
+    for (std::size_t j = 0; j < level.size(); ++j) {
+      ResidualSums sums;
+      kernel.residuals(record.channels()[j].data() + i, samples, basis, level[j], sums);
+      cells.phasors[j][cell] += Complex(sums.ec, -sums.es);
+      cells.square[j] += sums.ee;
+    }
+    cells.samples += static_cast<double>(samples);
+  }
+  return cells;
+}
+
+Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start, double half_range_bins, bool whole) {
+  const auto level = levels(record, start, whole ? Selection{} : part_of(record.size()));
+  if (!level) return tl::unexpected(level.error());
+  const std::size_t count = std::bit_ceil(static_cast<std::size_t>(4.0 * half_range_bins));
+  auto cells = cell_phasors(record, start, *level, count, whole);
+  if (!cells) return tl::unexpected(cells.error());
+  const std::size_t length = 4 * count;
+  std::vector<double> power(length, 0.0);
+  for (std::size_t j = 0; j < level->size(); ++j) {
+    if (!std::isfinite(cells->square[j])) return tl::unexpected(record.not_finite());
+    fourier_transform(cells->phasors[j]);
+    // With the amplitude removed rss falls by 2 |Z|^2 / n; the sum of n log(rss) is what is to be smallest.
+    const double total = cells->square[j] + std::numeric_limits<double>::min();
+    for (std::size_t k = 0; k < length; ++k) {
+      const double explained = std::min(2.0 * std::norm(cells->phasors[j][k]) / (cells->samples * total), 1.0 - 1e-12);
+      power[k] -= std::log1p(-explained);
+    }
+  }
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(4.0 * half_range_bins)) + 2;
+  GridPoint best;
+  for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
+    const double value = power[static_cast<std::size_t>(k + static_cast<std::ptrdiff_t>(length)) % length];
+    if (-value < best.misfit) {
+      best = {0.25 * static_cast<double>(k), -value, std::sqrt(std::expm1(value) * cells->samples)};
+    }
+  }
+  return best;
+}
+
+} // namespace
+
+Expected<Frequency> search_frequency(const Record& record, const Frequency& start, double search_rel) {
+  const double half_range_bins = search_rel * start.hz() * record.span_s();
+  if (half_range_bins <= basin_bins) return start;
+  const bool grid = half_range_bins < fewest_bins || start.hz() * (1.0 - search_rel) * record.span_s() < fewest_cycles;
+  const Selection part = part_of(record.size());
+  auto found = grid ? search_grid(record, start, half_range_bins, part) : search_spectrum(record, start, half_range_bins, false);
+  if (!found) return tl::unexpected(found.error());
+  if (found->significance < certain_amplitude && part.length < part.step) {
+    found = grid ? search_grid(record, start, half_range_bins, {}) : search_spectrum(record, start, half_range_bins, true);
+    if (!found) return tl::unexpected(found.error());
+  }
+  return start.shifted_by_hz(found->bins / record.span_s());
+}
+
+} // namespace dyncal::analysis::kernel
