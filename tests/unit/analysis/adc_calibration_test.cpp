@@ -114,7 +114,7 @@ TEST(AdcCalibration, SingleMeasurementsTakeTheirScatterFromTheirNeighbours) {
   std::normal_distribution<double> noise;
   const TrueFrontEnd adc;
   std::vector<AdcCalibrationPoint> measurements;
-  for (double f = 100.0; f < 11000.0; f *= 1.12)
+  for (double f = 100.0; f < 11000.0; f *= 1.02)
     measurements.push_back({f, 19.5, adc.gain_at(f), adc.lag_at(f) + 5e-5 * noise(random), 0, 0});
   const auto points = adc_calibration_points(measurements);
   ASSERT_EQ(points.size(), measurements.size());
