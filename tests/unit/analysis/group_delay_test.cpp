@@ -1,0 +1,139 @@
+#include "analysis/group_delay.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "analysis/phasor.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+const std::vector<double> plan{10, 12.5, 16, 20, 25, 31.5, 40, 46.7, 50, 53.3, 63, 80, 100, 125, 160, 200, 250};
+
+std::vector<PhasePoint> phases_of(double delay_s, double intercept_rad, double u_rad, const std::vector<double>& frequencies = plan,
+                                  unsigned seed = 0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  std::vector<PhasePoint> points;
+  for (const double f : frequencies)
+    points.push_back({f, wrap_phase(intercept_rad - 2.0 * pi * f * delay_s + (seed ? u_rad * noise(random) : 0.0)), u_rad});
+  return points;
+}
+
+TEST(GroupDelay, FindsTheDelayOfThePaperAlthoughStepsComeNearHalfATurn) {
+  for (const double delay : {0.0, 0.55e-3, 1.511e-3, 8.1e-3, -2e-3, 20e-3}) {
+    const auto result = evaluate_group_delay(phases_of(delay, 0.0, 1e-4));
+    ASSERT_TRUE(result.has_value()) << result.error().message;
+    EXPECT_NEAR(result->delay_s, delay, 1e-12 * std::max(1e-3, std::abs(delay))) << delay;
+    EXPECT_NEAR(result->intercept_rad, 0.0, 1e-12) << delay;
+    EXPECT_FALSE(result->polarity_inverted);
+    EXPECT_NEAR(result->unwrapped_rad.back(), -2.0 * pi * 250.0 * delay, 1e-11);
+  }
+}
+
+TEST(GroupDelay, KeepsAnInvertedPolarityAsTheIntercept) {
+  const auto result = evaluate_group_delay(phases_of(1.5111e-3, 3.14, 1e-4));
+  ASSERT_TRUE(result.has_value());
+  EXPECT_TRUE(result->polarity_inverted);
+  EXPECT_NEAR(result->intercept_rad, 3.14, 1e-12);
+  EXPECT_NEAR(result->delay_s, 1.5111e-3, 1e-14);
+}
+
+TEST(GroupDelay, FewPointsAreUnwrappedByTheSlopeBefore) {
+  const auto result = evaluate_group_delay(phases_of(8.1e-3, 0.1, 1e-4, {10, 12.5, 40, 90}));
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_NEAR(result->delay_s, 8.1e-3, 1e-13);
+  EXPECT_NEAR(result->intercept_rad, 0.1, 1e-12);
+}
+
+TEST(GroupDelay, SaysSoWhenThePhaseCannotBeUnwrapped) {
+  // Half a turn from the first to the second of few points: lead or delay, nobody knows.
+  const auto result = evaluate_group_delay(phases_of(0.5 / 50.0, 0.0, 1e-3, {50, 100, 150}));
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().code, ErrorCode::not_converged);
+  EXPECT_NE(result.error().message.find("50 Hz to 100 Hz"), std::string::npos) << result.error().message;
+}
+
+TEST(GroupDelay, PhasesWithoutMeaningGiveNoDelay) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> anywhere(-pi, pi);
+  std::vector<PhasePoint> points;
+  for (const double f : plan)
+    points.push_back({f, anywhere(random), 0.3});
+  EXPECT_FALSE(evaluate_group_delay(points).has_value());
+  for (PhasePoint& point : points)
+    point.u_phase_rad = 1.8;
+  EXPECT_EQ(evaluate_group_delay(points).error().code, ErrorCode::too_few_samples);
+}
+
+TEST(GroupDelay, AnUncertainPointFollowsTheLineAndDoesNotCount) {
+  auto points = phases_of(8.1e-3, 0.0, 1e-4);
+  points[5].phase_rad = wrap_phase(points[5].phase_rad + 2.0);
+  points[5].u_phase_rad = 1.5;
+  const auto result = evaluate_group_delay(points);
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->delay_s, 8.1e-3, 1e-13);
+  EXPECT_NEAR(result->unwrapped_rad[5], -2.0 * pi * points[5].frequency_hz * 8.1e-3 + 2.0, 1e-9);
+}
+
+TEST(GroupDelay, FollowsAResponseThatIsNoPureDelay) {
+  // Second-order low pass at 300 Hz behind a delay of 1.5 ms.
+  std::vector<PhasePoint> points;
+  for (const double f : plan) {
+    const double r = f / 300.0;
+    points.push_back({f, wrap_phase(-2.0 * pi * f * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r)), 1e-3});
+  }
+  const auto result = evaluate_group_delay(points);
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double r = points[i].frequency_hz / 300.0;
+    EXPECT_NEAR(result->unwrapped_rad[i], -2.0 * pi * points[i].frequency_hz * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r), 1e-9);
+  }
+  EXPECT_GT(result->chi_squared, 10.0 * result->degrees_of_freedom);
+  EXPECT_GT(result->u_delay_s, 1e-6); // no straight line: more than the 0.3 us of the points alone
+}
+
+TEST(GroupDelay, ACommonDelayGoesInFullIntoTheUncertainty) {
+  const auto alone = evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4));
+  const auto result = evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4), {.delay_s = 1e-6, .phase_rad = 2e-3});
+  ASSERT_TRUE(alone && result);
+  EXPECT_NEAR(result->u_delay_s, std::hypot(alone->u_delay_s, 1e-6), 1e-15);
+  EXPECT_NEAR(result->u_intercept_rad, std::hypot(alone->u_intercept_rad, 2e-3), 1e-12);
+  const std::size_t n = plan.size();
+  ASSERT_EQ(result->phase_covariance.size(), n * n);
+  EXPECT_NEAR(result->phase_covariance[1], 4e-6 + 1e-12 * 4.0 * pi * pi * 10.0 * 12.5, 1e-15);
+  EXPECT_NEAR(result->phase_covariance[0], 1e-8 + 4e-6 + 1e-12 * 4.0 * pi * pi * 100.0, 1e-15);
+}
+
+TEST(GroupDelay, CoversTheTruthInNineteenOfTwentyRuns) {
+  const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
+  const unsigned runs = text ? static_cast<unsigned>(std::stoul(text)) : 2000;
+  std::mt19937 random(77);
+  std::normal_distribution<double> noise;
+  unsigned covered = 0;
+  for (unsigned run = 1; run <= runs; ++run) {
+    const double common_delay = 5e-7 * noise(random);
+    const double common_phase = 1e-3 * noise(random);
+    const auto points = phases_of(8.1e-3 + common_delay, common_phase, 5e-4, plan, run);
+    const auto result = evaluate_group_delay(points, {.delay_s = 5e-7, .phase_rad = 1e-3});
+    ASSERT_TRUE(result.has_value());
+    covered += std::abs(result->delay_s - 8.1e-3) <= 2.0 * result->u_delay_s;
+  }
+  EXPECT_NEAR(static_cast<double>(covered) / runs, 0.9545, 0.014);
+}
+
+TEST(GroupDelay, RefusesWhatMakesNoSense) {
+  EXPECT_EQ(evaluate_group_delay({}).error().code, ErrorCode::too_few_samples);
+  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 1e-3, {20, 10})).error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 0.0)).error().code, ErrorCode::invalid_argument);
+}
+
+} // namespace
+} // namespace dyncal::analysis

@@ -1,0 +1,111 @@
+#include "analysis/repetitions.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "analysis/phasor.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+std::complex<double> h_of(double magnitude, double phase) {
+  return std::polar(magnitude, phase);
+}
+
+TEST(Repetitions, MeanIsThatOfThePhasorsAcrossTheCut) {
+  const std::array repetitions{Repetition{.h = h_of(1.0, 3.1)}, Repetition{.h = h_of(1.0, -3.1)}};
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(std::abs(mean->phase_rad), std::numbers::pi, 1e-12);
+  EXPECT_NEAR(mean->magnitude, std::cos(std::numbers::pi - 3.1), 1e-12);
+}
+
+TEST(Repetitions, OneRepetitionKeepsItsOwnUncertainty) {
+  const std::array repetitions{Repetition{h_of(2.0, 0.5), 3e-4, 4e-4, 4e-4, 3e-4}};
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(mean->u_magnitude, 2.0 * 5e-4, 1e-12);
+  EXPECT_NEAR(mean->u_phase_rad, 5e-4, 1e-12);
+  EXPECT_NEAR(mean->u_independent_phase_rad, 4e-4, 1e-12);
+  EXPECT_EQ(mean->scatter_phase_rad, 0.0);
+  EXPECT_NEAR(mean->phase.k, 2.0, 1e-12);
+}
+
+TEST(Repetitions, ThreeThatScatterNeedStudentsFactor) {
+  const std::array repetitions{Repetition{.h = h_of(1.0, -1e-3)}, Repetition{.h = h_of(1.0, 0.0)}, Repetition{.h = h_of(1.0, 1e-3)}};
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(mean->scatter_phase_rad, 1e-3, 1e-9);
+  EXPECT_NEAR(mean->phase.u, 1e-3 / std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(mean->phase.degrees_of_freedom, 2.0, 1e-9);
+  EXPECT_NEAR(mean->phase.k, 4.5265, 1e-3);
+  EXPECT_NEAR(mean->u_phase_rad, 0.5 * 4.5265 * 1e-3 / std::sqrt(3.0), 1e-6);
+}
+
+TEST(Repetitions, CommonPartsDoNotAverageOut) {
+  std::vector<Repetition> repetitions(100, Repetition{h_of(1.0, 0.3), 1e-4, 1e-4, 1e-3, 2e-3});
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(mean->u_magnitude, std::hypot(1e-5, 1e-3), 1e-12);
+  EXPECT_NEAR(mean->u_phase_rad, std::hypot(1e-5, 2e-3), 1e-12);
+}
+
+TEST(Repetitions, ABudgetIsDividedByItsDegreesOfFreedom) {
+  const std::array budget{Contribution{"noise", "normal", 100.0, 3e-4, 1e-4}, Contribution{"structure", "normal", 15.0, 4e-4, 0.0},
+                          Contribution{"reference", "normal", 0.0, 1e-3, 2e-3}};
+  const Repetition repetition = make_repetition(h_of(1.0, 0.0), budget);
+  EXPECT_DOUBLE_EQ(repetition.u_random_magnitude_rel, 5e-4);
+  EXPECT_DOUBLE_EQ(repetition.u_random_phase_rad, 1e-4);
+  EXPECT_DOUBLE_EQ(repetition.u_common_magnitude_rel, 1e-3);
+  EXPECT_DOUBLE_EQ(repetition.u_common_phase_rad, 2e-3);
+}
+
+TEST(Repetitions, NoiseHasNoPhase) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  std::vector<Repetition> repetitions;
+  for (int i = 0; i < 3; ++i)
+    repetitions.push_back({{noise(random), noise(random)}, 0.7, 1.0, 1e-3, 1e-3});
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_LE(mean->magnitude, 4.0 * mean->u_magnitude);
+  EXPECT_GT(mean->u_phase_rad, 0.3);
+}
+
+TEST(Repetitions, RefusesNothingAndWhatIsNoNumber) {
+  EXPECT_EQ(mean_of_repetitions({}).error().code, ErrorCode::invalid_argument);
+  const std::array repetitions{Repetition{.h = {std::nan(""), 0.0}}};
+  EXPECT_EQ(mean_of_repetitions(repetitions).error().code, ErrorCode::not_finite);
+}
+
+// Between-run scatter three times the noise of the fits, n = 3, and a common part as large as the noise.
+TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
+  const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
+  const int runs = text ? std::stoi(text) : 4000;
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> noise;
+  int magnitude_covered = 0, phase_covered = 0;
+  for (int run = 0; run < runs; ++run) {
+    const double common_magnitude = 1e-3 * noise(random), common_phase = 1e-3 * noise(random);
+    std::vector<Repetition> repetitions;
+    for (int i = 0; i < 3; ++i) {
+      const double sd = std::hypot(1e-3, 3e-3);
+      repetitions.push_back(
+          {h_of(0.95 * (1.0 + common_magnitude + sd * noise(random)), 2.0 + common_phase + sd * noise(random)), 1e-3, 1e-3, 1e-3, 1e-3});
+    }
+    const auto mean = mean_of_repetitions(repetitions);
+    ASSERT_TRUE(mean.has_value());
+    magnitude_covered += std::abs(mean->magnitude - 0.95) <= 2.0 * mean->u_magnitude;
+    phase_covered += std::abs(wrap_phase(mean->phase_rad - 2.0)) <= 2.0 * mean->u_phase_rad;
+  }
+  EXPECT_NEAR(static_cast<double>(magnitude_covered) / runs, 0.9545, 0.0145);
+  EXPECT_NEAR(static_cast<double>(phase_covered) / runs, 0.9545, 0.0145);
+}
+
+} // namespace
+} // namespace dyncal::analysis
