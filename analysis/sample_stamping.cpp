@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/disturbances.hpp"
 #include "analysis/phasor.hpp"
 #include "analysis/quantisation.hpp"
 #include "analysis/ratio_scatter.hpp"
@@ -27,9 +28,17 @@ bool is_excited(const SineFit& fit) {
   return fit.amplitude() > weakest_snr * fit.u_amplitude();
 }
 
+struct Series {
+  SeriesFit result;
+  std::vector<double> cleaned; // the samples without disturbances, where some were found
+  std::span<const double> measured;
+
+  [[nodiscard]] std::span<const double> values() const { return cleaned.empty() ? measured : std::span<const double>(cleaned); }
+};
+
 struct System { // one clock: sync and what was recorded with it, at the frequency that sync has in this clock
-  SeriesFit sync;
-  std::vector<SeriesFit> others;
+  Series sync;
+  std::vector<Series> others;
 };
 
 Expected<System> evaluate_system(const SampleStampingInput& input, std::span<const std::int64_t> stamps_ns, const ChannelSamples& sync,
@@ -55,14 +64,17 @@ Expected<System> evaluate_system(const SampleStampingInput& input, std::span<con
   std::vector<std::span<const double>> channels{sync.values};
   for (const ChannelSamples& channel : others)
     channels.push_back(channel.values);
-  const auto fits = fit_sine(frequency, reference_ns, stamps_ns, channels);
+  auto fits = fit_sine_beside_disturbances(frequency, reference_ns, stamps_ns, channels);
   if (!fits) return of_series(sync.name + " and the channels recorded with it", fits.error());
-  if (!is_excited(fits->front()))
+  if (!is_excited(fits->front().fit))
     return of_series(sync.name, {ErrorCode::no_excitation, "no sine of the excitation's frequency stands out of the noise"});
 
-  System system{{sync.name, frequency, u_frequency_hz, reference_ns, fits->front()}, {}};
+  const auto series = [&](const ChannelSamples& channel, UndisturbedFit& fit) {
+    return Series{{channel.name, frequency, u_frequency_hz, reference_ns, fit.fit}, std::move(fit.values), channel.values};
+  };
+  System system{series(sync, fits->front()), {}};
   for (std::size_t i = 0; i < others.size(); ++i)
-    system.others.push_back({others[i].name, frequency, u_frequency_hz, reference_ns, (*fits)[i + 1]});
+    system.others.push_back(series(others[i], (*fits)[i + 1]));
   return system;
 }
 
@@ -120,7 +132,9 @@ private:
 };
 
 // Rows of the reference side and of the corrections, the same for every channel of the sensor.
-Budget common_budget(const SampleStampingInput& input, const SeriesFit& reference, const System& dau, const SeriesFit& sync_acs) {
+Budget common_budget(const SampleStampingInput& input, const System& acs, const SeriesFit& sync_dau) {
+  const SeriesFit& reference = acs.others.front().result;
+  const SeriesFit& sync_acs = acs.sync.result;
   Budget budget;
   const double w = input.frequency.angular();
   const double amplitude = reference.fit.amplitude();
@@ -132,16 +146,16 @@ Budget common_budget(const SampleStampingInput& input, const SeriesFit& referenc
   budget.add("quantisation of the ACS sync", "rectangular", 0.0, 0.0,
              quantisation(sync_acs, input.sync_acs, input.acs_stamps_ns).u_phase_rad);
   budget.add_excess("structure in the reference",
-                    ratio_scatter(reference.frequency, input.acs_stamps_ns, input.reference.values, input.sync_acs.values),
+                    ratio_scatter(reference.frequency, input.acs_stamps_ns, acs.others.front().values(), acs.sync.values()),
                     budget.u_magnitude_rel(), budget.u_phase_rad());
 
   const double jitter_s = input.systematic.sync_adc_jitter_s;
   const double common_jitter_s = std::max(input.systematic.dau_jitter_s, input.systematic.dau_tick_s / std::sqrt(12.0));
-  const FitNoise noise = fit_noise(dau.sync, std::hypot(jitter_s, common_jitter_s));
-  budget.add("noise of the DAU sync", "normal", dau.sync.fit.degrees_of_freedom, 0.0, noise.u_phase_rad);
-  budget.add("jitter of the DAU sync alone", "normal", 0.0, 0.0, std::sqrt(1.5 / static_cast<double>(dau.sync.fit.samples)) * w * jitter_s);
+  const FitNoise noise = fit_noise(sync_dau, std::hypot(jitter_s, common_jitter_s));
+  budget.add("noise of the DAU sync", "normal", sync_dau.fit.degrees_of_freedom, 0.0, noise.u_phase_rad);
+  budget.add("jitter of the DAU sync alone", "normal", 0.0, 0.0, std::sqrt(1.5 / static_cast<double>(sync_dau.fit.samples)) * w * jitter_s);
   budget.add("quantisation of the DAU sync", "rectangular", 0.0, 0.0,
-             quantisation(dau.sync, input.sync_dau, input.dau_stamps_ns).u_phase_rad);
+             quantisation(sync_dau, input.sync_dau, input.dau_stamps_ns).u_phase_rad);
 
   budget.add("phase of the DAU sync ADC", "normal", 0.0, 0.0, input.adc.u_phase_lag_rad);
   budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * input.systematic.acs_delay_s);
@@ -163,8 +177,9 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Ser
   add("tick of the DAU stamps", "rectangular", tick_s);
 }
 
-TransferPoint evaluate_channel(const SampleStampingInput& input, const ChannelSamples& samples, const SeriesFit& dut, const System& dau,
+TransferPoint evaluate_channel(const SampleStampingInput& input, const ChannelSamples& samples, const Series& series, const System& dau,
                                std::complex<double> link, double reference_amplitude, const Budget& common) {
+  const SeriesFit& dut = series.result;
   const double jitter_s = std::max(input.systematic.dau_jitter_s, input.systematic.dau_tick_s / std::sqrt(12.0));
   const FitNoise noise = fit_noise(dut, jitter_s);
   const QuantisationUncertainty steps = quantisation(dut, samples, input.dau_stamps_ns);
@@ -180,10 +195,10 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const ChannelSa
              weak ? phase_standard_uncertainty(snr) : noise.u_phase_rad);
   budget.add("quantisation of the sensor", "rectangular", 0.0, steps.u_amplitude * relative, weak ? 0.0 : steps.u_phase_rad);
   if (weak) budget.add("magnitude of noise (Rice)", "normal", 0.0, 0.5 * std::pow(u_amplitude * relative, 2), 0.0);
-  add_stamp_noise(budget, input, dut, dau.sync);
-  const double sync_phase = dau.sync.fit.u_phase_rad();
+  add_stamp_noise(budget, input, dut, dau.sync.result);
+  const double sync_phase = dau.sync.result.fit.u_phase_rad();
   budget.add_excess("structure in the sensor's signal",
-                    ratio_scatter(dut.frequency, input.dau_stamps_ns, samples.values, input.sync_dau.values), budget.u_magnitude_rel(),
+                    ratio_scatter(dut.frequency, input.dau_stamps_ns, series.values(), dau.sync.values()), budget.u_magnitude_rel(),
                     std::hypot(budget.u_phase_rad(), sync_phase));
   budget.append(common);
 
@@ -205,16 +220,17 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   if (!acs) return tl::unexpected(acs.error());
   auto dau = evaluate_system(input, input.dau_stamps_ns, input.sync_dau, input.dut);
   if (!dau) return tl::unexpected(dau.error());
-  const SeriesFit& reference = acs->others.front();
+  const SeriesFit& reference = acs->others.front().result;
   if (!is_excited(reference.fit))
     return of_series(reference.series, {ErrorCode::no_excitation, "no sine of the excitation's frequency stands out of the noise"});
 
   // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau / G.
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
-  const std::complex<double> link = unit_phasor(phasor(acs->sync.fit)) / (unit_phasor(phasor(dau->sync.fit)) / adc) / phasor(reference.fit);
+  const std::complex<double> link =
+      unit_phasor(phasor(acs->sync.result.fit)) / (unit_phasor(phasor(dau->sync.result.fit)) / adc) / phasor(reference.fit);
 
-  const Budget common = common_budget(input, reference, *dau, acs->sync);
-  SampleStampingResult result{reference, acs->sync, dau->sync, {}};
+  const Budget common = common_budget(input, *acs, dau->sync.result);
+  SampleStampingResult result{reference, acs->sync.result, dau->sync.result, {}};
   for (std::size_t i = 0; i < input.dut.size(); ++i)
     result.points.push_back(evaluate_channel(input, input.dut[i], dau->others[i], *dau, link, reference.fit.amplitude(), common));
   return result;
