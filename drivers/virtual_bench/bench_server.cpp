@@ -64,6 +64,7 @@ void BenchServer::run(const StopSignal& stop) {
     }
   }
   end_stream(stop);
+  generator_clients_.close_all();
 }
 
 void BenchServer::serve_sockets() {

@@ -19,6 +19,7 @@ public:
   explicit LineClients(ScpiInstrument& instrument) : instrument_(instrument) {}
 
   void add(Descriptor socket);
+  void close_all() { clients_.clear(); }
   // Reads and executes what has come, and answers the waits that are over at this bench time.
   void serve(double bench_time_s);
 

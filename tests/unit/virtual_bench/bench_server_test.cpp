@@ -1,0 +1,215 @@
+// The bench behind its sockets, met through the drivers that meet real instruments.
+#include "drivers/virtual_bench/bench_server.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <mutex>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <thread>
+
+#include "drivers/acs/socket_acs.hpp"
+#include "drivers/generator/scpi_generator.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+namespace {
+
+// Collects datagrams at a port of its own.
+class UnitReceiver {
+public:
+  UnitReceiver() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    bind(socket_.number(), reinterpret_cast<sockaddr*>(&address), sizeof(address));
+    socklen_t size = sizeof(address);
+    getsockname(socket_.number(), reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+    const timeval limit{0, 50'000};
+    setsockopt(socket_.number(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      char datagram[2048];
+      while (!stop.stop_requested()) {
+        const ssize_t count = recv(socket_.number(), datagram, sizeof(datagram), 0);
+        if (count > 0) {
+          datagrams_.emplace_back(datagram, static_cast<std::size_t>(count));
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  std::vector<std::string> finish() {
+    thread_ = {};
+    return datagrams_;
+  }
+
+private:
+  Descriptor socket_;
+  std::uint16_t port_ = 0;
+  std::vector<std::string> datagrams_;
+  std::jthread thread_;
+};
+
+class CollectingSink : public acs::BlockSink {
+public:
+  void begin_session(const SourceDescription& description) override { descriptions.push_back(description); }
+  void take(SampleBlock block) override { blocks.push_back(std::move(block)); }
+
+  std::vector<SourceDescription> descriptions;
+  std::vector<SampleBlock> blocks;
+};
+
+BenchSettings bench_settings() {
+  BenchSettings settings;
+  settings.preset = *preset_by_name("mpu9250-paper");
+  settings.highest_level_m_s2 = 10.0;
+  return settings;
+}
+
+class ServedBench : public testing::Test {
+protected:
+  void start(double speed, double duration_s) {
+    ServerSettings settings;
+    settings.dau = {"127.0.0.1", receiver_.port()};
+    settings.acs_listen = {"127.0.0.1", 0};
+    settings.generator_listen = {"127.0.0.1", 0};
+    settings.speed = speed;
+    settings.duration_s = duration_s;
+    server_.emplace(bench_, settings);
+    const auto opened = server_->open();
+    ASSERT_TRUE(opened) << opened.error().message;
+    thread_ = std::jthread([this] { server_->run(stop_); });
+  }
+  void TearDown() override {
+    stop_.raise();
+    thread_ = {};
+  }
+  [[nodiscard]] std::string address(std::uint16_t port) const { return "127.0.0.1:" + std::to_string(port); }
+
+  VirtualBench bench_{bench_settings()};
+  UnitReceiver receiver_;
+  std::optional<BenchServer> server_;
+  StopSignal stop_;
+  std::jthread thread_;
+};
+
+TEST_F(ServedBench, RunsAStepAsFastAsTheConsumersAllow) {
+  start(0.0, 6.0);
+  acs::SocketAcs acs({address(server_->acs_port())});
+  const auto description = acs.describe();
+  ASSERT_TRUE(description) << description.error().message;
+  CollectingSink sink;
+  std::jthread reading([&] { EXPECT_TRUE(acs.run(sink)); });
+
+  auto connected = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  ASSERT_TRUE(connected) << connected.error().message;
+  generator::Generator& source = **connected;
+  ASSERT_TRUE(source.set_frequency("40"));
+  ASSERT_TRUE(source.set_amplitude_v(0.2));
+  const double begin_s = source.clock_now_s().value();
+  ASSERT_TRUE(source.set_output(true));
+  const auto end_s = source.wait_until_s(begin_s + 3.0, {});
+  ASSERT_TRUE(end_s) << end_s.error().message;
+  EXPECT_GE(*end_s, begin_s + 3.0);
+  EXPECT_LT(*end_s, begin_s + 3.5);
+  ASSERT_TRUE(source.set_output(false));
+  static_cast<void>(source.wait_until_s(6.0, {}));
+  reading.join();
+
+  ASSERT_EQ(sink.descriptions.size(), 1U);
+  EXPECT_EQ(sink.descriptions[0].channels[0].name, "reference");
+  EXPECT_EQ(sink.descriptions[0].nominal_rate_hz, 20000.0);
+  std::uint64_t next = sink.blocks.front().first_sample;
+  double largest = 0.0;
+  for (const SampleBlock& block : sink.blocks) {
+    ASSERT_EQ(block.first_sample, next);
+    next += block.samples;
+    largest = std::max(largest, *std::max_element(block.values.begin(), block.values.begin() + static_cast<std::ptrdiff_t>(block.samples)));
+    EXPECT_EQ(block.clock->stamp_ns(block.first_sample), bench_.acs().stamp_ns(block.first_sample));
+  }
+  EXPECT_NEAR(static_cast<double>(next), 120000.0, 1.0); // the end of the stream comes after the last sample
+  EXPECT_NEAR(largest, 10.0, 0.7);
+  const auto datagrams = receiver_.finish();
+  const auto data = std::count_if(datagrams.begin(), datagrams.end(), [](const std::string& d) { return d.starts_with("DATA"); });
+  EXPECT_NEAR(static_cast<double>(data), 600.0, 15.0);
+  EXPECT_EQ(datagrams.size() - static_cast<std::size_t>(data), 12U); // two bursts of six
+}
+
+TEST_F(ServedBench, KeepsRealTimeWhenAskedTo) {
+  start(2.0, 1.0);
+  const auto begin = std::chrono::steady_clock::now();
+  thread_ = {};
+  const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GT(passed_s, 0.45);
+  EXPECT_DOUBLE_EQ(bench_.now_s(), 1.0);
+}
+
+TEST_F(ServedBench, WaitsForAClientOfTheStreamThatDoesNotRead) {
+  start(1000.0, 1000.0);
+  StopSignal never;
+  const auto connection = TcpConnection::connect({"127.0.0.1", server_->acs_port()}, std::chrono::seconds(2), never);
+  ASSERT_TRUE(connection);
+  auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  ASSERT_TRUE(generator) << generator.error().message;
+  double before_s = -1.0;
+  double now_s = (*generator)->clock_now_s().value();
+  // Bench time comes to a stand when the sockets' buffers are full.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (now_s != before_s && std::chrono::steady_clock::now() < deadline) {
+    before_s = now_s;
+    now_s = (*generator)
+                ->wait_until_s(now_s + 0.5,
+                               [] {
+                                 std::stop_source stopped;
+                                 stopped.request_stop();
+                                 return stopped.get_token();
+                               }())
+                .value();
+  }
+  EXPECT_EQ(now_s, before_s);
+  EXPECT_LT(now_s, 60.0); // the receive buffer of the client may be large
+}
+
+TEST_F(ServedBench, PassesErrorsOfTheInstrumentOn) {
+  start(1.0, 0.0);
+  auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  ASSERT_TRUE(generator) << generator.error().message;
+  const auto refused = (*generator)->set_frequency("1e9");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::refused);
+  EXPECT_NE(refused.error().message.find("-222,\"Data out of range\""), std::string::npos) << refused.error().message;
+  EXPECT_TRUE((*generator)->set_frequency("50"));
+}
+
+TEST_F(ServedBench, SwitchesTheOutputOffWhenTheGeneratorIsGivenBack) {
+  start(1.0, 0.0);
+  {
+    auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
+    ASSERT_TRUE(generator);
+    ASSERT_TRUE((*generator)->set_output(true));
+  }
+  stop_.raise();
+  thread_ = {};
+  EXPECT_FALSE(bench_.drive().on);
+}
+
+TEST(BenchServer, RefusesAnAddressThatIsTaken) {
+  VirtualBench bench(bench_settings());
+  UnitReceiver receiver;
+  ServerSettings settings;
+  settings.dau = {"127.0.0.1", receiver.port()};
+  settings.acs_listen = {"127.0.0.1", 0};
+  settings.generator_listen = {"127.0.0.1", 0};
+  BenchServer first(bench, settings);
+  ASSERT_TRUE(first.open());
+  settings.acs_listen.port = first.acs_port();
+  BenchServer second(bench, settings);
+  const auto opened = second.open();
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::refused);
+}
+
+} // namespace
+} // namespace dyncal::drivers::virtual_bench
