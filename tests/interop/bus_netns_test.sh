@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# The bus between two network namespaces, in every pair of vendors: 2000 blocks of 40 kB at 400 a second from two sources, to a
+# reader that is there from the beginning, one that joins late, and one that is killed in the middle and started again. Each must
+# have every block in order.
+#
+#   bus_netns_test.sh PEER multicast|unicast LOSS_PERCENT [VENDOR...]
+#
+# Needs root, ip and nft; exits with 77 (skipped) and one line otherwise. Leaves no namespace behind.
+set -euo pipefail
+
+peer=$1
+discovery=$2
+loss_percent=$3
+shift 3
+vendors=("${@:-fastdds cyclonedds}")
+read -ra vendors <<<"${vendors[*]}"
+
+skip() {
+  echo "SKIPPED: the bus between network namespaces is not tested: $1"
+  exit 77
+}
+[[ $(id -u) == 0 ]] || skip "it needs root"
+for tool in ip nft; do command -v "$tool" >/dev/null || skip "there is no command $tool"; done
+
+writing=dyncal-w-$$
+reading=dyncal-r-$$
+folder=$(mktemp -d)
+cleanup() {
+  for namespace in "$writing" "$reading"; do
+    ip netns pids "$namespace" 2>/dev/null | xargs -r kill -9 2>/dev/null || true
+    ip netns delete "$namespace" 2>/dev/null || true
+  done
+  rm -rf "$folder"
+}
+trap cleanup EXIT
+
+ip netns add "$writing" 2>/dev/null && ip netns add "$reading" 2>/dev/null || skip "this machine makes no network namespaces"
+# The interfaces are made inside the namespaces: they go with them.
+ip -n "$writing" link add lab type veth peer name lab netns "$reading" || skip "this machine makes no veth interfaces"
+address=(10.97.0.1 10.97.0.2)
+for i in 0 1; do
+  namespace=$([[ $i == 0 ]] && echo "$writing" || echo "$reading")
+  ip -n "$namespace" link set lo up
+  ip -n "$namespace" address add "${address[$i]}/24" dev lab
+  ip -n "$namespace" link set lab up
+  if ((loss_percent > 0)); then
+    ip netns exec "$namespace" nft "table ip lossy { chain input { type filter hook input priority 0;
+      iifname lab meta l4proto udp numgen random mod 100 < $loss_percent counter drop
+      }; }" || skip "nft cannot drop packets here"
+  fi
+done
+# A participant uses the interfaces that are up when it is made.
+for namespace in "$writing" "$reading"; do
+  for ((i = 0; i < 100; i++)); do
+    ip -n "$namespace" -br link show lab | grep -q LOWER_UP && break
+    sleep 0.05
+  done
+done
+
+options=(--domain 44)
+[[ $discovery == unicast ]] && options+=(--unicast --peer "${address[0]}" --peer "${address[1]}" --interface lab)
+write() { ip netns exec "$writing" "$peer" write --dds "$1" "${options[@]}" --readers 2 >"$folder/writer" & }
+read_as() { ip netns exec "$reading" "$peer" read --dds "$1" "${options[@]}" >"$folder/$2" & }
+
+failed=0
+check() { # name, process
+  if wait "$2"; then echo "  $1: $(cat "$folder/$1")"; else
+    echo "  $1: FAILED: $(cat "$folder/$1")"
+    failed=1
+  fi
+}
+end_of_writing() { # seconds
+  for ((i = 0; i < $1 * 10; i++)); do
+    [[ -s $folder/writer ]] && return
+    sleep 0.1
+  done
+}
+
+for from in "${vendors[@]}"; do
+  for to in "${vendors[@]}"; do
+    echo "$from to $to, $discovery, $loss_percent % of the packets lost"
+    rm -f "$folder"/*
+    read_as "$to" whole; whole=$!
+    read_as "$to" killed; killed=$!
+    write "$from"; writer=$!
+    sleep 2.5
+    kill -9 "$killed" # ip has become the reader: it replaces itself
+    wait "$killed" 2>/dev/null || true
+    read_as "$to" late; late=$!
+    sleep 0.5
+    read_as "$to" again; again=$!
+    check whole "$whole"
+    check late "$late"
+    check again "$again"
+    end_of_writing 60
+    kill "$writer" 2>/dev/null || true
+    check writer "$writer"
+  done
+done
+if ((loss_percent > 0)); then
+  dropped=$(ip netns exec "$reading" nft list table ip lossy | sed -n 's/.*counter packets \([0-9]*\).*/\1/p')
+  echo "$dropped packets to the readers were lost on the way"
+  ((dropped > 0)) || failed=1
+fi
+exit "$failed"
