@@ -1,0 +1,202 @@
+// The bus and programs that know the contract from its IDL file and its page alone, one made with each vendor's own tools. They write
+// back what they read, so that equal samples show both ways to work.
+#include <csignal>
+#include <gtest/gtest.h>
+#include <map>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/topics.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+struct Native {
+  std::string name;
+  std::string program;
+  std::string setting; // environment variable with the vendor's profile of idl/profiles/
+};
+
+std::vector<Native> natives() {
+  std::vector<Native> programs;
+#ifdef DYNCAL_NATIVE_FAST_PEER
+  programs.push_back({"fastddsgen", DYNCAL_NATIVE_FAST_PEER, "FASTRTPS_DEFAULT_PROFILES_FILE=" DYNCAL_PROFILES "/fast_dds.xml"});
+#endif
+#ifdef DYNCAL_NATIVE_CYCLONE_PEER
+  programs.push_back({"idlc", DYNCAL_NATIVE_CYCLONE_PEER, "CYCLONEDDS_URI=file://" DYNCAL_PROFILES "/cyclone_dds.xml"});
+#endif
+  return programs;
+}
+
+// Runs as long as this lives.
+class Process {
+public:
+  Process(const Native& native, const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{native.program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words)
+      argv.push_back(word.data());
+    argv.push_back(nullptr);
+    std::string setting = native.setting;
+    std::vector<char*> environment{setting.data()};
+    for (char** inherited = environ; *inherited != nullptr; ++inherited)
+      environment.push_back(*inherited);
+    environment.push_back(nullptr);
+    started_ = posix_spawn(&pid_, argv[0], nullptr, nullptr, argv.data(), environment.data()) == 0;
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process() {
+    if (!started_) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  [[nodiscard]] bool started() const { return started_; }
+
+private:
+  pid_t pid_ = 0;
+  bool started_ = false;
+};
+
+class BusNative : public testing::TestWithParam<std::tuple<Native, Vendor>> {
+protected:
+  static constexpr int domain = 45;
+  const std::string to_native_ = "to-native-" + std::to_string(getpid());
+  const std::string from_native_ = "from-native-" + std::to_string(getpid());
+  const Process process_{std::get<0>(GetParam()), {std::to_string(domain), to_native_, from_native_}};
+  Participant participant_ = join();
+  std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
+
+  static Participant join() {
+    ParticipantOptions options;
+    options.vendor = std::get<1>(GetParam());
+    options.domain = domain;
+    options.name = "native test";
+    return Participant::create(options).value();
+  }
+
+  void SetUp() override { ASSERT_TRUE(process_.started()); }
+
+  template <class T>
+  std::vector<T> echoes_of(const std::vector<T>& samples, const char* topic, Profile profile) {
+    auto reader = participant_.reader<T>(topic, profile, from_native_, bell_).value();
+    auto writer = participant_.writer<T>(topic, profile, to_native_).value();
+    for (const T& sample : samples)
+      EXPECT_EQ(writer.write(sample), WriteOutcome::written);
+    std::vector<T> echoes;
+    const auto give_up = Clock::now() + 30s;
+    while (echoes.size() < samples.size() && Clock::now() < give_up) {
+      bell_->wait_until(Clock::now() + 50ms);
+      reader.take([&](const T& sample, const SampleInfo& info) {
+        if (info.valid) echoes.push_back(sample);
+      });
+    }
+    return echoes;
+  }
+};
+
+SineFit example_fit(const std::string& series) {
+  SineFit fit;
+  fit.series(series);
+  fit.frequency_hz(10.0 + 1e-9);
+  fit.reference_ns(1'500'000'000'123'456'789);
+  fit.sine(0.1);
+  fit.cosine(-0.2);
+  fit.samples(3010);
+  return fit;
+}
+
+TEST_P(BusNative, ExchangesSampleBlocks) {
+  std::vector<SampleBlock> blocks;
+  for (const std::string& source : {std::string("a"), std::string(64, 'z')})
+    for (std::uint64_t number = 0; number < 50; ++number) {
+      SampleBlock block;
+      block.bench("acc-1");
+      block.source(source);
+      block.session(0xfedcba9876543210U);
+      block.block(number);
+      block.first_sample(number * 3);
+      block.sample_count(3);
+      block.channel_count(2);
+      block.answers_run(number == 0 ? "" : "run-" + std::to_string(number));
+      block.end_of_stream(number == 49);
+      block.origin_ns(-1);
+      block.interval_numerator_ns(1'000'000);
+      block.interval_denominator(3);
+      block.stamps_ns({1, 2, 3});
+      block.stamp_uncertainty_ns({4, 5, 0xffffffffU});
+      block.flags({0, 1, 128});
+      block.values(std::vector<double>(number == 7 ? 10'000 : 6, 0.1 * static_cast<double>(number)));
+      block.received_utc_ns(1'700'000'000'000'000'000);
+      blocks.push_back(block);
+    }
+  EXPECT_EQ(echoes_of(blocks, topics::dau_samples, Profile::samples), blocks);
+}
+
+TEST_P(BusNative, ExchangesMeasurements) {
+  Measurement measurement;
+  measurement.bench("acc-1");
+  measurement.run(std::string(64, 'r'));
+  measurement.state(MEASUREMENT_RUNNING);
+  measurement.method(METHOD_SAMPLE_TIMESTAMPING);
+  measurement.reference("acs/reference");
+  measurement.dut({"dau/acceleration_x", "dau/acceleration_z"});
+  for (std::uint32_t step = 0; step < 51; ++step) {
+    PlannedStep planned;
+    planned.step(step);
+    planned.frequency_hz("12.5");
+    planned.level_m_s2(10.0);
+    planned.repetition(step % 3 + 1);
+    measurement.steps().push_back(planned);
+  }
+  AdcCalibrationPoint point;
+  point.gain(0.998);
+  measurement.adc_calibration({point});
+  measurement.recipe(std::string(3000, '#'));
+  measurement.message("a sentence");
+  EXPECT_EQ(echoes_of<Measurement>({measurement}, topics::measurement, Profile::state), std::vector<Measurement>{measurement});
+}
+
+TEST_P(BusNative, ExchangesCalibrationResults) {
+  std::vector<CalibrationResult> results;
+  for (std::uint32_t step = 0; step < 20; ++step) {
+    CalibrationResult result;
+    result.bench("acc-1");
+    result.run("run-1");
+    result.channel("dau/acceleration_z");
+    result.step(step);
+    result.repetition(step + 1);
+    result.frequency_text_hz("199.87");
+    result.valid(true);
+    result.magnitude(1.0);
+    result.phase_rad(-0.5);
+    result.fits({example_fit("acs/reference"), example_fit("dau/acceleration_z")});
+    BudgetContribution contribution;
+    contribution.name("reference");
+    contribution.u_magnitude_rel(1e-3);
+    result.budget({contribution});
+    SourceSamples samples;
+    samples.source("dau");
+    samples.used(3010);
+    result.samples({samples});
+    result.flags({"one", "two"});
+    results.push_back(result);
+  }
+  auto echoes = echoes_of(results, topics::calibration_result, Profile::results);
+  std::sort(echoes.begin(), echoes.end(), [](const auto& a, const auto& b) { return a.step() < b.step(); });
+  EXPECT_EQ(echoes, results);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryTool, BusNative, testing::Combine(testing::ValuesIn(natives()), testing::ValuesIn(vendors_in_this_build())),
+                         [](const auto& parameters) {
+                           return std::get<0>(parameters.param).name + "_with_" + vendor_word(std::get<1>(parameters.param));
+                         });
+
+} // namespace
+} // namespace dyncal::bus
