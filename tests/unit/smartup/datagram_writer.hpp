@@ -16,7 +16,8 @@ public:
 
   static std::vector<std::pair<int, float>> three_channels() {
     std::vector<std::pair<int, float>> values;
-    for (int channel = 1; channel <= 3; ++channel) values.emplace_back(channel, static_cast<float>(channel));
+    for (int channel = 1; channel <= 3; ++channel)
+      values.emplace_back(channel, static_cast<float>(channel));
     return values;
   }
 

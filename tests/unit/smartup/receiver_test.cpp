@@ -1,10 +1,5 @@
 #include "drivers/smartup/receiver.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -15,35 +10,16 @@
 
 #include "tests/unit/smartup/datagram_writer.hpp"
 #include "tests/unit/smartup/recording_sink.hpp"
+#include "tests/unit/smartup/udp_sender.hpp"
 
 namespace dyncal::drivers::smartup {
 namespace {
 
 using testing::HasSubstr;
 using tests::DatagramWriter;
+using tests::UdpSender;
 
 constexpr std::uint32_t kSensor = 0xbccb0100;
-
-class UdpSender {
-public:
-  explicit UdpSender(std::uint16_t port) : descriptor_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    address_.sin_family = AF_INET;
-    address_.sin_port = htons(port);
-    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  }
-  ~UdpSender() { close(descriptor_); }
-  UdpSender(const UdpSender&) = delete;
-  UdpSender& operator=(const UdpSender&) = delete;
-
-  void send(const std::vector<std::uint8_t>& bytes) {
-    ASSERT_EQ(sendto(descriptor_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address_), sizeof address_),
-              static_cast<ssize_t>(bytes.size()));
-  }
-
-private:
-  int descriptor_;
-  sockaddr_in address_{};
-};
 
 bool eventually(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -89,7 +65,7 @@ TEST(Receiver, ReceivesOverUdpFromSeveralUnitsAtSeveralPorts) {
   UdpSender to_first((*receiver)->port(0));
   UdpSender to_second((*receiver)->port(1));
   for (std::uint32_t n = 1; n <= 1200; n += 12) {
-    to_first.send(datagram_from(n).bytes());
+    EXPECT_TRUE(to_first.send(datagram_from(n).bytes()));
     to_second.send(datagram_from(n).bytes());
   }
   EXPECT_TRUE(eventually([&] { return first.samples(kSensor) == 1200 && second.samples(kSensor) == 1200; }));
@@ -105,7 +81,7 @@ TEST(Receiver, HandsOverASlowSensorsSampleInTime) {
   ASSERT_TRUE(receiver);
   (*receiver)->start();
   UdpSender sender((*receiver)->port(0));
-  sender.send(DatagramWriter("DATA").data({.sample_number = 1}).bytes());
+  EXPECT_TRUE(sender.send(DatagramWriter("DATA").data({.sample_number = 1}).bytes()));
   EXPECT_TRUE(eventually([&] { return sink.samples(kSensor) == 1; }));
 }
 
@@ -117,12 +93,12 @@ TEST(Receiver, CountsWhatTheKernelHadToDrop) {
   ASSERT_TRUE(receiver);
   UdpSender sender((*receiver)->port(0));
   for (std::uint32_t n = 1; n <= 1200; n += 12)
-    sender.send(datagram_from(n).bytes()); // nobody reads yet
+    EXPECT_TRUE(sender.send(datagram_from(n).bytes())); // nobody reads yet
   (*receiver)->start();
   // The count comes with the next datagram that is received.
   std::uint32_t n = 1201;
   EXPECT_TRUE(eventually([&] {
-    sender.send(datagram_from(n).bytes());
+    EXPECT_TRUE(sender.send(datagram_from(n).bytes()));
     n += 12;
     const std::lock_guard lock(sink.mutex);
     return sink.reception.dropped_by_kernel > 0;
@@ -138,9 +114,9 @@ TEST(Receiver, CountsDatagramsThatNoUnitSends) {
   ASSERT_TRUE(receiver);
   (*receiver)->start();
   UdpSender sender((*receiver)->port(0));
-  sender.send(std::vector<std::uint8_t>(5000, 'D'));
+  EXPECT_TRUE(sender.send(std::vector<std::uint8_t>(5000, 'D')));
   sender.send({'D', 'A'});
-  sender.send({});
+  EXPECT_TRUE(sender.send({}));
   EXPECT_TRUE(eventually([&] {
     const std::lock_guard lock(sink.mutex);
     return sink.reception.too_long == 1 && sink.reception.rejected[0] == 2;

@@ -1,0 +1,100 @@
+#include "services/source/block_ring.hpp"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::services {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+RingEntry entry(std::uint64_t first_sample, Clock::time_point offered = {}, std::size_t samples = 50) {
+  RingEntry entry;
+  entry.block.first_sample = first_sample;
+  entry.block.samples = samples;
+  entry.block.values.resize(samples);
+  entry.offered = offered;
+  return entry;
+}
+
+constexpr Clock::time_point kStart{std::chrono::seconds(1000)};
+
+TEST(BlockRing, KeepsTheOrder) {
+  BlockRing ring({});
+  EXPECT_TRUE(ring.empty());
+  for (std::uint64_t n = 0; n < 100; ++n)
+    EXPECT_TRUE(ring.offer(entry(n)));
+  for (std::uint64_t n = 0; n < 100; ++n)
+    EXPECT_EQ(ring.take()->block.first_sample, n);
+  EXPECT_FALSE(ring.take());
+}
+
+TEST(BlockRing, HoldsSixtySecondsOfALiveSourceAndThenDropsTheNewest) {
+  BlockRing ring({});
+  const auto block = std::chrono::milliseconds(50);
+  int taken = 0;
+  for (int n = 0; n < 1400; ++n)
+    taken += ring.offer(entry(static_cast<std::uint64_t>(n), kStart + n * block)) ? 1 : 0;
+  EXPECT_EQ(taken, 60 * 20 + 1);
+  EXPECT_EQ(ring.dropped_samples(), (1400U - 1201U) * 50U);
+  EXPECT_DOUBLE_EQ(ring.fill(), 1.0);
+  EXPECT_EQ(ring.take()->block.first_sample, 0U);
+  EXPECT_TRUE(ring.offer(entry(1400, kStart + 1201 * block)));
+}
+
+TEST(BlockRing, HoldsNoMoreBytesThanItsBound) {
+  const auto size = held_bytes(entry(0).block);
+  BlockRing ring({.span = std::chrono::hours(1), .bytes = 10 * size});
+  int taken = 0;
+  for (int n = 0; n < 20; ++n)
+    taken += ring.offer(entry(0, kStart)) ? 1 : 0;
+  EXPECT_EQ(taken, 10);
+  EXPECT_NEAR(ring.fill(), 1.0, 1e-9);
+}
+
+TEST(BlockRing, TakesOneBlockHoweverLarge) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  EXPECT_TRUE(ring.offer(entry(0)));
+  EXPECT_FALSE(ring.offer(entry(1)));
+}
+
+TEST(BlockRing, AlwaysTakesMarks) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  EXPECT_TRUE(ring.offer(entry(0)));
+  RingEntry mark;
+  mark.end_of_stream = true;
+  mark.offered = kStart + std::chrono::hours(1);
+  EXPECT_TRUE(ring.offer(mark));
+}
+
+TEST(BlockRing, AFileWaitsForRoom) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  std::stop_source stop;
+  std::jthread file([&] {
+    for (std::uint64_t n = 0; n < 50; ++n)
+      ring.offer_waiting(entry(n), stop.get_token());
+  });
+  for (std::uint64_t n = 0; n < 50;) {
+    if (const auto taken = ring.take())
+      EXPECT_EQ(taken->block.first_sample, n++);
+    else
+      std::this_thread::yield();
+  }
+  EXPECT_EQ(ring.dropped_samples(), 0U);
+}
+
+TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  std::stop_source stop;
+  ring.offer(entry(0));
+  bool taken = true;
+  std::jthread file([&] { taken = ring.offer_waiting(entry(1), stop.get_token()); });
+  stop.request_stop();
+  file.join();
+  EXPECT_FALSE(taken);
+  EXPECT_EQ(ring.dropped_samples(), 0U);
+}
+
+} // namespace
+} // namespace dyncal::services
