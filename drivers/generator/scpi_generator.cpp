@@ -36,6 +36,7 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
   }
   generator->connection_ = std::make_unique<TcpConnection>(std::move(*connection));
   if (auto ready = generator->set_up(); !ready) {
+    generator->connection_.reset(); // nothing to switch off
     return tl::unexpected(ready.error());
   }
   return generator;
