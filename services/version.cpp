@@ -2,6 +2,8 @@
 
 namespace dyncal::services {
 
-std::string software_version() { return DYNCAL_SOFTWARE; }
+std::string software_version() {
+  return DYNCAL_SOFTWARE;
+}
 
 } // namespace dyncal::services

@@ -1,0 +1,50 @@
+// The analysis service: learns benches, sources and recipes from DDS alone and keeps one RunSession for every run it hears of.
+//
+// serve() runs in the caller's thread until `stop` is requested; nothing else of it may be called meanwhile. Finished runs are kept for
+// late joiners, the newest `kept_runs` of every bench.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "services/analysis/run_session.hpp"
+#include "services/bus/bus.hpp"
+
+namespace dyncal::services {
+
+class AnalysisService {
+public:
+  static constexpr std::size_t kept_runs = 10;
+
+  [[nodiscard]] static Expected<std::unique_ptr<AnalysisService>> create(bus::Participant participant, AnalysisIdentity identity);
+
+  void serve(const std::stop_token& stop);
+
+private:
+  struct Readers {
+    bus::Reader<Measurement> measurement;
+    bus::Reader<Excitation> excitation;
+    bus::Reader<SourceDescription> description;
+    bus::Reader<SourceStatus> status;
+  };
+  using RunKey = std::pair<std::string, std::string>; // bench, run
+
+  AnalysisService(bus::Participant participant, AnalysisIdentity identity);
+  Expected<void> open_readers();
+  void take_messages();
+  void take_measurement(const Measurement& measurement);
+  void drop_old_runs(const std::string& bench);
+
+  bus::Participant participant_;
+  AnalysisIdentity identity_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
+  std::unique_ptr<Readers> readers_;
+  std::map<std::string, KnownSources> benches_;
+  std::map<RunKey, std::unique_ptr<RunSession>> runs_;
+  std::vector<RunKey> order_; // of runs_, oldest first
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,38 @@
+// The benches that `dyncal demo` shows: for every preset of the virtual bench what is excited, and the bench file that goes with it.
+// Plain functions, any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dyncal::services {
+
+struct DemoPreset {
+  std::string name;  // of the virtual bench's preset
+  std::string shows; // one line for people
+  std::vector<std::string> frequencies_hz;
+  std::vector<double> levels_m_s2; // one per frequency
+  int repetitions = 3;
+  double settling_s = 0.5;
+  double duration_s = 3.0;
+};
+
+[[nodiscard]] const std::vector<DemoPreset>& demo_presets();
+
+struct DemoAddresses {
+  std::string dau_listen;
+  std::string acs;
+  std::string generator;
+};
+
+// What the virtual bench says of itself in its truth file's settings: the recipe must state the same.
+struct DemoUncertainty {
+  double reference_magnitude_rel = 0.0;
+  double reference_phase_rad = 0.0;
+};
+
+[[nodiscard]] std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
+                                          const DemoUncertainty& uncertainty);
+
+} // namespace dyncal::services

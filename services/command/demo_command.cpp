@@ -1,0 +1,236 @@
+#include "services/command/demo_command.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "services/command/child_process.hpp"
+#include "services/command/demo_bench.hpp"
+#include "services/command/run_command.hpp"
+#include "services/command/run_report.hpp"
+#include "services/command/truth_check.hpp"
+#include "services/command/vendor_assignment.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double agreement_limit = 4.0; // standard uncertainties
+constexpr auto start_limit = 10s;
+// Domains whose ports lie below those that Linux hands out to clients; chosen by process so that two demos do not meet.
+constexpr int first_demo_domain = 20;
+constexpr int demo_domains = 80;
+
+// Of the virtual laser: the bench draws its errors from them and the recipe states them.
+constexpr DemoUncertainty reference_uncertainty{.reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4};
+
+struct Demo {
+  DemoPreset preset;
+  std::map<std::string, std::string> dds;
+  int domain = 0;
+  std::string bench;
+  std::filesystem::path folder;
+  std::vector<ChildProcess> processes;
+};
+
+// A UDP port that is free now; the unit sends to it, so it must be known before the receiver opens it.
+Expected<std::uint16_t> free_udp_port() {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  void* raw = &address;
+  const bool found =
+      probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), size) == 0 && getsockname(probe, static_cast<sockaddr*>(raw), &size) == 0;
+  close(probe);
+  if (!found) {
+    return tl::unexpected(Error{ErrorCode::network, "this machine has no free UDP port on 127.0.0.1"});
+  }
+  return ntohs(address.sin_port);
+}
+
+Error cannot_write(const std::filesystem::path& path) {
+  return {ErrorCode::bad_file, fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
+}
+
+Expected<Demo> prepare(const DemoCommand& command) {
+  Demo demo;
+  const auto& presets = demo_presets();
+  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) { return one.name == command.preset; });
+  if (preset == presets.end()) {
+    return tl::unexpected(Error{ErrorCode::bad_argument,
+                                fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280", command.preset)});
+  }
+  demo.preset = *preset;
+  demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
+  demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
+  const auto dds = parse_vendor_assignment(command.dds);
+  if (!dds) {
+    return tl::unexpected(dds.error());
+  }
+  demo.dds = *dds;
+  demo.domain = command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
+  demo.bench = fmt::format("demo-{}", getpid());
+  std::error_code failed;
+  std::filesystem::create_directories(command.folder, failed);
+  demo.folder = std::filesystem::absolute(command.folder);
+  if (failed) {
+    return tl::unexpected(cannot_write(demo.folder));
+  }
+  return demo;
+}
+
+Expected<void> start(Demo& demo, const std::string& program, const std::vector<std::string>& arguments) {
+  auto process = ChildProcess::start(program_folder() / program, arguments, demo.folder / (program + ".log"));
+  if (!process) {
+    return tl::unexpected(process.error());
+  }
+  demo.processes.push_back(std::move(*process));
+  return {};
+}
+
+// Waits until the process has written a JSON file.
+Expected<nlohmann::json> wait_for_json(const std::filesystem::path& path, ChildProcess& process) {
+  const auto deadline = std::chrono::steady_clock::now() + start_limit;
+  while (std::chrono::steady_clock::now() < deadline && process.running()) {
+    std::ifstream stream(path);
+    nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+    if (!json.is_discarded()) {
+      return json;
+    }
+    std::this_thread::sleep_for(20ms); // until the file is there or the deadline is over
+  }
+  return tl::unexpected(Error{ErrorCode::device, fmt::format("{} did not start: {}", process.name(), process.last_line())});
+}
+
+// How long the run will take in the bench's own time, about: the sensor shall warm up through it.
+double bench_seconds(const DemoPreset& preset) {
+  constexpr double between_steps_s = 1.0;
+  return static_cast<double>(preset.frequencies_hz.size()) * preset.repetitions * (preset.settling_s + preset.duration_s + between_steps_s);
+}
+
+std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo, std::uint16_t dau_port) {
+  const DemoPreset& preset = demo.preset;
+  const std::vector<std::pair<std::string, std::string>> options{
+      {"--preset", preset.name},
+      {"--seed", std::to_string(command.seed)},
+      {"--speed", command.speed},
+      {"--dau", fmt::format("127.0.0.1:{}", dau_port)},
+      {"--acs-listen", "127.0.0.1:0"},
+      {"--generator-listen", "127.0.0.1:0"},
+      {"--truth", demo.folder / "truth.json"},
+      {"--adc-file", demo.folder / "adc.json"},
+      {"--ports-file", demo.folder / "ports.json"},
+      {"--frequencies", fmt::format("{}", fmt::join(preset.frequencies_hz, ","))},
+      {"--levels", fmt::format("{}", fmt::join(preset.levels_m_s2, ","))},
+      {"--reference-magnitude-rel", fmt::format("{}", reference_uncertainty.reference_magnitude_rel)},
+      {"--reference-phase-rad", fmt::format("{}", reference_uncertainty.reference_phase_rad)},
+      {"--thermal-cycle", fmt::format("{:.0f}", bench_seconds(preset))},
+      {"--loss", std::to_string(command.loss)},
+      {"--duplicate", std::to_string(command.duplicates)}};
+  std::vector<std::string> arguments;
+  for (const auto& [name, value] : options) {
+    arguments.push_back(name);
+    arguments.push_back(value);
+  }
+  return arguments;
+}
+
+Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
+  const auto port = free_udp_port();
+  if (!port) {
+    return tl::unexpected(port.error());
+  }
+  std::filesystem::remove(demo.folder / "ports.json");
+  if (const auto started = start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port)); !started) {
+    return started;
+  }
+  const auto ports = wait_for_json(demo.folder / "ports.json", demo.processes.back());
+  if (!ports) {
+    return tl::unexpected(ports.error());
+  }
+  const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
+                                .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
+                                .generator = fmt::format("127.0.0.1:{}", ports->value("generator", 0))};
+  std::ofstream bench_file(demo.folder / "bench.toml");
+  bench_file << demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty);
+  if (!bench_file.flush()) {
+    return tl::unexpected(cannot_write(demo.folder / "bench.toml"));
+  }
+  return {};
+}
+
+Expected<void> start_services(Demo& demo) {
+  const std::string bench_file = demo.folder / "bench.toml";
+  const std::string domain = std::to_string(demo.domain);
+  return start(demo, "dyncal-analysis", {"--dds", demo.dds["analysis"], "--domain", domain})
+      .and_then([&] {
+        return start(demo, "dyncal-dau", {bench_file, "--dds", demo.dds["dau"], "--domain", domain});
+      })
+      .and_then([&] {
+        return start(demo, "dyncal-acs", {bench_file, "--dds", demo.dds["acs"], "--domain", domain});
+      });
+}
+
+// A service that has ended says why in its last line, which explains more than what the others make of its absence.
+Error explain(Demo& demo, const Error& error) {
+  for (ChildProcess& process : demo.processes) {
+    if (!process.running()) {
+      return {error.code, fmt::format("{} ended: {}", process.name(), process.last_line())};
+    }
+  }
+  return error;
+}
+
+int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
+  const auto check = check_truth(outcome, demo.folder / "truth.json");
+  if (!check) {
+    return fail(check.error());
+  }
+  fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} standard uncertainties ({})\n",
+             check->points, check->worst, check->worst_where);
+  if (!(check->worst <= agreement_limit)) {
+    return fail(
+        {ErrorCode::no_result, fmt::format("the result deviates from the truth by more than {} standard uncertainties", agreement_limit)});
+  }
+  return 0;
+}
+
+} // namespace
+
+int run_demo(const DemoCommand& command, const std::stop_token& stop) {
+  auto demo = prepare(command);
+  if (!demo) {
+    return fail(demo.error());
+  }
+  fmt::print("Virtual bench: {}\nFiles in {}\n", demo->preset.shows, demo->folder.string());
+  std::fflush(stdout);
+  if (const auto started = start_bench(command, *demo).and_then([&] { return start_services(*demo); }); !started) {
+    return fail(explain(*demo, started.error()));
+  }
+  RunCommand run;
+  run.bench_file = demo->folder / "bench.toml";
+  run.json = command.json ? *command.json : demo->folder / "result.json";
+  run.figures = demo->folder;
+  run.network.dds = demo->dds["run"];
+  run.network.domain = demo->domain;
+  const auto outcome = conduct_run(run, stop);
+  if (!outcome) {
+    return fail(explain(*demo, outcome.error()));
+  }
+  const int status = conclude(*outcome);
+  const int agreement = outcome->transfer_functions.empty() ? status : compare_with_truth(*outcome, *demo);
+  return status != 0 ? status : agreement;
+}
+
+} // namespace dyncal::services

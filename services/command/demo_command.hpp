@@ -1,0 +1,33 @@
+// `dyncal demo`: a whole virtual bench, its services, DDS, analysis and report on this machine.
+//
+// Every instrument and service is a process of its own and talks as it does in a laboratory. All files go to one folder: bench file, ADC
+// calibration, logs, result, figures, and the truth that nobody but the final comparison reads. Belongs to one thread; all processes have
+// ended when it returns.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+namespace dyncal::services {
+
+struct DemoCommand {
+  std::string preset = "mpu9250-paper";
+  std::string dds;         // empty: the first of the build, for all
+  std::string speed = "8"; // times real time, or "max"
+  std::uint64_t seed = 1;
+  std::optional<int> domain; // chosen by itself
+  std::filesystem::path folder = "demo";
+  std::optional<std::filesystem::path> json;
+  std::optional<int> repetitions;
+  std::optional<double> duration_s;
+  double loss = 0.0; // of datagrams, 0..1
+  double duplicates = 0.0;
+};
+
+// Exit status: 0 when every result agrees with the bench's truth within four standard uncertainties.
+[[nodiscard]] int run_demo(const DemoCommand& command, const std::stop_token& stop);
+
+} // namespace dyncal::services

@@ -1,0 +1,71 @@
+// dyncal: the command for people.
+#include <CLI/CLI.hpp>
+
+#include "services/command/demo_command.hpp"
+#include "services/command/run_command.hpp"
+#include "services/command/watch_command.hpp"
+
+namespace {
+
+using namespace dyncal::services;
+
+void add_run(CLI::App& app, RunCommand& run) {
+  CLI::App* command = app.add_subcommand("run", "run the excitation list of a bench and print the result");
+  command->add_option("BENCH.toml", run.bench_file, "bench file")->required();
+  command->add_option("--run", run.run, "name of the run (default: the time)");
+  command->add_option("--json", run.json, "write the result to this file as JSON");
+  command->add_option("--figures", run.figures, "write figures (SVG and CSV) into this folder");
+  add_network_options(*command, run.network);
+}
+
+void add_demo(CLI::App& app, DemoCommand& demo) {
+  CLI::App* command = app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
+  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb or bma280")->capture_default_str();
+  command->add_option("--dds", demo.dds,
+                      "fastdds, cyclonedds, or one for each: dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
+  command->add_option("--speed", demo.speed, "times real time, or max")->capture_default_str();
+  command->add_option("--seed", demo.seed, "of the virtual bench's randomness")->capture_default_str();
+  command->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")->check(CLI::Range(0, 232));
+  command->add_option("--output", demo.folder, "folder for all files")->capture_default_str();
+  command->add_option("--json", demo.json, "write the result to this file as JSON (default: result.json in the folder)");
+  command->add_option("--repetitions", demo.repetitions, "of the excitation list")->check(CLI::Range(1, 1000));
+  command->add_option("--duration", demo.duration_s, "of the evaluated part of a step, in seconds of the bench")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--loss", demo.loss, "part of the unit's datagrams that is lost, 0 to 1")->check(CLI::Range(0.0, 1.0));
+  command->add_option("--duplicate", demo.duplicates, "part of the unit's datagrams that comes twice, 0 to 1")->check(CLI::Range(0.0, 1.0));
+}
+
+void add_watch(CLI::App& app, WatchCommand& watch) {
+  CLI::App* command = app.add_subcommand("watch", "show benches, sources, rates, losses and results as they come");
+  command->add_option("--bench", watch.bench, "only this bench (default: all)");
+  command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")->check(CLI::PositiveNumber);
+  add_network_options(*command, watch.network);
+}
+
+int execute(const CLI::App& app, const RunCommand& run, const DemoCommand& demo, const WatchCommand& watch) {
+  const std::stop_token stop = stop_on_signals();
+  if (app.got_subcommand("demo")) {
+    return run_demo(demo, stop);
+  }
+  if (app.got_subcommand("watch")) {
+    return run_watch(watch, stop);
+  }
+  const auto outcome = conduct_run(run, stop);
+  return outcome ? conclude(*outcome) : fail(outcome.error());
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS."};
+  app.require_subcommand(1);
+  RunCommand run;
+  DemoCommand demo;
+  WatchCommand watch;
+  add_run(app, run);
+  add_demo(app, demo);
+  add_watch(app, watch);
+  CLI11_PARSE(app, argc, argv);
+  set_up_log("dyncal");
+  return execute(app, run, demo, watch);
+}

@@ -1,0 +1,109 @@
+#include "services/command/run_command.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "services/bench/adc_file.hpp"
+#include "services/command/progress_line.hpp"
+#include "services/command/run_figures.hpp"
+#include "services/command/run_report.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// "20261121T101530Z": sorts by time and fits a key.
+std::string run_from_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  return std::string(text.data(), std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc));
+}
+
+Expected<std::vector<analysis::AdcCalibrationPoint>> adc_calibration(const BenchFile& bench) {
+  if (!bench.corrections.adc) {
+    return std::vector<analysis::AdcCalibrationPoint>{};
+  }
+  return read_adc_file(*bench.corrections.adc);
+}
+
+std::size_t steps_with_a_result(const RunOutcome& outcome) {
+  std::set<std::uint32_t> steps;
+  for (const CalibrationResult& result : outcome.results) {
+    if (result.valid()) {
+      steps.insert(result.step());
+    }
+  }
+  return steps.size();
+}
+
+} // namespace
+
+Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
+  const auto bench = read_bench_file(command.bench_file);
+  if (!bench) {
+    return tl::unexpected(bench.error());
+  }
+  const auto adc = adc_calibration(*bench);
+  if (!adc) {
+    return tl::unexpected(adc.error());
+  }
+  NetworkOptions network = command.network;
+  network.peers.insert(network.peers.end(), bench->network.peers.begin(), bench->network.peers.end());
+  network.no_multicast = network.no_multicast || !bench->network.multicast;
+  if (network.interface_name.empty()) {
+    network.interface_name = bench->network.interface_name;
+  }
+  auto participant = join_network(network, "dyncal-run");
+  if (!participant) {
+    return tl::unexpected(participant.error());
+  }
+  ProgressLine progress(stderr);
+  RunController controller(*participant, *bench, command.run.empty() ? run_from_time() : command.run,
+                           [&](const RunProgress& state) { progress.show(state); });
+  auto outcome = controller.conduct(*adc, stop);
+  progress.end();
+  if (!outcome) {
+    return outcome;
+  }
+  fmt::print("bench {}, run {}{}\n", outcome->measurement.bench().c_str(), outcome->measurement.run().c_str(), result_table(*outcome));
+  if (command.json) {
+    if (const auto written = write_json(*command.json, result_json(*outcome)); !written) {
+      return tl::unexpected(written.error());
+    }
+  }
+  if (command.figures) {
+    const auto written = write_figures(*outcome, *command.figures);
+    if (!written) {
+      return tl::unexpected(written.error());
+    }
+    for (const std::filesystem::path& path : *written) {
+      fmt::print("wrote {}\n", path.string());
+    }
+  }
+  return outcome;
+}
+
+int conclude(const RunOutcome& outcome) {
+  const std::size_t steps = outcome.measurement.steps().size();
+  const std::size_t measured = steps_with_a_result(outcome);
+  if (outcome.interrupted) {
+    return fail({ErrorCode::interrupted,
+                 fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept", measured, steps)});
+  }
+  if (!outcome.problem.empty()) {
+    return fail({ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept", outcome.problem, measured, steps)});
+  }
+  if (measured < steps) {
+    return fail(
+        {ErrorCode::no_result, fmt::format("{} of {} steps have no result; the reasons are listed above", steps - measured, steps)});
+  }
+  return 0;
+}
+
+} // namespace dyncal::services

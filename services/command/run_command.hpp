@@ -1,0 +1,29 @@
+// `dyncal run BENCH.toml`: conducts a run with progress on standard error, the result table on standard output, JSON and figures on
+// request. Exit status 0 only when every planned step has a valid result. Belongs to one thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "services/command/run_controller.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+
+struct RunCommand {
+  std::filesystem::path bench_file;
+  std::string run; // empty: made from the time
+  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> figures; // folder
+  NetworkOptions network;
+};
+
+// Does the run and prints; the outcome is for callers that look further into it.
+[[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop);
+
+// The exit status and, unless 0, one line on standard error.
+[[nodiscard]] int conclude(const RunOutcome& outcome);
+
+} // namespace dyncal::services

@@ -1,0 +1,331 @@
+#include "services/command/run_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "analysis/frequency.hpp"
+#include "drivers/generator/scpi_generator.hpp"
+#include "services/bus/topics.hpp"
+#include "services/evaluation/recipe.hpp"
+#include "services/utc_clock.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto answer_limit = 4s;    // for an analysis service to say anything about the run
+constexpr auto armed_limit = 9s;     // to be armed or refused
+constexpr auto analysis_limit = 10s; // between two of its lines
+constexpr auto results_limit = 25s;  // from the end of the excitation to the last result
+constexpr auto alive_interval = 2s;
+constexpr double off_s = 0.3;       // between two steps
+constexpr double slice_s = 1.0;     // bench time between two looks at the network
+constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
+
+// Time beyond settling and duration for which a step is excited, see analysis/excitation_window.hpp.
+double margin_s(double frequency_hz) {
+  return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
+}
+
+Error device_error(const drivers::Error& error) {
+  return {ErrorCode::device, error.message};
+}
+
+template <class T>
+void keep_newest(std::vector<T>& all, const T& one, bool (*same)(const T&, const T&)) {
+  const auto known = std::find_if(all.begin(), all.end(), [&](const T& other) { return same(other, one); });
+  if (known == all.end()) {
+    all.push_back(one);
+  } else {
+    *known = one;
+  }
+}
+
+} // namespace
+
+RunController::RunController(bus::Participant& participant, const BenchFile& bench, std::string run, ShowProgress show_progress)
+    : participant_(participant), bench_(bench), run_(std::move(run)), show_progress_(std::move(show_progress)),
+      wake_up_(std::make_shared<bus::WakeUp>()) {}
+
+Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
+                                            const std::stop_token& stop) {
+  outcome_ = {};
+  outcome_.measurement = plan_measurement(bench_, run_, utc_now_ns(), adc_calibration);
+  if (const auto ready = open_generator().and_then([&] { return open_endpoints(); }); !ready) {
+    return tl::unexpected(ready.error());
+  }
+  set_state(MEASUREMENT_PLANNED);
+  if (const auto armed = wait_until_armed(stop); !armed) {
+    set_state(MEASUREMENT_ABORTED);
+    return tl::unexpected(armed.error());
+  }
+  set_state(MEASUREMENT_RUNNING);
+  Expected<void> excited = excite(stop);
+  outcome_.interrupted = stop.stop_requested();
+  if (!excited) {
+    outcome_.problem = excited.error().message;
+  }
+  const bool from_files = generator_ == nullptr;
+  if (!from_files || outcome_.interrupted || !excited) {
+    set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);
+  }
+  const Expected<void> collected = wait_for_results(stop);
+  if (!collected && outcome_.problem.empty()) {
+    outcome_.problem = collected.error().message;
+  }
+  outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
+  set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);
+  endpoints_->measurement.wait_for_acknowledgments(2s);
+  const auto key = [](const CalibrationResult& result) {
+    return std::tuple(result.step(), result.repetition(), result.channel().to_string());
+  };
+  std::stable_sort(outcome_.results.begin(), outcome_.results.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  return std::move(outcome_);
+}
+
+Expected<void> RunController::open_endpoints() {
+  const std::string& bench = bench_.bench;
+  auto measurement = participant_.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench);
+  auto excitation = participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench);
+  auto status = participant_.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench, wake_up_);
+  auto results = participant_.reader<CalibrationResult>(bus::topics::calibration_result, bus::Profile::results, bench, wake_up_);
+  auto transfer = participant_.reader<TransferFunction>(bus::topics::transfer_function, bus::Profile::results, bench, wake_up_);
+  auto clocks = participant_.reader<SampleClockReport>(bus::topics::sample_clock_report, bus::Profile::results, bench, wake_up_);
+  if (!measurement || !excitation || !status || !results || !transfer || !clocks) {
+    for (const Error* error :
+         {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(), status ? nullptr : &status.error(),
+          results ? nullptr : &results.error(), transfer ? nullptr : &transfer.error(), clocks ? nullptr : &clocks.error()}) {
+      if (error != nullptr) {
+        return tl::unexpected(*error);
+      }
+    }
+  }
+  endpoints_ = std::make_unique<Endpoints>(Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
+                                                     std::move(*results), std::move(*transfer), std::move(*clocks)});
+  return {};
+}
+
+Expected<void> RunController::open_generator() {
+  if (bench_.generator.driver != "scpi") {
+    return {};
+  }
+  auto generator = drivers::generator::ScpiGenerator::connect(bench_.generator.address);
+  if (!generator) {
+    return tl::unexpected(device_error(generator.error()));
+  }
+  generator_ = std::move(*generator);
+  return {};
+}
+
+Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
+  const auto began = Clock::now();
+  while (!stop.stop_requested()) {
+    show("waiting for the analysis");
+    wake_up_->wait_until(Clock::now() + 200ms);
+    take_messages();
+    keep_alive();
+    if (analysis_ && analysis_->arm() == ARM_ARMED) {
+      return {};
+    }
+    if (analysis_ && analysis_->arm() == ARM_REFUSED) {
+      return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
+    }
+    const auto waited = Clock::now() - began;
+    if (!analysis_ && waited > answer_limit) {
+      return tl::unexpected(Error{
+          ErrorCode::no_analysis,
+          fmt::format("no analysis service answers for bench '{}'; is dyncal-analysis running in the same DDS domain?", bench_.bench)});
+    }
+    if (waited > armed_limit) {
+      return tl::unexpected(Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has not armed for bench '{}'",
+                                                                      analysis_->service().c_str(), bench_.bench)});
+    }
+  }
+  return tl::unexpected(Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
+}
+
+Expected<void> RunController::excite(const std::stop_token& stop) {
+  if (!generator_) {
+    return {};
+  }
+  first_step_began_ = Clock::now();
+  for (const PlannedStep& step : outcome_.measurement.steps()) {
+    ++step_;
+    auto excited = excite_step(step, stop);
+    const auto off = generator_->set_output(false);
+    if (!excited || stop.stop_requested()) {
+      announce(step, EXCITATION_ABORTED);
+      return excited;
+    }
+    if (!off) {
+      return tl::unexpected(device_error(off.error()));
+    }
+    announce(step, EXCITATION_DONE);
+    const auto now = generator_->clock_now_s();
+    if (!now) {
+      return tl::unexpected(device_error(now.error()));
+    }
+    if (const auto held = hold_until(*now + off_s, stop); !held) {
+      return tl::unexpected(held.error());
+    }
+  }
+  return {};
+}
+
+Expected<void> RunController::excite_step(const PlannedStep& step, const std::stop_token& stop) {
+  const auto began = generator_->set_frequency(step.frequency_hz())
+                         .and_then([&] { return generator_->set_amplitude_v(step.level_m_s2() / bench_.generator.level_per_volt); })
+                         .and_then([&] { return generator_->set_output(true); })
+                         .and_then([&] { return generator_->clock_now_s(); });
+  if (!began) {
+    return tl::unexpected(device_error(began.error()));
+  }
+  window_begin_utc_ns_ = utc_now_ns();
+  announce(step, EXCITATION_SETTLING);
+  show("settling");
+  if (const auto settled = hold_until(*began + step.settling_s(), stop); !settled || !*settled) {
+    return settled.map([](bool) {});
+  }
+  announce(step, EXCITATION_STEADY);
+  show("measuring");
+  const double frequency_hz = analysis::Frequency::parse(step.frequency_hz())->hz(); // the bench file was checked
+  return hold_until(*began + step.settling_s() + step.duration_s() + margin_s(frequency_hz), stop).map([](bool) {});
+}
+
+Expected<bool> RunController::hold_until(double bench_time_s, const std::stop_token& stop) {
+  auto now = generator_->clock_now_s();
+  while (now && *now < bench_time_s && !stop.stop_requested()) {
+    now = generator_->wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
+    keep_alive();
+    take_messages();
+    if (analysis_->health() == HEALTH_FAILED) {
+      return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
+    }
+    if (Clock::now() - analysis_heard_ > analysis_limit) {
+      return tl::unexpected(
+          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
+    }
+  }
+  if (!now) {
+    return tl::unexpected(device_error(now.error()));
+  }
+  return !stop.stop_requested();
+}
+
+bool RunController::everything_has_come() const {
+  return analysis_ && analysis_->arm() == ARM_FINISHED && outcome_.results.size() >= analysis_->results_published() &&
+         (outcome_.transfer_functions.size() >= 1 || outcome_.results.empty() ||
+          std::none_of(outcome_.results.begin(), outcome_.results.end(), [](const CalibrationResult& result) { return result.valid(); }));
+}
+
+Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
+  const bool already_stopped = stop.stop_requested();
+  const bool from_files = generator_ == nullptr;
+  auto deadline = Clock::now() + results_limit;
+  std::size_t results_before = outcome_.results.size();
+  while (!everything_has_come()) {
+    show("evaluating");
+    wake_up_->wait_until(Clock::now() + 200ms);
+    take_messages();
+    keep_alive();
+    if (!already_stopped && stop.stop_requested() && outcome_.measurement.state() != MEASUREMENT_ABORTED) {
+      set_state(MEASUREMENT_ABORTED);
+    }
+    if (outcome_.results.size() != results_before ||
+        (from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING && analysis_->health() == HEALTH_OK)) {
+      results_before = outcome_.results.size();
+      deadline = Clock::now() + results_limit;
+    }
+    if (Clock::now() - analysis_heard_ > analysis_limit) {
+      return tl::unexpected(
+          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
+    }
+    if (analysis_->health() == HEALTH_FAILED && from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING) {
+      outcome_.problem = analysis_->message();
+      set_state(MEASUREMENT_ABORTED);
+    }
+    if (Clock::now() > deadline) {
+      return tl::unexpected(Error{ErrorCode::no_result, "the last results have not come from the analysis service"});
+    }
+  }
+  return {};
+}
+
+void RunController::announce(const PlannedStep& step, ExcitationState state) {
+  Excitation excitation;
+  excitation.bench(bench_.bench);
+  excitation.run(run_);
+  excitation.step(step.step());
+  excitation.frequency_hz(step.frequency_hz());
+  excitation.level_m_s2(step.level_m_s2());
+  excitation.repetition(step.repetition());
+  excitation.state(state);
+  excitation.window_begin_utc_ns(window_begin_utc_ns_);
+  excitation.window_end_utc_ns(state == EXCITATION_DONE || state == EXCITATION_ABORTED ? utc_now_ns() : 0);
+  endpoints_->excitation.write(excitation);
+}
+
+void RunController::set_state(MeasurementState state) {
+  outcome_.measurement.state(state);
+  endpoints_->measurement.write(outcome_.measurement);
+  last_alive_ = Clock::now();
+}
+
+void RunController::keep_alive() {
+  if (Clock::now() - last_alive_ > alive_interval) {
+    set_state(outcome_.measurement.state());
+  }
+}
+
+void RunController::take_messages() {
+  const auto of_this_run = [&](const auto& message, const bus::SampleInfo& info) {
+    return info.valid && message.run().to_string() == run_;
+  };
+  endpoints_->results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
+    if (of_this_run(result, info)) {
+      keep_newest<CalibrationResult>(outcome_.results, result, [](const auto& a, const auto& b) {
+        return a.step() == b.step() && a.repetition() == b.repetition() && a.channel() == b.channel();
+      });
+    }
+  });
+  endpoints_->transfer_functions.take([&](const TransferFunction& function, const bus::SampleInfo& info) {
+    if (of_this_run(function, info)) {
+      keep_newest<TransferFunction>(outcome_.transfer_functions, function,
+                                    [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
+    }
+  });
+  endpoints_->clock_reports.take([&](const SampleClockReport& report, const bus::SampleInfo& info) {
+    if (of_this_run(report, info)) {
+      keep_newest<SampleClockReport>(outcome_.clock_reports, report, [](const auto& a, const auto& b) { return a.source() == b.source(); });
+    }
+  });
+  endpoints_->status.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
+    if (of_this_run(status, info)) {
+      analysis_ = status;
+      analysis_heard_ = Clock::now();
+      outcome_.analysis_dds = status.dds();
+    }
+  });
+}
+
+void RunController::show(const std::string& phase) {
+  RunProgress progress;
+  progress.step = step_;
+  progress.steps = outcome_.measurement.steps().size();
+  progress.phase = phase;
+  progress.results = outcome_.results.size();
+  if (step_ > 0 && step_ <= progress.steps) {
+    progress.frequency_hz = outcome_.measurement.steps()[step_ - 1].frequency_hz();
+  }
+  if (step_ > 1) {
+    const double per_step_s = std::chrono::duration<double>(Clock::now() - first_step_began_).count() / static_cast<double>(step_ - 1);
+    progress.seconds_left = per_step_s * static_cast<double>(progress.steps - step_ + 1);
+  }
+  show_progress_(progress);
+}
+
+} // namespace dyncal::services

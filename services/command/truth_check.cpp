@@ -1,0 +1,87 @@
+#include "services/command/truth_check.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace dyncal::services {
+namespace {
+
+struct TruePoint {
+  std::string channel; // without its source
+  std::string frequency_text_hz;
+  double magnitude;
+  double phase_rad;
+};
+
+Error unreadable(const std::filesystem::path& path, const std::string& why) {
+  return {ErrorCode::bad_file, fmt::format("{}: the truth of the virtual bench cannot be read: {}", path.string(), why)};
+}
+
+Expected<std::vector<TruePoint>> read_truth(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  try {
+    std::vector<TruePoint> points;
+    for (const auto& point : nlohmann::json::parse(stream).at("transfer_function")) {
+      points.push_back({point.at("channel"), point.at("frequency_text_hz"), point.at("magnitude"), point.at("phase_rad")});
+    }
+    return points;
+  } catch (const nlohmann::json::exception& error) {
+    return tl::unexpected(unreadable(path, error.what()));
+  }
+}
+
+const TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth, std::string& channel) {
+  for (const TransferFunction& function : outcome.transfer_functions) {
+    channel = function.channel().to_string();
+    if (channel.substr(channel.find('/') + 1) != truth.channel) {
+      continue;
+    }
+    for (const TransferPoint& point : function.points()) {
+      if (point.frequency_text_hz() == truth.frequency_text_hz) {
+        return &point;
+      }
+    }
+  }
+  return nullptr;
+}
+
+void compare(TruthCheck& check, double deviation, double u, const std::string& where) {
+  const double ratio = std::abs(deviation) / u;
+  ++check.points;
+  if (!(ratio <= check.worst)) { // NaN counts as worst
+    check.worst = ratio;
+    check.worst_where = where;
+  }
+}
+
+} // namespace
+
+Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesystem::path& truth_file) {
+  const auto truth = read_truth(truth_file);
+  if (!truth) {
+    return tl::unexpected(truth.error());
+  }
+  TruthCheck check;
+  for (const TruePoint& point : *truth) {
+    std::string channel;
+    const TransferPoint* measured = measured_point(outcome, point, channel);
+    if (measured == nullptr) {
+      if (outcome.interrupted) {
+        continue; // not every frequency was reached
+      }
+      return tl::unexpected(
+          Error{ErrorCode::no_result, fmt::format("the run has no result for {} at {} Hz", point.channel, point.frequency_text_hz)});
+    }
+    const double phase_rad = std::remainder(measured->phase_rad() - point.phase_rad, 2.0 * std::numbers::pi);
+    compare(check, measured->magnitude() - point.magnitude, measured->u_magnitude(),
+            fmt::format("{}, {} Hz, magnitude", channel, point.frequency_text_hz));
+    compare(check, phase_rad, measured->u_phase_rad(), fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
+  }
+  return check;
+}
+
+} // namespace dyncal::services

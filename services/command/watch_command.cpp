@@ -1,0 +1,216 @@
+#include "services/command/watch_command.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <deque>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "idl/dyncal.h"
+#include "services/bus/topics.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t lines_kept = 12; // of the newest results on a terminal
+
+std::string state_word(SourceState state) {
+  switch (state) {
+  case SOURCE_STARTING:
+    return "starting";
+  case SOURCE_RUNNING:
+    return "running";
+  case SOURCE_SILENT:
+    return "SILENT";
+  case SOURCE_ENDED:
+    return "ended";
+  case SOURCE_FAILED:
+    break;
+  }
+  return "FAILED";
+}
+
+std::string arm_word(ArmState arm) {
+  switch (arm) {
+  case ARM_WAITING:
+    return "waits for its sources";
+  case ARM_ARMED:
+    return "armed";
+  case ARM_REFUSED:
+    return "REFUSED";
+  case ARM_FINISHED:
+    return "finished";
+  case ARM_NONE:
+    break;
+  }
+  return "idle";
+}
+
+std::string excitation_word(ExcitationState state) {
+  switch (state) {
+  case EXCITATION_SETTLING:
+    return "settling";
+  case EXCITATION_STEADY:
+    return "measuring";
+  case EXCITATION_DONE:
+    return "done";
+  case EXCITATION_ABORTED:
+    break;
+  }
+  return "aborted";
+}
+
+std::string source_line(const SourceStatus& status) {
+  std::string line =
+      fmt::format("{}/{}: {}, {:.1f} S/s, {} received, {} lost in the device, {} lost on the way, {} duplicate, {} rejected, "
+                  "{} stamps not trusted, {} dropped, buffer {:.0f} %, {} readers",
+                  status.bench().c_str(), status.source().c_str(), state_word(status.state()), status.rate_hz(), status.received(),
+                  status.lost_in_device(), status.lost_on_way(), status.duplicates(), status.rejected(), status.stamps_not_trusted(),
+                  status.dropped_in_service(), status.buffer_fill() * 100.0, status.matched_readers());
+  return status.message().empty() ? line : line + " | " + status.message();
+}
+
+std::string result_line(const CalibrationResult& result) {
+  const std::string head = fmt::format("{} {}: step {}, {} Hz, #{}, {}", result.bench().c_str(), result.run().c_str(), result.step(),
+                                       result.frequency_text_hz(), result.repetition(), result.channel().c_str());
+  return result.valid() ? fmt::format("{}: |H| = {:.6f} (u {:.1e}), arg H = {:.6f} rad (u {:.1e}), {} lost", head, result.magnitude(),
+                                      result.u_magnitude(), result.phase_rad(), result.u_phase_rad(), result.lost())
+                        : fmt::format("{}: no result: {}", head, result.problem());
+}
+
+std::string run_line(const ServiceStatus& status) {
+  const std::string line = fmt::format("{} {}: {} {}, {} results", status.bench(), status.run().c_str(), status.service().c_str(),
+                                       arm_word(status.arm()), status.results_published());
+  return status.message().empty() ? line : line + " | " + status.message();
+}
+
+std::string step_line(const Excitation& excitation) {
+  return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(), excitation.run().c_str(), excitation.step(),
+                     excitation.frequency_hz(), excitation.level_m_s2(), excitation_word(excitation.state()));
+}
+
+// Lines that are replaced by newer ones of the same key, and lines that follow one another.
+class Screen {
+public:
+  explicit Screen(bool terminal) : terminal_(terminal) {}
+
+  void replace(const std::string& key, const std::string& line) {
+    std::string& place = lines_[key];
+    if (place != line && !terminal_) {
+      fmt::print("{}\n", line);
+    }
+    place = line;
+  }
+
+  void append(const std::string& line) {
+    if (!terminal_) {
+      fmt::print("{}\n", line);
+      return;
+    }
+    newest_.push_back(line);
+    if (newest_.size() > lines_kept) {
+      newest_.pop_front();
+    }
+  }
+
+  void draw() {
+    if (terminal_) {
+      fmt::print("\x1b[H\x1b[2J");
+      for (const auto& [key, line] : lines_) {
+        fmt::print("{}\n", line);
+      }
+      fmt::print("\n");
+      for (const std::string& line : newest_) {
+        fmt::print("{}\n", line);
+      }
+      if (lines_.empty()) {
+        fmt::print("nothing on this DDS domain yet\n");
+      }
+    }
+    std::fflush(stdout);
+  }
+
+private:
+  bool terminal_;
+  std::map<std::string, std::string> lines_;
+  std::deque<std::string> newest_;
+};
+
+struct Readers {
+  bus::Reader<SourceStatus> sources;
+  bus::Reader<ServiceStatus> services;
+  bus::Reader<Excitation> excitation;
+  bus::Reader<CalibrationResult> results;
+};
+
+Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench, const std::shared_ptr<bus::WakeUp>& wake_up) {
+  auto sources = participant.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench, wake_up);
+  auto services = participant.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench, wake_up);
+  auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench, wake_up);
+  auto results = participant.reader<CalibrationResult>(bus::topics::calibration_result, bus::Profile::results, bench, wake_up);
+  for (const Error* error : {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
+                             excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
+    if (error != nullptr) {
+      return tl::unexpected(*error);
+    }
+  }
+  return Readers{std::move(*sources), std::move(*services), std::move(*excitation), std::move(*results)};
+}
+
+void take_all(Readers& readers, Screen& screen) {
+  readers.sources.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
+    const std::string key = fmt::format("1 {}/{}", status.bench().c_str(), status.source().c_str());
+    screen.replace(key, info.valid ? source_line(status) : fmt::format("{}/{}: gone", status.bench().c_str(), status.source().c_str()));
+  });
+  readers.services.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
+    if (info.valid) {
+      screen.replace(fmt::format("2 {} {}", status.run().c_str(), status.service().c_str()), run_line(status));
+    }
+  });
+  readers.excitation.take([&](const Excitation& excitation, const bus::SampleInfo& info) {
+    if (info.valid) {
+      screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()), step_line(excitation));
+    }
+  });
+  readers.results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
+    if (info.valid) {
+      screen.append(result_line(result));
+    }
+  });
+}
+
+} // namespace
+
+int run_watch(const WatchCommand& command, const std::stop_token& stop) {
+  auto participant = join_network(command.network, "dyncal-watch");
+  if (!participant) {
+    return fail(participant.error());
+  }
+  const auto wake_up = std::make_shared<bus::WakeUp>();
+  auto readers = open_readers(*participant, command.bench, wake_up);
+  if (!readers) {
+    return fail(readers.error());
+  }
+  Screen screen(isatty(STDOUT_FILENO) != 0);
+  const auto began = std::chrono::steady_clock::now();
+  auto next_draw = began;
+  const auto over = [&] {
+    return stop.stop_requested() ||
+           (command.seconds && std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > *command.seconds);
+  };
+  while (!over()) {
+    wake_up->wait_until(std::chrono::steady_clock::now() + 200ms);
+    take_all(*readers, screen);
+    if (std::chrono::steady_clock::now() >= next_draw) {
+      screen.draw();
+      next_draw = std::chrono::steady_clock::now() + 1s;
+    }
+  }
+  return 0;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,22 @@
+// `dyncal watch`: benches, sources with their rates and losses, runs and results, as they come on the network.
+//
+// On a terminal the picture is drawn anew once a second; elsewhere every change is a line. It publishes nothing. Belongs to one thread.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+
+struct WatchCommand {
+  std::string bench = "*";
+  std::optional<double> seconds;
+  NetworkOptions network;
+};
+
+[[nodiscard]] int run_watch(const WatchCommand& command, const std::stop_token& stop);
+
+} // namespace dyncal::services

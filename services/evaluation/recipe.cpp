@@ -1,0 +1,179 @@
+#include "services/evaluation/recipe.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+namespace {
+
+Method method_message(EvaluationMethod method) {
+  switch (method) {
+  case EvaluationMethod::analogue:
+    return METHOD_ANALOGUE;
+  case EvaluationMethod::series_timestamping:
+    return METHOD_SERIES_TIMESTAMPING;
+  case EvaluationMethod::absolute_time:
+    return METHOD_ABSOLUTE_TIME;
+  case EvaluationMethod::sample_timestamping:
+    break;
+  }
+  return METHOD_SAMPLE_TIMESTAMPING;
+}
+
+void plan_steps(const ExcitationSettings& excitation, Measurement& measurement) {
+  std::uint32_t number = 0;
+  for (int repetition = 1; repetition <= excitation.repetitions; ++repetition) {
+    for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
+      PlannedStep step;
+      step.step(++number);
+      step.repetition(static_cast<std::uint32_t>(repetition));
+      step.frequency_hz(excitation.frequencies_hz[i]);
+      step.level_m_s2(excitation.levels_m_s2[i]);
+      step.settling_s(excitation.settling_s);
+      step.duration_s(excitation.duration_s);
+      measurement.steps().push_back(step);
+    }
+  }
+}
+
+void plan_adc(const std::vector<analysis::AdcCalibrationPoint>& points, Measurement& measurement) {
+  for (const analysis::AdcCalibrationPoint& point : points) {
+    AdcCalibrationPoint message;
+    message.frequency_hz(point.frequency_hz);
+    message.test_amplitude_vpp(point.test_amplitude_vpp);
+    message.gain(point.gain);
+    message.phase_lag_rad(point.phase_lag_rad);
+    message.u_gain(point.u_gain);
+    message.u_phase_lag_rad(point.u_phase_lag_rad);
+    measurement.adc_calibration().push_back(message);
+  }
+}
+
+Error refused(std::string message) {
+  return {ErrorCode::bad_argument, std::move(message)};
+}
+
+Expected<ChannelName> role(const std::string& what, const std::string& text) {
+  if (const auto name = parse_channel_name(text)) {
+    return *name;
+  }
+  return tl::unexpected(refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
+}
+
+Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
+  const std::vector<std::pair<const char*, std::pair<const std::string*, ChannelName*>>> roles{
+      {"reference", {&measurement.reference(), &recipe.reference}},
+      {"sync_acs", {&measurement.sync_acs(), &recipe.sync_acs}},
+      {"sync_dau", {&measurement.sync_dau(), &recipe.sync_dau}}};
+  for (const auto& [what, places] : roles) {
+    const auto name = role(what, *places.first);
+    if (!name) {
+      return tl::unexpected(name.error());
+    }
+    *places.second = *name;
+  }
+  for (const std::string& text : measurement.dut()) {
+    const auto name = role("dut", text);
+    if (!name) {
+      return tl::unexpected(name.error());
+    }
+    recipe.dut.push_back(*name);
+  }
+  if (!measurement.temperature().empty()) {
+    const auto name = role("temperature", measurement.temperature());
+    if (!name) {
+      return tl::unexpected(name.error());
+    }
+    recipe.temperature = *name;
+  }
+  if (recipe.reference.source != recipe.sync_acs.source) {
+    return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, but they must share a clock"));
+  }
+  if (recipe.sync_dau.source == recipe.sync_acs.source) {
+    return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; sample time stamping links two clocks"));
+  }
+  return {};
+}
+
+Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
+  for (const PlannedStep& planned : measurement.steps()) {
+    const auto frequency = analysis::Frequency::parse(planned.frequency_hz());
+    if (!frequency || !(planned.duration_s() > 0.0) || !(planned.settling_s() >= 0.0)) {
+      return tl::unexpected(refused(fmt::format("step {} of the recipe has frequency \"{}\", settling {} s, duration {} s", planned.step(),
+                                                planned.frequency_hz(), planned.settling_s(), planned.duration_s())));
+    }
+    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_hz(), *frequency, planned.level_m_s2(),
+                            planned.settling_s(), planned.duration_s()});
+  }
+  if (recipe.steps.empty()) {
+    return tl::unexpected(refused("the recipe has no excitation steps"));
+  }
+  return {};
+}
+
+} // namespace
+
+std::vector<std::string> Recipe::sources() const {
+  std::vector<std::string> names{reference.source, sync_dau.source};
+  if (temperature && std::find(names.begin(), names.end(), temperature->source) == names.end()) {
+    names.push_back(temperature->source);
+  }
+  return names;
+}
+
+Measurement plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
+                             const std::vector<analysis::AdcCalibrationPoint>& adc_calibration) {
+  Measurement measurement;
+  measurement.bench(file.bench);
+  measurement.run(run);
+  measurement.state(MEASUREMENT_PLANNED);
+  measurement.method(method_message(file.method.kind));
+  measurement.planned_utc_ns(now_utc_ns);
+  measurement.reference(file.method.reference.text());
+  measurement.sync_acs(file.method.sync_acs.text());
+  measurement.sync_dau(file.method.sync_dau.text());
+  for (const ChannelName& name : file.method.dut) {
+    measurement.dut().push_back(name.text());
+  }
+  if (file.method.temperature) {
+    measurement.temperature(file.method.temperature->text());
+  }
+  plan_steps(file.excitation, measurement);
+  plan_adc(adc_calibration, measurement);
+  measurement.reference_magnitude_rel(file.uncertainty.reference_magnitude_rel);
+  measurement.reference_phase_rad(file.uncertainty.reference_phase_rad);
+  measurement.dso_delay_s(file.corrections.dso_delay_s);
+  measurement.u_dso_delay_s(file.corrections.u_dso_delay_s);
+  measurement.u_acs_delay_s(file.uncertainty.acs_delay_s);
+  measurement.recipe(file.text);
+  measurement.recipe_sha256(file.sha256);
+  return measurement;
+}
+
+Expected<Recipe> parse_recipe(const Measurement& measurement) {
+  if (measurement.method() != METHOD_SAMPLE_TIMESTAMPING) {
+    return tl::unexpected(
+        refused("this version evaluates method.kind = \"sample-timestamping\" on live sources; choose that, or update dyncal-analysis"));
+  }
+  Recipe recipe;
+  recipe.bench = measurement.bench().to_string();
+  recipe.run = measurement.run().to_string();
+  if (const auto roles = parse_roles(measurement, recipe); !roles) {
+    return tl::unexpected(roles.error());
+  }
+  if (const auto steps = parse_steps(measurement, recipe); !steps) {
+    return tl::unexpected(steps.error());
+  }
+  for (const AdcCalibrationPoint& point : measurement.adc_calibration()) {
+    recipe.adc_calibration.push_back(
+        {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
+  }
+  recipe.systematic.reference_magnitude_rel = measurement.reference_magnitude_rel();
+  recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();
+  recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
+  recipe.sha256 = measurement.recipe_sha256();
+  return recipe;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,55 @@
+// The recipe of a run as the evaluation uses it, and its way through the contract's Measurement message.
+//
+// `dyncal run` makes the message from the bench file; the analysis service makes the recipe from the message alone, so that it evaluates
+// benches it has never heard of. Plain data; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/adc_calibration.hpp"
+#include "analysis/frequency.hpp"
+#include "analysis/sample_stamping.hpp"
+#include "idl/dyncal.h"
+#include "services/bench/bench_file.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+struct RecipeStep {
+  std::uint32_t step = 0;
+  std::uint32_t repetition = 0;
+  std::string frequency_text_hz;
+  analysis::Frequency frequency;
+  double level_m_s2 = 0.0;
+  double settling_s = 0.0;
+  double duration_s = 0.0;
+};
+
+struct Recipe {
+  std::string bench;
+  std::string run;
+  ChannelName reference;
+  ChannelName sync_acs;
+  ChannelName sync_dau;
+  std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
+  std::optional<ChannelName> temperature;
+  std::vector<RecipeStep> steps;
+  std::vector<analysis::AdcCalibrationPoint> adc_calibration; // empty: no correction
+  analysis::SystematicUncertainty systematic;
+  std::string sha256;
+
+  // The sources whose samples the evaluation needs, each once: the ACS first.
+  [[nodiscard]] std::vector<std::string> sources() const;
+};
+
+// The steps of a bench file in the order they are run: all frequencies, then all again for the next repetition.
+[[nodiscard]] Measurement plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
+                                           const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
+
+// Fails (bad_argument) with what this version cannot evaluate: another method, a role that is no "source/channel", no steps.
+[[nodiscard]] Expected<Recipe> parse_recipe(const Measurement& measurement);
+
+} // namespace dyncal::services

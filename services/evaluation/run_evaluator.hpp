@@ -1,0 +1,84 @@
+// The evaluation of one run, whoever brings the samples: the analysis service from DDS, `dyncal analyse` from files.
+//
+// Fed with descriptions, blocks and announcements in any order of arrival between sources; gives results as soon as the samples of a step
+// have come from every source, and the run's transfer functions and sample clock report at its end.
+// A step is given up, with a result that says why, when its excitation was announced as over and two seconds of later samples show nothing
+// of it in a source, when a source has ended without it, or when the run is over.
+// The same samples give the same results bit for bit. Belongs to one thread.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "idl/dyncal.h"
+#include "services/error.hpp"
+#include "services/evaluation/clock_report.hpp"
+#include "services/evaluation/recipe.hpp"
+#include "services/evaluation/source_record.hpp"
+#include "services/evaluation/step_search.hpp"
+#include "services/evaluation/transfer_summary.hpp"
+
+namespace dyncal::services {
+
+struct EvaluationOutput {
+  std::vector<CalibrationResult> results;
+  std::vector<TransferFunction> transfer_functions; // at the end of the run
+  std::vector<SampleClockReport> clock_reports;     // at the end of the run
+};
+
+class RunEvaluator {
+public:
+  explicit RunEvaluator(Recipe recipe);
+  ~RunEvaluator();
+  RunEvaluator(const RunEvaluator&) = delete;
+  RunEvaluator& operator=(const RunEvaluator&) = delete;
+
+  [[nodiscard]] const Recipe& recipe() const { return recipe_; }
+
+  // Fails (no_source) with the channels there are when the source lacks one that the recipe needs.
+  Expected<void> describe(const SourceDescription& description);
+  // Sources of the recipe that have not described themselves yet.
+  [[nodiscard]] std::vector<std::string> undescribed() const;
+
+  void add(const SampleBlock& block);
+  void announce(const Excitation& excitation);
+  // No excitation comes any more: the run is done, or was broken off after the steps announced so far.
+  void end_of_excitation(bool aborted);
+
+  // Evaluates what can be evaluated and hands over what is new.
+  [[nodiscard]] EvaluationOutput take_output();
+  // Everything of this run has been handed over.
+  [[nodiscard]] bool finished() const { return finished_; }
+  // Ends the run with what there is, whatever is still missing.
+  void finish_now();
+
+private:
+  [[nodiscard]] SourceRecord* record(const std::string& source);
+  [[nodiscard]] std::size_t steps_expected() const;
+  [[nodiscard]] bool over_in(const SourceRecord& source, std::size_t step) const;
+  void follow(StepSearch& search, const SourceRecord& source);
+  void evaluate_next_steps(EvaluationOutput& output);
+  void forget_what_is_evaluated();
+  void finish(EvaluationOutput& output);
+
+  Recipe recipe_;
+  std::map<std::string, std::unique_ptr<SourceRecord>> records_;
+  std::unique_ptr<StepSearch> acs_search_;
+  std::unique_ptr<StepSearch> dau_search_;
+  ClockReportBuilder clock_;
+  TransferSummary summary_;
+  std::size_t next_step_ = 0;                       // not evaluated yet
+  std::map<std::size_t, std::int64_t> over_utc_ns_; // host time at which the excitation of a step was over
+  std::set<std::size_t> broken_off_;                // steps whose excitation was aborted
+  std::size_t steps_announced_ = 0;
+  bool excitation_done_ = false;
+  bool excitation_aborted_ = false;
+  bool finish_now_ = false;
+  bool finished_ = false;
+};
+
+} // namespace dyncal::services

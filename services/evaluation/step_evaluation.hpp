@@ -1,0 +1,35 @@
+// From the samples of one excitation step to its results: cuts the four series out of the records, corrects the sync ADC, evaluates
+// paper eqs. (1), (3), (4) and fills one CalibrationResult per channel.
+//
+// Samples whose stamp is not trusted (flags), whose stamp does not increase, or that were not measured (NaN) are left out and counted. A
+// step that cannot be evaluated gives results that are not valid and name the reason; never a number. No state; belongs to the caller's
+// thread. The same samples give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "idl/dyncal.h"
+#include "services/evaluation/recipe.hpp"
+#include "services/evaluation/source_record.hpp"
+
+namespace dyncal::services {
+
+struct StretchOfTime { // in a source's own clock, both ends included
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+};
+
+// The channels under calibration: the recipe's, or all of the DAU but sync and temperature.
+[[nodiscard]] std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const SourceRecord& dau);
+
+[[nodiscard]] std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
+                                                           const StretchOfTime& acs_stretch, const SourceRecord& dau,
+                                                           const StretchOfTime& dau_stretch, const std::vector<std::string>& flags);
+
+// What is published for a step that has no samples to evaluate.
+[[nodiscard]] std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& dau,
+                                                                     const std::string& problem);
+
+} // namespace dyncal::services

@@ -1,0 +1,97 @@
+#include "services/evaluation/step_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace dyncal::services {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+
+std::int64_t to_ns(double seconds) {
+  return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
+}
+
+} // namespace
+
+StepSearch::StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel)
+    : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)), search_from_ns_(std::numeric_limits<std::int64_t>::min()) {}
+
+void StepSearch::look_for(std::size_t step) {
+  step_ = step;
+  finder_.reset();
+  fed_ = 0;
+}
+
+void StepSearch::advance(std::size_t last_step) {
+  if (record_.restarts() != restarts_seen_) {
+    restarts_seen_ = record_.restarts();
+    search_from_ns_ = std::numeric_limits<std::int64_t>::min();
+    look_for(step_);
+  }
+  while (step_ <= last_step && step_ < recipe_.steps.size()) {
+    feed();
+    if (!finder_ || !finder_->ended()) {
+      return;
+    }
+    accept(*finder_->window());
+  }
+}
+
+void StepSearch::feed() {
+  const auto channel = record_.channel(sync_channel_);
+  if (!channel) {
+    return;
+  }
+  if (!finder_) {
+    finder_.emplace(recipe_.steps[step_].frequency);
+  }
+  const auto stamps = record_.stamps_ns();
+  const auto flags = record_.flags();
+  const auto sync = record_.column(*channel);
+  const std::uint64_t begin = std::max(fed_, record_.forgotten());
+  std::vector<std::int64_t> good_stamps;
+  std::vector<double> good_sync;
+  for (std::uint64_t i = begin - record_.forgotten(); i < stamps.size(); ++i) {
+    if (flags[i] == 0 && stamps[i] >= search_from_ns_) {
+      good_stamps.push_back(stamps[i]);
+      good_sync.push_back(sync[i]);
+    }
+  }
+  fed_ = record_.forgotten() + stamps.size();
+  finder_->push(good_stamps, good_sync);
+  if (record_.ended()) {
+    finder_->finish();
+  }
+}
+
+void StepSearch::accept(const analysis::ExcitationWindow& window) {
+  const RecipeStep& step = recipe_.steps[step_];
+  const std::int64_t begin = window.begin_ns + to_ns(step.settling_s);
+  const std::int64_t end = std::min(begin + to_ns(step.duration_s), window.end_ns) - 1;
+  if (end > begin) {
+    found_[step_] = {begin, end};
+  }
+  search_from_ns_ = window.off_ns;
+  look_for(step_ + 1);
+}
+
+void StepSearch::give_up_step() {
+  if (finder_) {
+    finder_->finish();
+    if (const auto window = finder_->window()) {
+      accept(*window);
+      return;
+    }
+  }
+  look_for(step_ + 1);
+}
+
+std::optional<StretchOfTime> StepSearch::stretch(std::size_t step) const {
+  const auto found = found_.find(step);
+  return found == found_.end() ? std::nullopt : std::optional(found->second);
+}
+
+} // namespace dyncal::services

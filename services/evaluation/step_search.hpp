@@ -1,0 +1,52 @@
+// Follows one source through the planned steps: finds in its own clock where each step was excited, from its sync channel alone.
+//
+// Steps are looked for in the planned order, each from the end of the one before; the search never goes back but when the source was
+// restarted. What it finds depends on the samples only, not on how they came.
+// Belongs to one thread; the record and the recipe must outlive it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "analysis/excitation_window.hpp"
+#include "services/evaluation/recipe.hpp"
+#include "services/evaluation/source_record.hpp"
+#include "services/evaluation/step_evaluation.hpp"
+
+namespace dyncal::services {
+
+class StepSearch {
+public:
+  StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel);
+
+  // Looks at the samples that have come since the last call, as far as `last_step` (an index into the recipe's steps).
+  void advance(std::size_t last_step);
+
+  // The stretch to evaluate for the step: settling dropped, at most the planned duration. Empty until the step's excitation is over.
+  [[nodiscard]] std::optional<StretchOfTime> stretch(std::size_t step) const;
+  // The step whose excitation is looked for now.
+  [[nodiscard]] std::size_t step() const { return step_; }
+  // Takes what there is of the step looked for, or passes over it when there is nothing; the search goes on with the next.
+  void give_up_step();
+  // Nothing earlier than this is needed for steps that were not found yet.
+  [[nodiscard]] std::int64_t needed_from_ns() const { return search_from_ns_; }
+
+private:
+  void look_for(std::size_t step);
+  void feed();
+  void accept(const analysis::ExcitationWindow& window);
+
+  const Recipe& recipe_;
+  const SourceRecord& record_;
+  std::string sync_channel_;
+  std::uint32_t restarts_seen_ = 0;
+  std::size_t step_ = 0;
+  std::int64_t search_from_ns_;
+  std::uint64_t fed_ = 0; // samples of the record, counted from its very first
+  std::optional<analysis::ExcitationWindowFinder> finder_;
+  std::map<std::size_t, StretchOfTime> found_;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,130 @@
+#include "services/evaluation/transfer_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "analysis/group_delay.hpp"
+#include "analysis/repetitions.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+namespace {
+
+analysis::Repetition repetition_of(const CalibrationResult& result) {
+  std::vector<analysis::Contribution> budget;
+  for (const BudgetContribution& line : result.budget()) {
+    budget.push_back({line.name(), line.distribution(), line.degrees_of_freedom(), line.u_magnitude_rel(), line.u_phase_rad()});
+  }
+  return analysis::make_repetition(std::polar(result.magnitude(), result.phase_rad()), budget);
+}
+
+struct PointOfMean {
+  TransferPoint message;
+  analysis::PhasePoint phase;
+};
+
+PointOfMean point_of(const std::vector<const CalibrationResult*>& results, const analysis::RepetitionMean& mean) {
+  PointOfMean point;
+  point.message.frequency_text_hz(results.front()->frequency_text_hz());
+  point.message.frequency_hz(results.front()->frequency_hz());
+  point.message.level_m_s2(results.front()->level_m_s2());
+  point.message.magnitude(mean.magnitude);
+  point.message.u_magnitude(mean.u_magnitude);
+  point.message.phase_rad(mean.phase_rad);
+  point.message.u_phase_rad(mean.u_phase_rad);
+  point.message.unwrapped_phase_rad(mean.phase_rad);
+  point.message.scatter_magnitude(mean.scatter_magnitude);
+  point.message.scatter_phase_rad(mean.scatter_phase_rad);
+  point.message.repetitions(static_cast<std::uint32_t>(mean.repetitions));
+  point.phase = {results.front()->frequency_hz(), mean.phase_rad, mean.u_independent_phase_rad};
+  return point;
+}
+
+// Several levels at one frequency are points of their own; the line through the phases takes the first of them.
+std::vector<std::size_t> first_of_each_frequency(const std::vector<PointOfMean>& points) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i].phase.frequency_hz > points[i - 1].phase.frequency_hz) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+void add_group_delay(const Recipe& recipe, std::vector<PointOfMean>& points, TransferFunction& function) {
+  const std::vector<std::size_t> chosen = first_of_each_frequency(points);
+  std::vector<analysis::PhasePoint> phases;
+  for (const std::size_t i : chosen) {
+    phases.push_back(points[i].phase);
+  }
+  const auto delay = analysis::evaluate_group_delay(phases, {recipe.systematic.acs_delay_s, recipe.systematic.reference_phase_rad});
+  function.group_delay_valid(delay.has_value());
+  if (!delay) {
+    function.group_delay_problem(delay.error().message);
+    return;
+  }
+  function.group_delay_s(delay->delay_s);
+  function.u_group_delay_s(delay->u_delay_s);
+  function.intercept_rad(delay->intercept_rad);
+  function.u_intercept_rad(delay->u_intercept_rad);
+  function.cov_delay_intercept(delay->cov_delay_intercept);
+  function.phase_covariance() = delay->phase_covariance;
+  if (delay->polarity_inverted) {
+    function.flags().emplace_back("polarity inverted");
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    points[chosen[i]].message.unwrapped_phase_rad(delay->unwrapped_rad[i]);
+  }
+}
+
+} // namespace
+
+void TransferSummary::add(const CalibrationResult& result) {
+  const std::string channel = result.channel().to_string();
+  if (std::find(channels_.begin(), channels_.end(), channel) == channels_.end()) {
+    channels_.push_back(channel);
+  }
+  results_[channel][{result.step(), result.repetition()}] = result;
+}
+
+std::vector<TransferFunction> TransferSummary::transfer_functions() const {
+  std::vector<TransferFunction> functions;
+  for (const std::string& channel : channels_) {
+    std::map<std::pair<double, double>, std::vector<const CalibrationResult*>> by_frequency_and_level;
+    TransferFunction function;
+    for (const auto& [key, result] : results_.at(channel)) {
+      if (result.valid()) {
+        by_frequency_and_level[{result.frequency_hz(), result.level_m_s2()}].push_back(&result);
+        function.unit(result.unit());
+        function.lost(function.lost() + result.lost());
+      }
+    }
+    std::vector<PointOfMean> points;
+    for (const auto& [key, results] : by_frequency_and_level) {
+      std::vector<analysis::Repetition> repetitions;
+      std::transform(results.begin(), results.end(), std::back_inserter(repetitions),
+                     [](const CalibrationResult* result) { return repetition_of(*result); });
+      if (const auto mean = analysis::mean_of_repetitions(repetitions)) {
+        points.push_back(point_of(results, *mean));
+      }
+    }
+    if (points.empty()) {
+      continue;
+    }
+    function.bench(recipe_.bench);
+    function.run(recipe_.run);
+    function.channel(channel);
+    function.method(METHOD_SAMPLE_TIMESTAMPING);
+    add_group_delay(recipe_, points, function);
+    for (PointOfMean& point : points) {
+      function.points().push_back(std::move(point.message));
+    }
+    function.software(software_version());
+    function.recipe_sha256(recipe_.sha256);
+    functions.push_back(std::move(function));
+  }
+  return functions;
+}
+
+} // namespace dyncal::services
