@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "drivers/virtual_bench/receive_queue.hpp"
 #include "drivers/virtual_bench/server_socket.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -19,6 +20,8 @@ constexpr double largest_arrears_s = 0.5; // host time that is made up for after
 constexpr double frame_s = 0.05;
 constexpr double largest_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
+constexpr std::size_t largest_receive_queue = 64 * 1024;       // of the 208 KiB that hosts allow at least
+constexpr std::chrono::microseconds queue_look_interval{2000}; // a look costs about 30 us
 constexpr milliseconds idle_wait{4};
 constexpr milliseconds blocked_wait{20};
 
@@ -27,7 +30,8 @@ constexpr milliseconds blocked_wait{20};
 BenchServer::BenchServer(VirtualBench& bench, const ServerSettings& settings)
     : bench_(bench), settings_(settings), instrument_(bench), generator_clients_(instrument_),
       packer_(settings.sensor_id, bench.settings().preset.sensor_name, settings.with_ticks),
-      path_(bench.settings().seed, settings.path, [this](const std::string& datagram) { send_datagram(datagram); }) {}
+      path_(bench.settings().seed, settings.path, [this](const std::string& datagram) { send_datagram(datagram); }),
+      receiver_on_this_host_(is_loopback(settings.dau.host)) {}
 
 Expected<void> BenchServer::open() {
   auto acs = listen_tcp(settings_.acs_listen);
@@ -60,7 +64,7 @@ void BenchServer::run(const StopSignal& stop) {
     if (time_s > bench_.now_s()) {
       advance_to(time_s);
     } else {
-      wait_for_events(stop, stream_.backlog_octets() > 0 ? blocked_wait : idle_wait);
+      wait_for_events(stop, stream_.backlog_octets() > 0 && !queue_full_ ? blocked_wait : idle_wait);
     }
   }
   end_stream(stop);
@@ -97,7 +101,16 @@ bool BenchServer::consumers_keep_up() {
   datagram_credit_ = std::min(datagram_burst, datagram_credit_ + passed_s * settings_.datagrams_per_s);
   credit_at_ = now;
   const double backlog_limit = largest_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) * 2.0 * sizeof(std::int32_t);
-  return datagram_credit_ > 0.0 && static_cast<double>(stream_.backlog_octets()) <= backlog_limit;
+  return datagram_credit_ > 0.0 && datagrams_are_taken() && static_cast<double>(stream_.backlog_octets()) <= backlog_limit;
+}
+
+bool BenchServer::datagrams_are_taken() {
+  const auto now = Clock::now();
+  if (receiver_on_this_host_ && now - queue_looked_at_ >= queue_look_interval) {
+    queue_looked_at_ = now;
+    queue_full_ = udp_receive_queue(settings_.dau.port) > largest_receive_queue;
+  }
+  return !queue_full_;
 }
 
 void BenchServer::hold_pace() {

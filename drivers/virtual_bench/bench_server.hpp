@@ -48,6 +48,7 @@ private:
   // Bench time that may be reached now; the present one: wait.
   [[nodiscard]] double allowed_time_s();
   [[nodiscard]] bool consumers_keep_up();
+  [[nodiscard]] bool datagrams_are_taken();
   void hold_pace();
   void advance_to(double time_s);
   void send_datagram(const std::string& datagram);
@@ -69,6 +70,9 @@ private:
   double pace_bench_s_ = 0.0;
   double datagram_credit_ = 0.0;
   Clock::time_point credit_at_;
+  bool receiver_on_this_host_ = false;
+  Clock::time_point queue_looked_at_;
+  bool queue_full_ = false;
 };
 
 } // namespace dyncal::drivers::virtual_bench

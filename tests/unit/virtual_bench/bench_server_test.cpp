@@ -11,6 +11,7 @@
 
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/generator/scpi_generator.hpp"
+#include "drivers/virtual_bench/receive_queue.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -60,6 +61,12 @@ public:
   std::vector<SourceDescription> descriptions;
   std::vector<SampleBlock> blocks;
 };
+
+std::stop_token already_stopped() {
+  std::stop_source stopped;
+  stopped.request_stop();
+  return stopped.get_token();
+}
 
 BenchSettings bench_settings() {
   BenchSettings settings;
@@ -159,17 +166,27 @@ TEST_F(ServedBench, WaitsForAClientOfTheStreamThatDoesNotRead) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (now_s != before_s && std::chrono::steady_clock::now() < deadline) {
     before_s = now_s;
-    now_s = (*generator)
-                ->wait_until_s(now_s + 0.5,
-                               [] {
-                                 std::stop_source stopped;
-                                 stopped.request_stop();
-                                 return stopped.get_token();
-                               }())
-                .value();
+    now_s = (*generator)->wait_until_s(now_s + 0.5, already_stopped()).value();
   }
   EXPECT_EQ(now_s, before_s);
   EXPECT_LT(now_s, 60.0); // the receive buffer of the client may be large
+}
+
+TEST_F(ServedBench, WaitsForAReceiverOfTheDatagramsThatDoesNotRead) {
+  receiver_.finish();
+  start(1000.0, 0.0);
+  auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  ASSERT_TRUE(generator) << generator.error().message;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  std::size_t waiting = 0;
+  std::size_t before = 0;
+  do {
+    before = waiting;
+    ASSERT_TRUE((*generator)->wait_until_s((*generator)->clock_now_s().value() + 0.5, already_stopped()));
+    waiting = udp_receive_queue(receiver_.port());
+  } while ((waiting == 0 || waiting != before) && std::chrono::steady_clock::now() < deadline);
+  EXPECT_GT(waiting, 64U * 1024U);
+  EXPECT_LT(waiting, 160U * 1024U); // nothing had to be dropped
 }
 
 TEST_F(ServedBench, PassesErrorsOfTheInstrumentOn) {
