@@ -2,15 +2,10 @@
 //
 // Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an integer in ns; mean, standard
 // deviation (n - 1), median, MAD and quantiles (linear between order statistics) are those of the integers, exactly.
-// Histogram: in whole ticks of the stamping counter when it is known, because all intervals then lie on its lattice
-// (L = |mean e^{2 pi i d / tick}| near 1), and narrower bins would make a comb of any distribution; else in bins of
-// max(1 ns, quarter of the robust standard deviation). Modes: peaks after the triangular kernel of two stamps' quantisation is
-// taken out, that stand out of the valley beside them by five standard deviations of the counts and one per cent of the highest.
-// Events, with m the median and s = 1.4826 MAD: "duplicate" d <= 0.02 m; "gap" |d - k m| < max(8 s sqrt(k), 0.02 m), k >= 2, k - 1
-// samples missing; "pair" |d - m| > 6 s, followed by the opposite to within 9 s; "step" otherwise: the clock has moved for good.
-// Temperature: of the sample that begins an interval; only intervals without event count.
-// Allan deviation: overlapping, at octaves m tau_0, sum (t_{i+2m} - 2 t_{i+m} + t_i)^2 / (2 m^2 tau_0^2 (N - 2m)), inside stretches
-// without lost samples.
+// Histogram, lattice statistic and modes: interval_histogram.hpp. Events ("backward", "duplicate", "gap", "pair", "step"), their
+// number and the period of pairs: interval_events.hpp; core_mean and core_sd leave them out. Temperature: that of the sample which
+// begins an interval, of intervals within 6 s of the usual one (temperature_relation.hpp). Allan deviation: allan_deviation.hpp,
+// within stretches without lost samples. What is usual is known after 64 intervals, and learned again at 128, 256 ...
 // Memory is bounded (settings); what does not depend on a bound is exact however the stream was cut. One thread.
 #pragma once
 
@@ -21,6 +16,12 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "analysis/allan_deviation.hpp"
+#include "analysis/interval_events.hpp"
+#include "analysis/interval_histogram.hpp"
+#include "analysis/interval_overview.hpp"
+#include "analysis/temperature_relation.hpp"
 
 namespace dyncal::analysis {
 
@@ -35,39 +36,6 @@ struct SampleClockSettings {
   std::size_t close_up = 40; // intervals on each side of the first pair
   std::size_t longest_allan_samples = 1u << 18;
   std::size_t most_distinct_intervals = 1u << 20;
-};
-
-struct IntervalHistogramBin {
-  std::int64_t ticks = 0; // interval in ticks (in bins where the tick is not known)
-  double interval_ns = 0.0;
-  std::uint64_t count = 0;
-};
-
-struct IntervalBucket {
-  double time_s = 0.0; // of its first interval, since the first sample
-  double minimum_ns = 0.0;
-  double maximum_ns = 0.0;
-  double mean_ns = 0.0;
-};
-
-struct IntervalEvent {
-  std::string kind;         // "duplicate", "gap", "pair", "step"
-  std::uint64_t sample = 0; // number of the sample that begins the interval
-  double time_s = 0.0;      // since the first sample
-  double size_ns = 0.0;     // deviation from the median
-  std::uint32_t missing = 0;
-};
-
-struct TemperatureBin {
-  double temperature_degc = 0.0; // centre
-  double mean_interval_ns = 0.0;
-  double sd_interval_ns = 0.0;
-  std::uint64_t count = 0;
-};
-
-struct AllanPoint {
-  double tau_s = 0.0;
-  double deviation = 0.0;
 };
 
 struct SampleClockStatistics {
@@ -100,7 +68,7 @@ struct SampleClockStatistics {
   std::uint64_t pair_count = 0;
   double pair_period_samples = 0.0; // median distance, 0 with fewer than three pairs
   double pair_period_s = 0.0;
-  double pair_regularity = 0.0; // Rayleigh's mean resultant length at that period: 1 regular, towards 0 by chance
+  double pair_regularity = 0.0; // 1 regular, towards 0 by chance
   std::vector<TemperatureBin> over_temperature;
   std::vector<double> scatter_temperature_degc;
   std::vector<double> scatter_interval_ns;

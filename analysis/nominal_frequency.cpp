@@ -1,0 +1,39 @@
+#include "analysis/nominal_frequency.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/sine_fit.hpp"
+
+namespace dyncal::analysis {
+
+Expected<NominalFrequency> real_rate_from_apparent_frequency(double nominal_rate_hz, double applied_hz, double u_applied_hz,
+                                                             double apparent_hz, double u_apparent_hz) {
+  if (!(nominal_rate_hz > 0.0) || !(applied_hz > 0.0) || !(apparent_hz > 0.0))
+    return tl::unexpected(Error{ErrorCode::invalid_argument, "nominal rate, applied and apparent frequency must be positive"});
+  NominalFrequency result;
+  result.apparent_hz = apparent_hz;
+  result.u_apparent_hz = u_apparent_hz;
+  result.lambda = applied_hz / apparent_hz;
+  const double u_rel = std::hypot(u_applied_hz / applied_hz, u_apparent_hz / apparent_hz);
+  result.u_lambda = result.lambda * u_rel;
+  result.real_rate_hz = nominal_rate_hz * result.lambda;
+  result.u_real_rate_hz = result.real_rate_hz * u_rel;
+  return result;
+}
+
+Expected<NominalFrequency> evaluate_nominal_frequency(double nominal_rate_hz, const Frequency& applied, double u_applied_hz,
+                                                      std::span<const double> samples, double rate_tolerance_rel) {
+  if (!(nominal_rate_hz > 0.0)) return tl::unexpected(Error{ErrorCode::invalid_argument, "the nominal sample rate must be positive"});
+  std::vector<std::int64_t> stamps_ns(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / nominal_rate_hz);
+  const std::array channels{samples};
+  const std::int64_t middle_ns = stamps_ns.empty() ? 0 : stamps_ns.back() / 2;
+  const auto fit = fit_sine_and_frequency(applied, rate_tolerance_rel, middle_ns, stamps_ns, channels);
+  if (!fit) return tl::unexpected(fit.error());
+  return real_rate_from_apparent_frequency(nominal_rate_hz, applied.hz(), u_applied_hz, fit->frequency.hz(), fit->u_frequency_hz);
+}
+
+} // namespace dyncal::analysis

@@ -1,0 +1,179 @@
+#include "analysis/sample_clock.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+#include "analysis/interval_counts.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr std::uint64_t first_lesson = 64; // intervals after which it is known what is usual
+constexpr double normal_mad = 1.4826;
+constexpr double core_scales = 6.0;
+constexpr double gap_part = 1.5; // an interval longer than this many medians interrupts the Allan deviation
+
+UsualInterval usual_of(const IntervalDistribution& distribution) {
+  return {distribution.quantile(0.5), std::max(0.5, normal_mad * distribution.median_absolute_deviation())};
+}
+
+double seconds(double ns) {
+  return ns * 1e-9;
+}
+
+} // namespace
+
+struct SampleClock::State {
+  explicit State(const SampleClockSettings& chosen)
+      : settings(chosen), counts(chosen.most_distinct_intervals), overview(chosen.most_buckets), close_up(chosen.close_up),
+        temperature(chosen.most_temperature_bins, chosen.most_scatter), allan(chosen.longest_allan_samples) {}
+
+  void take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted, double temperature_degc);
+  void take_interval(const SampleInterval& interval, double temperature_degc);
+
+  SampleClockSettings settings;
+  IntervalCounts counts;
+  IntervalEventCollector events;
+  IntervalOverview overview;
+  IntervalCloseUp close_up;
+  TemperatureRelation temperature;
+  StreamingAllan allan;
+  UsualInterval usual;
+
+  std::optional<std::int64_t> first_stamp_ns;
+  std::optional<std::uint64_t> next_sample;
+  bool have_last = false; // the sample before has a stamp that an interval can begin with
+  bool have_interval_before = false;
+  std::int64_t last_stamp_ns = 0;
+  double last_temperature_degc = 0.0;
+  std::uint64_t lost = 0;
+  std::uint64_t untrusted = 0;
+};
+
+void SampleClock::State::take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted, double temperature_degc) {
+  if (!trusted) {
+    ++untrusted;
+    have_last = false;
+    return;
+  }
+  if (!first_stamp_ns) first_stamp_ns = stamp_ns;
+  if (have_last) {
+    take_interval({counts.sums().count, sample - 1, last_stamp_ns, stamp_ns - last_stamp_ns, have_interval_before}, last_temperature_degc);
+  } else {
+    have_interval_before = false;
+    allan.interrupt();
+  }
+  allan.add(stamp_ns);
+  have_last = true;
+  last_stamp_ns = stamp_ns;
+  last_temperature_degc = temperature_degc;
+}
+
+void SampleClock::State::take_interval(const SampleInterval& interval, double temperature_degc) {
+  counts.add(interval.length_ns);
+  events.add(interval, usual);
+  overview.add(interval);
+  close_up.add(interval, usual);
+  if (usual.known()) {
+    if (usual.is_core(interval.length_ns, core_scales)) temperature.add(temperature_degc, interval.length_ns);
+    if (interval.length_ns <= 0 || static_cast<double>(interval.length_ns) > gap_part * usual.median_ns) allan.interrupt();
+  }
+  have_interval_before = true;
+  const std::uint64_t n = counts.sums().count;
+  if (n >= first_lesson && std::has_single_bit(n)) usual = usual_of(counts.distribution());
+}
+
+SampleClock::SampleClock(const SampleClockSettings& settings) : state_(std::make_unique<State>(settings)) {}
+SampleClock::~SampleClock() = default;
+SampleClock::SampleClock(SampleClock&&) noexcept = default;
+SampleClock& SampleClock::operator=(SampleClock&&) noexcept = default;
+
+void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns, std::span<const std::uint8_t> flags,
+                       std::span<const double> temperature_degc) {
+  assert(flags.empty() || flags.size() == stamps_ns.size());
+  assert(temperature_degc.empty() || temperature_degc.size() == stamps_ns.size());
+  State& state = *state_;
+  if (state.next_sample && first_sample != *state.next_sample) {
+    if (first_sample > *state.next_sample) state.lost += first_sample - *state.next_sample;
+    state.have_last = false;
+  }
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i)
+    state.take_sample(first_sample + i, stamps_ns[i], flags.empty() || flags[i] == 0,
+                      temperature_degc.empty() ? std::nan("") : temperature_degc[i]);
+  state.next_sample = first_sample + stamps_ns.size();
+}
+
+namespace {
+
+void describe_intervals(SampleClockStatistics& result, const IntervalCounts& counts, const IntervalDistribution& distribution) {
+  const IntervalSums& sums = counts.sums();
+  result.intervals = sums.count;
+  result.mean_interval_s = seconds(sums.mean_ns());
+  result.sd_s = seconds(sums.sd_ns());
+  result.minimum_s = seconds(static_cast<double>(counts.minimum_ns()));
+  result.maximum_s = seconds(static_cast<double>(counts.maximum_ns()));
+  result.median_s = seconds(distribution.quantile(0.5));
+  result.mad_sd_s = seconds(normal_mad * distribution.median_absolute_deviation());
+  result.quantile_001_s = seconds(distribution.quantile(0.001));
+  result.quantile_01_s = seconds(distribution.quantile(0.01));
+  result.quantile_50_s = result.median_s;
+  result.quantile_99_s = seconds(distribution.quantile(0.99));
+  result.quantile_999_s = seconds(distribution.quantile(0.999));
+}
+
+void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, IntervalSums core) {
+  for (const std::int64_t length : verdict.unusual_lengths_ns)
+    core.remove(length);
+  if (core.count > 1) {
+    result.core_mean_s = seconds(core.mean_ns());
+    result.core_sd_s = seconds(core.sd_ns());
+  }
+  result.events = std::move(verdict.events);
+  result.event_count = verdict.event_count;
+  result.pair_count = verdict.pair_count;
+  result.pair_period_samples = verdict.pair_period_samples;
+  result.pair_period_s = verdict.pair_period_s;
+  result.pair_regularity = verdict.pair_regularity;
+}
+
+} // namespace
+
+std::optional<SampleClockStatistics> SampleClock::statistics() const {
+  const State& state = *state_;
+  const IntervalSums& sums = state.counts.sums();
+  if (sums.count < 2) return std::nullopt;
+  SampleClockStatistics result;
+  const IntervalDistribution distribution = state.counts.distribution();
+  describe_intervals(result, state.counts, distribution);
+  result.u_mean_interval_s = std::sqrt(2.0) * state.settings.stamp_uncertainty_s / static_cast<double>(sums.count);
+  result.nominal_rate_hz = state.settings.nominal_rate_hz;
+  result.mean_rate_hz = result.mean_interval_s > 0.0 ? 1.0 / result.mean_interval_s : 0.0;
+  result.tick_s = state.settings.tick_s;
+
+  const double tick_ns = state.settings.tick_s * 1e9;
+  const IntervalHistogram histogram = interval_histogram(distribution, tick_ns, result.mad_sd_s * 1e9);
+  result.lattice_statistic = lattice_statistic(distribution, tick_ns);
+  if (tick_ns > 0.0)
+    for (const double mode : interval_modes_ns(histogram))
+      result.modes_s.push_back(seconds(mode));
+  result.histogram = histogram.bins;
+  describe_events(result, state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.most_events), sums);
+
+  result.over_time = state.overview.buckets(*state.first_stamp_ns);
+  result.close_up_ns = state.close_up.lengths_ns();
+  if (!result.close_up_ns.empty())
+    result.close_up_first_time_s = seconds(static_cast<double>(state.close_up.first_begin_ns() - *state.first_stamp_ns));
+  result.over_temperature = state.temperature.bins();
+  result.scatter_temperature_degc = state.temperature.pair_temperatures_degc();
+  result.scatter_interval_ns = state.temperature.pair_intervals_ns();
+  result.temperature_correlation = state.temperature.correlation();
+  result.temperature_slope_s_per_degc = seconds(state.temperature.slope_ns_per_degc());
+  if (result.mean_interval_s > 0.0) result.allan = state.allan.points(result.mean_interval_s);
+  result.lost = state.lost;
+  result.untrusted = state.untrusted;
+  return result;
+}
+
+} // namespace dyncal::analysis
