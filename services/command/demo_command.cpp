@@ -199,9 +199,9 @@ int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
   }
   fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} standard uncertainties ({})\n",
              check->points, check->worst, check->worst_where);
-  if (!(check->worst <= agreement_limit)) {
+  if (check->points == 0 || !(check->worst <= agreement_limit)) {
     return fail(
-        {ErrorCode::no_result, fmt::format("the result deviates from the truth by more than {} standard uncertainties", agreement_limit)});
+        {ErrorCode::no_result, fmt::format("the result does not agree with the truth within {} standard uncertainties", agreement_limit)});
   }
   return 0;
 }

@@ -84,6 +84,8 @@ Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalib
     return std::tuple(result.step(), result.repetition(), result.channel().to_string());
   };
   std::stable_sort(outcome_.results.begin(), outcome_.results.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  std::sort(outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
+            [](const TransferFunction& a, const TransferFunction& b) { return a.channel().to_string() < b.channel().to_string(); });
   return std::move(outcome_);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "services/bench/unit.hpp"
+#include "services/command/run_report.hpp"
 #include "services/figures/sample_clock.hpp"
 #include "services/figures/transfer_function.hpp"
 
@@ -18,11 +19,6 @@ std::string file_name(const std::string& what, std::string of) {
 
 std::string run_line(const RunOutcome& outcome) {
   return fmt::format("bench {}, run {}", outcome.measurement.bench().c_str(), outcome.measurement.run().c_str());
-}
-
-bool responds(const TransferFunction& function) {
-  return std::any_of(function.points().begin(), function.points().end(),
-                     [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
 }
 
 figures::TransferFunctionData transfer_data(const RunOutcome& outcome, const TransferFunction& function) {

@@ -28,11 +28,6 @@ std::string method_word(Method method) {
   return "sample-timestamping";
 }
 
-bool stands_out(const TransferFunction& function) {
-  return std::any_of(function.points().begin(), function.points().end(),
-                     [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
-}
-
 // JSON has no word for a number that is none.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -139,11 +134,17 @@ std::string channel_table(const TransferFunction& function) {
 
 } // namespace
 
+bool responds(const TransferFunction& function) {
+  const auto above = std::count_if(function.points().begin(), function.points().end(),
+                                   [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
+  return 2 * static_cast<std::size_t>(above) > function.points().size();
+}
+
 std::string result_table(const RunOutcome& outcome) {
   std::string text;
   std::vector<std::string> quiet;
   for (const TransferFunction& function : outcome.transfer_functions) {
-    if (stands_out(function)) {
+    if (responds(function)) {
       text += channel_table(function);
     } else {
       quiet.push_back(function.channel().to_string());

@@ -14,7 +14,10 @@
 
 namespace dyncal::services {
 
-// One row per channel and frequency; channels whose magnitude is nowhere three times its uncertainty are counted, not listed.
+// The channel's magnitude is above three times its uncertainty at more than half of the frequencies: it is worth showing.
+[[nodiscard]] bool responds(const TransferFunction& function);
+
+// One row per channel and frequency; channels that do not respond are only named.
 [[nodiscard]] std::string result_table(const RunOutcome& outcome);
 
 [[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome);

@@ -25,7 +25,8 @@ Expected<std::vector<TruePoint>> read_truth(const std::filesystem::path& path) {
   std::ifstream stream(path);
   try {
     std::vector<TruePoint> points;
-    for (const auto& point : nlohmann::json::parse(stream).at("transfer_function")) {
+    const nlohmann::json truth = nlohmann::json::parse(stream);
+    for (const auto& point : truth.at("transfer_function")) {
       points.push_back({point.at("channel"), point.at("frequency_text_hz"), point.at("magnitude"), point.at("phase_rad")});
     }
     return points;

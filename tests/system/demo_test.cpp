@@ -1,0 +1,128 @@
+// `dyncal demo` for every preset, over either DDS implementation and both mixed: it ends in time, and every value agrees with the bench's
+// truth.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/system/program_run.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::chrono::seconds demo_limit{90};
+
+nlohmann::json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return nlohmann::json::parse(stream, nullptr, false);
+}
+
+struct Case {
+  std::string preset;
+  std::string dds;
+};
+
+std::string case_name(const testing::TestParamInfo<Case>& info) {
+  std::string name = info.param.preset + "_" + info.param.dds;
+  for (char& letter : name) {
+    letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+  }
+  return name;
+}
+
+// Largest deviation from the truth in standard uncertainties, over all frequencies of all channels excited.
+double worst_deviation(const nlohmann::json& result, const nlohmann::json& truth, std::size_t& compared) {
+  double worst = 0.0;
+  std::map<std::pair<std::string, double>, nlohmann::json> measured;
+  for (const auto& point : result["transfer_function"]) {
+    measured[{point["channel"], point["frequency_hz"]}] = point;
+  }
+  for (const auto& point : truth["transfer_function"]) {
+    const auto found = measured.find({"dau/" + point["channel"].get<std::string>(), point["frequency_hz"]});
+    EXPECT_NE(found, measured.end()) << point;
+    if (found == measured.end()) {
+      continue;
+    }
+    const double phase =
+        std::remainder(found->second["phase_rad"].get<double>() - point["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
+    worst = std::max(worst, std::abs(phase) / found->second["u_phase_rad"].get<double>());
+    const double magnitude = found->second["magnitude"].get<double>() - point["magnitude"].get<double>();
+    worst = std::max(worst, std::abs(magnitude) / found->second["u_magnitude"].get<double>());
+    ++compared;
+  }
+  return worst;
+}
+
+class Demo : public testing::TestWithParam<Case> {};
+
+TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
+  const auto folder = fresh_folder("demo-" + case_name({GetParam(), 0}));
+  ProgramRun demo("dyncal", {"demo", "--preset", GetParam().preset, "--dds", GetParam().dds, "--output", folder / "files"}, folder);
+  const auto status = demo.wait(demo_limit);
+  ASSERT_TRUE(status) << "not ended within " << demo_limit.count() << " s\n" << demo.errors();
+  EXPECT_EQ(*status, 0) << demo.output() << demo.errors();
+
+  const nlohmann::json result = read_json(folder / "files" / "result.json");
+  const nlohmann::json truth = read_json(folder / "files" / "truth.json");
+  ASSERT_FALSE(result.is_discarded());
+  ASSERT_FALSE(truth.is_discarded());
+  std::size_t compared = 0;
+  EXPECT_LE(worst_deviation(result, truth, compared), 4.0);
+  EXPECT_GE(compared, 3U * 7U); // three axes
+  for (const auto& point : result["points"]) {
+    EXPECT_TRUE(point["valid"].get<bool>()) << point;
+    EXPECT_EQ(point["lost"], 0) << point["step"];
+  }
+  ASSERT_EQ(result["sample_clock"].size(), 1U);
+  EXPECT_GT(result["sample_clock"][0]["count"], 10'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllPresetsAndVendors, Demo,
+                         testing::Values(Case{"mpu9250-paper", "fastdds"}, Case{"mpu9250-paper", "cyclonedds"},
+                                         Case{"mpu9250-paper", "dau=cyclonedds,acs=fastdds,analysis=cyclonedds"},
+                                         Case{"mpu9250-ptb", "fastdds"}, Case{"mpu9250-ptb", "cyclonedds"},
+                                         Case{"mpu9250-ptb", "dau=fastdds,acs=cyclonedds,analysis=fastdds,run=cyclonedds"},
+                                         Case{"bma280", "fastdds"}, Case{"bma280", "cyclonedds"},
+                                         Case{"bma280", "dau=fastdds,acs=cyclonedds,analysis=cyclonedds"}),
+                         case_name);
+
+TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
+  const auto folder = fresh_folder("demo-figures");
+  ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
+  ASSERT_EQ(demo.wait(demo_limit), 0) << demo.errors();
+  for (const char* name :
+       {"transfer-function-dau-acceleration_z", "interval-histogram-dau", "interval-over-temperature-dau", "interval-over-time-dau"}) {
+    for (const char* ending : {".svg", ".csv"}) {
+      const auto path = folder / "files" / (std::string(name) + ending);
+      EXPECT_TRUE(std::filesystem::exists(path)) << path;
+      EXPECT_GT(std::filesystem::file_size(path), 500U) << path;
+    }
+  }
+  EXPECT_THAT(demo.output(), HasSubstr("dau/acceleration_z"));
+  EXPECT_THAT(demo.output(), HasSubstr("group delay"));
+  EXPECT_THAT(demo.errors(), HasSubstr("step 51 of 51"));
+}
+
+TEST(DemoFigures, CountsLostAndDoubledDatagramsAndStillAgreesWithTheTruth) {
+  const auto folder = fresh_folder("demo-loss");
+  ProgramRun demo("dyncal", {"demo", "--repetitions", "1", "--loss", "0.02", "--duplicate", "0.02", "--output", folder / "files"}, folder);
+  EXPECT_EQ(demo.wait(demo_limit), 0) << demo.output() << demo.errors();
+  const nlohmann::json result = read_json(folder / "files" / "result.json");
+  ASSERT_FALSE(result.is_discarded());
+  std::uint64_t lost = 0;
+  for (const auto& point : result["points"]) {
+    lost += point["lost"].get<std::uint64_t>();
+  }
+  EXPECT_GT(lost, 0U);
+  EXPECT_GT(result["sample_clock"][0]["lost"], 0);
+}
+
+} // namespace
+} // namespace dyncal::tests

@@ -1,0 +1,45 @@
+// A program of the build as a test runs it: with arguments, a deadline, its outputs in files, and signals.
+// It is killed when the object goes. One thread.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dyncal::tests {
+
+class ProgramRun {
+public:
+  // Starts `program` of the build's folder of programs; its outputs go to files in `folder`.
+  ProgramRun(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  ~ProgramRun();
+  ProgramRun(const ProgramRun&) = delete;
+  ProgramRun& operator=(const ProgramRun&) = delete;
+
+  void send(int signal);
+  // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as 128 + N.
+  std::optional<int> wait(std::chrono::seconds limit);
+  // True as soon as standard error contains the text.
+  bool wait_for_error_text(const std::string& text, std::chrono::seconds limit);
+
+  [[nodiscard]] std::string output() const;
+  [[nodiscard]] std::string errors() const;
+  [[nodiscard]] double seconds() const; // since it was started, until it was seen to end
+
+private:
+  pid_t process_;
+  std::filesystem::path output_;
+  std::filesystem::path errors_;
+  std::chrono::steady_clock::time_point began_;
+  std::optional<std::chrono::steady_clock::time_point> ended_;
+  std::optional<int> status_;
+};
+
+// A fresh folder of this test below the build tree.
+[[nodiscard]] std::filesystem::path fresh_folder(const std::string& name);
+
+} // namespace dyncal::tests

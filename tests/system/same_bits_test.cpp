@@ -1,0 +1,36 @@
+// The same samples give the same bits, whichever DDS implementation carries them.
+#include <gtest/gtest.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+nlohmann::json result_over(const std::filesystem::path& folder, const std::filesystem::path& bench, const std::string& name, int domain,
+                           const std::string& acs, const std::string& analysis, const std::string& run) {
+  Laboratory laboratory(folder, domain);
+  laboratory.start("dyncal-analysis", {}, analysis);
+  laboratory.start("dyncal-acs", {bench}, acs);
+  const std::filesystem::path json = folder / (name + ".json");
+  ProgramRun& command = laboratory.start("dyncal", {"run", bench, "--json", json}, run);
+  EXPECT_EQ(command.wait(std::chrono::seconds(60)), 0) << name << command.output() << command.errors();
+  return read_json(json);
+}
+
+TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsAndOverBoth) {
+  const auto folder = fresh_folder("same-bits");
+  const auto bench = recorded_bench(folder, "files", "3");
+  const auto fast = result_over(folder, bench, "fast", 101, "fastdds", "fastdds", "fastdds");
+  const auto cyclone = result_over(folder, bench, "cyclone", 102, "cyclonedds", "cyclonedds", "cyclonedds");
+  const auto mixed = result_over(folder, bench, "mixed", 103, "cyclonedds", "fastdds", "cyclonedds");
+  ASSERT_FALSE(fast.is_discarded() || cyclone.is_discarded() || mixed.is_discarded());
+  ASSERT_EQ(fast["points"].size(), 18U);
+  EXPECT_EQ(fast["points"], cyclone["points"]);
+  EXPECT_EQ(fast["points"], mixed["points"]);
+  EXPECT_EQ(fast["transfer_function"], cyclone["transfer_function"]);
+  EXPECT_EQ(fast["transfer_function"], mixed["transfer_function"]);
+  EXPECT_EQ(fast["group_delay"], mixed["group_delay"]);
+}
+
+} // namespace
+} // namespace dyncal::tests
