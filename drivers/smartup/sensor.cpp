@@ -38,7 +38,7 @@ bool Sensor::all_stale_before(const DataMessage& message, std::uint64_t missing)
   beginning_.last_stamp_ns = message.stamp_ns();
   if (++beginning_.samples < 3 || beginning_.samples > kLongestBeginning || missing > 0) return false;
   const auto is_pause = [](std::int64_t pause_ns, std::int64_t other_ns) {
-    return pause_ns > kPause_ns && other_ns > 0 && pause_ns > kPauseInSteps * other_ns;
+    return pause_ns > kPause_ns && other_ns > 0 && pause_ns / kPauseInSteps > other_ns;
   };
   return is_pause(step_ns, step_before_ns) || (beginning_.samples == 3 && is_pause(step_before_ns, step_ns));
 }

@@ -23,7 +23,9 @@ constexpr double kResidualMemory = 1.0 / 64.0;
 constexpr double kToleranceInPeriods = 0.25;
 constexpr double kLargestPlainTolerance_ns = 200e3;
 constexpr double kToleranceInUsualResiduals = 10.0;
-constexpr double kPeriodDrift = 2e-5; // relative, while the model runs free
+constexpr double kPeriodDrift = 2e-5;              // relative, while the model runs free
+constexpr double kLargestToleranceInPeriods = 0.5; // more than that is no jitter
+constexpr double kLongestPeriod_ns = 86400e9;
 
 constexpr double kPersistence_ns = 10e9;
 constexpr std::uint64_t kPersistenceSamples = 8;
@@ -56,7 +58,8 @@ double StampCheck::residual_ns(const Stamp& stamp) const {
 double StampCheck::tolerance_ns(const Stamp& stamp) const {
   const double plain = std::min(kToleranceInPeriods * period_ns_, kLargestPlainTolerance_ns);
   const double free_running_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
-  return std::max(plain, kToleranceInUsualResiduals * usual_residual_ns_) + kPeriodDrift * free_running_ns;
+  const double tolerance = std::max(plain, kToleranceInUsualResiduals * usual_residual_ns_) + kPeriodDrift * free_running_ns;
+  return std::min(tolerance, kLargestToleranceInPeriods * period_ns_);
 }
 
 // The period is the median of the founders' steps and the phase the median of their distances from it, so that a fault among them does not
@@ -71,7 +74,7 @@ void StampCheck::found(const Stamp& stamp) {
   }
   period_ns_ = median(periods);
   founder_count_ = 0;
-  if (!(period_ns_ > 0.0)) return;
+  if (!(period_ns_ > 0.0 && period_ns_ < kLongestPeriod_ns)) return;
   origin_ = stamp;
   phase_ns_ = 0.0;
   std::vector<double> residuals;

@@ -3,8 +3,8 @@
 //
 // Model: true stamps lie on t(n) = t0 + n T with a period that drifts slowly; t0 and T follow the trusted stamps with a second-order loop
 // (gains kPhaseGain, kPeriodGain), so that a single early or late sample hardly moves them. The difference r = stamp - t(n) is honest
-// jitter while |r| stays below a tolerance: a quarter of a period up to 200 us, or ten times the usual |r| of this sensor if that is more.
-// Beyond it:
+// jitter while |r| stays below a tolerance: a quarter of a period up to 200 us, or ten times the usual |r| of this sensor if that is more,
+// but never more than half a period. Beyond it:
 //   r = +-k s                          second_slip          second mislabelled
 //   r = +-2^32 ticks (39.768 s)        counter_extension    32-bit extension of the counter
 //   r = +-2^16 ticks (606.8 us)        torn_counter         halves of the counter read at different times

@@ -48,7 +48,10 @@ void EndpointSink::on_description(std::uint32_t sensor, const drivers::SourceDes
 }
 
 void EndpointSink::on_warning(std::uint32_t sensor, const std::string& sentence) {
-  if (const Source* source = source_of(sensor)) lines_.add(true, fmt::format("{}: {}", name_of(source->planned), sentence));
+  for (const auto& [own, source] : sources_) {
+    if (own == sensor || source.planned.settings.sync_sensor == sensor)
+      lines_.add(true, fmt::format("{}: sensor {}: {}", name_of(source.planned), sensor_text(sensor), sentence));
+  }
 }
 
 void EndpointSink::on_new_session(std::uint32_t sensor) {

@@ -198,6 +198,19 @@ TEST_F(ReceptionTest, ASlowSensorHasNoStaleSamples) {
   EXPECT_EQ(sink.samples(kSensor), 12U);
 }
 
+TEST_F(ReceptionTest, StampsOfAnyYearAreOnlyNumbers) {
+  DatagramWriter datagram("DATA");
+  const std::int64_t latest_ns = std::int64_t{UINT32_MAX} * 1'000'000'000 + UINT32_MAX;
+  std::uint32_t n = 0;
+  for (const std::int64_t stamp_ns : {latest_ns, std::int64_t{1}, latest_ns, std::int64_t{1'000'000'000}, latest_ns - 1})
+    datagram.data({.sensor = kSensor, .sample_number = ++n, .stamp_ns = stamp_ns});
+  send(datagram);
+  send_samples(6, 240);
+  const auto counted = counts();
+  EXPECT_EQ(counted.received + counted.stale, 240U);
+  EXPECT_EQ(sink.samples(kSensor), counted.received);
+}
+
 TEST_F(ReceptionTest, TheNumberWrapsWithoutLoss) {
   DatagramWriter datagram("DATA");
   for (std::uint32_t i = 0; i < 12; ++i)

@@ -1,0 +1,84 @@
+// Any bytes at the receiver of SmartUp Units: they may be counted, they may not break anything. The input is a series of datagrams, parted
+// by kSeparator, from two senders in turn. After them the accounts must agree with what was handed on.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "drivers/smartup/reception.hpp"
+
+namespace {
+
+using namespace dyncal::drivers;
+using namespace dyncal::drivers::smartup;
+
+constexpr std::uint32_t kWanted = 0xbccb0100;
+constexpr std::uint32_t kWithSync = 0xbccb0200;
+constexpr std::uint32_t kSync = 0xbccb0a00;
+constexpr std::uint8_t kSeparator[] = {0xf8, 0xf9, 0xfa, 0xfb};
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+class CheckingSink : public SampleSink {
+public:
+  void on_description(std::uint32_t sensor, const SourceDescription& description) override {
+    for (const auto& channel : description.channels)
+      require(!channel.name.empty());
+    channels_[sensor] = description.channels.size();
+  }
+  void on_warning(std::uint32_t, const std::string& sentence) override { require(!sentence.empty()); }
+  void on_new_session(std::uint32_t sensor) override { next_[sensor] = 0; }
+  void on_block(std::uint32_t sensor, SampleBlock block) override {
+    require(block.samples > 0 && block.samples <= 4096);
+    require(block.stamps_ns.size() == block.samples && block.stamp_uncertainty_ns.size() == block.samples);
+    require(block.flags.empty() || block.flags.size() == block.samples);
+    require(!block.values.empty() && block.values.size() % block.samples == 0);
+    require(block.first_sample >= next_[sensor]);
+    next_[sensor] = block.first_sample + block.samples;
+    samples_[sensor] += block.samples;
+  }
+  void on_report(const SensorReport& report) override { counts_[report.sensor] = report.counts; }
+  void on_report(const ReceptionCounts&) override {}
+
+  void check_accounts() {
+    for (const std::uint32_t sensor : {kWanted, kWithSync})
+      require(samples_[sensor] == counts_[sensor].received);
+  }
+
+private:
+  std::map<std::uint32_t, std::size_t> channels_;
+  std::map<std::uint32_t, std::uint64_t> next_;
+  std::map<std::uint32_t, std::uint64_t> samples_;
+  std::map<std::uint32_t, SensorCounts> counts_;
+};
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  CheckingSink sink;
+  std::vector<SensorSettings> wanted(2);
+  wanted[0].sensor = kWanted;
+  wanted[0].naming.names = {{"Data_11", "sync"}};
+  wanted[1].sensor = kWithSync;
+  wanted[1].sync_sensor = kSync;
+  Reception reception(wanted, sink);
+
+  std::span<const std::uint8_t> rest(data, size);
+  HostTime now{1, 1};
+  for (std::uint32_t turn = 0; !rest.empty(); ++turn) {
+    const auto end = std::search(rest.begin(), rest.end(), std::begin(kSeparator), std::end(kSeparator));
+    const auto length = static_cast<std::size_t>(end - rest.begin());
+    reception.take(rest.first(length), {0x7f000001, static_cast<std::uint16_t>(turn % 5 == 4 ? 2 : 1)}, now);
+    rest = rest.subspan(std::min(rest.size(), length + sizeof kSeparator));
+    now.monotonic_ns += 40'000'000;
+    now.utc_ns += 40'000'000;
+    if (turn % 2 == 0) reception.tick(now);
+  }
+  reception.finish(now);
+  sink.check_accounts();
+  return 0;
+}
