@@ -66,14 +66,11 @@ std::string TomlTable::where(const std::string& key) const {
   return fmt::format("{}:{}", file_, std::max(region.begin.line, toml::source_index{1}));
 }
 
-void TomlTable::record(const std::string& place, const std::string& sentence) {
-  if (problem_.empty()) {
-    problem_ = fmt::format("{}: {}", place, sentence);
-  }
-}
-
 void TomlTable::refuse(const std::string& key, const std::string& what) {
-  record(where(key), fmt::format("key '{}' {}", full_name(key), what));
+  std::string& place = has(key) ? problem_ : about_absent_key_;
+  if (place.empty()) {
+    place = fmt::format("{}: key '{}' {}", where(key), full_name(key), what);
+  }
 }
 
 std::string TomlTable::required_text(const std::string& key) {
@@ -249,8 +246,10 @@ void TomlTable::finish() {
     if (!known_.contains(key)) {
       const std::string hint = nearest(key, known_);
       refuse(key, hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
-      return;
     }
+  }
+  if (problem_.empty()) {
+    problem_ = about_absent_key_;
   }
 }
 

@@ -36,22 +36,22 @@ public:
   [[nodiscard]] const toml::node* node(const std::string& key);
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  // Refuses keys that were not asked for.
+  // Refuses keys that were not asked for; then what was said of keys that are not there, which a misspelt one may explain.
   void finish();
-  // Records "FILE:LINE: key 'table.key' <what>" unless there is a problem already.
+  // Records "FILE:LINE: key 'table.key' <what>" unless there is a problem already; at `finish` if the key is not there.
   void refuse(const std::string& key, const std::string& what);
   [[nodiscard]] std::string where(const std::string& key) const; // "FILE:LINE"
 
 private:
   [[nodiscard]] const toml::node* find(const std::string& key);
   [[nodiscard]] std::string full_name(const std::string& key) const;
-  void record(const std::string& place, const std::string& sentence);
 
   const toml::table& table_;
   std::string name_;
   std::string file_;
   std::string& problem_;
   std::set<std::string> known_;
+  std::string about_absent_key_; // the first sentence that `finish` is to record
 };
 
 } // namespace dyncal::services

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 constexpr std::chrono::seconds limit{10};
-constexpr int domain = 105;
+constexpr int domain = 94;
 
 std::filesystem::path write(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path) << text;

@@ -6,7 +6,7 @@
 namespace dyncal::tests {
 namespace {
 
-constexpr int domain = 104;
+constexpr int domain = 93;
 
 TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
   const auto folder = fresh_folder("two-benches");
