@@ -15,15 +15,13 @@
 // a channel under calibration may be without excitation, its phase then has an uncertainty up to pi / sqrt(3).
 #pragma once
 
-#include <complex>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "analysis/error.hpp"
 #include "analysis/frequency.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/transfer_point.hpp"
 
 namespace dyncal::analysis {
 
@@ -43,12 +41,6 @@ struct SystematicUncertainty { // standard uncertainties that no residual shows
   double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync, which its stamp does not show
 };
 
-struct ChannelSamples {
-  std::string name;
-  std::span<const double> values;
-  double resolution = 0.0; // one quantisation step; 0: none
-};
-
 struct SampleStampingInput {
   Frequency frequency;                // nominal
   double frequency_search_rel = 1e-3; // 0: the frequency is known exactly in both clocks and not refined
@@ -60,33 +52,6 @@ struct SampleStampingInput {
   std::vector<ChannelSamples> dut{}; // one result each
   AdcResponse adc{};
   SystematicUncertainty systematic{};
-};
-
-struct Contribution { // one line of the uncertainty budget; standard uncertainties
-  std::string name;
-  std::string distribution;        // "normal", "rectangular", ...
-  double degrees_of_freedom = 0.0; // 0: infinite
-  double u_magnitude_rel = 0.0;
-  double u_phase_rad = 0.0;
-};
-
-struct SeriesFit { // what was fitted to one of the four series
-  std::string series;
-  Frequency frequency;
-  double u_frequency_hz = 0.0;
-  std::int64_t reference_ns = 0;
-  SineFit fit;
-};
-
-struct TransferPoint {
-  std::string channel{};
-  std::complex<double> h{};
-  double magnitude = 0.0;
-  double u_magnitude = 0.0;
-  double phase_rad = 0.0; // (-pi, pi]
-  double u_phase_rad = 0.0;
-  std::vector<Contribution> budget{};
-  SeriesFit dut;
 };
 
 struct SampleStampingResult {

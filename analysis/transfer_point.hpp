@@ -1,0 +1,52 @@
+// What goes into an evaluation and what comes out of it, the same for every method: recorded channels, fitted series, one value of the
+// transfer function with its uncertainty budget.
+//
+// H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties; those of a budget row are already
+// multiplied by their sensitivity, so that rows add in squares (what is correlated was combined before it became a row).
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/frequency.hpp"
+#include "analysis/sine_fit.hpp"
+
+namespace dyncal::analysis {
+
+struct ChannelSamples {
+  std::string name;
+  std::span<const double> values;
+  double resolution = 0.0; // one quantisation step; 0: none
+};
+
+struct Contribution { // one line of the uncertainty budget; standard uncertainties
+  std::string name;
+  std::string distribution;        // "normal", "rectangular", ...
+  double degrees_of_freedom = 0.0; // 0: infinite
+  double u_magnitude_rel = 0.0;
+  double u_phase_rad = 0.0;
+};
+
+struct SeriesFit { // what was fitted to one of the four series
+  std::string series;
+  Frequency frequency;
+  double u_frequency_hz = 0.0;
+  std::int64_t reference_ns = 0;
+  SineFit fit;
+};
+
+struct TransferPoint {
+  std::string channel{};
+  std::complex<double> h{};
+  double magnitude = 0.0;
+  double u_magnitude = 0.0;
+  double phase_rad = 0.0; // (-pi, pi]
+  double u_phase_rad = 0.0;
+  std::vector<Contribution> budget{};
+  SeriesFit dut;
+};
+
+} // namespace dyncal::analysis
