@@ -26,6 +26,8 @@ test_packages=(
   clang-14 libclang-rt-14-dev                  # libFuzzer
   nftables iproute2                            # packet loss between network namespaces
   python3-numpy python3-scipy python3-mpmath   # independent reference values
+  python3-canmatrix                            # independent DBC decoder
+  user-mode-linux busybox-static can-utils     # a kernel with CAN for the CAN tests, where this one has none
 )
 
 wanted=()

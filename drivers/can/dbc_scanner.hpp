@@ -1,0 +1,57 @@
+// Reads the words, numbers and strings of a DBC file one after the other, and knows the line it is in.
+//
+// Every reader passes over white space first and leaves the place unchanged when what stands there is not what was asked for. White space
+// separates; line ends mean nothing but to `same_line`. Belongs to one thread; the text must outlive it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace dyncal::drivers::can {
+
+class DbcScanner {
+public:
+  explicit DbcScanner(std::string_view text) : text_(text) {}
+
+  [[nodiscard]] bool at_end();
+  [[nodiscard]] std::size_t line() const { return line_; } // of the next character that was not read, from 1
+  // Whether what comes next stands in the line in which the last thing ended.
+  [[nodiscard]] bool same_line();
+  [[nodiscard]] bool next_is(char character);
+
+  bool character(char wanted);
+  // Letters, digits and whatever else names hold: all but white space and the signs of the grammar.
+  std::optional<std::string> name();
+  std::optional<std::uint64_t> unsigned_integer();
+  // Decimal with optional sign, fraction and exponent; not infinite.
+  std::optional<double> number();
+  // Between double quotes, over line ends; \" is a quote within it.
+  std::optional<std::string> string();
+
+  // To behind the next ';' outside strings, or to the end.
+  void skip_statement();
+  void skip_line();
+
+  struct Place {
+    std::size_t at;
+    std::size_t line;
+    std::size_t last_line;
+  };
+  [[nodiscard]] Place place() const { return {at_, line_, last_line_}; }
+  void go_back(Place place);
+
+  // What stands next, for messages: at most a dozen characters.
+  [[nodiscard]] std::string next_text();
+
+private:
+  void skip_space();
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+  std::size_t last_line_ = 1; // in which the last thing that was read ended
+};
+
+} // namespace dyncal::drivers::can

@@ -1,0 +1,32 @@
+// A frame source whose events were written down beforehand, with their own stamps: for tests and for logs. Gives them in order, `batch` at
+// a time, then says that it has ended. Same rules of threads as FrameSource.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "drivers/can/frame_source.hpp"
+
+namespace dyncal::drivers::can {
+
+class ScriptedSource : public FrameSource {
+public:
+  ScriptedSource(LinkState link, std::vector<BusEvent> events, std::size_t batch = 64)
+      : link_(std::move(link)), events_(std::move(events)), batch_(batch) {}
+
+  [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
+  [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) override;
+  void stop() override { stopped_ = true; }
+
+private:
+  LinkState link_;
+  std::vector<BusEvent> events_;
+  std::size_t batch_;
+  std::size_t next_ = 0;
+  std::vector<FrameFilter> filters_;
+  std::atomic<bool> stopped_ = false;
+};
+
+} // namespace dyncal::drivers::can
