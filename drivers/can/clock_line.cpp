@@ -20,8 +20,7 @@ void ClockLine::append(std::vector<Point>& hull, Point point) {
     return (b.difference_s - a.difference_s) * (c.free_s - a.free_s) >= (c.difference_s - a.difference_s) * (b.free_s - a.free_s);
   };
   if (!hull.empty() && point.free_s == hull.back().free_s) {
-    if (point.difference_s >= hull.back().difference_s)
-      return;
+    if (point.difference_s >= hull.back().difference_s) return;
     hull.pop_back();
   }
   while (hull.size() >= 2 && above_chord(hull[hull.size() - 2], hull.back(), point))
@@ -39,7 +38,8 @@ bool ClockLine::stepped(const Point& point) {
 }
 
 bool ClockLine::add(std::int64_t free_ns, std::int64_t host_ns) {
-  if (!chunks_.empty()) {
+  const bool begun = !chunks_.empty();
+  if (begun) {
     const Point point{static_cast<double>(free_ns - free_zero_ns_) * 1e-9,
                       static_cast<double>((host_ns - host_zero_ns_) - (free_ns - free_zero_ns_)) * 1e-9};
     if (!stepped(point)) {
@@ -62,7 +62,7 @@ bool ClockLine::add(std::int64_t free_ns, std::int64_t host_ns) {
   host_zero_ns_ = host_ns;
   newest_free_s_ = 0.0;
   chunks_.push_back({0.0, 0.0, 1, {{0.0, 0.0}}});
-  return restarts_ == 0;
+  return !begun;
 }
 
 ClockLine::Line ClockLine::line_below(std::size_t first_chunk, std::size_t stride) const {

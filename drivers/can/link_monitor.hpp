@@ -1,0 +1,52 @@
+// What the kernel says about one network interface, by rtnetlink: whether it is there, up, connected, and for a CAN controller its state,
+// error counters, bit rates; and the two changes that a driver may need: restart after bus-off, down and up.
+//
+// The interface is known by the name it had at open(); when the kernel renames it, it is followed under its new name, until it goes; then
+// the first name is waited for again. open() in one thread, everything else in one thread too. The descriptor becomes readable when
+// update() has something to read.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "drivers/can/file_descriptor.hpp"
+#include "drivers/can/frame_source.hpp"
+#include "drivers/error.hpp"
+
+namespace dyncal::drivers::can {
+
+class LinkMonitor {
+public:
+  [[nodiscard]] static Expected<LinkMonitor> open(const std::string& interface_name);
+
+  [[nodiscard]] int descriptor() const { return socket_.get(); }
+  [[nodiscard]] const LinkState& state() const { return state_; }
+  [[nodiscard]] int interface_index() const { return index_; } // 0: not there
+
+  // Reads what has come. True when the state has changed.
+  [[nodiscard]] Expected<bool> update();
+  // Asks the kernel now, for what it does not announce by itself (error counters).
+  [[nodiscard]] Expected<bool> ask();
+
+  // After bus-off. Fails (refused) without CAP_NET_ADMIN or where the driver cannot.
+  [[nodiscard]] Expected<void> restart_controller();
+  [[nodiscard]] Expected<void> set_up(bool up);
+
+private:
+  LinkMonitor(std::string name, FileDescriptor socket) : wanted_name_(std::move(name)), socket_(std::move(socket)) {
+    state_.name = wanted_name_;
+  }
+
+  [[nodiscard]] Expected<void> request_links();
+  [[nodiscard]] Expected<bool> read_messages(bool wait_for_answer);
+  void take_message(const void* header);
+  [[nodiscard]] Expected<void> change(const void* request, const std::string& what);
+
+  std::string wanted_name_;
+  FileDescriptor socket_;
+  LinkState state_;
+  int index_ = 0;
+};
+
+} // namespace dyncal::drivers::can

@@ -1,0 +1,136 @@
+// From the events of a bus to the time-stamped samples of one sensor: decoding, joining, numbering, timing, gaps.
+//
+// Stamps are UTC by the host's clock and mark the start of the sample's first frame, for canopen-sync the end of the SYNC frame. With a
+// counter or a time field they are taken from the line between the sensor's clock and the frames' starts, which leaves out what a frame had
+// to wait for the bus. Samples wait until that line has settled. Numbers: by the counter or time field where there is one, so that every
+// lost sample shows as a gap of just its size; otherwise by arrival, with gaps by the nominal rate where it is known and by the frames that
+// the socket has dropped. After an interruption of the link there is always a gap. Nothing is ever filled. A signal that a frame does not
+// have gives NaN. Belongs to one thread; the DBC file is copied.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/can/dbc.hpp"
+#include "drivers/can/frame_source.hpp"
+#include "drivers/can/frame_timer.hpp"
+#include "drivers/can/message_index.hpp"
+#include "drivers/can/sample_joiner.hpp"
+#include "drivers/can/sensor_layout.hpp"
+#include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/wrapping_counter.hpp"
+#include "drivers/error.hpp"
+#include "drivers/sample_block.hpp"
+
+namespace dyncal::drivers::can {
+
+class SampleSink {
+public:
+  virtual ~SampleSink() = default;
+  // Before the first block, and again when it is known better.
+  virtual void describe(const SourceDescription& description) = 0;
+  // The sensor or its clock has started anew: sample numbers begin again.
+  virtual void restart() = 0;
+  virtual void take(SampleBlock block) = 0;
+};
+
+struct SensorCounts {
+  std::uint64_t frames = 0;                    // of the sensor's messages
+  std::uint64_t samples = 0;                   // given on
+  std::uint64_t lost = 0;                      // samples that the numbers say are missing
+  std::uint64_t dropped_frames = 0;            // by the socket
+  std::uint64_t incomplete = 0;                // samples of which a frame did not come
+  std::uint64_t repeated = 0;                  // frames that came twice
+  std::uint64_t rejected = 0;                  // frames too short for their counter, of a rate that is not known, samples without SYNC
+  std::uint64_t short_frames = 0;              // frames that lack a signal; its value is NaN
+  std::uint64_t no_value = 0;                  // J1939 "not available" and "error"
+  std::uint64_t not_trusted = 0;               // samples given on with a flag
+  std::uint64_t interruptions = 0;             // of the link
+  std::uint64_t restarts = 0;                  // of the sensor's numbering
+  std::uint64_t clock_restarts = 0;            // of a line between clocks
+  std::map<std::string, std::uint64_t> faults; // error frames by cause
+};
+
+class SensorStream {
+public:
+  // Fails when the settings do not fit the DBC file or the link (no bit rate is known).
+  [[nodiscard]] static Expected<std::unique_ptr<SensorStream>> create(SensorSettings settings, DbcFile dbc);
+
+  [[nodiscard]] std::vector<FrameFilter> filters() const;
+  // Once, before the first event.
+  [[nodiscard]] Expected<void> begin(const LinkState& link, SampleSink& sink);
+  // Fails when the sensor's frames lack what the settings demand (hardware stamps).
+  [[nodiscard]] Expected<void> take(const BusEvent& event, SampleSink& sink);
+  // Gives on the block that is being filled: when nothing has come for a while.
+  void flush(SampleSink& sink);
+  // Also gives on the samples that wait for their time, with the flag that their stamp is not trusted. At the end.
+  void finish(SampleSink& sink);
+
+  [[nodiscard]] SensorCounts counts() const;
+  [[nodiscard]] const LinkState& link() const { return link_; }
+  [[nodiscard]] TimeSource time_source() const { return time_source_; }
+  [[nodiscard]] double u_stamp_s() const;
+
+private:
+  struct Waiting {
+    std::uint64_t number = 0;
+    std::int64_t key = 0; // unwrapped
+    CanFrame timed;       // whose time counts: the first message's, or the SYNC
+    std::int64_t base_ns = 0;
+    std::vector<double> values;
+  };
+
+  SensorStream(SensorSettings settings, DbcFile dbc);
+
+  Expected<void> take_frame(const CanFrame& frame, SampleSink& sink);
+  void take_change(const LinkChange& change);
+  void take_fault(const BusFault& fault);
+  void choose_time_source(const CanFrame& first, SampleSink& sink);
+  void complete(JoinedSample joined, SampleSink& sink);
+  [[nodiscard]] bool number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample, SampleSink& sink);
+  void number_by_arrival(const CanFrame& head, Waiting& sample);
+  void decode(const JoinedSample& joined, std::vector<double>& values);
+  void resolve(SampleSink& sink, bool at_any_rate);
+  void give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
+  [[nodiscard]] std::int64_t free_ns(std::int64_t key) const;
+  [[nodiscard]] bool follows_sensor_clock() const;
+  [[nodiscard]] SourceDescription description() const;
+
+  SensorSettings settings_;
+  std::shared_ptr<const DbcFile> dbc_;
+  SensorLayout layout_;
+  std::optional<MessageIndex> index_;
+  LinkState link_;
+  TimeSource time_source_ = TimeSource::kernel_stamp;
+  bool time_source_known_ = false;
+  double u_utc_s_ = 0.0;
+
+  SampleJoiner joiner_{1};
+  std::optional<WrappingCounter> counter_;
+  std::optional<FrameTimer> timer_;
+  ClockLine key_line_;
+  std::optional<CanFrame> sync_;
+  bool sync_used_ = false;
+
+  std::optional<std::uint64_t> last_number_;
+  std::int64_t last_arrival_ns_ = 0;
+  std::int64_t last_key_ = 0;
+  std::uint64_t frames_dropped_since_ = 0;
+  bool interrupted_ = false;
+
+  std::deque<Waiting> for_bus_time_;    // until the adapter's clock is known
+  std::deque<Waiting> for_sensor_time_; // until the sensor's clock is known
+  SampleBlock block_;
+  std::uint64_t next_number_ = 0;
+  std::optional<std::int64_t> last_stamp_ns_;
+  std::vector<double> rows_; // values sample after sample, until the block is given on
+  std::int64_t last_kernel_ns_ = 0;
+  SensorCounts counts_;
+};
+
+} // namespace dyncal::drivers::can
