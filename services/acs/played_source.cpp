@@ -20,29 +20,6 @@ Error named(const SourceSettings& settings, const drivers::Error& error) {
   return {code, fmt::format("source '{}': {}", settings.name, error.message)};
 }
 
-Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSettings& settings) {
-  if (settings.driver == SourceDriver::socket) {
-    drivers::acs::SocketSettings socket;
-    socket.address = settings.address;
-    return std::make_unique<drivers::acs::SocketAcs>(std::move(socket));
-  }
-  drivers::acs::FileSettings file;
-  file.path = settings.path;
-  file.speed = settings.play_speed;
-  file.channels = settings.channels;
-  file.units = settings.units;
-  file.time_base = settings.time_base;
-  if (settings.sample_rate_hz) {
-    file.sample_rate = drivers::acs::sample_rate_from_hz(*settings.sample_rate_hz);
-    if (!file.sample_rate) {
-      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
-                                                                       "1e-6 and 1e9 Hz with at most nine decimals",
-                                                                       settings.name, *settings.sample_rate_hz)});
-    }
-  }
-  return std::make_unique<drivers::acs::FileSource>(std::move(file));
-}
-
 Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver, const SourceSettings& settings,
                                               const std::stop_token& stop) {
   const std::stop_callback stop_driver(stop, [&driver] { driver.stop(); });
@@ -115,6 +92,29 @@ private:
 };
 
 } // namespace
+
+Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSettings& settings) {
+  if (settings.driver == SourceDriver::socket) {
+    drivers::acs::SocketSettings socket;
+    socket.address = settings.address;
+    return std::make_unique<drivers::acs::SocketAcs>(std::move(socket));
+  }
+  drivers::acs::FileSettings file;
+  file.path = settings.path;
+  file.speed = settings.play_speed;
+  file.channels = settings.channels;
+  file.units = settings.units;
+  file.time_base = settings.time_base;
+  if (settings.sample_rate_hz) {
+    file.sample_rate = drivers::acs::sample_rate_from_hz(*settings.sample_rate_hz);
+    if (!file.sample_rate) {
+      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
+                                                                       "1e-6 and 1e9 Hz with at most nine decimals",
+                                                                       settings.name, *settings.sample_rate_hz)});
+    }
+  }
+  return std::make_unique<drivers::acs::FileSource>(std::move(file));
+}
 
 SourceKind kind_of(const MethodSettings& method, const std::string& source) {
   if (source == method.reference.source || source == method.sync_acs.source) {

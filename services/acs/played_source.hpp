@@ -37,6 +37,10 @@ private:
   drivers::SourceDescription description_;
 };
 
+// The driver of a source of a bench file whose driver is "socket" or "file", not opened yet. Fails (bad_argument) with settings that cannot
+// be.
+[[nodiscard]] Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSettings& settings);
+
 // DAU for the source of the role sync_dau (and of the sensor's channels where there is no such role), ACS for the others.
 [[nodiscard]] SourceKind kind_of(const MethodSettings& method, const std::string& source);
 

@@ -1,7 +1,10 @@
 // dyncal: the command for people.
 #include <CLI/CLI.hpp>
 
+#include "services/command/analyse_command.hpp"
 #include "services/command/demo_command.hpp"
+#include "services/command/fit_command.hpp"
+#include "services/command/intervals_command.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/watch_command.hpp"
 
@@ -42,15 +45,63 @@ void add_watch(CLI::App& app, WatchCommand& watch) {
   add_network_options(*command, watch.network);
 }
 
-int execute(const CLI::App& app, const RunCommand& run, const DemoCommand& demo, const WatchCommand& watch) {
+void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
+  CLI::App* command = app.add_subcommand("analyse", "evaluate the file sources of a bench file, without the network");
+  command->add_option("BENCH.toml", analyse.bench_file, "bench file")->required();
+  command->add_option("--json", analyse.json, "write the result to this file as JSON");
+  command->add_option("--figures", analyse.figures, "write figures (SVG and CSV) into this folder");
+}
+
+void add_fit(CLI::App& app, FitCommand& fit) {
+  CLI::App* command = app.add_subcommand("fit", "one sine approximation of a recorded series, for checking");
+  command->add_option("DATA.csv", fit.file, "header line, column t_ns, further columns")->required();
+  command->add_option("--frequency", fit.frequency, "in Hz, decimal text (default: estimated as fourth parameter)");
+  command->add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
+  command->add_option("--reference-time", fit.reference_time_ns, "in ns, of the phase (default: the first stamp)");
+  command->add_option("--drift", fit.drift, "highest power of a drift beside the sine")->check(CLI::Range(0, 8));
+  command->add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")->check(CLI::Range(1, 50));
+  command->add_option("--hum", fit.hum, "frequency of a further line in Hz (repeatable)");
+  command->add_option("--nominal-rate", fit.nominal_rate_hz, "take stamps of this rate in Hz in place of the file's")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", fit.json, "print JSON");
+}
+
+void add_intervals(CLI::App& app, IntervalsCommand& intervals) {
+  CLI::App* command = app.add_subcommand("intervals", "sample intervals of a recorded series: statistics and events");
+  command->add_option("DATA.csv", intervals.file, "header line, column t_ns")->required();
+  command->add_option("--temperature", intervals.temperature, "column with the sensor's temperature");
+  command->add_option("--tick", intervals.tick_s, "of the counter that made the stamps, in seconds")->check(CLI::PositiveNumber);
+  command->add_option("--nominal-rate", intervals.nominal_rate_hz, "in Hz")->check(CLI::PositiveNumber);
+  command->add_flag("--json", intervals.json, "print JSON");
+}
+
+struct Commands {
+  AnalyseCommand analyse;
+  DemoCommand demo;
+  FitCommand fit;
+  IntervalsCommand intervals;
+  RunCommand run;
+  WatchCommand watch;
+};
+
+int execute(const CLI::App& app, const Commands& commands) {
+  if (app.got_subcommand("fit")) {
+    return run_fit(commands.fit);
+  }
+  if (app.got_subcommand("intervals")) {
+    return run_intervals(commands.intervals);
+  }
   const std::stop_token stop = stop_on_signals();
+  if (app.got_subcommand("analyse")) {
+    return run_analyse(commands.analyse, stop);
+  }
   if (app.got_subcommand("demo")) {
-    return run_demo(demo, stop);
+    return run_demo(commands.demo, stop);
   }
   if (app.got_subcommand("watch")) {
-    return run_watch(watch, stop);
+    return run_watch(commands.watch, stop);
   }
-  const auto outcome = conduct_run(run, stop);
+  const auto outcome = conduct_run(commands.run, stop);
   return outcome ? conclude(*outcome) : fail(outcome.error());
 }
 
@@ -59,13 +110,14 @@ int execute(const CLI::App& app, const RunCommand& run, const DemoCommand& demo,
 int main(int argc, char** argv) {
   CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS."};
   app.require_subcommand(1);
-  RunCommand run;
-  DemoCommand demo;
-  WatchCommand watch;
-  add_run(app, run);
-  add_demo(app, demo);
-  add_watch(app, watch);
+  Commands commands;
+  add_demo(app, commands.demo);
+  add_run(app, commands.run);
+  add_watch(app, commands.watch);
+  add_analyse(app, commands.analyse);
+  add_fit(app, commands.fit);
+  add_intervals(app, commands.intervals);
   CLI11_PARSE(app, argc, argv);
   set_up_log("dyncal");
-  return execute(app, run, demo, watch);
+  return execute(app, commands);
 }

@@ -25,13 +25,6 @@ std::string run_from_time() {
   return std::string(text.data(), std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc));
 }
 
-Expected<std::vector<analysis::AdcCalibrationPoint>> adc_calibration(const BenchFile& bench) {
-  if (!bench.corrections.adc) {
-    return std::vector<analysis::AdcCalibrationPoint>{};
-  }
-  return read_adc_file(*bench.corrections.adc);
-}
-
 std::size_t steps_with_a_result(const RunOutcome& outcome) {
   std::set<std::uint32_t> steps;
   for (const CalibrationResult& result : outcome.results) {
@@ -44,12 +37,39 @@ std::size_t steps_with_a_result(const RunOutcome& outcome) {
 
 } // namespace
 
+Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
+  if (!bench.corrections.adc) {
+    return std::vector<analysis::AdcCalibrationPoint>{};
+  }
+  return read_adc_file(*bench.corrections.adc);
+}
+
+Expected<void> show_outcome(const RunOutcome& outcome, const std::optional<std::filesystem::path>& json,
+                            const std::optional<std::filesystem::path>& figures) {
+  fmt::print("bench {}, run {}{}\n", outcome.measurement.bench().c_str(), outcome.measurement.run().c_str(), result_table(outcome));
+  if (json) {
+    if (const auto written = write_json(*json, result_json(outcome)); !written) {
+      return tl::unexpected(written.error());
+    }
+  }
+  if (figures) {
+    const auto written = write_figures(outcome, *figures);
+    if (!written) {
+      return tl::unexpected(written.error());
+    }
+    for (const std::filesystem::path& path : *written) {
+      fmt::print("wrote {}\n", path.string());
+    }
+  }
+  return {};
+}
+
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
     return tl::unexpected(bench.error());
   }
-  const auto adc = adc_calibration(*bench);
+  const auto adc = read_adc_calibration(*bench);
   if (!adc) {
     return tl::unexpected(adc.error());
   }
@@ -71,20 +91,8 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   if (!outcome) {
     return outcome;
   }
-  fmt::print("bench {}, run {}{}\n", outcome->measurement.bench().c_str(), outcome->measurement.run().c_str(), result_table(*outcome));
-  if (command.json) {
-    if (const auto written = write_json(*command.json, result_json(*outcome)); !written) {
-      return tl::unexpected(written.error());
-    }
-  }
-  if (command.figures) {
-    const auto written = write_figures(*outcome, *command.figures);
-    if (!written) {
-      return tl::unexpected(written.error());
-    }
-    for (const std::filesystem::path& path : *written) {
-      fmt::print("wrote {}\n", path.string());
-    }
+  if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
+    return tl::unexpected(shown.error());
   }
   return outcome;
 }

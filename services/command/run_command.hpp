@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "services/command/run_controller.hpp"
 #include "services/program/program.hpp"
@@ -22,6 +23,13 @@ struct RunCommand {
 
 // Does the run and prints; the outcome is for callers that look further into it.
 [[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop);
+
+// The points of the ADC calibration that the bench file names; none when it names none.
+[[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench);
+
+// Prints the table and writes the files asked for.
+[[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome, const std::optional<std::filesystem::path>& json,
+                                          const std::optional<std::filesystem::path>& figures);
 
 // The exit status and, unless 0, one line on standard error.
 [[nodiscard]] int conclude(const RunOutcome& outcome);

@@ -1,0 +1,21 @@
+// `dyncal analyse BENCH.toml`: the same evaluation as a live run, from the bench file's file sources, without the network.
+//
+// Files are read in threads of their own, a bounded stretch ahead; the evaluation runs in the caller's thread. All have ended when it
+// returns. Fails like `dyncal run`: a file with an error is named with its line, a source that is no file is refused.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+
+namespace dyncal::services {
+
+struct AnalyseCommand {
+  std::filesystem::path bench_file;
+  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> figures;
+};
+
+[[nodiscard]] int run_analyse(const AnalyseCommand& command, const std::stop_token& stop);
+
+} // namespace dyncal::services

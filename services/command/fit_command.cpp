@@ -1,0 +1,178 @@
+#include "services/command/fit_command.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "analysis/frequency_estimate.hpp"
+#include "analysis/sine_fit.hpp"
+#include "analysis/sine_fit_extended.hpp"
+#include "services/command/series_file.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// The estimate is good to this many bins 1/T (analysis/frequency_estimate.hpp).
+constexpr double estimate_bins = 1.5;
+
+struct Fit {
+  analysis::Frequency frequency = analysis::Frequency::from_hz(1.0); // until it is known
+  std::optional<double> u_frequency_hz;
+  std::int64_t reference_ns = 0;
+  std::vector<std::string> names;
+  std::vector<analysis::SineFit> fits;
+};
+
+Error at(const FitCommand& command, const analysis::Error& error) {
+  return {ErrorCode::bad_file, fmt::format("{}: {}", command.file.string(), error.message)};
+}
+
+Expected<std::vector<std::span<const double>>> chosen_columns(const FitCommand& command, const SeriesFile& series,
+                                                              std::vector<std::string>& names) {
+  names = command.columns.empty() ? series.names : command.columns;
+  std::vector<std::span<const double>> columns;
+  for (const std::string& name : names) {
+    const auto column = series.column(name);
+    if (!column) {
+      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("{}: there is no column '{}'; the columns are: {}",
+                                                                       command.file.string(), name, fmt::join(series.names, ", "))});
+    }
+    columns.emplace_back(series.columns[*column]);
+  }
+  return columns;
+}
+
+// The stamps of the nominal rate: what a sensor's user without time stamps would assume.
+void replace_stamps(double rate_hz, std::vector<std::int64_t>& stamps_ns) {
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / rate_hz);
+  }
+}
+
+analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) {
+  analysis::ExtendedBasis basis;
+  basis.drift_order = command.drift;
+  basis.highest_harmonic = command.harmonics;
+  for (const std::string& text : command.hum) {
+    const auto line = analysis::Frequency::parse(text);
+    if (!line) {
+      return tl::unexpected(line.error());
+    }
+    basis.lines.push_back(*line);
+  }
+  return basis;
+}
+
+analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesFile& series,
+                                        const std::vector<std::span<const double>>& columns, Fit& fit) {
+  if (!command.frequency.empty()) {
+    return analysis::Frequency::parse(command.frequency).map([&](const analysis::Frequency& frequency) { fit.frequency = frequency; });
+  }
+  const auto start = analysis::estimate_frequency(series.stamps_ns, columns);
+  if (!start) {
+    return tl::unexpected(start.error());
+  }
+  const double duration_s = static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
+  const double search_rel = std::min(estimate_bins / (start->hz() * duration_s), 0.9);
+  return analysis::fit_sine_and_frequency(*start, search_rel, fit.reference_ns, series.stamps_ns, columns)
+      .map([&](analysis::FrequencyFit found) {
+        fit.frequency = found.frequency;
+        fit.u_frequency_hz = found.u_frequency_hz;
+        fit.fits = std::move(found.channels);
+      });
+}
+
+analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile& series,
+                                     const std::vector<std::span<const double>>& columns, Fit& fit) {
+  const auto basis = basis_of(command);
+  if (!basis) {
+    return tl::unexpected(basis.error());
+  }
+  if (basis->drift_order == 0 && basis->highest_harmonic <= 1 && basis->lines.empty()) {
+    if (!fit.fits.empty()) {
+      return {};
+    }
+    return analysis::fit_sine(fit.frequency, fit.reference_ns, series.stamps_ns, columns).map([&](auto fits) {
+      fit.fits = std::move(fits);
+    });
+  }
+  return analysis::fit_sine_extended(fit.frequency, *basis, analysis::Weighting::none, fit.reference_ns, series.stamps_ns, columns)
+      .map([&](const std::vector<analysis::ExtendedFit>& fits) {
+        fit.fits.clear();
+        for (const analysis::ExtendedFit& one : fits) {
+          fit.fits.push_back(one.fundamental);
+        }
+      });
+}
+
+void print_json(const Fit& fit) {
+  nlohmann::ordered_json columns = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const analysis::SineFit& one = fit.fits[i];
+    columns[fit.names[i]] = {{"A_sin", one.sine},
+                             {"B_cos", one.cosine},
+                             {"C", one.offset},
+                             {"u_A", std::sqrt(one.covariance[0])},
+                             {"u_B", std::sqrt(one.covariance[3])},
+                             {"u_C", std::sqrt(one.covariance[5])},
+                             {"amplitude", one.amplitude()},
+                             {"phase_rad", one.phase_rad()},
+                             {"u_amplitude", one.u_amplitude()},
+                             {"u_phase_rad", one.u_phase_rad()},
+                             {"rss", one.rss},
+                             {"samples", one.samples}};
+  }
+  nlohmann::ordered_json json{{"frequency_hz", fit.frequency.hz()}};
+  if (fit.u_frequency_hz) {
+    json["u_frequency_hz"] = *fit.u_frequency_hz;
+  }
+  json["reference_time_ns"] = fit.reference_ns;
+  json["columns"] = std::move(columns);
+  fmt::print("{}\n", json.dump(1));
+}
+
+void print_table(const Fit& fit) {
+  fmt::print("frequency {} Hz{}, reference time {} ns\n", fit.frequency.hz(),
+             fit.u_frequency_hz ? fmt::format(" (u {:.1e} Hz)", *fit.u_frequency_hz) : "", fit.reference_ns);
+  fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10}\n", "column", "amplitude", "u", "phase / rad", "u / rad", "offset",
+             "samples");
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const analysis::SineFit& one = fit.fits[i];
+    fmt::print("{:>20} {:>16.9g} {:>10.1e} {:>16.9f} {:>10.1e} {:>14.6g} {:>10}\n", fit.names[i], one.amplitude(), one.u_amplitude(),
+               one.phase_rad(), one.u_phase_rad(), one.offset, one.samples);
+  }
+}
+
+} // namespace
+
+int run_fit(const FitCommand& command) {
+  auto series = read_series_file(command.file);
+  if (!series) {
+    return fail(series.error());
+  }
+  Fit fit;
+  if (command.nominal_rate_hz) {
+    replace_stamps(*command.nominal_rate_hz, series->stamps_ns);
+  }
+  const auto columns = chosen_columns(command, *series, fit.names);
+  if (!columns) {
+    return fail(columns.error());
+  }
+  if (series->stamps_ns.empty()) {
+    return fail({ErrorCode::bad_file, fmt::format("{}: the file has no samples", command.file.string())});
+  }
+  fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
+  const auto fitted =
+      find_frequency(command, *series, *columns, fit).and_then([&] { return fit_columns(command, *series, *columns, fit); });
+  if (!fitted) {
+    return fail(at(command, fitted.error()));
+  }
+  command.json ? print_json(fit) : print_table(fit);
+  return 0;
+}
+
+} // namespace dyncal::services

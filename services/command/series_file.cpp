@@ -1,0 +1,54 @@
+#include "services/command/series_file.hpp"
+
+#include <algorithm>
+
+#include "drivers/acs/file_source.hpp"
+
+namespace dyncal::services {
+namespace {
+
+class Collector : public drivers::acs::BlockSink {
+public:
+  void begin_session(const drivers::SourceDescription& description) override {
+    for (const drivers::ChannelDescription& channel : description.channels) {
+      series_.names.push_back(channel.name);
+    }
+    series_.columns.resize(series_.names.size());
+  }
+
+  void take(drivers::SampleBlock block) override {
+    for (std::size_t i = 0; i < block.samples; ++i) {
+      series_.stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i) : block.stamps_ns[i]);
+    }
+    for (std::size_t channel = 0; channel < series_.columns.size(); ++channel) {
+      const auto begin = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+      series_.columns[channel].insert(series_.columns[channel].end(), begin, begin + static_cast<std::ptrdiff_t>(block.samples));
+    }
+  }
+
+  SeriesFile&& series() { return std::move(series_); }
+
+private:
+  SeriesFile series_;
+};
+
+} // namespace
+
+std::optional<std::size_t> SeriesFile::column(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
+}
+
+Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
+  drivers::acs::FileSettings settings;
+  settings.path = path;
+  drivers::acs::FileSource source(std::move(settings));
+  Collector collector;
+  const auto read = source.describe().and_then([&](const drivers::SourceDescription&) { return source.run(collector); });
+  if (!read) {
+    return tl::unexpected(Error{ErrorCode::bad_file, read.error().message});
+  }
+  return collector.series();
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,27 @@
+// A recorded series as a whole in memory, for commands that look at one file: stamps and columns of a CSV (or WAV) file.
+// drivers/acs/README.md has the format. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+struct SeriesFile {
+  std::vector<std::string> names;
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<std::vector<double>> columns;
+
+  [[nodiscard]] std::optional<std::size_t> column(const std::string& name) const;
+};
+
+// Fails (bad_file) with file and line.
+[[nodiscard]] Expected<SeriesFile> read_series_file(const std::filesystem::path& path);
+
+} // namespace dyncal::services
