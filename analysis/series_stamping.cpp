@@ -1,0 +1,140 @@
+#include "analysis/series_stamping.hpp"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "analysis/phasor.hpp"
+#include "analysis/recorded_system.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+tl::unexpected<Error> failure(ErrorCode code, std::string message) {
+  return tl::unexpected(Error{code, std::move(message)});
+}
+
+Error of_shot(std::size_t shot, const std::string& what, Error error) {
+  error.message = "shot " + std::to_string(shot + 1) + ", " + what + ": " + error.message;
+  return error;
+}
+
+std::optional<Error> problem_with(const SeriesStampingInput& input) {
+  if (input.shots.empty() || input.channels.empty())
+    return Error{ErrorCode::invalid_argument, "series time stamping needs a shot and a channel"};
+  if (!(input.nominal_rate_hz > 0.0)) return Error{ErrorCode::invalid_argument, "the nominal rate of the series must be positive"};
+  for (std::size_t j = 0; j < input.shots.size(); ++j) {
+    const SeriesShot& shot = input.shots[j];
+    if (!(shot.dso_interval_s > 0.0))
+      return of_shot(j, "oscilloscope", {ErrorCode::invalid_argument, "its sample interval must be positive"});
+    if (shot.series.size() != input.channels.size()) return of_shot(j, "series", {ErrorCode::invalid_argument, "a channel is missing"});
+    for (const auto& samples : shot.series)
+      if (samples.size() != input.shots.front().series.front().size())
+        return of_shot(j, "series", {ErrorCode::invalid_argument, "all series of a step must have the same length"});
+  }
+  return std::nullopt;
+}
+
+// Phase of sync at the trigger point. Oscilloscopes sample faster than whole nanoseconds can say: stamps are picoseconds here, and
+// the frequency in turns per picosecond is that of a thousandth.
+Expected<SineFit> fit_trigger(const SeriesShot& shot, const Frequency& frequency) {
+  std::vector<std::int64_t> stamps_ps(shot.dso_sync.size());
+  for (std::size_t i = 0; i < stamps_ps.size(); ++i)
+    stamps_ps[i] = std::llround((shot.dso_first_s + static_cast<double>(i) * shot.dso_interval_s) * 1e12);
+  const std::array channels{shot.dso_sync};
+  auto fits = fit_sine(Frequency::from_hz(frequency.hz() * 1e-3), 0, stamps_ps, channels);
+  if (!fits) return tl::unexpected(fits.error());
+  return fits->front();
+}
+
+std::vector<std::int64_t> nominal_stamps_ns(std::size_t samples, double rate_hz) {
+  std::vector<std::int64_t> stamps(samples);
+  for (std::size_t i = 0; i < samples; ++i)
+    stamps[i] = std::llround(static_cast<double>(i) * 1e9 / rate_hz);
+  return stamps;
+}
+
+std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput& input, std::size_t channel) {
+  std::vector<std::span<const double>> result;
+  for (const SeriesShot& shot : input.shots)
+    result.push_back(shot.series[channel]);
+  return result;
+}
+
+// One shot's H with what is random in it and what all shots share.
+Repetition shot_result(const SineFit& series, const SineFit& trigger, std::complex<double> link, double u_phase_start,
+                       const Budget& common) {
+  const double u_amplitude = series.u_amplitude();
+  const double snr = u_amplitude > 0.0 ? series.amplitude() / u_amplitude : 1e12;
+  Repetition result;
+  result.h = std::complex<double>(series.sine, series.cosine) * link / unit_phasor({trigger.sine, trigger.cosine});
+  result.u_random_magnitude_rel = 1.0 / std::max(snr, 1e-6);
+  const double u_series = snr < 10.0 ? phase_standard_uncertainty(snr) : series.u_phase_rad();
+  result.u_random_phase_rad = std::hypot(std::hypot(u_series, trigger.u_phase_rad()), u_phase_start);
+  result.u_common_magnitude_rel = common.u_magnitude_rel();
+  result.u_common_phase_rad = common.u_phase_rad();
+  return result;
+}
+
+Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w) {
+  Budget budget;
+  add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
+  add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
+  budget.add("trigger delay of the oscilloscope", "normal", 0.0, 0.0, w * input.u_dso_delay_s);
+  budget.add("start of the series after the trigger", "normal", 0.0, 0.0, w * input.u_start_latency_s);
+  budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * input.acs_delay_s);
+  budget.add("reference", "normal", 0.0, input.reference_magnitude_rel, input.reference_phase_rad);
+  return budget;
+}
+
+} // namespace
+
+Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input) {
+  if (const auto problem = problem_with(input)) return tl::unexpected(*problem);
+  const auto acs =
+      evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns, input.sync_acs, std::span(&input.reference, 1));
+  if (!acs) return tl::unexpected(acs.error());
+  const RecordedSeries& reference = acs->others.front();
+  if (const auto excited = require_excitation(reference); !excited) return tl::unexpected(excited.error());
+  const SeriesFit& sync = acs->pilot.result;
+  const double w = sync.frequency.angular();
+
+  std::vector<SineFit> triggers;
+  for (std::size_t j = 0; j < input.shots.size(); ++j) {
+    const auto trigger = fit_trigger(input.shots[j], sync.frequency);
+    if (!trigger) return tl::unexpected(of_shot(j, "oscilloscope", trigger.error()));
+    triggers.push_back(*trigger);
+  }
+
+  const std::vector<std::int64_t> stamps = nominal_stamps_ns(input.shots.front().series.front().size(), input.nominal_rate_hz);
+  const auto pilot = fit_sine_and_frequency(sync.frequency, input.rate_tolerance_rel, 0, stamps, shots_of_channel(input, 0));
+  if (!pilot) return failure(pilot.error().code, input.channels.front() + ": " + pilot.error().message);
+  const auto rate = real_rate_from_apparent_frequency(input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
+                                                      pilot->frequency.hz(), pilot->u_frequency_hz);
+  if (!rate) return tl::unexpected(rate.error());
+
+  // Everything that is the same for all shots: the reference's phasor against sync, and the way from trigger point to sample 0.
+  const std::complex<double> link =
+      unit_phasor(acs->pilot.phasor()) / reference.phasor() * std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s));
+  const Budget common = common_budget(input, *acs, w);
+  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
+  for (const SineFit& trigger : triggers) {
+    result.trigger_phase_rad.push_back(trigger.phase_rad());
+    result.u_trigger_phase_rad.push_back(trigger.u_phase_rad());
+  }
+  for (std::size_t c = 0; c < input.channels.size(); ++c) {
+    const auto fits =
+        c == 0 ? Expected<std::vector<SineFit>>(pilot->channels) : fit_sine(pilot->frequency, 0, stamps, shots_of_channel(input, c));
+    if (!fits) return failure(fits.error().code, input.channels[c] + ": " + fits.error().message);
+    SeriesChannelResult channel{input.channels[c], {}, {}};
+    for (std::size_t j = 0; j < fits->size(); ++j)
+      channel.shots.push_back(shot_result((*fits)[j], triggers[j], link, w * input.start_scatter_s, common));
+    const auto mean = mean_of_repetitions(channel.shots);
+    if (!mean) return tl::unexpected(mean.error());
+    channel.mean = *mean;
+    result.channels.push_back(std::move(channel));
+  }
+  return result;
+}
+
+} // namespace dyncal::analysis

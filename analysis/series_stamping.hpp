@@ -1,0 +1,76 @@
+// Series time stamping: the transfer function of a sensor that records a whole series after one trigger (TSS), paper section 2.4 and
+// eqs. (5) to (8), in the project's convention (phases lead, theta = atan2(B, A)):
+//
+//   |H_j| = A_TSS,j / A_ref (5)
+//   arg H_j = theta_TSS,j(n = 0) - w (tau_DSO + l) - beta_j - (theta_ref - theta_sync)_ACS
+//
+// Per shot j the oscilloscope records sync(u) = sin(w u + beta_j), u = 0 at its trigger point: beta_j is what the noise of the
+// trigger did (1 % noise without hysteresis is a bias of up to 20 mrad, so each trace is fitted). The trigger edge leaves tau_DSO
+// later, and sample 0 is taken l after the edge. Signs: the minus signs of (7) hold for leads; in the paper's lags the delay
+// term has a plus, and (8)'s e^{-i dphi} would be the conjugate (errata T7).
+// The sensor's samples lie on the time axis of its nominal rate; one apparent frequency w_TSS is shared by all shots (four-parameter
+// fit), theta_TSS is that of sample 0, and (6) gives the real rate f_nom w / w_TSS. No correction of the rate is needed at n = 0
+// (paper section 2.5), but u(theta_0) is twice that of the middle.
+// A TSS that runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s / sqrt(12) (T9).
+// Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots and frequencies.
+// Channels are those of `channels`; the first must be excited.
+// Fails as recorded_system.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal length. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/nominal_frequency.hpp"
+#include "analysis/repetitions.hpp"
+#include "analysis/transfer_point.hpp"
+
+namespace dyncal::analysis {
+
+struct SeriesShot {
+  double dso_first_s = 0.0; // of the trace's first sample, 0 at the trigger point
+  double dso_interval_s = 0.0;
+  std::span<const double> dso_sync{};
+  std::vector<std::span<const double>> series{}; // one per channel of the sensor, all of one length
+};
+
+struct SeriesStampingInput {
+  Frequency frequency; // nominal
+  double frequency_search_rel = 1e-3;
+  std::span<const std::int64_t> acs_stamps_ns{};
+  ChannelSamples reference{};
+  ChannelSamples sync_acs{};
+  std::vector<std::string> channels{};
+  double nominal_rate_hz = 0.0; // of the TSS
+  double rate_tolerance_rel = 0.05;
+  std::vector<SeriesShot> shots{};
+  double dso_delay_s = 0.0; // tau_DSO
+  double u_dso_delay_s = 0.0;
+  double start_latency_s = 0.0; // l
+  double u_start_latency_s = 0.0;
+  double start_scatter_s = 0.0; // standard deviation of l from shot to shot, as far as it is known beforehand
+  double reference_magnitude_rel = 0.0;
+  double reference_phase_rad = 0.0;
+  double acs_delay_s = 0.0;
+};
+
+struct SeriesChannelResult {
+  std::string channel;
+  std::vector<Repetition> shots;
+  RepetitionMean mean;
+};
+
+struct SeriesStampingResult {
+  SeriesFit reference;
+  SeriesFit sync_acs;
+  std::vector<double> trigger_phase_rad; // beta_j
+  std::vector<double> u_trigger_phase_rad;
+  NominalFrequency rate;
+  std::vector<SeriesChannelResult> channels;
+};
+
+[[nodiscard]] Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input);
+
+} // namespace dyncal::analysis
