@@ -27,14 +27,6 @@ struct Part { // a source with the place where it publishes
   std::shared_ptr<SourcePublisher> publisher;
 };
 
-void take_network_of(const BenchFile& bench, NetworkOptions& network) {
-  network.peers.insert(network.peers.end(), bench.network.peers.begin(), bench.network.peers.end());
-  network.no_multicast = network.no_multicast || !bench.network.multicast;
-  if (network.interface_name.empty()) {
-    network.interface_name = bench.network.interface_name;
-  }
-}
-
 Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, NetworkOptions& network, const std::stop_token& stop) {
   std::vector<Part> parts;
   for (const std::string& file : files) {
@@ -42,7 +34,7 @@ Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, Netwo
     if (!bench) {
       return tl::unexpected(bench.error());
     }
-    take_network_of(*bench, network);
+    add_network_settings(bench->network, network);
     for (const SourceSettings& settings : bench->sources) {
       if (settings.driver == SourceDriver::smartup) {
         continue; // dyncal-dau publishes it

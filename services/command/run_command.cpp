@@ -74,11 +74,7 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     return tl::unexpected(adc.error());
   }
   NetworkOptions network = command.network;
-  network.peers.insert(network.peers.end(), bench->network.peers.begin(), bench->network.peers.end());
-  network.no_multicast = network.no_multicast || !bench->network.multicast;
-  if (network.interface_name.empty()) {
-    network.interface_name = bench->network.interface_name;
-  }
+  add_network_settings(bench->network, network);
   auto participant = join_network(network, "dyncal-run");
   if (!participant) {
     return tl::unexpected(participant.error());

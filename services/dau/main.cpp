@@ -52,15 +52,6 @@ Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& pa
   return benches;
 }
 
-// What the command line leaves open, the bench files say.
-void add_network_settings(const std::vector<BenchFile>& benches, NetworkOptions& options) {
-  for (const BenchFile& bench : benches) {
-    options.peers.insert(options.peers.end(), bench.network.peers.begin(), bench.network.peers.end());
-    options.no_multicast = options.no_multicast || !bench.network.multicast;
-    if (options.interface_name.empty()) options.interface_name = bench.network.interface_name;
-  }
-}
-
 // One sink and one socket an address.
 struct Reception {
   std::vector<std::unique_ptr<EndpointSink>> sinks;
@@ -93,7 +84,8 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
   if (!benches) return tl::unexpected(benches.error());
   auto plan = plan_listening(*benches);
   if (!plan) return tl::unexpected(plan.error());
-  add_network_settings(*benches, options);
+  for (const BenchFile& bench : *benches)
+    add_network_settings(bench.network, options);
   auto participant = join_network(options, "dyncal-dau");
   if (!participant) return tl::unexpected(participant.error());
 

@@ -39,6 +39,14 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
   app.add_option("--interface", options.interface_name, "network interface to use (name or address)");
 }
 
+void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
+  options.peers.insert(options.peers.end(), bench.peers.begin(), bench.peers.end());
+  options.no_multicast = options.no_multicast || !bench.multicast;
+  if (options.interface_name.empty()) {
+    options.interface_name = bench.interface_name;
+  }
+}
+
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program) {
   const auto vendor = bus::parse_vendor(options.dds);
   if (!vendor) {
