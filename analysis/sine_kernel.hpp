@@ -65,6 +65,9 @@ struct ResidualMoments {
 
 struct SineKernel {
   const char* name;
+  // Design and residual sums of several channels at once; as design() and residuals() give them, bit for bit.
+  bool (*fit_block)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
+                    const Parameters* start, DesignSums& sums, ResidualSums* residual_sums);
   // Fills sine and cosine (and u). False when the stamps do not increase strictly within the block.
   bool (*design)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums);
   bool (*design_with_slope)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,

@@ -95,5 +95,6 @@ struct StepCheck {
 #include "analysis/sine_kernel_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel avx2_kernel{"avx2", design, design_with_slope, residuals, residuals_with_slope, design_moments, residual_moments};
+const SineKernel avx2_kernel{"avx2",         fit_block,       design, design_with_slope, residuals, residuals_with_slope,
+                             design_moments, residual_moments};
 }

@@ -74,5 +74,6 @@ struct StepCheck {
 #include "analysis/sine_kernel_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel avx512_kernel{"avx512", design, design_with_slope, residuals, residuals_with_slope, design_moments, residual_moments};
+const SineKernel avx512_kernel{"avx512",       fit_block,       design, design_with_slope, residuals, residuals_with_slope,
+                               design_moments, residual_moments};
 }

@@ -105,5 +105,6 @@ struct StepCheck {
 #include "analysis/sine_kernel_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel baseline_kernel{"baseline", design, design_with_slope, residuals, residuals_with_slope, design_moments, residual_moments};
+const SineKernel baseline_kernel{"baseline",           fit_block,      design,          design_with_slope, residuals,
+                                 residuals_with_slope, design_moments, residual_moments};
 }

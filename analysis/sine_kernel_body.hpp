@@ -53,9 +53,27 @@ inline std::size_t full_groups(std::size_t n) {
   return (n - 1) / lanes * lanes;
 }
 
-// Calls row(first index, basis of eight samples, dt) for every eight samples, after storing sine and cosine.
+// Eight samples that all belong to the block, or its last ones.
+struct AllOfRow {};
+struct PartOfRow {
+  std::size_t count;
+};
+inline Lanes load_row(const double* values, AllOfRow) {
+  return Lanes::load(values);
+}
+inline Lanes load_row(const double* values, PartOfRow part) {
+  return Lanes::load(ValueTail(values, part.count).values);
+}
+inline Lanes masked(Lanes x, AllOfRow) {
+  return x;
+}
+inline Lanes masked(Lanes x, PartOfRow part) {
+  return x & Lanes::mask(part.count);
+}
+
+// Calls row(first index, sine and cosine of eight samples, dt, AllOfRow or PartOfRow) for every eight samples.
 template <class Row>
-inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, Row row) {
+inline bool for_each_time_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, Row row) {
   const Lanes high = Lanes::all(axis.turns_per_ns_high);
   const Lanes low = Lanes::all(axis.turns_per_ns_low);
   const std::size_t full = full_groups(n);
@@ -63,22 +81,25 @@ inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const 
   for (std::size_t i = 0; i < full; i += lanes) {
     const Lanes dt = time_difference(stamps + i, axis.origin_ns);
     steps.see(stamps + i, stamps + i + 1);
-    const SineCosine sc = sine_cosine_of_time(dt, high, low);
+    row(i, sine_cosine_of_time(dt, high, low), dt, AllOfRow{});
+  }
+  const PartOfRow part{n - full};
+  const StampTail tail(stamps + full, part.count);
+  const Lanes dt = time_difference(tail.stamps, axis.origin_ns);
+  steps.see(tail.stamps, tail.stamps + 1);
+  const SineCosine last = sine_cosine_of_time(dt, high, low);
+  row(full, SineCosine{masked(last.sine, part), masked(last.cosine, part)}, masked(dt, part), part);
+  return steps.increasing();
+}
+
+// The same, after storing sine and cosine.
+template <class Row>
+inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, Row row) {
+  return for_each_time_row(stamps, n, axis, [&](std::size_t i, const SineCosine& sc, Lanes dt, auto) {
     sc.sine.store(basis.sine + i);
     sc.cosine.store(basis.cosine + i);
     row(i, sc, dt);
-  }
-  const StampTail tail(stamps + full, n - full);
-  const Lanes mask = Lanes::mask(n - full);
-  const Lanes dt = time_difference(tail.stamps, axis.origin_ns);
-  steps.see(tail.stamps, tail.stamps + 1);
-  SineCosine sc = sine_cosine_of_time(dt, high, low);
-  sc.sine = sc.sine & mask;
-  sc.cosine = sc.cosine & mask;
-  sc.sine.store(basis.sine + full);
-  sc.cosine.store(basis.cosine + full);
-  row(full, sc, dt & mask);
-  return steps.increasing();
+  });
 }
 
 bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums) {
@@ -158,6 +179,44 @@ void residuals(const double* values, std::size_t n, const BlockBasis& basis, con
     ee = fused(e, e, ee);
   });
   sums = {sum.total(), es.total(), ec.total(), ee.total()};
+}
+
+// Residuals of several channels in one go: the basis is loaded once.
+template <std::size_t count>
+inline void residuals_of(const double* const* values, std::size_t n, const BlockBasis& basis, const Parameters* start, ResidualSums* sums) {
+  const Lanes zero = Lanes::all(0.0);
+  Lanes e[count], es[count], ec[count], ee[count];
+  for (std::size_t j = 0; j < count; ++j)
+    e[j] = es[j] = ec[j] = ee[j] = zero;
+  const auto row = [&](std::size_t i, auto rows) {
+    const Lanes s = Lanes::load(basis.sine + i);
+    const Lanes c = Lanes::load(basis.cosine + i);
+    for (std::size_t j = 0; j < count; ++j) {
+      const Lanes r = masked(StartLanes(start[j]).residual(load_row(values[j] + i, rows), s, c), rows);
+      e[j] = e[j] + r;
+      es[j] = fused(r, s, es[j]);
+      ec[j] = fused(r, c, ec[j]);
+      ee[j] = fused(r, r, ee[j]);
+    }
+  };
+  const std::size_t full = full_groups(n);
+  for (std::size_t i = 0; i < full; i += lanes)
+    row(i, AllOfRow{});
+  row(full, PartOfRow{n - full});
+  for (std::size_t j = 0; j < count; ++j)
+    sums[j] = {e[j].total(), es[j].total(), ec[j].total(), ee[j].total()};
+}
+
+bool fit_block(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
+               const Parameters* start, DesignSums& sums, ResidualSums* residual_sums) {
+  BlockBasis basis;
+  const bool increasing = design(stamps, n, axis, basis, sums);
+  std::size_t j = 0;
+  for (; j + 2 <= channels; j += 2)
+    residuals_of<2>(values + j, n, basis, start + j, residual_sums + j);
+  for (; j < channels; ++j)
+    residuals_of<1>(values + j, n, basis, start + j, residual_sums + j);
+  return increasing;
 }
 
 void residuals_with_slope(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums,

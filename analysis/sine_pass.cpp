@@ -158,21 +158,22 @@ Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, 
   const SineKernel& kernel = best_kernel();
   const TimeAxis axis = record.axis(frequency);
   const std::int64_t* stamps = record.stamps().data();
-  BlockBasis basis;
+  const std::size_t count = start.size();
+  std::vector<const double*> values(count);
+  std::vector<ResidualSums> block(count);
   PassSums result;
   result.channels.resize(record.channels().size());
   for (std::size_t i = 0; i < record.size(); i += selection.step) {
     const std::size_t n = std::min(selection.length, record.size() - i);
+    for (std::size_t j = 0; j < count; ++j)
+      values[j] = record.channels()[j].data() + i;
     DesignSums design;
-    const bool increasing = kernel.design(stamps + i, n, axis, basis, design);
+    const bool increasing = kernel.fit_block(stamps + i, n, axis, values.data(), count, start.data(), design, block.data());
     if (!increasing || (i > 0 && stamps[i] <= stamps[i - 1])) return tl::unexpected(record.not_increasing());
     add(result.design, design);
     result.samples += static_cast<double>(n);
-    for (std::size_t j = 0; j < start.size(); ++j) {
-      ResidualSums sums;
-      kernel.residuals(record.channels()[j].data() + i, n, basis, start[j], sums);
-      add(result.channels[j], sums);
-    }
+    for (std::size_t j = 0; j < count; ++j)
+      add(result.channels[j], block[j]);
   }
   return result;
 }

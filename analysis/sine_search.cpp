@@ -19,7 +19,9 @@ constexpr double basin_bins = 0.3; // from here the iteration always arrives
 constexpr double grid_step_bins = 0.2;
 constexpr double fewest_cycles = 8.0; // below, the image at -f disturbs a Fourier transform
 constexpr double fewest_bins = 4.0;   // below, a grid is cheaper
-constexpr std::size_t part_samples = 4096;
+constexpr std::size_t part_samples = 2048;
+constexpr std::size_t padding = 2; // of the transform
+constexpr std::size_t groups_a_cell = 2;
 constexpr double certain_amplitude = 8.0; // standard uncertainties
 
 Selection part_of(std::size_t samples) {
@@ -107,7 +109,7 @@ void fourier_transform(std::vector<Complex>& data) {
 }
 
 struct Cells {
-  std::vector<std::vector<Complex>> phasors; // a channel; fourfold length, the rest empty
+  std::vector<std::vector<Complex>> phasors; // a channel; padded
   std::vector<double> square;                // sum of squares a channel
   double samples = 0.0;
 };
@@ -116,10 +118,11 @@ struct Cells {
 Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, std::span<const Parameters> level, std::size_t count,
                              bool whole) {
   const std::size_t n = record.size();
-  const std::size_t step = std::clamp<std::size_t>(n / (4 * count), 1, block_samples);
-  const std::size_t length = whole ? step : std::clamp<std::size_t>(part_samples / (4 * count), std::min<std::size_t>(step, lanes), step);
+  const std::size_t step = std::clamp<std::size_t>(n / (groups_a_cell * count), 1, block_samples);
+  const std::size_t length =
+      whole ? step : std::clamp<std::size_t>(part_samples / (groups_a_cell * count), std::min<std::size_t>(step, lanes), step);
   Cells cells;
-  cells.phasors.assign(level.size(), std::vector<Complex>(4 * count));
+  cells.phasors.assign(level.size(), std::vector<Complex>(padding * count));
   cells.square.assign(level.size(), 0.0);
   const SineKernel& kernel = best_kernel();
   const TimeAxis axis = record.axis(frequency);
@@ -147,10 +150,10 @@ Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, s
 Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start, double half_range_bins, bool whole) {
   const auto level = levels(record, start, whole ? Selection{} : part_of(record.size()));
   if (!level) return tl::unexpected(level.error());
-  const std::size_t count = std::bit_ceil(static_cast<std::size_t>(4.0 * half_range_bins));
+  const std::size_t count = std::bit_ceil(static_cast<std::size_t>(3.0 * half_range_bins));
   auto cells = cell_phasors(record, start, *level, count, whole);
   if (!cells) return tl::unexpected(cells.error());
-  const std::size_t length = 4 * count;
+  const std::size_t length = padding * count;
   std::vector<double> power(length, 0.0);
   for (std::size_t j = 0; j < level->size(); ++j) {
     if (!std::isfinite(cells->square[j])) return tl::unexpected(record.not_finite());
@@ -162,14 +165,21 @@ Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start
       power[k] -= std::log1p(-explained);
     }
   }
-  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(4.0 * half_range_bins)) + 2;
-  GridPoint best;
+  const auto at = [&](std::ptrdiff_t k) { return power[static_cast<std::size_t>(k + static_cast<std::ptrdiff_t>(length)) % length]; };
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(padding * half_range_bins));
+  std::ptrdiff_t peak = -reach;
   for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
-    const double value = power[static_cast<std::size_t>(k + static_cast<std::ptrdiff_t>(length)) % length];
-    if (-value < best.misfit) {
-      best = {0.25 * static_cast<double>(k), -value, std::sqrt(std::expm1(value) * cells->samples)};
-    }
+    if (at(k) > at(peak)) peak = k;
   }
+  // A parabola through the peak and its neighbours, of the explained part, hits to a few hundredths of a bin.
+  const double low = -std::expm1(-at(peak - 1));
+  const double high = -std::expm1(-at(peak + 1));
+  const double bend = 2.0 * -std::expm1(-at(peak)) - low - high;
+  const double between = bend > 0.0 ? 0.5 * (high - low) / bend : 0.0;
+  GridPoint best;
+  best.bins = (static_cast<double>(peak) + std::clamp(between, -0.5, 0.5)) / static_cast<double>(padding);
+  best.misfit = -at(peak);
+  best.significance = std::sqrt(std::expm1(at(peak)) * cells->samples);
   return best;
 }
 

@@ -3,7 +3,7 @@
 //
 // Few bins or few cycles: the three-parameter residual on a grid of frequencies, which knows the constant and the image at
 // -f and so holds below three cycles. Many bins: phasors of short cells at the start frequency, by real time (gaps are empty
-// cells), and their discrete Fourier transform with fourfold padding. Channels count by their signal over their own scatter.
+// cells), and their padded discrete Fourier transform. Channels count by their signal over their own scatter.
 // Looks at part of a long record first and at all of it when nothing stands out there.
 #pragma once
 

@@ -185,9 +185,9 @@ SlopeProfile profile_slope(const ShiftedSums& sums, const NormalMatrix& m, const
   return profile;
 }
 
-FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<const Parameters> start, double delta, double limit) {
+FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<const Parameters> start, double delta, double limit,
+                                  double settled) {
   constexpr int most_steps = 60;
-  constexpr double settled_step = 1e-13;
   FrequencySolution result;
   ShiftedSums sums;
   result.delta = delta;
@@ -211,13 +211,39 @@ FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<c
     }
     result.u_delta = curvature > 0.0 ? 1.0 / std::sqrt(curvature) : std::numeric_limits<double>::infinity();
     result.last_step = curvature > 0.0 ? gradient / curvature : 0.0;
-    result.settled = std::abs(result.last_step) < settled_step;
+    result.settled = std::abs(result.last_step) < settled;
     if (result.settled || !(curvature > 0.0)) break;
     const double next = std::clamp(result.delta + result.last_step, -limit, limit);
     if (next == result.delta) break; // held at the limit
     result.delta = next;
   }
   return result;
+}
+
+SineFit channel_fit(const FrequencySolution& all, std::size_t channel, double shift, double turns) {
+  const Solution& solution = all.channels[channel];
+  SineFit fit;
+  fit.sine = solution.p.sine;
+  fit.cosine = solution.p.cosine;
+  fit.offset = solution.p.offset;
+  fit.rss = solution.rss;
+  fit.samples = static_cast<std::uint64_t>(all.matrix.n);
+  fit.degrees_of_freedom = all.matrix.n - 3.0 - 1.0 / static_cast<double>(all.channels.size());
+  fit.covariance = unit_covariance(all.matrix);
+  for (double& element : fit.covariance)
+    element *= fit.rss / fit.degrees_of_freedom;
+  rotate(fit, turns);
+  // The estimated frequency moves the parameters: by the coupling at the origin, and by the turn to the reference.
+  const auto [s, c] = sine_cosine_of_turns(turns);
+  const Parameters& k = all.slopes[channel].coupling;
+  const double along[3] = {k.sine * c - k.cosine * s - shift * fit.cosine, k.sine * s + k.cosine * c + shift * fit.sine, k.offset};
+  const double variance = all.u_delta * all.u_delta;
+  std::size_t element = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column)
+      fit.covariance[element++] += along[row] * along[column] * variance;
+  }
+  return fit;
 }
 
 } // namespace dyncal::analysis::kernel

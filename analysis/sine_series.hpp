@@ -63,17 +63,21 @@ struct SlopeProfile {
                                          std::size_t channel);
 
 // The frequency shift that is most likely for all channels together: minimum of sum n log(rss_j), every channel with its own
-// noise. Starts at `delta`, stays within +-limit.
+// noise. Starts at `delta`, stays within +-limit, stops on steps below `settled`.
 struct FrequencySolution {
   double delta = 0.0;
   double last_step = 0.0;
-  bool settled = false; // the last step was below 1e-13
+  bool settled = false; // the last step was below `settled`
   double u_delta = 0.0;
   NormalMatrix matrix{1.0, {}};
   std::vector<Solution> channels;
   std::vector<SlopeProfile> slopes;
 };
 [[nodiscard]] FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<const Parameters> start, double delta,
-                                                double limit);
+                                                double limit, double settled = 1e-13);
+
+// One channel's fit at the solution, phases about an instant `turns` and `shift` (in the scale of u) after the expansion's origin;
+// the covariance includes that the frequency was estimated. REQUIRES: one variance degree of freedom at least.
+[[nodiscard]] SineFit channel_fit(const FrequencySolution& solution, std::size_t channel, double shift, double turns);
 
 } // namespace dyncal::analysis::kernel
