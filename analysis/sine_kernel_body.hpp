@@ -102,9 +102,12 @@ inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const 
   });
 }
 
-bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums) {
+// `also` is called with the first index of every row.
+template <class Also>
+inline bool design_and(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums, Also also) {
   Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
-  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t, const SineCosine& row, Lanes) {
+  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine& row, Lanes) {
+    also(i);
     s = s + row.sine;
     c = c + row.cosine;
     ss = fused(row.sine, row.sine, ss);
@@ -112,6 +115,10 @@ bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, Blo
   });
   sums = {s.total(), c.total(), ss.total(), sc.total()};
   return increasing;
+}
+
+bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums) {
+  return design_and(stamps, n, axis, basis, sums, [](std::size_t) {});
 }
 
 bool design_with_slope(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,
@@ -210,7 +217,11 @@ inline void residuals_of(const double* const* values, std::size_t n, const Block
 bool fit_block(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
                const Parameters* start, DesignSums& sums, ResidualSums* residual_sums) {
   BlockBasis basis;
-  const bool increasing = design(stamps, n, axis, basis, sums);
+  // While the sines are computed, the values come from memory.
+  const bool increasing = design_and(stamps, n, axis, basis, sums, [&](std::size_t i) {
+    for (std::size_t j = 0; j < channels; ++j)
+      __builtin_prefetch(values[j] + i);
+  });
   std::size_t j = 0;
   for (; j + 2 <= channels; j += 2)
     residuals_of<2>(values + j, n, basis, start + j, residual_sums + j);
@@ -235,36 +246,50 @@ void residuals_with_slope(const double* values, std::size_t n, const BlockBasis&
   slope = {eus.total(), euc.total()};
 }
 
-bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments) {
-  const Lanes scale = Lanes::all(axis.inverse_scale);
-  const bool increasing =
-      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) { (dt * scale).store(basis.u + i); });
+// Moments first <= m < last; `power` holds u^first of every row and leaves with u^last.
+template <std::size_t first, std::size_t last>
+inline void design_moment_sums(std::size_t n, const BlockBasis& basis, Lanes* power, DesignMoments& moments) {
+  constexpr std::size_t count = last - first;
   const Lanes zero = Lanes::all(0.0);
-  Lanes um[moment_count], us[moment_count], uc[moment_count], uss[moment_count], usc[moment_count];
-  for (std::size_t m = 0; m < moment_count; ++m)
+  Lanes um[count], us[count], uc[count], uss[count], usc[count];
+  for (std::size_t m = 0; m < count; ++m)
     um[m] = us[m] = uc[m] = uss[m] = usc[m] = zero;
   for (std::size_t i = 0; i < n; i += lanes) {
     const Lanes u = Lanes::load(basis.u + i);
     const Lanes s = Lanes::load(basis.sine + i);
     const Lanes c = Lanes::load(basis.cosine + i);
-    Lanes power = Lanes::all(1.0) & Lanes::mask(n - i);
-    for (std::size_t m = 0; m < moment_count; ++m) {
-      const Lanes ps = power * s;
-      um[m] = um[m] + power;
+    Lanes p = power[i / lanes];
+    for (std::size_t m = 0; m < count; ++m) {
+      const Lanes ps = p * s;
+      um[m] = um[m] + p;
       us[m] = us[m] + ps;
-      uc[m] = fused(power, c, uc[m]);
+      uc[m] = fused(p, c, uc[m]);
       uss[m] = fused(ps, s, uss[m]);
       usc[m] = fused(ps, c, usc[m]);
-      power = power * u;
+      p = p * u;
     }
+    power[i / lanes] = p;
   }
-  for (std::size_t m = 0; m < moment_count; ++m) {
-    moments.u[m] = um[m].total();
-    moments.us[m] = us[m].total();
-    moments.uc[m] = uc[m].total();
-    moments.uss[m] = uss[m].total();
-    moments.usc[m] = usc[m].total();
+  for (std::size_t m = 0; m < count; ++m) {
+    moments.u[first + m] = um[m].total();
+    moments.us[first + m] = us[m].total();
+    moments.uc[first + m] = uc[m].total();
+    moments.uss[first + m] = uss[m].total();
+    moments.usc[first + m] = usc[m].total();
   }
+}
+
+bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments) {
+  const Lanes scale = Lanes::all(axis.inverse_scale);
+  const bool increasing =
+      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) { (dt * scale).store(basis.u + i); });
+  // Two goes, so that the sums stay in registers.
+  constexpr std::size_t half = (moment_count + 1) / 2;
+  Lanes power[block_samples / lanes];
+  for (std::size_t i = 0; i < n; i += lanes)
+    power[i / lanes] = Lanes::all(1.0) & Lanes::mask(n - i);
+  design_moment_sums<0, half>(n, basis, power, moments);
+  design_moment_sums<half, moment_count>(n, basis, power, moments);
   return increasing;
 }
 

@@ -16,10 +16,10 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double basin_bins = 0.3; // from here the iteration always arrives
-constexpr double grid_step_bins = 0.2;
+constexpr double grid_step_bins = 0.4;
 constexpr double fewest_cycles = 8.0; // below, the image at -f disturbs a Fourier transform
 constexpr double fewest_bins = 4.0;   // below, a grid is cheaper
-constexpr std::size_t part_samples = 2048;
+constexpr std::size_t part_samples = 1024;
 constexpr std::size_t padding = 2; // of the transform
 constexpr std::size_t groups_a_cell = 2;
 constexpr double certain_amplitude = 8.0; // standard uncertainties

@@ -83,10 +83,13 @@ private:
   [[nodiscard]] Expected<void> ready(std::size_t parameters) const;
   [[nodiscard]] Expected<std::int64_t> shift_to(std::int64_t reference_ns) const;
   [[nodiscard]] Block reduce() const;
+  void add_open_block(Totals& totals) const;
+  [[nodiscard]] std::size_t without_gap(std::span<const std::int64_t> stamps);
   void close_block();
   void choose_start();
   [[nodiscard]] double span_s() const { return static_cast<double>(last_ns_ - first_ns_) * 1e-9; }
   [[nodiscard]] double search(std::span<const Segment> segments, double half_range) const;
+  void add_spectra(std::span<const Segment> segments, double step, int half, std::vector<double>& merit) const;
   [[nodiscard]] double misfit(std::span<const Segment> segments, double delta, ShiftedSums& sums) const;
 
   Frequency frequency_;
@@ -132,23 +135,33 @@ Expected<void> SineStream::State::check(std::span<const std::int64_t> stamps, st
 
 Expected<void> SineStream::State::push(std::span<const std::int64_t> stamps, std::span<const std::span<const double>> channels) {
   if (const auto checked = check(stamps, channels); !checked) return checked;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (samples() == 0) {
-      first_ns_ = stamps[i];
-      for (std::size_t j = 0; j < start_.size(); ++j)
-        start_[j] = {0.0, 0.0, channels[j][i]};
-    } else {
-      const std::int64_t interval = stamps[i] - last_ns_;
-      if (filled_ > 0 && interval / gap_intervals > last_interval_ns_) close_block();
-      last_interval_ns_ = interval;
-    }
-    last_ns_ = stamps[i];
-    stamps_[filled_] = stamps[i];
+  if (samples() == 0 && !stamps.empty()) {
+    first_ns_ = stamps[0];
+    for (std::size_t j = 0; j < start_.size(); ++j)
+      start_[j] = {0.0, 0.0, channels[j][0]};
+  }
+  for (std::size_t i = 0; i < stamps.size();) {
+    const std::size_t n = without_gap(stamps.subspan(i, std::min(stamps.size() - i, block_length - filled_)));
+    std::copy_n(stamps.data() + i, n, stamps_.data() + filled_);
     for (std::size_t j = 0; j < values_.size(); ++j)
-      values_[j][filled_] = channels[j][i];
-    if (++filled_ == block_length) close_block();
+      std::copy_n(channels[j].data() + i, n, values_[j].data() + filled_);
+    i += n;
+    filled_ += n;
+    if (filled_ == block_length || (n == 0 && filled_ > 0)) close_block();
   }
   return {};
+}
+
+// How many of the stamps belong to the open block: all, or those before a gap.
+std::size_t SineStream::State::without_gap(std::span<const std::int64_t> stamps) {
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const bool first = filled_ + i == 0;
+    const std::int64_t interval = stamps[i] - last_ns_;
+    if (!first && interval / gap_intervals > last_interval_ns_) return i;
+    if (samples() + i > 0) last_interval_ns_ = interval;
+    last_ns_ = stamps[i];
+  }
+  return stamps.size();
 }
 
 // Series of the buffered samples: computed about the middle of the block, phases then turned to the first stamp.
@@ -170,6 +183,7 @@ Block SineStream::State::reduce() const {
     x = times(x, back);
   for (Complex& xx : block.design.xx)
     xx = times(xx, back_twice);
+  block.channels.reserve(values_.size());
   for (std::size_t j = 0; j < values_.size(); ++j) {
     const Complex p = times({start_[j].sine, start_[j].cosine}, std::conj(back));
     ResidualMoments residuals;
@@ -179,6 +193,33 @@ Block SineStream::State::reduce() const {
       ex = times(ex, back);
   }
   return block;
+}
+
+// The buffered samples' part of the sums, without their series.
+void SineStream::State::add_open_block(Totals& totals) const {
+  const std::int64_t middle_ns = stamps_[0] + (stamps_[filled_ - 1] - stamps_[0]) / 2;
+  const auto [s, c] = sine_cosine_of_turns(frequency_.reduced_turns(middle_ns - first_ns_));
+  const Complex back{c, -s};
+  const TimeAxis axis{frequency_.turns_per_ns_high(), frequency_.turns_per_ns_low(), middle_ns, 1e-9};
+  std::vector<Parameters> start;
+  std::vector<const double*> values;
+  for (std::size_t j = 0; j < values_.size(); ++j) {
+    const Complex p = times({start_[j].sine, start_[j].cosine}, std::conj(back));
+    start.push_back({p.real(), p.imag(), start_[j].offset});
+    values.push_back(values_[j].data());
+  }
+  DesignSums sums;
+  std::vector<ResidualSums> residuals(values_.size());
+  best_kernel().fit_block(stamps_.data(), filled_, axis, values.data(), values.size(), start.data(), sums, residuals.data());
+  const double n = static_cast<double>(filled_);
+  totals.n += n;
+  totals.x += times({sums.c, -sums.s}, back);
+  totals.xx += times({n - 2.0 * sums.ss, -2.0 * sums.sc}, times(back, back));
+  for (std::size_t j = 0; j < residuals.size(); ++j) {
+    totals.channels[j].e += residuals[j].e;
+    totals.channels[j].ee += residuals[j].ee;
+    totals.channels[j].ex += times({residuals[j].ec, -residuals[j].es}, back);
+  }
 }
 
 // A first block that sees enough of a period gives start parameters that leave only noise in the residuals.
@@ -241,10 +282,7 @@ Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns)
     return fit_sine(frequency_, reference_ns, {stamps_.data(), filled_}, channels);
   }
   Totals totals = totals_;
-  if (filled_ > 0) {
-    const Block block = reduce();
-    totals.add(block.design, block.channels);
-  }
+  if (filled_ > 0) add_open_block(totals);
   const NormalMatrix matrix(totals.n, totals.design());
   if (!matrix.well_conditioned()) {
     return fail(ErrorCode::ill_conditioned, "sine, cosine and constant of " + std::to_string(frequency_.hz()) +
@@ -287,25 +325,52 @@ double SineStream::State::misfit(std::span<const Segment> segments, double delta
   return total;
 }
 
-// Grid of a fifth of a bin over +-half_range rad/s, on the misfit itself: the series make a point cheap.
+// Few bins or cycles: the misfit itself on a grid. Many: the phasors of the blocks on a grid, turned step by step; their image
+// at -f and the constant average out over the cycles.
 double SineStream::State::search(std::span<const Segment> segments, double half_range) const {
   const double bin = 2.0 * std::numbers::pi / span_s();
   constexpr double basin_bins = 0.3;
-  constexpr double step_bins = 0.2;
+  constexpr double fewest_bins = 4.0;
+  constexpr double fewest_cycles = 8.0;
   if (half_range <= basin_bins * bin) return 0.0;
+  const bool few = half_range < fewest_bins * bin || frequency_.angular() - half_range < fewest_cycles * bin;
+  const double step_bins = few ? 0.4 : 0.25;
   const int half = static_cast<int>(std::ceil(half_range / (step_bins * bin)));
-  double best = 0.0;
-  double best_misfit = std::numeric_limits<double>::infinity();
-  ShiftedSums sums;
-  for (int i = -half; i <= half; ++i) {
-    const double delta = half_range * i / half;
-    const double value = misfit(segments, delta, sums);
-    if (value < best_misfit) {
-      best_misfit = value;
-      best = delta;
+  const double step = half_range / half;
+  std::vector<double> merit(static_cast<std::size_t>(2 * half + 1), 0.0);
+  if (few) {
+    ShiftedSums sums;
+    for (int i = -half; i <= half; ++i)
+      merit[static_cast<std::size_t>(i + half)] = -misfit(segments, step * i, sums);
+  } else {
+    add_spectra(segments, step, half, merit);
+  }
+  return step * static_cast<double>(std::max_element(merit.begin(), merit.end()) - merit.begin() - half);
+}
+
+void SineStream::State::add_spectra(std::span<const Segment> segments, double step, int half, std::vector<double>& merit) const {
+  // With the start parameters put back: the phasors of the values, less the constant.
+  std::vector<Complex> turned(segments.size()), turn(segments.size());
+  for (std::size_t j = 0; j < start_.size(); ++j) {
+    const Complex p{start_[j].sine, start_[j].cosine};
+    double square = totals_.channels[j].ee;
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      const double centre = segments[k].design->centre;
+      const double n = segments[k].design->u[0];
+      turn[k] = std::polar(1.0, -step * centre);
+      turned[k] = times(segments[k].channels[j].ex[0] + times({0.0, -0.5 * n}, p), std::polar(1.0, step * half * centre));
+      square += 0.5 * n * std::norm(p);
+    }
+    for (double& value : merit) {
+      Complex sum = 0.0;
+      for (std::size_t k = 0; k < segments.size(); ++k) {
+        sum += turned[k];
+        turned[k] = times(turned[k], turn[k]);
+      }
+      const double explained = 2.0 * std::norm(sum) / (static_cast<double>(samples()) * (square + std::numeric_limits<double>::min()));
+      value -= std::log1p(-std::min(explained, 1.0 - 1e-12));
     }
   }
-  return best;
 }
 
 Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel, std::int64_t reference_ns) const {
@@ -357,9 +422,14 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel, 
 }
 
 SineStream::SineStream(const Frequency& frequency, std::size_t channels) : state_(std::make_unique<State>(frequency, channels)) {}
+SineStream::SineStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SineStream::SineStream(SineStream&&) noexcept = default;
 SineStream& SineStream::operator=(SineStream&&) noexcept = default;
 SineStream::~SineStream() = default;
+
+SineStream SineStream::clone() const {
+  return SineStream(std::make_unique<State>(*state_));
+}
 
 Expected<void> SineStream::push(std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
   return state_->push(stamps_ns, channels);

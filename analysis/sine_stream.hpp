@@ -33,6 +33,9 @@ public:
   SineStream& operator=(SineStream&&) noexcept;
   ~SineStream();
 
+  // Another stream in the same state, to try how it would go on.
+  [[nodiscard]] SineStream clone() const;
+
   // Appends samples; every channel as many values as there are stamps. After a failure (stamps_not_increasing, not_finite,
   // invalid_argument) nothing of this call counts and the stream is as before.
   [[nodiscard]] Expected<void> push(std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels);
@@ -47,6 +50,7 @@ public:
 
 private:
   class State;
+  explicit SineStream(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
