@@ -91,11 +91,15 @@ void RunSession::update(const Measurement& measurement, Clock::time_point now) {
   if (evaluator_ && (state_ == MEASUREMENT_DONE || state_ == MEASUREMENT_ABORTED)) {
     spdlog::info("bench {}, run {}: {}", bench_, run_, state_ == MEASUREMENT_DONE ? "excitation done" : "broken off");
     evaluator_->end_of_excitation(state_ == MEASUREMENT_ABORTED);
+    if (health_ == HEALTH_FAILED) {
+      evaluator_->finish_now(); // a source is gone: nothing more will come
+    }
     last_progress_ = now;
   }
 }
 
 void RunSession::announce(const Excitation& excitation) {
+  excited_by_steps_ = true;
   if (evaluator_) {
     evaluator_->announce(excitation);
   }
@@ -111,7 +115,7 @@ void RunSession::work(const KnownSources& sources, Clock::time_point now) {
     arm(sources, now);
   }
   if (!finished() && arm_ == ARM_ARMED) {
-    watch_silence(now);
+    watch_sources(now);
     evaluate(now);
   }
   if (now >= next_status_) {
@@ -225,18 +229,27 @@ std::string RunSession::what_is_missing(const KnownSources& sources) const {
   return "";
 }
 
-void RunSession::watch_silence(Clock::time_point now) {
-  if (state_ != MEASUREMENT_RUNNING || now - last_heard_of_run_ > runner_limit) {
+void RunSession::watch_sources(Clock::time_point now) {
+  if (state_ != MEASUREMENT_RUNNING || health_ != HEALTH_OK || now - last_heard_of_run_ > runner_limit) {
     return;
   }
   for (const auto& [name, link] : links_) {
-    if (!link.ended && now - std::max(link.last_block, last_progress_) > silence_limit && health_ == HEALTH_OK) {
-      health_ = HEALTH_FAILED;
-      message_ = fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name, bench_, silence_limit.count());
-      spdlog::warn("bench {}, run {}: {}", bench_, run_, message_);
-      publish_status();
+    if (link.ended && excited_by_steps_) {
+      report_failure(fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_));
+    } else if (!link.ended && now - std::max(link.last_block, last_progress_) > silence_limit) {
+      report_failure(fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name, bench_, silence_limit.count()));
     }
   }
+}
+
+void RunSession::report_failure(std::string message) {
+  if (health_ == HEALTH_FAILED) {
+    return; // the first cause explains the others
+  }
+  health_ = HEALTH_FAILED;
+  message_ = std::move(message);
+  spdlog::warn("bench {}, run {}: {}", bench_, run_, message_);
+  publish_status();
 }
 
 void RunSession::evaluate(Clock::time_point now) {

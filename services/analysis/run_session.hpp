@@ -76,7 +76,8 @@ private:
   void arm(const KnownSources& sources, Clock::time_point now);
   [[nodiscard]] std::string what_is_missing(const KnownSources& sources) const;
   void evaluate(Clock::time_point now);
-  void watch_silence(Clock::time_point now);
+  void watch_sources(Clock::time_point now);
+  void report_failure(std::string message);
   void refuse(std::string message);
   void publish_status();
   template <class T>
@@ -92,6 +93,7 @@ private:
   HealthState health_ = HEALTH_OK;
   std::string message_;
   std::uint64_t results_published_ = 0;
+  bool excited_by_steps_ = false; // a generator is announced; files and hand-made excitation are not
   std::unique_ptr<RunEvaluator> evaluator_;
   std::map<std::string, SourceLink> links_;
   std::map<SourceKind, bus::Reader<SampleBlock>> readers_;

@@ -60,6 +60,17 @@ void ProgramRun::send(int signal) {
   kill(process_, signal);
 }
 
+bool ProgramRun::send_to_child(const std::string& program, int signal) {
+  std::istringstream children(read("/proc/" + std::to_string(process_) + "/task/" + std::to_string(process_) + "/children"));
+  for (pid_t child = 0; children >> child;) {
+    const std::string command = read("/proc/" + std::to_string(child) + "/cmdline");
+    if (std::filesystem::path(command.substr(0, command.find('\0'))).filename() == program) {
+      return kill(child, signal) == 0;
+    }
+  }
+  return false;
+}
+
 std::optional<int> ProgramRun::wait(std::chrono::seconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (!status_) {

@@ -21,6 +21,8 @@ public:
   ProgramRun& operator=(const ProgramRun&) = delete;
 
   void send(int signal);
+  // To a process that the program has started; false when it has none of that name.
+  bool send_to_child(const std::string& program, int signal);
   // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as 128 + N.
   std::optional<int> wait(std::chrono::seconds limit);
   // True as soon as standard error contains the text.

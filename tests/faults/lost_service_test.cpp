@@ -1,0 +1,48 @@
+// A service that dies or ends in the middle of a run: the run stops soon, says which one, and keeps what was measured.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::HasSubstr;
+
+struct Loss {
+  std::string program;
+  int signal;
+  std::string says;
+};
+
+class LostService : public testing::TestWithParam<Loss> {};
+
+TEST_P(LostService, EndsTheRunWithOneLineAndKeepsWhatWasMeasured) {
+  const auto folder = fresh_folder("lost-" + GetParam().program);
+  ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
+  ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", std::chrono::seconds(40))) << demo.errors();
+  ASSERT_TRUE(demo.send_to_child(GetParam().program, GetParam().signal));
+  const auto status = demo.wait(std::chrono::seconds(15));
+  ASSERT_TRUE(status) << "still running\n" << demo.errors();
+  EXPECT_EQ(*status, 1);
+  EXPECT_THAT(demo.errors(), HasSubstr(GetParam().says));
+  EXPECT_THAT(demo.errors(), HasSubstr("of 51 steps were measured and kept"));
+  const auto result = read_json(folder / "files" / "result.json");
+  ASSERT_FALSE(result.is_discarded());
+  EXPECT_GE(result["points"].size(), 9U); // of the nine channels of one step at the least
+}
+
+INSTANTIATE_TEST_SUITE_P(EachService, LostService,
+                         testing::Values(Loss{"dyncal-dau", SIGKILL, "source 'dau' of bench"},
+                                         Loss{"dyncal-acs", SIGKILL, "source 'acs' of bench"},
+                                         Loss{"dyncal-acs", SIGTERM, "has ended before the run"},
+                                         Loss{"dyncal-analysis", SIGKILL, "has gone silent"}),
+                         [](const testing::TestParamInfo<Loss>& info) {
+                           std::string name = info.param.program.substr(7) + (info.param.signal == SIGKILL ? "_killed" : "_ended");
+                           return name;
+                         });
+
+} // namespace
+} // namespace dyncal::tests
