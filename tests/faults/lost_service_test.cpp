@@ -17,6 +17,10 @@ struct Loss {
   std::string says;
 };
 
+std::string loss_name(const testing::TestParamInfo<Loss>& loss) {
+  return loss.param.program.substr(std::string("dyncal-").size()) + (loss.param.signal == SIGKILL ? "_killed" : "_ended");
+}
+
 class LostService : public testing::TestWithParam<Loss> {};
 
 TEST_P(LostService, EndsTheRunWithOneLineAndKeepsWhatWasMeasured) {
@@ -39,10 +43,7 @@ INSTANTIATE_TEST_SUITE_P(EachService, LostService,
                                          Loss{"dyncal-acs", SIGKILL, "source 'acs' of bench"},
                                          Loss{"dyncal-acs", SIGTERM, "has ended before the run"},
                                          Loss{"dyncal-analysis", SIGKILL, "has gone silent"}),
-                         [](const testing::TestParamInfo<Loss>& info) {
-                           std::string name = info.param.program.substr(7) + (info.param.signal == SIGKILL ? "_killed" : "_ended");
-                           return name;
-                         });
+                         loss_name);
 
 } // namespace
 } // namespace dyncal::tests
