@@ -85,8 +85,13 @@ void AnalysisService::take_measurement(const Measurement& measurement) {
     known->second->update(measurement, now);
     return;
   }
-  if (measurement.state() == MEASUREMENT_DONE || measurement.state() == MEASUREMENT_ABORTED) {
-    return; // over before this service heard of it
+  if (measurement.state() != MEASUREMENT_PLANNED) {
+    // Its first samples are gone, and so are the results of another instance that may have died: what came of it would look complete
+    // and not be. The run ends by itself when nobody else evaluates it.
+    if (ignored_.insert(key).second && measurement.state() == MEASUREMENT_RUNNING) {
+      spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first, key.second);
+    }
+    return;
   }
   auto session = RunSession::create(participant_, wake_up_, identity_, measurement, now);
   if (!session) {

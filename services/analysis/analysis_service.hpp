@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ private:
   std::map<std::string, KnownSources> benches_;
   std::map<RunKey, std::unique_ptr<RunSession>> runs_;
   std::vector<RunKey> order_; // of runs_, oldest first
+  std::set<RunKey> ignored_;  // began before this service
 };
 
 } // namespace dyncal::services
