@@ -1,0 +1,56 @@
+// Propagation of distributions by a Monte Carlo method (JCGM 101:2008, chapters 5 to 7): a cross-check of the law of propagation, and
+// the better answer near |H| = 0, for A/u below 5 and for results that are not normal.
+//
+// Draws: normal inputs jointly with their correlations (Cholesky factor of the correlation matrix), a finite nu gives Student's t
+// scaled as in JCGM 101, 6.4.9 (standard deviation u sqrt(nu / (nu - 2))), the other distributions independently.
+// Adaptive (7.9): batches of 10 000 trials until twice the standard deviation of mean, u and both ends of the interval over the
+// batches is below half a unit of the second significant digit of u, or `most_trials` are done.
+// Generator: 64-bit Mersenne twister from `seed`; the same seed gives the same numbers. Phases are taken about the evaluated one,
+// so an interval across +-pi is whole.
+// Fails: invalid_argument (as uncertainty.hpp; correlation of inputs that are not normal; correlation matrix not positive definite),
+// not_finite (the model gave no number). No threads of its own.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "analysis/coverage.hpp"
+#include "analysis/error.hpp"
+#include "analysis/sample_stamping.hpp"
+#include "analysis/uncertainty.hpp"
+
+namespace dyncal::analysis {
+
+struct MonteCarloSettings {
+  std::uint64_t seed = 1;
+  std::size_t most_trials = 1'000'000;
+  double probability = two_sigma_probability;
+};
+
+struct MonteCarloResult {
+  double mean = 0.0;
+  double u = 0.0;   // standard deviation of the trials
+  double low = 0.0; // probabilistically symmetric coverage interval
+  double high = 0.0;
+  std::size_t trials = 0;
+  bool stable = false; // the adaptive criterion was met
+};
+
+using MeasurementModel = std::function<double(std::span<const double> inputs)>;
+
+[[nodiscard]] Expected<MonteCarloResult> propagate_distributions(std::span<const InputQuantity> inputs,
+                                                                 std::span<const InputCorrelation> correlations,
+                                                                 const MeasurementModel& model, const MonteCarloSettings& settings = {});
+
+struct MonteCarloTransfer {
+  MonteCarloResult magnitude;
+  MonteCarloResult phase_rad;
+};
+
+// Paper eqs. (3), (4) on drawn phasors: the four fits with the covariances of their coefficients, every other row of the point's
+// budget as it stands there. Never resamples raw data.
+[[nodiscard]] Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingResult& result, std::size_t point,
+                                                                 const AdcResponse& adc, const MonteCarloSettings& settings = {});
+
+} // namespace dyncal::analysis
