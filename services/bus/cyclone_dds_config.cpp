@@ -29,7 +29,7 @@ std::string discovery(const std::string& own_address, const std::vector<std::str
     text += "<Peer address=\"" + peer + "\"/>";
   // "auto" listens at the ports where Fast DDS and peers look for it.
   return element("Discovery", element("ParticipantIndex", "auto") +
-                                  element("MaxAutoParticipantIndex", std::to_string(participants_per_host - 1)) +
+                                  element("MaxAutoParticipantIndex", std::to_string(participants_per_host)) +
                                   element("LeaseDuration", std::to_string(lease.count()) + " s") +
                                   element("SPDPInterval", std::to_string(lease_announcement.count()) + " s") + element("Peers", text));
 }

@@ -1,6 +1,8 @@
 #include "services/bus/fast_dds_participant_qos.hpp"
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
@@ -30,6 +32,18 @@ rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
   rtps::IPLocator::setIPv4(locator, address);
   locator.port = port;
   return locator;
+}
+
+// Its messages belong on standard error, like everybody's; by default they go to standard output.
+void log_to_standard_error() {
+  static const bool done = [] {
+    auto consumer = std::make_unique<dds::StdoutErrConsumer>();
+    consumer->stderr_threshold(dds::Log::Kind::Info);
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::move(consumer));
+    return true;
+  }();
+  static_cast<void>(done);
 }
 
 // Inside one process Fast DDS hands samples over directly by default, and a reader that has no room then never gets them.
@@ -80,6 +94,7 @@ void set_discovery(int domain, bool multicast, const std::string& own_address, c
 
 services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const ParticipantOptions& options) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
+  log_to_standard_error();
   factory->load_profiles();
   deliver_through_sockets_only();
   dds::DomainParticipantQos qos;

@@ -3,7 +3,7 @@
 #include <csignal>
 #include <gtest/gtest.h>
 #include <map>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,7 +33,7 @@ std::vector<Native> natives() {
   return programs;
 }
 
-// Runs as long as this lives.
+// Runs as long as this lives, and no longer than the test.
 class Process {
 public:
   Process(const Native& native, const std::vector<std::string>& arguments) {
@@ -48,20 +48,23 @@ public:
     for (char** inherited = environ; *inherited != nullptr; ++inherited)
       environment.push_back(*inherited);
     environment.push_back(nullptr);
-    started_ = posix_spawn(&pid_, argv[0], nullptr, nullptr, argv.data(), environment.data()) == 0;
+    pid_ = fork();
+    if (pid_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    execve(argv[0], argv.data(), environment.data());
+    _exit(127);
   }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process() {
-    if (!started_) return;
+    if (!started()) return;
     kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
-  [[nodiscard]] bool started() const { return started_; }
+  [[nodiscard]] bool started() const { return pid_ > 0; }
 
 private:
   pid_t pid_ = 0;
-  bool started_ = false;
 };
 
 class BusNative : public testing::TestWithParam<std::tuple<Native, Vendor>> {
