@@ -23,7 +23,7 @@ struct ServerSettings {
   double speed = 1.0;      // 0: as fast as possible
   double duration_s = 0.0; // bench time after which run() ends; 0: never
   PathSettings path;
-  double datagrams_per_s = 3000.0; // of the host's seconds
+  double datagrams_per_s = 4000.0; // of the host's seconds
   std::uint32_t sensor_id = 0xbccb0100;
   bool with_ticks = false;
 };
