@@ -1,4 +1,4 @@
-// The same samples give the same bits, whichever DDS implementation carries them.
+// The same samples give the same bits, whichever DDS implementation carries them, and without any.
 #include <gtest/gtest.h>
 
 #include "tests/system/laboratory.hpp"
@@ -17,12 +17,15 @@ nlohmann::json result_over(const std::filesystem::path& folder, const std::files
   return read_json(json);
 }
 
-TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsAndOverBoth) {
+TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsOverBothAndWithoutANetwork) {
   const auto folder = fresh_folder("same-bits");
   const auto bench = recorded_bench(folder, "files", "3");
   const auto fast = result_over(folder, bench, "fast", 90, "fastdds", "fastdds", "fastdds");
   const auto cyclone = result_over(folder, bench, "cyclone", 91, "cyclonedds", "cyclonedds", "cyclonedds");
   const auto mixed = result_over(folder, bench, "mixed", 92, "cyclonedds", "fastdds", "cyclonedds");
+  ProgramRun analyse("dyncal", {"analyse", bench, "--json", folder / "analyse.json"}, folder);
+  EXPECT_EQ(analyse.wait(std::chrono::seconds(60)), 0) << analyse.errors();
+  const auto without_network = read_json(folder / "analyse.json");
   ASSERT_FALSE(fast.is_discarded() || cyclone.is_discarded() || mixed.is_discarded());
   ASSERT_EQ(fast["points"].size(), 18U);
   EXPECT_EQ(fast["points"], cyclone["points"]);
@@ -30,6 +33,8 @@ TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsAndOverBoth) {
   EXPECT_EQ(fast["transfer_function"], cyclone["transfer_function"]);
   EXPECT_EQ(fast["transfer_function"], mixed["transfer_function"]);
   EXPECT_EQ(fast["group_delay"], mixed["group_delay"]);
+  EXPECT_EQ(fast["points"], without_network["points"]);
+  EXPECT_EQ(fast["transfer_function"], without_network["transfer_function"]);
 }
 
 } // namespace
