@@ -220,7 +220,7 @@ Expected<bool> RunController::hold_until(double bench_time_s, const std::stop_to
 
 bool RunController::everything_has_come() const {
   return analysis_ && analysis_->arm() == ARM_FINISHED && outcome_.results.size() >= analysis_->results_published() &&
-         (outcome_.transfer_functions.size() >= 1 || outcome_.results.empty() ||
+         (!outcome_.transfer_functions.empty() || outcome_.results.empty() ||
           std::none_of(outcome_.results.begin(), outcome_.results.end(), [](const CalibrationResult& result) { return result.valid(); }));
 }
 
