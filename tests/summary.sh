@@ -9,7 +9,7 @@ set -euo pipefail
 awk '
   # Output of ctest: how many ran, which ones failed or were skipped.
   FNR == NR && /tests passed,.* tests failed out of / { failed = $(NF - 5); total = $NF }
-  FNR == NR && /^\t +[0-9]+ - .* \(Skipped\)$/ { sub(/^\t +[0-9]+ - /, ""); sub(/ \(Skipped\)$/, ""); skipped[++skips] = $0 }
+  FNR == NR && /^\t *[0-9]+ - .* \(Skipped\)$/ { sub(/^\t *[0-9]+ - /, ""); sub(/ \(Skipped\)$/, ""); skipped[++skips] = $0 }
   FNR == NR { next }
   # The log: the output of every test.
   /^[0-9]+\/[0-9]+ Test: / { name = $0; sub(/^[0-9]+\/[0-9]+ Test: /, "", name); next_is_reason = 0 }
