@@ -133,18 +133,23 @@ std::vector<Pixel> shown_pixels(const std::vector<Point>& points, const Axes& ax
   return result;
 }
 
+void draw_error_bar(Svg& svg, const Point& point, const Axes& axes, const std::string& colour, bool crowded) {
+  if (point.half_bar <= 0 || !axes.x.can_show(point.x) || !axes.y.can_show(point.y - point.half_bar)) return;
+  const auto low = axes.pixel(point.x, point.y - point.half_bar);
+  const auto high = axes.pixel(point.x, point.y + point.half_bar);
+  const Stroke stroke{.colour = colour, .width = 1, .opacity = crowded ? 0.5 : 1};
+  svg.line(low, high, stroke);
+  if (crowded) return;
+  for (const auto& end : {low, high})
+    svg.line({end.x - 3, end.y}, {end.x + 3, end.y}, stroke);
+}
+
 void draw_series(Svg& svg, const Series& series, const Axes& axes) {
   const auto pixels = shown_pixels(series.points, axes);
   if (series.joined) svg.polyline(pixels, {.colour = series.colour, .width = series.line_width, .dashes = series.dashes});
-  for (const auto& point : series.points) {
-    if (point.half_bar <= 0 || !axes.x.can_show(point.x) || !axes.y.can_show(point.y - point.half_bar)) continue;
-    const auto low = axes.pixel(point.x, point.y - point.half_bar);
-    const auto high = axes.pixel(point.x, point.y + point.half_bar);
-    const Stroke stroke{.colour = series.colour, .width = 1};
-    svg.line(low, high, stroke);
-    for (const auto& end : {low, high})
-      svg.line({end.x - 3, end.y}, {end.x + 3, end.y}, stroke);
-  }
+  const bool crowded = series.points.size() > 25;
+  for (const auto& point : series.points)
+    draw_error_bar(svg, point, axes, series.colour, crowded);
   for (const auto& pixel : pixels)
     svg.marker(series.marker, pixel, series.radius, {.colour = series.colour, .width = 1.5});
 }
