@@ -1,0 +1,101 @@
+#include "services/command/run_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace dyncal::services {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TransferFunction function(const std::string& channel, double magnitude) {
+  TransferFunction one;
+  one.channel(channel);
+  one.unit(R"(\one)");
+  for (const char* text : {"10", "20"}) {
+    TransferPoint point;
+    point.frequency_text_hz(text);
+    point.frequency_hz(std::stod(text));
+    point.magnitude(magnitude);
+    point.u_magnitude(1e-3);
+    point.phase_rad(-0.5);
+    point.u_phase_rad(2e-3);
+    point.repetitions(3);
+    one.points().push_back(point);
+  }
+  one.group_delay_valid(true);
+  one.group_delay_s(8.1e-3);
+  one.u_group_delay_s(1e-6);
+  return one;
+}
+
+RunOutcome outcome() {
+  RunOutcome one;
+  one.measurement.bench("acc-1");
+  one.measurement.run("r1");
+  one.measurement.method(METHOD_SAMPLE_TIMESTAMPING);
+  one.analysis_dds = "fastdds";
+  CalibrationResult result;
+  result.channel("dau/acceleration_z");
+  result.step(1);
+  result.frequency_hz(10.0);
+  result.frequency_text_hz("10");
+  result.level_m_s2(2.75);
+  result.repetition(1);
+  result.valid(true);
+  result.magnitude(1.0);
+  SourceSamples samples;
+  samples.source("dau");
+  samples.used(3010);
+  result.samples().push_back(samples);
+  one.results.push_back(result);
+  result.valid(false);
+  result.step(2);
+  result.frequency_text_hz("20");
+  result.problem("no steady sine");
+  one.results.push_back(result);
+  one.transfer_functions = {function("dau/acceleration_z", 1.0), function("dau/angular_velocity_x", 1e-4)};
+  SampleClockReport clock;
+  clock.source("dau");
+  clock.mean_interval_s(996.96e-6);
+  clock.intervals(1000);
+  one.clock_reports.push_back(clock);
+  return one;
+}
+
+TEST(RunReport, JsonHasTheFormOthersRead) {
+  const auto json = result_json(outcome());
+  EXPECT_EQ(json["bench"], "acc-1");
+  EXPECT_EQ(json["method"], "sample-timestamping");
+  EXPECT_EQ(json["dds"]["analysis"], "fastdds");
+  const auto& point = json["points"][0];
+  EXPECT_EQ(point["channel"], "dau/acceleration_z");
+  EXPECT_DOUBLE_EQ(point["frequency_hz"], 10.0);
+  EXPECT_DOUBLE_EQ(point["level_m_s2"], 2.75);
+  EXPECT_EQ(point["samples"]["dau"], 3010);
+  EXPECT_EQ(point["lost"], 0);
+  EXPECT_EQ(json["transfer_function"][0]["repetitions"], 3);
+  EXPECT_DOUBLE_EQ(json["group_delay"][0]["value_s"], 8.1e-3);
+  EXPECT_EQ(json["sample_clock"][0]["count"], 1000);
+}
+
+TEST(RunReport, TableShowsChannelsThatRespondAndNamesTheOthers) {
+  const std::string table = result_table(outcome());
+  EXPECT_THAT(table, HasSubstr("dau/acceleration_z\n"));
+  EXPECT_THAT(table, HasSubstr("group delay 8.1 ms"));
+  EXPECT_THAT(table, HasSubstr("No response above three times its uncertainty in: dau/angular_velocity_x"));
+}
+
+TEST(RunReport, TableListsWhatHasNoResultAndWhy) {
+  EXPECT_THAT(result_table(outcome()), HasSubstr("step 2, 20 Hz: no steady sine"));
+  EXPECT_THAT(result_table(outcome()), Not(HasSubstr("nan")));
+}
+
+TEST(RunReport, AFileThatCannotBeWrittenIsAnError) {
+  EXPECT_THAT(write_json("/nowhere/result.json", {}).error().message, HasSubstr("/nowhere/result.json: cannot write"));
+}
+
+} // namespace
+} // namespace dyncal::services
