@@ -19,7 +19,7 @@ build_packages=(
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev
 )
 run_packages=(
-  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libprotobuf-lite32 libssl3 libsndfile1
+  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3 libssl3 libsndfile1
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
