@@ -43,7 +43,9 @@ Ready wait_for_events(int descriptor, short events, int stop_descriptor, Clock::
     if (count > 0) {
       return Ready::yes;
     }
-    return Ready::timed_out;
+    if (Clock::now() >= deadline) {
+      return Ready::timed_out;
+    }
   }
 }
 
@@ -57,6 +59,16 @@ Expected<std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>> resolve(const Addre
     return failure(ErrorCode::not_found, address.text() + ": no host of this name (" + gai_strerror(status) + ")");
   }
   return std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>(found, &freeaddrinfo);
+}
+
+// Commands leave at once; an instrument that is switched off without a farewell is noticed within about ten seconds.
+void set_options(int socket) {
+  const auto set = [socket](int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof(value)); };
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 4);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 2);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
 }
 
 // The outcome of one non-blocking connect: 0, or an errno value.
@@ -153,8 +165,7 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address, std::chro
     }
     status = connect_once(socket.number(), *target, stop.descriptor(), deadline);
     if (status == 0) {
-      const int on = 1;
-      setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+      set_options(socket.number());
       return TcpConnection(std::move(socket), address, stop);
     }
   }

@@ -13,7 +13,7 @@ constexpr std::size_t longest_description = 65536;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
 constexpr std::uint32_t most_samples = 65536;
 constexpr milliseconds retry_interval{500};
-constexpr milliseconds frame_limit{3'600'000}; // an instrument may be silent as long as it likes; who reads the status sees it
+constexpr std::chrono::hours frame_limit{24 * 365}; // an instrument may be silent as long as it likes; who reads the status sees it
 constexpr double shortest_block_s = 0.02;
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian and read as they are");
