@@ -1,7 +1,7 @@
 // One run at the analysis service: from the Measurement message over the armed handshake to the last result.
 //
 // Armed means: every source of the recipe has described itself with the channels needed, is not silent, and has answered the ARM command in
-// its own sample stream, so commands arrive there and samples arrive here (idl/README.md, "How a run goes"). Samples before a source's
+// its own sample stream, so commands arrive there and samples arrive here (idl/README.md, "The run protocol"). Samples before a source's
 // answer are not of this run. A run that cannot be armed within `arm_limit` is refused with one sentence. While the run is on, a live
 // source that has sent nothing for `silence_limit` fails it. When the excitation is done and nothing moves any more for `quiet_limit`, the
 // run ends with what there is. Results stay readable for late joiners as long as the session lives. Belongs to the service's one thread;

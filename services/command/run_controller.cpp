@@ -69,6 +69,7 @@ Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalib
   if (!excited) {
     outcome_.problem = excited.error().message;
   }
+  outcome_.measurement.message(outcome_.interrupted ? "interrupted by the user" : outcome_.problem);
   const bool from_files = generator_ == nullptr;
   if (!from_files || outcome_.interrupted || !excited) {
     set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);

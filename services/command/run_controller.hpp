@@ -1,6 +1,6 @@
 // Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "How a run goes". Durations are in bench time (the generator's clock); each step holds the
+// Order of messages: idl/README.md, "The run protocol". Durations are in bench time (the generator's clock); each step holds the
 // output on for settling, duration and a margin in which the analysis finds the edges of the steady part, then off for a moment, which
 // separates it from the next.
 // The generator's output is off on every way out: end, error, stop.
