@@ -29,6 +29,8 @@ if(MOLD)
 endif()
 
 if(DYNCAL_SANITIZE)
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1") # with -O2 and more, single files take minutes
+  set(CMAKE_C_FLAGS_RELEASE "-O1")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=address,undefined)
 endif()
