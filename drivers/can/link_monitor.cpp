@@ -5,6 +5,7 @@
 #include <cstring>
 #include <ctime>
 #include <system_error>
+#include <utility>
 
 #include <linux/can/netlink.h>
 #include <linux/if.h>
@@ -128,6 +129,7 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
         Error{ErrorCode::refused, "the kernel gives no access to the state of interfaces (" + system_text(errno) + ")"});
   LinkMonitor monitor(interface_name, std::move(socket));
   if (auto asked = monitor.ask(); !asked) return tl::make_unexpected(asked.error());
+  monitor.changes_.clear();
   return monitor;
 }
 
@@ -138,25 +140,25 @@ Expected<void> LinkMonitor::request_links() {
   return {};
 }
 
-Expected<bool> LinkMonitor::ask() {
-  const LinkState before = state_;
-  state_ = {};
-  state_.name = before.name;
-  state_.restarts = before.restarts;
-  index_ = 0;
-  if (auto sent = request_links(); !sent) return tl::make_unexpected(sent.error());
-  if (auto read = read_messages(true); !read) return read;
-  if (!state_.present) state_.name = wanted_name_;
-  return !(state_ == before);
-}
-
-Expected<bool> LinkMonitor::update() {
-  return read_messages(false);
-}
-
-Expected<bool> LinkMonitor::read_messages(bool wait_for_answer) {
+Expected<void> LinkMonitor::ask() {
   const LinkState before = state_;
   const int index_before = index_;
+  state_ = {};
+  state_.name = before.name;
+  index_ = 0;
+  if (auto sent = request_links(); !sent) return sent;
+  if (auto read = read_messages(true); !read) return read;
+  if (!state_.present) state_.name = wanted_name_;
+  if (!(state_ == before) || index_ != index_before) changes_.push_back({state_, index_});
+  return {};
+}
+
+Expected<std::vector<LinkMonitor::Change>> LinkMonitor::update() {
+  if (auto read = read_messages(false); !read) return tl::make_unexpected(read.error());
+  return std::exchange(changes_, {});
+}
+
+Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
   alignas(nlmsghdr) std::array<std::uint8_t, 32768> buffer{};
   for (bool done = false; !done;) {
     const ssize_t got = ::recv(socket_.get(), buffer.data(), buffer.size(), wait_for_answer ? 0 : MSG_DONTWAIT);
@@ -180,13 +182,16 @@ Expected<bool> LinkMonitor::read_messages(bool wait_for_answer) {
       std::memcpy(&header, buffer.data() + at, sizeof header);
       if (header.nlmsg_len < sizeof header || header.nlmsg_len > left) break;
       done = done || (wait_for_answer && (header.nlmsg_type == NLMSG_DONE || header.nlmsg_type == NLMSG_ERROR));
+      const LinkState before = state_;
+      const int index_before = index_;
       take_message(buffer.data() + at);
+      if (!wait_for_answer && (!(state_ == before) || index_ != index_before)) changes_.push_back({state_, index_});
       const std::size_t step = std::min<std::size_t>(NLMSG_ALIGN(header.nlmsg_len), left);
       at += step;
       left -= step;
     }
   }
-  return !(state_ == before) || index_ != index_before;
+  return {};
 }
 
 void LinkMonitor::take_message(const void* message) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drivers/can/file_descriptor.hpp"
 #include "drivers/can/frame_source.hpp"
@@ -24,10 +25,14 @@ public:
   [[nodiscard]] const LinkState& state() const { return state_; }
   [[nodiscard]] int interface_index() const { return index_; } // 0: not there
 
-  // Reads what has come. True when the state has changed.
-  [[nodiscard]] Expected<bool> update();
-  // Asks the kernel now, for what it does not announce by itself (error counters).
-  [[nodiscard]] Expected<bool> ask();
+  struct Change {
+    LinkState state;
+    int interface_index = 0;
+  };
+  // Reads what has come: every change by itself, in its order, so that down and up between two calls are both seen.
+  [[nodiscard]] Expected<std::vector<Change>> update();
+  // Asks the kernel for everything anew.
+  [[nodiscard]] Expected<void> ask();
 
   // After bus-off. Fails (refused) without CAP_NET_ADMIN or where the driver cannot.
   [[nodiscard]] Expected<void> restart_controller();
@@ -39,7 +44,7 @@ private:
   }
 
   [[nodiscard]] Expected<void> request_links();
-  [[nodiscard]] Expected<bool> read_messages(bool wait_for_answer);
+  [[nodiscard]] Expected<void> read_messages(bool wait_for_answer);
   void take_message(const void* header);
   [[nodiscard]] Expected<void> change(const void* request, const std::string& what);
 
@@ -47,6 +52,7 @@ private:
   FileDescriptor socket_;
   LinkState state_;
   int index_ = 0;
+  std::vector<Change> changes_; // not handed out yet
 };
 
 } // namespace dyncal::drivers::can

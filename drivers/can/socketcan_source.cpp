@@ -151,8 +151,10 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events, std::ch
   // Frames before announcements: what came before a change stands before it.
   if (some && socket_.open() && waited[2].revents != 0) receive(events);
   if (some && waited[1].revents != 0) {
-    if (auto changed = monitor_->update(); !changed) return tl::make_unexpected(changed.error());
-    follow_link(events);
+    const auto changes = monitor_->update();
+    if (!changes) return tl::make_unexpected(changes.error());
+    for (const LinkMonitor::Change& announced : *changes)
+      follow_link(announced, events);
   }
   restart_when_due(events);
   return ReadState::more;
@@ -214,10 +216,11 @@ void SocketCanSource::note_fault(const BusFault& fault) {
     bus_off_since_.reset();
 }
 
-void SocketCanSource::follow_link(std::vector<BusEvent>& events) {
+void SocketCanSource::follow_link(const LinkMonitor::Change& announced, std::vector<BusEvent>& events) {
   const LinkState before = link_;
-  link_ = monitor_->state();
-  const bool gone_or_other = monitor_->interface_index() != bound_index_;
+  link_ = announced.state;
+  // Once bound_index_ is another interface, or none, the socket hears nothing more.
+  const bool gone_or_other = announced.interface_index != bound_index_;
   if (gone_or_other) socket_.reset();
   LinkChange change{link_, false, ""};
   if (!link_.present && before.present)

@@ -51,7 +51,7 @@ private:
   [[nodiscard]] Expected<void> set_options(int socket) const;
   void receive(std::vector<BusEvent>& events);
   void take(std::size_t message, std::vector<BusEvent>& events);
-  void follow_link(std::vector<BusEvent>& events);
+  void follow_link(const LinkMonitor::Change& announced, std::vector<BusEvent>& events);
   void note_fault(const BusFault& fault);
   void restart_when_due(std::vector<BusEvent>& events);
 

@@ -1,0 +1,92 @@
+// What tests on a real CAN kernel need: links made and removed with iproute2, and a socket to send frames with.
+#pragma once
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "drivers/can/frame_source.hpp"
+
+namespace dyncal::tests {
+
+inline void ip(const std::string& arguments) {
+  if (std::system(("ip link " + arguments).c_str()) != 0) throw std::runtime_error("ip link " + arguments);
+}
+
+// A virtual interface for the time of a test. FD frames pass.
+class VirtualCan {
+public:
+  explicit VirtualCan(std::string name) : name_(std::move(name)) {
+    ip("add " + name_ + " type vcan");
+    ip("set " + name_ + " mtu 72 up");
+  }
+  ~VirtualCan() { static_cast<void>(std::system(("ip link del " + name_ + " 2>/dev/null").c_str())); }
+  VirtualCan(const VirtualCan&) = delete;
+  VirtualCan& operator=(const VirtualCan&) = delete;
+
+private:
+  std::string name_;
+};
+
+class Sender {
+public:
+  explicit Sender(const std::string& interface_name) : socket_(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)) {
+    const int on = 1;
+    ::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
+    ::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(::if_nametoindex(interface_name.c_str()));
+    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      throw std::runtime_error("bind " + interface_name);
+  }
+  ~Sender() { ::close(socket_); }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
+  // `id` with the kernel's flag bits.
+  bool send(std::uint32_t id, const std::vector<std::uint8_t>& data, bool fd = false) {
+    canfd_frame frame{};
+    frame.can_id = id;
+    frame.len = static_cast<std::uint8_t>(data.size());
+    frame.flags = fd ? CANFD_BRS : 0;
+    std::memcpy(frame.data, data.data(), data.size());
+    const std::size_t size = fd ? CANFD_MTU : CAN_MTU;
+    return ::write(socket_, &frame, size) == static_cast<ssize_t>(size);
+  }
+
+private:
+  int socket_;
+};
+
+using drivers::can::BusEvent;
+using drivers::can::CanFrame;
+using drivers::can::FrameSource;
+
+// Reads until `enough` or ten seconds have passed; what was read.
+inline std::vector<BusEvent> read_until(FrameSource& source, const std::function<bool(const std::vector<BusEvent>&)>& enough) {
+  std::vector<BusEvent> events;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!enough(events) && std::chrono::steady_clock::now() < deadline)
+    static_cast<void>(source.read(events, std::chrono::milliseconds(20)));
+  return events;
+}
+
+inline std::vector<CanFrame> frames_of(const std::vector<BusEvent>& events) {
+  std::vector<CanFrame> frames;
+  for (const BusEvent& event : events)
+    if (const auto* frame = std::get_if<CanFrame>(&event)) frames.push_back(*frame);
+  return frames;
+}
+
+} // namespace dyncal::tests

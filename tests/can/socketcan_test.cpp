@@ -1,0 +1,245 @@
+#include "drivers/can/socketcan_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <ctime>
+#include <thread>
+
+#include "tests/can/kernel_can.hpp"
+
+namespace dyncal::drivers::can {
+namespace {
+
+using ::testing::HasSubstr;
+using tests::frames_of;
+using tests::ip;
+using tests::read_until;
+using tests::Sender;
+using tests::VirtualCan;
+
+const std::vector<FrameFilter> sensor_only = {{0x123, 0x7FF, false}};
+
+SocketCanSource source_on(const std::string& interface_name) {
+  SocketCanSettings settings;
+  settings.interface_name = interface_name;
+  return SocketCanSource(settings);
+}
+
+std::int64_t now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+auto frames(std::size_t wanted) {
+  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
+}
+
+auto change(const std::string& words) {
+  return [words](const std::vector<BusEvent>& events) {
+    for (const BusEvent& event : events)
+      if (const auto* found = std::get_if<LinkChange>(&event); found != nullptr && found->what.find(words) != std::string::npos)
+        return true;
+    return false;
+  };
+}
+
+std::string failure(SocketCanSource source) {
+  const auto link = source.open(sensor_only);
+  return link ? "opened" : link.error().message;
+}
+
+TEST(SocketCan, SaysInOneLineWhyAnInterfaceCannotBeUsed) {
+  EXPECT_THAT(failure(source_on("can7")), HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
+  const VirtualCan link("vcan0");
+  ip("set vcan0 down");
+  EXPECT_THAT(failure(source_on("vcan0")), HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
+  EXPECT_THAT(failure(source_on("lo")), HasSubstr("interface 'lo' is no CAN interface"));
+}
+
+TEST(SocketCan, ReceivesClassicAndFdFramesWithTheKernelsStamp) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open({{0x123, 0x7FF, false}, {0x1ABCDEF, 0x1FFFFFFF, true}}));
+  Sender sender("vcan0");
+  const std::int64_t before_ns = now_ns();
+  ASSERT_TRUE(sender.send(0x123, {1, 2, 3}));
+  ASSERT_TRUE(sender.send(0x1ABCDEF | CAN_EFF_FLAG, std::vector<std::uint8_t>(64, 7), true));
+  const auto received = frames_of(read_until(source, frames(2)));
+  const std::int64_t after_ns = now_ns();
+  ASSERT_EQ(received.size(), 2U);
+  EXPECT_FALSE(received[0].fd);
+  EXPECT_EQ(received[0].id, 0x123U);
+  EXPECT_EQ(received[0].length, 3);
+  EXPECT_EQ(received[0].data[2], 3);
+  EXPECT_TRUE(received[0].sent_here);
+  EXPECT_TRUE(received[1].fd);
+  EXPECT_TRUE(received[1].bit_rate_switch);
+  EXPECT_TRUE(received[1].extended);
+  EXPECT_EQ(received[1].length, 64);
+  for (const CanFrame& frame : received) {
+    EXPECT_GE(frame.kernel_ns, before_ns);
+    EXPECT_LE(frame.kernel_ns, after_ns);
+    EXPECT_EQ(frame.hardware_ns, 0);
+  }
+}
+
+TEST(SocketCan, LetsOnlyTheFramesOfItsFiltersThrough) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  Sender sender("vcan0");
+  sender.send(0x124, {1});
+  sender.send(0x123 | CAN_EFF_FLAG, {2});
+  sender.send(0x123 | CAN_RTR_FLAG, {});
+  sender.send(0x123, {4});
+  const auto received = frames_of(read_until(source, frames(1)));
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].data[0], 4);
+}
+
+TEST(SocketCan, TellsWhatErrorFramesSay) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  Sender sender("vcan0");
+  sender.send(CAN_ERR_FLAG | 0x004 | 0x200, {0, 0x20, 0, 0, 0, 0, 130, 10}); // transmit passive, with counters
+  sender.send(CAN_ERR_FLAG | 0x008, {0, 0, 0x04, 0x0A, 0, 0, 0, 0});         // stuff error
+  sender.send(CAN_ERR_FLAG | 0x040, std::vector<std::uint8_t>(8, 0));        // bus-off
+  const auto events = read_until(source, [](const auto& all) { return all.size() >= 3; });
+  ASSERT_EQ(events.size(), 3U);
+  const auto& passive = std::get<BusFault>(events[0]);
+  EXPECT_EQ(passive.state, BusState::error_passive);
+  EXPECT_EQ(passive.transmit_errors, 130);
+  EXPECT_EQ(std::get<BusFault>(events[1]).cause, "stuff error");
+  EXPECT_EQ(std::get<BusFault>(events[2]).state, BusState::bus_off);
+}
+
+TEST(SocketCan, GoesOnAfterTheInterfaceWasDownAndUp) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  ip("set vcan0 down");
+  EXPECT_TRUE(change("is down")(read_until(source, change("is down"))));
+  ip("set vcan0 up");
+  EXPECT_TRUE(change("is up")(read_until(source, change("is up"))));
+  Sender("vcan0").send(0x123, {9});
+  EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
+}
+
+TEST(SocketCan, OpensAnInterfaceAgainThatWasUnpluggedAndComesBack) {
+  auto link = std::make_unique<VirtualCan>("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  link.reset();
+  const auto gone = read_until(source, change("has gone"));
+  ASSERT_TRUE(change("has gone")(gone));
+  EXPECT_TRUE(std::get<LinkChange>(gone.back()).interrupted);
+  link = std::make_unique<VirtualCan>("vcan0");
+  EXPECT_TRUE(change("is up")(read_until(source, change("is up"))));
+  Sender("vcan0").send(0x123, {9});
+  EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
+}
+
+TEST(SocketCan, FollowsAnInterfaceThatIsRenamed) {
+  VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  ip("set vcan0 down");
+  ip("set vcan0 name shaker0");
+  ip("set shaker0 up");
+  EXPECT_TRUE(change("'shaker0' is up")(read_until(source, change("'shaker0' is up"))));
+  Sender("shaker0").send(0x123, {9});
+  EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
+  ip("del shaker0");
+}
+
+TEST(SocketCan, CountsEveryFrameThatOverloadLost) {
+  const VirtualCan link("vcan0");
+  SocketCanSettings settings;
+  settings.interface_name = "vcan0";
+  settings.receive_buffer_bytes = 64 << 10;
+  SocketCanSource source(settings);
+  ASSERT_TRUE(source.open(sensor_only));
+  Sender sender("vcan0");
+  constexpr std::size_t sent = 5000;
+  for (std::size_t i = 0; i < sent; ++i)
+    ASSERT_TRUE(sender.send(0x123, {static_cast<std::uint8_t>(i)}));
+  std::vector<BusEvent> events;
+  static_cast<void>(source.read(events, std::chrono::milliseconds(20))); // makes room for the frame that carries the count
+  sender.send(0x123, {0});
+  std::uint64_t received = 0;
+  std::uint64_t lost = 0;
+  const auto take = [&](const std::vector<BusEvent>& some) {
+    received += frames_of(some).size();
+    for (const BusEvent& event : some)
+      if (const auto* dropped = std::get_if<FramesLost>(&event)) lost += dropped->frames;
+  };
+  take(events);
+  for (bool more = true; more;) {
+    events.clear();
+    static_cast<void>(source.read(events, std::chrono::milliseconds(50)));
+    more = !events.empty();
+    take(events);
+  }
+  EXPECT_GT(lost, 0U);
+  EXPECT_EQ(received + lost, sent + 1);
+}
+
+TEST(SocketCan, StopsFromAnotherThreadWhileItWaits) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  std::jthread stopper([&] { source.stop(); });
+  std::vector<BusEvent> events;
+  for (auto state = ReadState::more; state != ReadState::stopped;)
+    state = source.read(events, std::chrono::seconds(10)).value();
+}
+
+TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  constexpr int seconds = 60;
+  constexpr int rate_hz = 8000;
+  constexpr std::uint32_t sent = seconds * rate_hz;
+  std::atomic<std::uint32_t> not_sent = 0;
+  std::jthread sender_thread([&] {
+    Sender sender("vcan0");
+    const auto start = std::chrono::steady_clock::now();
+    for (std::uint32_t i = 0; i < sent; ++i) {
+      if (i % 8 == 0)
+        std::this_thread::sleep_until(start + std::chrono::microseconds(1'000'000LL * i / rate_hz)); // bursts of a millisecond
+      std::vector<std::uint8_t> data(8, 0);
+      std::memcpy(data.data(), &i, sizeof i);
+      if (!sender.send(0x123, data)) ++not_sent;
+    }
+  });
+  std::uint32_t next = 0;
+  std::uint64_t dropped = 0;
+  std::uint64_t out_of_order = 0;
+  std::vector<BusEvent> events;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(seconds + 60);
+  while (next < sent && std::chrono::steady_clock::now() < deadline) {
+    events.clear();
+    ASSERT_TRUE(source.read(events, std::chrono::milliseconds(100)));
+    for (const BusEvent& event : events) {
+      if (const auto* lost = std::get_if<FramesLost>(&event)) dropped += lost->frames;
+      const auto* frame = std::get_if<CanFrame>(&event);
+      if (frame == nullptr) continue;
+      std::uint32_t number = 0;
+      std::memcpy(&number, frame->data.data(), sizeof number);
+      out_of_order += number == next ? 0 : 1;
+      next = number + 1;
+    }
+  }
+  EXPECT_EQ(not_sent, 0U);
+  EXPECT_EQ(dropped, 0U);
+  EXPECT_EQ(out_of_order, 0U);
+  EXPECT_EQ(next, sent);
+}
+
+} // namespace
+} // namespace dyncal::drivers::can
