@@ -71,7 +71,7 @@ install_missing() {
     -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "${missing[@]}"
 }
 
-echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+echo "Installing from Debian: ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # The usual reasons for a failure are package lists that were never fetched or have aged: fetch them only then.
