@@ -13,6 +13,8 @@ constexpr double kept_scales = 4.0;
 constexpr double unusual_scales = 6.0;
 constexpr double pair_sum_scales = 9.0;
 constexpr double gap_scales = 8.0;
+constexpr std::size_t fewest_pairs = 5; // before a period is spoken of
+constexpr double least_regularity = 0.9;
 
 struct Verdict {
   std::string kind; // empty: nothing unusual
@@ -43,7 +45,7 @@ double median(std::vector<double> values) {
 }
 
 void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>& pairs) {
-  if (pairs.size() < 3) return;
+  if (pairs.size() < fewest_pairs) return;
   std::vector<double> samples, seconds;
   for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
     samples.push_back(static_cast<double>(pairs[i + 1].sample) - static_cast<double>(pairs[i].sample));
@@ -55,6 +57,7 @@ void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>
   for (const double distance : samples)
     sum += std::polar(1.0, 2.0 * std::numbers::pi * distance / verdict.pair_period_samples);
   verdict.pair_regularity = std::abs(sum) / static_cast<double>(samples.size());
+  if (verdict.pair_regularity < least_regularity) verdict.pair_period_samples = verdict.pair_period_s = 0.0;
 }
 
 } // namespace

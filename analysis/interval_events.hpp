@@ -44,7 +44,7 @@ struct IntervalVerdict {
   std::uint64_t event_count = 0;                // all
   std::vector<std::int64_t> unusual_lengths_ns; // of every interval that is part of an event
   std::uint64_t pair_count = 0;
-  double pair_period_samples = 0.0; // median distance of pairs, 0 with fewer than three
+  double pair_period_samples = 0.0; // median distance of pairs; 0 with fewer than five, or without regularity (below 0.9)
   double pair_period_s = 0.0;
   double pair_regularity = 0.0; // |mean exp(2 pi i distance / period)|: 1 regular, towards 0 by chance
 };

@@ -66,7 +66,7 @@ struct SampleClockStatistics {
   std::vector<IntervalEvent> events;
   std::uint64_t event_count = 0;
   std::uint64_t pair_count = 0;
-  double pair_period_samples = 0.0; // median distance, 0 with fewer than three pairs
+  double pair_period_samples = 0.0; // median distance, 0 with fewer than five pairs or without regularity
   double pair_period_s = 0.0;
   double pair_regularity = 0.0; // 1 regular, towards 0 by chance
   std::vector<TemperatureBin> over_temperature;

@@ -128,6 +128,23 @@ TEST(SampleClock, FindsEveryLateSampleAndTheirPeriod) {
   EXPECT_EQ(s.close_up_ns.size(), 2u * SampleClockSettings{}.close_up + 1u);
 }
 
+TEST(SampleClock, PairsByChanceHaveNoPeriod) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0.0, 12.0);
+  std::vector<std::int64_t> intervals;
+  for (int i = 0; i < 200'000; ++i)
+    intervals.push_back(std::llround(1e6 + noise(random)));
+  for (int i = 0; i < 40; ++i) {
+    const std::size_t place = 1 + random() % 199'990;
+    intervals[place] += 1000;
+    intervals[place + 1] -= 1000;
+  }
+  const SampleClockStatistics s = statistics_of(stamps_of(intervals));
+  EXPECT_GT(s.pair_count, 30u);
+  EXPECT_LT(s.pair_regularity, 0.6);
+  EXPECT_EQ(s.pair_period_samples, 0.0);
+}
+
 TEST(SampleClock, LostAndUntrustedSamplesMakeNoInterval) {
   SampleClock clock;
   const std::vector<std::int64_t> first{0, 100, 200}, second{500, 600, 700, 800};
