@@ -1,0 +1,1 @@
+dyncal_benchmark(csv_benchmark SOURCES csv_benchmark.cpp LIBRARIES dyncal_csv)
