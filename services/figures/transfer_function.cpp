@@ -59,7 +59,7 @@ std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity
 }
 
 Series mean_series(const TransferFunctionData& data, Quantity quantity) {
-  Series series{.label = "mean ± u (k = 1)", .colour = "#222222", .joined = true, .line_width = 1.1};
+  Series series{.label = "mean ± u", .colour = "#222222", .joined = true, .line_width = 1.1};
   for (const auto& point : data.mean)
     series.points.push_back(quantity(point));
   std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
@@ -150,7 +150,7 @@ std::string csv_of(const TransferFunctionData& data) {
   const auto unit = data.unit.empty() ? std::string("1") : data.unit;
   auto csv = csv_comment(data.title);
   csv += csv_comment(
-      fmt::format("magnitude in {}; phase: lead, rad (ISO 2041), a delay has negative phase; u: standard uncertainty (k = 1)", unit));
+      fmt::format("magnitude in {}; phase: lead, rad (ISO 2041), a delay has negative phase; u: standard uncertainty", unit));
   if (data.group_delay) {
     csv += csv_comment(fmt::format("group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->value_s),
                                    csv_number(data.group_delay->u_s), csv_number(data.group_delay->intercept_rad)));
