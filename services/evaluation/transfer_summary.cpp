@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
+#include "analysis/adc_calibration.hpp"
 #include "analysis/group_delay.hpp"
 #include "analysis/repetitions.hpp"
 #include "services/version.hpp"
@@ -52,13 +54,26 @@ std::vector<std::size_t> first_of_each_frequency(const std::vector<PointOfMean>&
   return chosen;
 }
 
+// The ADC's lag is calibrated as one curve: its uncertainty shifts all phases alike in delay. The largest over the frequencies stands for
+// all.
+double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
+  double largest_s = 0.0;
+  for (const analysis::PhasePoint& point : phases) {
+    if (const auto adc = analysis::adc_response_at(recipe.adc_calibration, point.frequency_hz)) {
+      largest_s = std::max(largest_s, adc->u_phase_lag_rad / (2.0 * std::numbers::pi * point.frequency_hz));
+    }
+  }
+  return largest_s;
+}
+
 void add_group_delay(const Recipe& recipe, std::vector<PointOfMean>& points, TransferFunction& function) {
   const std::vector<std::size_t> chosen = first_of_each_frequency(points);
   std::vector<analysis::PhasePoint> phases;
   for (const std::size_t i : chosen) {
     phases.push_back(points[i].phase);
   }
-  const auto delay = analysis::evaluate_group_delay(phases, {recipe.systematic.acs_delay_s, recipe.systematic.reference_phase_rad});
+  const auto delay = analysis::evaluate_group_delay(
+      phases, {std::hypot(recipe.systematic.acs_delay_s, u_adc_delay_s(recipe, phases)), recipe.systematic.reference_phase_rad});
   function.group_delay_valid(delay.has_value());
   if (!delay) {
     function.group_delay_problem(delay.error().message);
