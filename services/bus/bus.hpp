@@ -59,8 +59,8 @@ private:
 enum class WriteOutcome { written, timed_out, failed };
 
 struct SampleInfo {
-  bool valid = true; // false: only the key members are set, the instance has ended
-  std::int64_t source_utc_ns = 0;
+  bool valid = true;              // false: only the key members are set, the instance has ended
+  std::int64_t source_utc_ns = 0; // the writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets
 };
 
 // What an adapter implements; use Writer<T> and Reader<T>.

@@ -43,7 +43,7 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
     reader.take([&](const SampleBlock& block, const SampleInfo& info) {
       ASSERT_TRUE(info.valid);
       EXPECT_EQ(block, this->block(block.block(), "dau", values));
-      EXPECT_GT(info.source_utc_ns, 1'600'000'000'000'000'000);
+      EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000) << info.source_utc_ns;
       numbers.push_back(block.block());
     });
     return numbers.size() >= blocks;
