@@ -12,17 +12,20 @@
 #include "services/command/progress_line.hpp"
 #include "services/command/run_figures.hpp"
 #include "services/command/run_report.hpp"
+#include "services/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {
 
-// "20261121T101530Z": sorts by time and fits a key.
+// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script starts in the same second.
 std::string run_from_time() {
-  const std::time_t now = std::time(nullptr);
+  const std::int64_t now_ms = utc_now_ns() / 1'000'000;
+  const auto seconds = static_cast<std::time_t>(now_ms / 1000);
   std::tm utc{};
-  gmtime_r(&now, &utc);
+  gmtime_r(&seconds, &utc);
   std::array<char, 32> text{};
-  return std::string(text.data(), std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc));
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
+  return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
 }
 
 std::size_t steps_with_a_result(const RunOutcome& outcome) {
