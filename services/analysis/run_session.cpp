@@ -264,9 +264,11 @@ void RunSession::evaluate(Clock::time_point now) {
   }
   for (const TransferFunction& function : output.transfer_functions) {
     write(transfer_writer_, function);
+    ++transfer_functions_published_;
   }
   for (const SampleClockReport& report : output.clock_reports) {
     write(clock_writer_, report);
+    ++clock_reports_published_;
   }
   if (evaluator_->finished()) {
     arm_ = ARM_FINISHED;
@@ -311,6 +313,8 @@ void RunSession::publish_status() {
   status.process_id(identity_.process_id);
   status.published_utc_ns(utc_now_ns());
   status.results_published(results_published_);
+  status.transfer_functions_published(transfer_functions_published_);
+  status.clock_reports_published(clock_reports_published_);
   write(status_writer_, status);
 }
 

@@ -93,6 +93,8 @@ private:
   HealthState health_ = HEALTH_OK;
   std::string message_;
   std::uint64_t results_published_ = 0;
+  std::uint64_t transfer_functions_published_ = 0;
+  std::uint64_t clock_reports_published_ = 0;
   bool excited_by_steps_ = false; // a generator is announced; files and hand-made excitation are not
   std::unique_ptr<RunEvaluator> evaluator_;
   std::map<std::string, SourceLink> links_;

@@ -219,10 +219,11 @@ Expected<bool> RunController::hold_until(double bench_time_s, const std::stop_to
   return !stop.stop_requested();
 }
 
+// Topics have no order among each other: FINISHED may come before the results that were written before it.
 bool RunController::everything_has_come() const {
   return analysis_ && analysis_->arm() == ARM_FINISHED && outcome_.results.size() >= analysis_->results_published() &&
-         (!outcome_.transfer_functions.empty() || outcome_.results.empty() ||
-          std::none_of(outcome_.results.begin(), outcome_.results.end(), [](const CalibrationResult& result) { return result.valid(); }));
+         outcome_.transfer_functions.size() >= analysis_->transfer_functions_published() &&
+         outcome_.clock_reports.size() >= analysis_->clock_reports_published();
 }
 
 Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
