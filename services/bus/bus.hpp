@@ -36,11 +36,12 @@ enum class Profile { samples, results, state, command };
 struct ParticipantOptions {
   Vendor vendor = Vendor::fast_dds;
   int domain = 0;
-  std::string name;                             // shown by discovery tools
-  std::vector<std::string> peers;               // addresses to find others at when multicast cannot be used
-  bool multicast = true;                        // false: discovery by `peers` alone
-  std::string interface_name;                   // network interface or its address; empty: the vendor's choice
-  std::function<void(const std::string&)> warn; // one sentence, e.g. a host limit that is too low; may be empty
+  std::string name;               // shown by discovery tools
+  std::vector<std::string> peers; // addresses to find others at when multicast cannot be used
+  bool multicast = true;          // false: discovery by `peers` alone
+  std::string interface_name;     // network interface or its address; empty: the vendor's choice
+  // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any thread while the participant lives.
+  std::function<void(const std::string&)> warn;
 };
 
 // A bell that readers ring when something has come. One thread waits, any thread rings.
@@ -87,6 +88,7 @@ public:
                                                                     const std::string& partition) = 0;
   virtual services::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type, const std::string& topic, Profile profile,
                                                                     const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
+  [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
 };
 
 template <class T>
@@ -140,6 +142,10 @@ public:
       return Reader<T>(std::move(r));
     });
   }
+
+  // Messages dropped because they were not what the contract says (idl/README.md). Not 0 when there was one; Fast DDS looks at some
+  // of them twice.
+  [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
 
 private:
   explicit Participant(std::unique_ptr<UntypedParticipant> untyped) : untyped_(std::move(untyped)) {}

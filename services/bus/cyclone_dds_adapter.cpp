@@ -60,6 +60,7 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
 struct CycloneParticipantHandle {
   std::shared_ptr<Domain> domain;
   Entity entity;
+  std::shared_ptr<MalformedMessages> malformed;
 };
 
 struct QosDeleter {
@@ -147,6 +148,7 @@ public:
     while (dds_takecdr(reader_.get(), &serdata, 1, &info, DDS_ANY_STATE) > 0) {
       const bool read = read_cyclone_serdata(type_, serdata, sample_.get());
       release_cyclone_serdata(serdata);
+      if (!read) participant_->malformed->add(type_.name);
       if (!read || (!info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE)) continue;
       ++taken;
       consume(sample_.get(), SampleInfo{info.valid_data, info.source_timestamp});
@@ -199,9 +201,11 @@ public:
     return reader;
   }
 
+  [[nodiscard]] std::uint64_t malformed_messages() const override { return participant_->malformed->count(); }
+
 private:
   dds_entity_t open_topic(const TypeSupport& type, const std::string& name) {
-    ddsi_sertype* sertype = make_cyclone_sertype(type);
+    ddsi_sertype* sertype = make_cyclone_sertype(type, participant_->malformed);
     const dds_entity_t topic = dds_create_topic_sertype(participant_->entity.get(), name.c_str(), &sertype, nullptr, nullptr, nullptr);
     if (topic < 0) release_cyclone_sertype(sertype);
     return topic;
@@ -226,8 +230,8 @@ services::Expected<std::unique_ptr<UntypedParticipant>> create_cyclone_dds_parti
   const dds_entity_t participant = dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
   if (participant < 0)
     return tl::unexpected(network_error("Cyclone DDS cannot join domain " + std::to_string(options.domain), participant));
-  return std::make_unique<CycloneParticipant>(
-      std::shared_ptr<CycloneParticipantHandle>(new CycloneParticipantHandle{std::move(*domain), Entity(participant)}));
+  return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
+      new CycloneParticipantHandle{std::move(*domain), Entity(participant), std::make_shared<MalformedMessages>(options.warn)}));
 }
 
 } // namespace dyncal::bus

@@ -31,9 +31,11 @@ KeyHash md5_of(const std::string& canonical) {
 }
 
 struct SerType : ddsi_sertype {
-  explicit SerType(const TypeSupport& support) : ddsi_sertype{}, type(&support) {}
+  SerType(const TypeSupport& support, std::shared_ptr<MalformedMessages> malformed_messages)
+      : ddsi_sertype{}, type(&support), malformed(std::move(malformed_messages)) {}
 
   const TypeSupport* type;
+  const std::shared_ptr<MalformedMessages> malformed; // of the participant
 
   // Keys seen so far, to tell from an MD5 whose instance has ended.
   void remember(const KeyHash& hash, const Key& key) {
@@ -83,7 +85,7 @@ const SerData& own(const ddsi_serdata* serdata) {
   return *static_cast<const SerData*>(serdata);
 }
 
-// A payload from the network: refused (null) when its key is not the contract's.
+// Null when the key of the payload is not the contract's.
 ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::string payload) {
   SerType& type = own(sertype);
   auto key = read_key(type.type->key, payload.data(), payload.size());
@@ -92,6 +94,12 @@ ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind, 
   serdata->set_payload(std::move(payload));
   serdata->set_key(type, std::move(*key));
   type.remember(serdata->key_hash, serdata->key);
+  return serdata;
+}
+
+ddsi_serdata* received(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::string payload) {
+  ddsi_serdata* serdata = from_payload(sertype, kind, std::move(payload));
+  if (serdata == nullptr) own(sertype).malformed->add(own(sertype).type->name);
   return serdata;
 }
 
@@ -104,7 +112,7 @@ ddsi_serdata* from_ser(const ddsi_sertype* sertype, ddsi_serdata_kind kind, cons
     std::memcpy(payload.data() + have, begin + (have - fragment->min), std::min<std::size_t>(fragment->maxp1, size) - have);
     have = fragment->maxp1;
   }
-  return from_payload(sertype, kind, std::move(payload));
+  return received(sertype, kind, std::move(payload));
 }
 
 ddsi_serdata* from_ser_iov(const ddsi_sertype* sertype, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t parts, const ddsrt_iovec_t* part,
@@ -112,7 +120,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* sertype, ddsi_serdata_kind kind, 
   std::string payload;
   for (std::size_t i = 0; i < static_cast<std::size_t>(parts) && payload.size() < size; ++i)
     payload.append(static_cast<const char*>(part[i].iov_base), std::min<std::size_t>(part[i].iov_len, size - payload.size()));
-  return from_payload(sertype, kind, std::move(payload));
+  return received(sertype, kind, std::move(payload));
 }
 
 ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyhash) {
@@ -227,7 +235,7 @@ void free_sertype(ddsi_sertype* sertype) {
 }
 
 bool sertypes_are_equal(const ddsi_sertype* a, const ddsi_sertype* b) {
-  return own(a).type == own(b).type;
+  return own(a).type == own(b).type && own(a).malformed == own(b).malformed;
 }
 
 std::uint32_t hash_of_sertype(const ddsi_sertype* sertype) {
@@ -262,8 +270,8 @@ constexpr ddsi_sertype_ops sertype_ops = make_sertype_ops();
 
 } // namespace
 
-ddsi_sertype* make_cyclone_sertype(const TypeSupport& type) {
-  auto* sertype = new SerType(type);
+ddsi_sertype* make_cyclone_sertype(const TypeSupport& type, std::shared_ptr<MalformedMessages> malformed) {
+  auto* sertype = new SerType(type, std::move(malformed));
   ddsi_sertype_init(sertype, type.name.c_str(), &sertype_ops, &serdata_ops, false);
   sertype->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   return sertype;

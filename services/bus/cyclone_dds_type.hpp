@@ -7,8 +7,9 @@
 // The headers behind this are installed but not promised to stay: all that needs them is in cyclone_dds_type.cpp.
 #pragma once
 
-#include <cstddef>
+#include <memory>
 
+#include "services/bus/malformed_messages.hpp"
 #include "services/bus/type_support.hpp"
 
 struct ddsi_sertype;
@@ -17,7 +18,7 @@ struct ddsi_serdata;
 namespace dyncal::bus {
 
 // The caller owns one reference, which dds_create_topic_sertype() takes over when it succeeds. `type` must live as long as the process.
-[[nodiscard]] ddsi_sertype* make_cyclone_sertype(const TypeSupport& type);
+[[nodiscard]] ddsi_sertype* make_cyclone_sertype(const TypeSupport& type, std::shared_ptr<MalformedMessages> malformed);
 void release_cyclone_sertype(ddsi_sertype* sertype);
 
 // Decodes what dds_takecdr() gave: a whole sample, or one with key members only. False when the bytes are not a message of the type.

@@ -108,8 +108,9 @@ private:
 // The vendor's participant; writers and readers share it, so that the last of them takes it down.
 class FastDdsParticipantHandle {
 public:
-  FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number, dds::DomainParticipant* participant)
-      : number_(std::move(number)), participant_(participant) {}
+  FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number, dds::DomainParticipant* participant,
+                           std::shared_ptr<MalformedMessages> malformed)
+      : number_(std::move(number)), participant_(participant), malformed_(std::move(malformed)) {}
   FastDdsParticipantHandle(const FastDdsParticipantHandle&) = delete;
   FastDdsParticipantHandle& operator=(const FastDdsParticipantHandle&) = delete;
   ~FastDdsParticipantHandle() {
@@ -118,13 +119,14 @@ public:
   }
 
   [[nodiscard]] dds::DomainParticipant* get() const { return participant_; }
+  [[nodiscard]] std::uint64_t malformed_messages() const { return malformed_->count(); }
 
   // Topics are made once and live as long as the participant.
   dds::Topic* topic(const TypeSupport& type, const std::string& name) {
     const std::lock_guard lock(mutex_);
     if (auto known = topics_.find(name); known != topics_.end())
       return known->second->get_type_name() == type.name ? known->second : nullptr;
-    dds::TypeSupport(new FastDdsType(type)).register_type(participant_);
+    dds::TypeSupport(new FastDdsType(type, malformed_)).register_type(participant_);
     dds::Topic* topic = participant_->create_topic(name, type.name, dds::TOPIC_QOS_DEFAULT);
     if (topic != nullptr) topics_.emplace(name, topic);
     return topic;
@@ -133,6 +135,7 @@ public:
 private:
   std::unique_ptr<ParticipantNumber> number_; // given back after the participant is gone
   dds::DomainParticipant* participant_;
+  std::shared_ptr<MalformedMessages> malformed_;
   std::mutex mutex_;
   std::map<std::string, dds::Topic*> topics_;
 };
@@ -293,6 +296,8 @@ public:
     return fast_reader;
   }
 
+  [[nodiscard]] std::uint64_t malformed_messages() const override { return participant_->malformed_messages(); }
+
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
 };
@@ -309,7 +314,8 @@ services::Expected<std::unique_ptr<UntypedParticipant>> create_fast_dds_particip
   if (participant == nullptr)
     return tl::unexpected(network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
                                         ": see its messages above, and check the profiles file if you set one"));
-  return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(std::move(number), participant));
+  return std::make_unique<FastDdsParticipant>(
+      std::make_shared<FastDdsParticipantHandle>(std::move(number), participant, std::make_shared<MalformedMessages>(options.warn)));
 }
 
 } // namespace dyncal::bus

@@ -16,7 +16,8 @@ constexpr std::uint32_t first_guess_of_size_bytes = 1024;
 
 } // namespace
 
-FastDdsType::FastDdsType(const TypeSupport& type) : type_(type) {
+FastDdsType::FastDdsType(const TypeSupport& type, std::shared_ptr<MalformedMessages> malformed)
+    : type_(type), malformed_(std::move(malformed)) {
   setName(type.name.c_str());
   m_typeSize = first_guess_of_size_bytes;
   m_isGetKeyDefined = true;
@@ -33,7 +34,9 @@ bool FastDdsType::serialize(void* sample, rtps::SerializedPayload_t* payload) {
 
 bool FastDdsType::deserialize(rtps::SerializedPayload_t* payload, void* sample) {
   const char* bytes = reinterpret_cast<const char*>(payload->data);
-  return read_key(type_.key, bytes, payload->length) && type_.deserialize(sample, bytes, payload->length);
+  const bool read = read_key(type_.key, bytes, payload->length) && type_.deserialize(sample, bytes, payload->length);
+  if (!read) malformed_->add(type_.name);
+  return read;
 }
 
 std::function<uint32_t()> FastDdsType::getSerializedSizeProvider(void* sample) {

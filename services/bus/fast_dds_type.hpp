@@ -5,7 +5,9 @@
 #pragma once
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
+#include <memory>
 
+#include "services/bus/malformed_messages.hpp"
 #include "services/bus/type_support.hpp"
 
 namespace dyncal::bus {
@@ -13,7 +15,7 @@ namespace dyncal::bus {
 class FastDdsType : public eprosima::fastdds::dds::TopicDataType {
 public:
   // `type` must live as long as this.
-  explicit FastDdsType(const TypeSupport& type);
+  FastDdsType(const TypeSupport& type, std::shared_ptr<MalformedMessages> malformed);
 
   bool serialize(void* sample, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* sample) override;
@@ -24,6 +26,7 @@ public:
 
 private:
   const TypeSupport& type_;
+  std::shared_ptr<MalformedMessages> malformed_;
 };
 
 } // namespace dyncal::bus

@@ -1,4 +1,5 @@
 // Programs of different versions, and programs that do not keep to the contract, on one bus.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/bus/topics.hpp"
@@ -130,6 +131,8 @@ TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
+  EXPECT_GE(reading_.malformed_messages(), 1U);
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
 }
 
 TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {
@@ -144,6 +147,8 @@ TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   EXPECT_TRUE(take_until_last(reader).empty());
+  EXPECT_GE(reading_.malformed_messages(), 1U);
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
 }
 
 } // namespace

@@ -38,14 +38,16 @@ protected:
   // A bench of this process alone: tests may run side by side in one domain.
   const std::string bench_ = "bus-test-" + std::to_string(getpid());
   Participant writing_ = join(GetParam().writer);
-  Participant reading_ = join(GetParam().reader);
+  std::vector<std::string> warnings_; // of the reading one
+  Participant reading_ = join(GetParam().reader, [this](const std::string& warning) { warnings_.push_back(warning); });
   std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
 
-  static Participant join(Vendor vendor) {
+  static Participant join(Vendor vendor, std::function<void(const std::string&)> warn = {}) {
     ParticipantOptions options;
     options.vendor = vendor;
     options.domain = 40 + static_cast<int>(getpid() % 10);
     options.name = "bus test";
+    options.warn = std::move(warn);
     return Participant::create(options).value();
   }
 
