@@ -88,6 +88,14 @@ protected:
     }));
     return samples;
   }
+
+  // Two writers have no order between them: the malformed message may come after the good one.
+  [[nodiscard]] bool comes_to_be_counted(Reader<Command>& reader) {
+    return wait_for([&] {
+      reader.take([](const Command&, const SampleInfo&) {});
+      return reading_.malformed_messages() >= 1;
+    });
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(AllVendors, BusEvolution, testing::ValuesIn(vendor_pairs()), pair_name);
@@ -131,7 +139,7 @@ TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
-  EXPECT_GE(reading_.malformed_messages(), 1U);
+  EXPECT_TRUE(comes_to_be_counted(reader));
   EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
 }
 
@@ -147,7 +155,7 @@ TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   EXPECT_TRUE(take_until_last(reader).empty());
-  EXPECT_GE(reading_.malformed_messages(), 1U);
+  EXPECT_TRUE(comes_to_be_counted(reader));
   EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
 }
 
