@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/frequency.hpp"
+#include "services/bench/can_source.hpp"
 #include "services/bench/digest.hpp"
 #include "services/bench/toml_table.hpp"
 #include "services/bench/unit.hpp"
@@ -158,7 +159,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  const std::string driver = table.one_of("driver", {"smartup", "socket", "file"}, "");
+  const std::string driver = table.one_of("driver", {"smartup", "socket", "file", "can"}, "");
   if (driver == "smartup") {
     read_smartup(table, source);
   } else if (driver == "socket") {
@@ -166,10 +167,16 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
     source.address = table.required_text("address");
   } else if (driver == "file") {
     read_file_source(table, folder, source);
+  } else if (driver == "can") {
+    read_can_source(table, folder, source);
   }
   source.channels = table.text_map("channels");
   read_units(table, source);
-  const std::string usual = driver == "smartup" ? "utc" : "local";
+  if (source.can) {
+    source.can->sensor.channels = source.channels;
+    source.can->sensor.units = source.units;
+  }
+  const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc" ? drivers::TimeBase::utc : drivers::TimeBase::local;
   table.finish();
   return source;

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/sensor_settings.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/error.hpp"
 
@@ -51,7 +52,14 @@ struct GeneratorSettings {
   double level_per_volt = 1.0; // m/s^2 per V
 };
 
-enum class SourceDriver { smartup, socket, file };
+enum class SourceDriver { smartup, socket, file, can };
+
+struct CanSourceSettings {
+  std::string interface_name;
+  std::filesystem::path dbc;           // absolute
+  drivers::can::SensorSettings sensor; // its channels and units are those of the source
+  std::optional<double> restart_after_bus_off_s;
+};
 
 struct SourceSettings {
   std::string name;
@@ -63,6 +71,7 @@ struct SourceSettings {
   std::filesystem::path path;                  // file, absolute
   double play_speed = 0.0;                     // file: times real time; 0: at once
   std::optional<double> sample_rate_hz;        // file without a time column
+  std::optional<CanSourceSettings> can;        // can
   std::map<std::string, std::string> channels; // device's name -> ours
   std::map<std::string, std::string> units;    // our name -> D-SI
   drivers::TimeBase time_base = drivers::TimeBase::utc;
