@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/can/frame_duration.hpp"
+#include "drivers/sample_block.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -48,6 +49,9 @@ struct SensorSettings {
   // From the stamped instant to the stamp, what the smallest of the delays is; and its standard uncertainty, by default that of the kind.
   double latency_s = 0.0;
   std::optional<double> u_latency_s;
+  // utc: stamps are compared with those of other clocks, and the host clock's distance from UTC counts. local: only with stamps of this
+  // very clock.
+  TimeBase time_base = TimeBase::utc;
   // Standard uncertainty of the host clock against UTC; nothing: what the kernel's clock discipline says.
   std::optional<double> u_utc_s;
 };

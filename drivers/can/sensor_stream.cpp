@@ -58,7 +58,7 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
                                               "' does not say its bit rate, which the duration of a frame follows from; give it with "
                                               "'bit_rate_per_s'"});
   timer_.emplace(settings_);
-  u_utc_s_ = settings_.u_utc_s.value_or(system_clock_quality().u_s);
+  u_utc_s_ = settings_.time_base == TimeBase::local ? 0.0 : settings_.u_utc_s.value_or(system_clock_quality().u_s);
   // Without a counter only the first frame tells whether the adapter stamps; until then the kernel's stamps are what there is.
   if (settings_.time_source)
     time_source_ = *settings_.time_source;
@@ -92,7 +92,7 @@ SourceDescription SensorStream::description() const {
   for (const ChannelLayout& channel : layout_.channels)
     description.channels.push_back(channel.description);
   description.nominal_rate_hz = layout_.nominal_rate_hz;
-  description.time_base = TimeBase::utc;
+  description.time_base = settings_.time_base;
   description.stamp_instant = time_source_ == TimeSource::canopen_sync ? StampInstant::frame_end : StampInstant::frame_start;
   description.tick_s = timer_->uses_hardware() ? settings_.hardware_tick_s : 0.0;
   description.stamp_uncertainty_s = u_stamp_s();

@@ -1,11 +1,11 @@
 // From the events of a bus to the time-stamped samples of one sensor: decoding, joining, numbering, timing, gaps.
 //
-// Stamps are UTC by the host's clock and mark the start of the sample's first frame, for canopen-sync the end of the SYNC frame. With a
-// counter or a time field they are taken from the line between the sensor's clock and the frames' starts, which leaves out what a frame had
-// to wait for the bus. Samples wait until that line has settled. Numbers: by the counter or time field where there is one, so that every
-// lost sample shows as a gap of just its size; otherwise by arrival, with gaps by the nominal rate where it is known and by the frames that
-// the socket has dropped. After an interruption of the link there is always a gap. Nothing is ever filled. A signal that a frame does not
-// have gives NaN. Belongs to one thread; the DBC file is copied.
+// Stamps are those of the host's clock (settings: as UTC, or as a clock of its own) and mark the start of the sample's first frame, for
+// canopen-sync the end of the SYNC frame. With a counter or a time field they are taken from the line between the sensor's clock and the
+// frames' starts, which leaves out what a frame had to wait for the bus. Samples wait until that line has settled. Numbers: by the counter
+// or time field where there is one, so that every lost sample shows as a gap of just its size; otherwise by arrival, with gaps by the
+// nominal rate where it is known and by the frames that the socket has dropped. After an interruption of the link there is always a gap.
+// Nothing is ever filled. A signal that a frame does not have gives NaN. Belongs to one thread; the DBC file is copied.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,9 @@
 
 namespace dyncal::drivers::can {
 
+// Standard uncertainty of a clock of which nobody knows whether anything disciplines it: 9.2 s.
+[[nodiscard]] double u_undisciplined_clock_s();
+
 struct ClockQuality {
   bool synchronized = false;
   double u_s = 0.0; // standard uncertainty: the kernel's bound of the error, taken as rectangular. 9 s when nothing disciplines the clock

@@ -169,6 +169,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
     read_file_source(table, folder, source);
   } else if (driver == "can") {
     read_can_source(table, folder, source);
+    if (!source.can->log.empty()) {
+      read_play(table, source);
+    }
   }
   source.channels = table.text_map("channels");
   read_units(table, source);
@@ -178,6 +181,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
   }
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc" ? drivers::TimeBase::utc : drivers::TimeBase::local;
+  if (source.can) {
+    source.can->sensor.time_base = source.time_base;
+  }
   table.finish();
   return source;
 }

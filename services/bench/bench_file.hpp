@@ -56,6 +56,7 @@ enum class SourceDriver { smartup, socket, file, can };
 
 struct CanSourceSettings {
   std::string interface_name;
+  std::filesystem::path log;           // absolute; a candump log instead of an interface
   std::filesystem::path dbc;           // absolute
   drivers::can::SensorSettings sensor; // its channels and units are those of the source
   std::optional<double> restart_after_bus_off_s;
@@ -69,7 +70,7 @@ struct SourceSettings {
   std::optional<std::uint32_t> sync_sensor;    // smartup: sensor id that carries the sync ADC of later firmware
   std::string address;                         // socket
   std::filesystem::path path;                  // file, absolute
-  double play_speed = 0.0;                     // file: times real time; 0: at once
+  double play_speed = 0.0;                     // file, log of can: times real time; 0: at once
   std::optional<double> sample_rate_hz;        // file without a time column
   std::optional<CanSourceSettings> can;        // can
   std::map<std::string, std::string> channels; // device's name -> ours

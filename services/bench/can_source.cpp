@@ -34,6 +34,15 @@ std::optional<TimeSource> read_time_source(TomlTable& table) {
   return std::nullopt;
 }
 
+std::filesystem::path read_file_name(TomlTable& table, const std::string& key, const std::string& name,
+                                     const std::filesystem::path& folder) {
+  if (name.empty()) return {};
+  const auto path = std::filesystem::absolute(folder / name).lexically_normal();
+  if (!std::filesystem::is_regular_file(path))
+    table.refuse(key, fmt::format("names {}, which does not exist or is not a file", path.string()));
+  return path;
+}
+
 StampPoint read_stamp_point(TomlTable& table) {
   const std::string word = table.one_of("hardware_stamp_point", {"start-of-frame", "end-of-frame", "unknown"}, "unknown");
   if (word == "start-of-frame") return StampPoint::start_of_frame;
@@ -45,11 +54,9 @@ StampPoint read_stamp_point(TomlTable& table) {
 void read_can_source(TomlTable& table, const std::filesystem::path& folder, SourceSettings& source) {
   source.driver = SourceDriver::can;
   CanSourceSettings& can = source.can.emplace();
-  can.interface_name = table.required_text("interface");
-  const std::string dbc = table.required_text("dbc");
-  can.dbc = std::filesystem::absolute(folder / dbc).lexically_normal();
-  if (!dbc.empty() && !std::filesystem::is_regular_file(can.dbc))
-    table.refuse("dbc", fmt::format("names {}, which does not exist or is not a file", can.dbc.string()));
+  can.log = read_file_name(table, "log", table.text("log"), folder);
+  can.interface_name = can.log.empty() ? table.required_text("interface") : table.text("interface");
+  can.dbc = read_file_name(table, "dbc", table.required_text("dbc"), folder);
   drivers::can::SensorSettings& sensor = can.sensor;
   sensor.messages = table.texts("messages");
   sensor.time_source = read_time_source(table);
