@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/equidistant_axis.hpp"
 #include "analysis/sine_fit.hpp"
 
 namespace dyncal::analysis {
@@ -26,14 +27,14 @@ Expected<NominalFrequency> real_rate_from_apparent_frequency(double nominal_rate
 Expected<NominalFrequency> evaluate_nominal_frequency(double nominal_rate_hz, const Frequency& applied, double u_applied_hz,
                                                       std::span<const double> samples, double rate_tolerance_rel) {
   if (!(nominal_rate_hz > 0.0)) return tl::unexpected(Error{ErrorCode::invalid_argument, "the nominal sample rate must be positive"});
-  std::vector<std::int64_t> stamps_ns(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / nominal_rate_hz);
+  const EquidistantAxis axis(1.0 / nominal_rate_hz);
+  const std::vector<std::int64_t> stamps_ns = axis.stamps_ns(samples.size());
   const std::array channels{samples};
   const std::int64_t middle_ns = stamps_ns.empty() ? 0 : stamps_ns.back() / 2;
-  const auto fit = fit_sine_and_frequency(applied, rate_tolerance_rel, middle_ns, stamps_ns, channels);
+  const auto fit = fit_sine_and_frequency(axis.on_axis(applied.hz()), rate_tolerance_rel, middle_ns, stamps_ns, channels);
   if (!fit) return tl::unexpected(fit.error());
-  return real_rate_from_apparent_frequency(nominal_rate_hz, applied.hz(), u_applied_hz, fit->frequency.hz(), fit->u_frequency_hz);
+  return real_rate_from_apparent_frequency(nominal_rate_hz, applied.hz(), u_applied_hz, axis.hz(fit->frequency.hz()),
+                                           axis.hz(fit->u_frequency_hz));
 }
 
 } // namespace dyncal::analysis

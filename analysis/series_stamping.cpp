@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/equidistant_axis.hpp"
 #include "analysis/phasor.hpp"
 #include "analysis/recorded_system.hpp"
 
@@ -35,23 +36,20 @@ std::optional<Error> problem_with(const SeriesStampingInput& input) {
   return std::nullopt;
 }
 
-// Phase of sync at the trigger point. Oscilloscopes sample faster than whole nanoseconds can say: stamps are picoseconds here, and
-// the frequency in turns per picosecond is that of a thousandth.
-Expected<SineFit> fit_trigger(const SeriesShot& shot, const Frequency& frequency) {
-  std::vector<std::int64_t> stamps_ps(shot.dso_sync.size());
-  for (std::size_t i = 0; i < stamps_ps.size(); ++i)
-    stamps_ps[i] = std::llround((shot.dso_first_s + static_cast<double>(i) * shot.dso_interval_s) * 1e12);
-  const std::array channels{shot.dso_sync};
-  auto fits = fit_sine(Frequency::from_hz(frequency.hz() * 1e-3), 0, stamps_ps, channels);
-  if (!fits) return tl::unexpected(fits.error());
-  return fits->front();
-}
+// Sync as it is at the trigger point: fitted about the first sample and turned by what lies between.
+struct TriggerPhase {
+  std::complex<double> sync;
+  double u_rad = 0.0;
+};
 
-std::vector<std::int64_t> nominal_stamps_ns(std::size_t samples, double rate_hz) {
-  std::vector<std::int64_t> stamps(samples);
-  for (std::size_t i = 0; i < samples; ++i)
-    stamps[i] = std::llround(static_cast<double>(i) * 1e9 / rate_hz);
-  return stamps;
+Expected<TriggerPhase> fit_trigger(const SeriesShot& shot, const Frequency& frequency) {
+  const EquidistantAxis axis(shot.dso_interval_s);
+  const std::array channels{shot.dso_sync};
+  const auto fits = fit_sine(axis.on_axis(frequency.hz()), 0, axis.stamps_ns(shot.dso_sync.size()), channels);
+  if (!fits) return tl::unexpected(fits.error());
+  const SineFit& fit = fits->front();
+  return TriggerPhase{std::complex<double>(fit.sine, fit.cosine) * std::polar(1.0, -frequency.angular() * shot.dso_first_s),
+                      fit.u_phase_rad()};
 }
 
 std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput& input, std::size_t channel) {
@@ -62,15 +60,15 @@ std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput&
 }
 
 // One shot's H with what is random in it and what all shots share.
-Repetition shot_result(const SineFit& series, const SineFit& trigger, std::complex<double> link, double u_phase_start,
+Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, std::complex<double> link, double u_phase_start,
                        const Budget& common) {
   const double u_amplitude = series.u_amplitude();
   const double snr = u_amplitude > 0.0 ? series.amplitude() / u_amplitude : 1e12;
   Repetition result;
-  result.h = std::complex<double>(series.sine, series.cosine) * link / unit_phasor({trigger.sine, trigger.cosine});
+  result.h = std::complex<double>(series.sine, series.cosine) * link / unit_phasor(trigger.sync);
   result.u_random_magnitude_rel = 1.0 / std::max(snr, 1e-6);
   const double u_series = snr < 10.0 ? phase_standard_uncertainty(snr) : series.u_phase_rad();
-  result.u_random_phase_rad = std::hypot(std::hypot(u_series, trigger.u_phase_rad()), u_phase_start);
+  result.u_random_phase_rad = std::hypot(std::hypot(u_series, trigger.u_rad), u_phase_start);
   result.u_common_magnitude_rel = common.u_magnitude_rel();
   result.u_common_phase_rad = common.u_phase_rad();
   return result;
@@ -99,18 +97,20 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const SeriesFit& sync = acs->pilot.result;
   const double w = sync.frequency.angular();
 
-  std::vector<SineFit> triggers;
+  std::vector<TriggerPhase> triggers;
   for (std::size_t j = 0; j < input.shots.size(); ++j) {
     const auto trigger = fit_trigger(input.shots[j], sync.frequency);
     if (!trigger) return tl::unexpected(of_shot(j, "oscilloscope", trigger.error()));
     triggers.push_back(*trigger);
   }
 
-  const std::vector<std::int64_t> stamps = nominal_stamps_ns(input.shots.front().series.front().size(), input.nominal_rate_hz);
-  const auto pilot = fit_sine_and_frequency(sync.frequency, input.rate_tolerance_rel, 0, stamps, shots_of_channel(input, 0));
+  const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
+  const std::vector<std::int64_t> stamps = axis.stamps_ns(input.shots.front().series.front().size());
+  const auto pilot =
+      fit_sine_and_frequency(axis.on_axis(sync.frequency.hz()), input.rate_tolerance_rel, 0, stamps, shots_of_channel(input, 0));
   if (!pilot) return failure(pilot.error().code, input.channels.front() + ": " + pilot.error().message);
   const auto rate = real_rate_from_apparent_frequency(input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
-                                                      pilot->frequency.hz(), pilot->u_frequency_hz);
+                                                      axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
   if (!rate) return tl::unexpected(rate.error());
 
   // Everything that is the same for all shots: the reference's phasor against sync, and the way from trigger point to sample 0.
@@ -118,9 +118,9 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
       unit_phasor(acs->pilot.phasor()) / reference.phasor() * std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s));
   const Budget common = common_budget(input, *acs, w);
   SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
-  for (const SineFit& trigger : triggers) {
-    result.trigger_phase_rad.push_back(trigger.phase_rad());
-    result.u_trigger_phase_rad.push_back(trigger.u_phase_rad());
+  for (const TriggerPhase& trigger : triggers) {
+    result.trigger_phase_rad.push_back(std::arg(trigger.sync));
+    result.u_trigger_phase_rad.push_back(trigger.u_rad);
   }
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
     const auto fits =
