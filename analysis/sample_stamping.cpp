@@ -73,7 +73,9 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
 
   // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau / G.
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
-  const std::complex<double> link = unit_phasor(acs->pilot.phasor()) / (unit_phasor(dau->pilot.phasor()) / adc) / reference.phasor();
+  const std::complex<double> late = std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
+  const std::complex<double> link =
+      unit_phasor(acs->pilot.phasor()) / (unit_phasor(dau->pilot.phasor()) / adc) / (reference.phasor() * late);
 
   const Budget common = common_budget(input, *acs, dau->pilot);
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};

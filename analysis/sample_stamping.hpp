@@ -5,7 +5,7 @@
 //
 // psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} = H (errata T1-T5).
 // arg P_sync_dau,true = arg P_sync_dau - arg G, G = gain e^{-i phase_lag} the response of the DAU's sync ADC: its amplitude
-// must not enter |H|.
+// must not enter |H|. A known delay of the reference's channel against the ACS's sync is taken out: arg P_ref + w tau_ref.
 // In each system the frequency is refined on its sync channel in that system's own clock, and both of its channels are
 // evaluated at that frequency and the same reference instant, which removes unknown epochs and constant rate errors.
 // Harmonics and hum that stand out of the residuals are fitted beside the signal (disturbances.hpp); what else makes the residuals
@@ -51,6 +51,7 @@ struct SampleStampingInput {
   ChannelSamples sync_dau{};
   std::vector<ChannelSamples> dut{}; // one result each
   AdcResponse adc{};
+  double reference_delay_s = 0.0; // tau_ref
   SystematicUncertainty systematic{};
 };
 

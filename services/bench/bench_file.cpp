@@ -49,6 +49,21 @@ void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
   }
 }
 
+void read_window(TomlTable& table, ExcitationSettings& excitation) {
+  excitation.whole_record = table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
+  if (!excitation.whole_record) {
+    return;
+  }
+  if (excitation.frequencies_hz.size() != 1 || excitation.repetitions != 1) {
+    table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: records of several steps must be searched");
+  }
+  for (const char* key : {"settling_s", "duration_s"}) {
+    if (table.has(key)) {
+      table.refuse(key, "has no meaning when window is \"whole-record\": every sample is evaluated");
+    }
+  }
+}
+
 ExcitationSettings read_excitation(TomlTable table) {
   ExcitationSettings excitation;
   excitation.frequencies_hz = table.texts("frequencies_hz");
@@ -71,6 +86,7 @@ ExcitationSettings read_excitation(TomlTable table) {
   if (excitation.duration_s <= 0.0) {
     table.refuse("duration_s", "must be positive");
   }
+  read_window(table, excitation);
   table.finish();
   return excitation;
 }
@@ -248,6 +264,10 @@ MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& s
   if (table.has("temperature")) {
     method.temperature = read_role(table, "temperature", sources, table.required_text("temperature"));
   }
+  method.frequency_search_rel = table.number("frequency_search_rel", method.frequency_search_rel, "parts of the frequency");
+  if (method.frequency_search_rel < 0.0 || method.frequency_search_rel > 0.1) {
+    table.refuse("frequency_search_rel", "must be between 0 (the frequency is known exactly in every clock) and 0.1");
+  }
   table.finish();
   return method;
 }
@@ -267,6 +287,7 @@ CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path
     adc->finish();
     corrections.adc = settings;
   }
+  corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");
   if (auto delay = table.table("dso_delay")) {
     corrections.dso_delay_s = delay->number("value_s", 0.0, "seconds");
     corrections.u_dso_delay_s = delay->number("u_s", 0.0, "seconds");

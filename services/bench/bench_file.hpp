@@ -44,6 +44,7 @@ struct ExcitationSettings {
   int repetitions = 1;
   double settling_s = 1.0;
   double duration_s = 3.0;
+  bool whole_record = false; // evaluate each record as a whole: one step, nothing searched, nothing left out
 };
 
 struct GeneratorSettings {
@@ -88,6 +89,7 @@ struct MethodSettings {
   ChannelName sync_dau;
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
+  double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency; 0: exactly there in both clocks
 };
 
 enum class PhaseSign { lag, lead };
@@ -101,6 +103,7 @@ struct AdcCorrectionSettings {
 
 struct CorrectionSettings {
   std::optional<AdcCorrectionSettings> adc;
+  double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   double dso_delay_s = 0.0;
   double u_dso_delay_s = 0.0;
 };

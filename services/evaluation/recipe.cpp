@@ -146,6 +146,9 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   measurement.dso_delay_s(file.corrections.dso_delay_s);
   measurement.u_dso_delay_s(file.corrections.u_dso_delay_s);
   measurement.u_acs_delay_s(file.uncertainty.acs_delay_s);
+  measurement.frequency_search_rel(file.method.frequency_search_rel);
+  measurement.reference_delay_s(file.corrections.reference_delay_s);
+  measurement.whole_record(file.excitation.whole_record);
   measurement.recipe(file.text);
   measurement.recipe_sha256(file.sha256);
   return measurement;
@@ -169,6 +172,13 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
     recipe.adc_calibration.push_back(
         {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
   }
+  recipe.whole_record = measurement.whole_record();
+  if (recipe.whole_record && recipe.steps.size() != 1) {
+    return tl::unexpected(
+        refused(fmt::format("the recipe evaluates whole records but has {} steps; only one is possible", recipe.steps.size())));
+  }
+  recipe.frequency_search_rel = measurement.frequency_search_rel();
+  recipe.reference_delay_s = measurement.reference_delay_s();
   recipe.systematic.reference_magnitude_rel = measurement.reference_magnitude_rel();
   recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();
   recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();

@@ -37,6 +37,9 @@ struct Recipe {
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
   std::vector<RecipeStep> steps;
+  bool whole_record = false;                                  // one step; nothing is searched, nothing is left out
+  double frequency_search_rel = 1e-3;                         // 0: the frequency is known exactly in every clock
+  double reference_delay_s = 0.0;                             // of the reference's channel against the ACS's sync
   std::vector<analysis::AdcCalibrationPoint> adc_calibration; // empty: no correction
   analysis::SystematicUncertainty systematic;
   std::string sha256;

@@ -21,12 +21,12 @@ std::vector<std::string> channel_names(const SourceDescription& description) {
   return names;
 }
 
-std::vector<std::string> flags_of(const RecipeStep& step, const SourceRecord& source, const StretchOfTime& stretch) {
+std::vector<std::string> flags_of(const Recipe& recipe, const RecipeStep& step, const SourceRecord& source, const StretchOfTime& stretch) {
   std::vector<std::string> flags;
   if (source.lost_between(stretch.begin_ns, stretch.end_ns) > 0) {
     flags.push_back(source.source() + ": samples lost");
   }
-  if (static_cast<double>(stretch.end_ns - stretch.begin_ns) < 0.95e9 * step.duration_s) {
+  if (!recipe.whole_record && static_cast<double>(stretch.end_ns - stretch.begin_ns) < 0.95e9 * step.duration_s) {
     flags.push_back(source.source() + ": shorter than planned");
   }
   return flags;
@@ -146,8 +146,8 @@ void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
     const auto dau_stretch = dau_search_->stretch(next_step_);
     std::vector<CalibrationResult> results;
     if (acs_stretch && dau_stretch) {
-      std::vector<std::string> flags = flags_of(step, acs, *acs_stretch);
-      const std::vector<std::string> dau_flags = flags_of(step, dau, *dau_stretch);
+      std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
+      const std::vector<std::string> dau_flags = flags_of(recipe_, step, dau, *dau_stretch);
       flags.insert(flags.end(), dau_flags.begin(), dau_flags.end());
       if (broken_off_.contains(next_step_)) {
         flags.emplace_back("excitation broken off");

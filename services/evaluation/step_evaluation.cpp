@@ -186,6 +186,7 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
     return results_of_missing_step(recipe, step, dau, adc.error().message);
   }
   analysis::SampleStampingInput input{.frequency = step.frequency,
+                                      .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = acs_series.stamps_ns,
                                       .reference = {recipe.reference.text(), acs_series.columns[0], resolution_of(acs, acs_channels[0])},
                                       .sync_acs = {recipe.sync_acs.text(), acs_series.columns[1], resolution_of(acs, acs_channels[1])},
@@ -193,6 +194,7 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
                                       .sync_dau = {recipe.sync_dau.text(), dau_series.columns[0], resolution_of(dau, dau_channels[0])},
                                       .dut = {},
                                       .adc = *adc,
+                                      .reference_delay_s = recipe.reference_delay_s,
                                       .systematic = recipe.systematic};
   for (std::size_t i = 0; i < dut.size(); ++i) {
     input.dut.push_back({dut[i].text(), dau_series.columns[i + 1], resolution_of(dau, dau_channels[i + 1])});

@@ -31,12 +31,25 @@ void StepSearch::advance(std::size_t last_step) {
     search_from_ns_ = std::numeric_limits<std::int64_t>::min();
     look_for(step_);
   }
+  if (recipe_.whole_record) {
+    take_whole_record(record_.ended());
+    return;
+  }
   while (step_ <= last_step && step_ < recipe_.steps.size()) {
     feed();
     if (!finder_ || !finder_->ended()) {
       return;
     }
     accept(*finder_->window());
+  }
+}
+
+void StepSearch::take_whole_record(bool complete) {
+  const auto stamps = record_.stamps_ns();
+  if (complete && step_ == 0 && !stamps.empty()) {
+    const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+    found_[0] = {*first, *last};
+    step_ = 1;
   }
 }
 
@@ -79,6 +92,11 @@ void StepSearch::accept(const analysis::ExcitationWindow& window) {
 }
 
 void StepSearch::give_up_step() {
+  if (recipe_.whole_record) {
+    take_whole_record(true);
+    step_ = 1;
+    return;
+  }
   if (finder_) {
     finder_->finish();
     if (const auto window = finder_->window()) {

@@ -1,5 +1,6 @@
 // Follows one source through the planned steps: finds in its own clock where each step was excited, from its sync channel alone.
 //
+// With Recipe::whole_record nothing is looked for: the one step is the record from its first to its last sample.
 // Steps are looked for in the planned order, each from the end of the one before; the search never goes back but when the source was
 // restarted. What it finds depends on the samples only, not on how they came.
 // Belongs to one thread; the record and the recipe must outlive it.
@@ -35,6 +36,7 @@ public:
 
 private:
   void look_for(std::size_t step);
+  void take_whole_record(bool complete);
   void feed();
   void accept(const analysis::ExcitationWindow& window);
 

@@ -74,7 +74,8 @@ TEST(BenchFile, NamesFileLineAndKeyOfAnUnknownKeyAndTheOneThatWasMeant) {
 }
 
 TEST(BenchFile, RefusesAUnitThatIsNone) {
-  EXPECT_THAT(problem_of(replaced(complete, "\"m/s^2\"", "\"furlong\"")), HasSubstr("bench.toml:20: key 'sources.acs.units' gives channel 'reference'"));
+  EXPECT_THAT(problem_of(replaced(complete, "\"m/s^2\"", "\"furlong\"")),
+              HasSubstr("bench.toml:20: key 'sources.acs.units' gives channel 'reference'"));
 }
 
 TEST(BenchFile, RefusesAKeyWithTheWrongUnit) {
@@ -83,7 +84,8 @@ TEST(BenchFile, RefusesAKeyWithTheWrongUnit) {
 }
 
 TEST(BenchFile, RefusesARoleWhoseSourceDoesNotExist) {
-  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "asc/reference")), HasSubstr("names source 'asc', which [sources] does not have (it has: acs, dau)"));
+  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "asc/reference")),
+              HasSubstr("names source 'asc', which [sources] does not have (it has: acs, dau)"));
   EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "reference")), HasSubstr("must be \"source/channel\""));
 }
 
@@ -94,7 +96,8 @@ TEST(BenchFile, RefusesFrequenciesThatAreNotPositiveNumbers) {
 }
 
 TEST(BenchFile, RefusesASourceFileThatDoesNotExist) {
-  const std::string text = replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"", "driver = \"file\"\npath = \"nowhere.csv\"");
+  const std::string text =
+      replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"", "driver = \"file\"\npath = \"nowhere.csv\"");
   EXPECT_THAT(problem_of(text), HasSubstr("nowhere.csv, which does not exist"));
 }
 
@@ -102,6 +105,29 @@ TEST(BenchFile, RefusesMissingTablesAndBrokenToml) {
   EXPECT_THAT(problem_of("bench = \"a\"\n"), HasSubstr("key 'excitation' is missing"));
   EXPECT_THAT(problem_of("bench = \"a\n"), HasSubstr("bench.toml:1: not valid TOML"));
   EXPECT_THAT(read_bench_file("no-such-file.toml").error().message, HasSubstr("no-such-file.toml: cannot read"));
+}
+
+TEST(BenchFile, EvaluatesWholeRecordsAtAKnownFrequencyWhenToldTo) {
+  std::string text = replaced(complete, "[\"10\", \"12.5\"]", "[\"80\"]");
+  text = replaced(text, "repetitions = 3\nsettling_s = 0.5\nduration_s = 2\n", "window = \"whole-record\"\n");
+  text = replaced(text, "[uncertainty]", "frequency_search_rel = 0\n[corrections]\nreference_delay_s = 2e-6\n[uncertainty]");
+  const auto file = parse_bench_file(text, "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_TRUE(file->excitation.whole_record);
+  EXPECT_EQ(file->method.frequency_search_rel, 0.0);
+  EXPECT_EQ(file->corrections.reference_delay_s, 2e-6);
+}
+
+TEST(BenchFile, RefusesWholeRecordsOfSeveralSteps) {
+  EXPECT_THAT(problem_of(replaced(complete, "repetitions = 3", "window = \"whole-record\"")),
+              HasSubstr("key 'excitation.window' can be \"whole-record\" for one frequency"));
+  std::string one = replaced(complete, "[\"10\", \"12.5\"]", "[\"80\"]");
+  EXPECT_THAT(problem_of(replaced(one, "repetitions = 3", "window = \"whole-record\"")), HasSubstr("has no meaning when window"));
+}
+
+TEST(BenchFile, RefusesASearchThatIsTooWide) {
+  EXPECT_THAT(problem_of(replaced(complete, "[uncertainty]", "frequency_search_rel = 0.5\n[uncertainty]")),
+              HasSubstr("frequency_search_rel"));
 }
 
 TEST(BenchFile, RefusesASensorIdThatIsNone) {
