@@ -16,10 +16,10 @@ build_packages=(
   cyclonedds-dev cyclonedds-tools           # Cyclone DDS and its IDL compiler
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
-  libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev
+  libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
 )
 run_packages=(
-  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3 libssl3 libsndfile1
+  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3 libssl3 libsndfile1 liblxi1 libtirpc3
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev

@@ -252,6 +252,11 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono:
   }
 }
 
+bool TcpConnection::has_unread() const {
+  char octet = 0;
+  return !received_.empty() || recv(socket_.number(), &octet, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+}
+
 Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) {
   const auto deadline = Clock::now() + limit;
   const std::size_t waiting = std::min(bytes.size(), received_.size());

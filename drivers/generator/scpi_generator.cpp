@@ -5,40 +5,24 @@
 #include <mutex>
 #include <utility>
 
+#include "drivers/scpi_answer.hpp"
+
 namespace dyncal::drivers::generator {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds connect_limit{5000};
 constexpr milliseconds answer_limit{2000};
-constexpr std::size_t longest_answer = 4096;
-
-// The shortest decimal text of a number; never an exponent, which some instruments do not read.
-std::string decimal(double value) {
-  char text[400];
-  const auto [end, status] = std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed);
-  return status == std::errc() ? std::string(text, end) : std::string("0");
-}
 
 } // namespace
 
 Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::string& address) {
-  const auto parsed = parse_address(address);
-  if (!parsed) {
-    return tl::unexpected(Error{parsed.error().code, "generator: " + parsed.error().message});
-  }
   std::unique_ptr<ScpiGenerator> generator(new ScpiGenerator());
   generator->address_ = address;
-  auto connection = TcpConnection::connect(*parsed, connect_limit, generator->never_);
-  if (!connection) {
-    return tl::unexpected(Error{connection.error().code, "generator " + connection.error().message});
+  if (auto connected = generator->reconnect(); !connected) {
+    return tl::unexpected(connected.error());
   }
-  generator->connection_ = std::make_unique<TcpConnection>(std::move(*connection));
-  if (auto ready = generator->set_up(); !ready) {
-    generator->connection_.reset(); // nothing to switch off
-    return tl::unexpected(ready.error());
-  }
+  generator->choose_clock();
   return generator;
 }
 
@@ -49,50 +33,48 @@ ScpiGenerator::~ScpiGenerator() {
   }
 }
 
-Expected<void> ScpiGenerator::set_up() {
-  auto identity = query("*IDN?");
+void ScpiGenerator::choose_clock() {
+  host_origin_ = std::chrono::steady_clock::now();
+  // Only a virtual bench has a time of its own; an instrument that does not know the query says nothing or reports an error.
+  has_bench_clock_ = identity_.find("dyncal virtual bench") != std::string::npos;
+}
+
+Expected<void> ScpiGenerator::reconnect() {
+  auto connection = ScpiConnection::connect("generator", address_, answer_limit, never_);
+  if (!connection) {
+    return tl::unexpected(connection.error());
+  }
+  const auto identity = connection->query("*IDN?");
   if (!identity) {
     return tl::unexpected(identity.error());
   }
   identity_ = *identity;
+  // An instrument that was switched off in between has forgotten all of this.
   for (const char* setting : {":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP"}) {
-    if (auto done = command(setting); !done) {
+    if (auto done = connection->command(setting); !done) {
       return done;
     }
   }
-  host_origin_ = std::chrono::steady_clock::now();
-  // Only a virtual bench has a time of its own; an instrument that does not know the query says nothing or reports an error.
-  has_bench_clock_ = identity_.find("dyncal virtual bench") != std::string::npos;
+  connection_.emplace(std::move(*connection));
   return {};
 }
 
 Expected<std::string> ScpiGenerator::query(const std::string& text) {
-  auto sent = connection_->send_all(text + "\n", answer_limit);
-  if (!sent) {
-    return tl::unexpected(Error{sent.error().code, "generator " + sent.error().message + " (" + text + ")"});
+  if (connection_->lost()) {
+    if (auto connected = reconnect(); !connected) {
+      return tl::unexpected(connected.error());
+    }
   }
-  auto answer = connection_->read_line(longest_answer, answer_limit);
-  if (!answer) {
-    return tl::unexpected(Error{answer.error().code, "generator " + answer.error().message + " (" + text + ")"});
-  }
-  return *answer;
+  return connection_->query(text);
 }
 
 Expected<void> ScpiGenerator::command(const std::string& text) {
-  if (auto sent = connection_->send_all(text + "\n", answer_limit); !sent) {
-    return tl::unexpected(Error{sent.error().code, "generator " + sent.error().message + " (" + text + ")"});
+  if (connection_->lost()) {
+    if (auto connected = reconnect(); !connected) {
+      return connected;
+    }
   }
-  const auto answer = query(":SYSTem:ERRor?");
-  if (!answer) {
-    return tl::unexpected(answer.error());
-  }
-  int code = 0;
-  const char* begin = answer->data() + (answer->starts_with('+') ? 1 : 0);
-  const auto [end, status] = std::from_chars(begin, answer->data() + answer->size(), code);
-  if (status == std::errc() && code == 0) {
-    return {};
-  }
-  return tl::unexpected(Error{ErrorCode::refused, "generator " + address_ + " refuses " + text + ": " + *answer});
+  return connection_->command(text);
 }
 
 Expected<void> ScpiGenerator::set_frequency(const std::string& decimal_hz) {
@@ -101,13 +83,18 @@ Expected<void> ScpiGenerator::set_frequency(const std::string& decimal_hz) {
 
 Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
   if (!(amplitude_v >= 0.0 && amplitude_v <= 1000.0)) {
-    return tl::unexpected(Error{ErrorCode::invalid_setting, "generator: an amplitude of " + decimal(amplitude_v) + " V cannot be set"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_setting, "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set"});
   }
-  return command(":SOURce1:VOLTage " + decimal(2.0 * amplitude_v));
+  return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }
 
 Expected<void> ScpiGenerator::set_output(bool on) {
   return command(on ? ":OUTPut1 ON" : ":OUTPut1 OFF");
+}
+
+Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
+  return command(rectangle ? ":SOURce1:FUNCtion SQUare" : ":SOURce1:FUNCtion SINusoid");
 }
 
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
@@ -133,7 +120,7 @@ Expected<double> ScpiGenerator::clock_now_s() {
 Expected<double> ScpiGenerator::wait_until_s(double time_s, std::stop_token stop) {
   for (;;) {
     // The virtual bench answers :BENCh:WAIT? when the time has come, at the latest after half a second of the host.
-    auto now_s = has_bench_clock_ ? query_bench_time(":BENCh:WAIT? " + decimal(time_s)) : clock_now_s();
+    auto now_s = has_bench_clock_ ? query_bench_time(":BENCh:WAIT? " + scpi_decimal(time_s)) : clock_now_s();
     if (!now_s || *now_s >= time_s || stop.stop_requested()) {
       return now_s;
     }

@@ -1,17 +1,19 @@
 // A function generator over TCP that speaks SCPI as the Rigol DG4000 series does (channel 1, load set to high impedance).
 //
 // Commands: *IDN?, :SOURce1:FUNCtion, :SOURce1:VOLTage (peak to peak), :SOURce1:FREQuency, :OUTPut1, each followed by
-// :SYSTem:ERRor?; an error that the instrument reports is passed on word for word (refused). An answer may take 2 s (timeout).
+// :SYSTem:ERRor?; an error that the instrument reports is passed on word for word (refused). An answer may take 2 s (timeout); after that
+// the connection is given up, and the next call connects anew.
 // `:BENCh:TIME?` and `:BENCh:WAIT?` are understood by the virtual bench only; an instrument that does not know them leaves the
 // host's monotonic clock as bench time.
 #pragma once
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/generator/generator.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/scpi_connection.hpp"
 
 namespace dyncal::drivers::generator {
 
@@ -27,19 +29,22 @@ public:
   [[nodiscard]] Expected<void> set_frequency(const std::string& decimal_hz) override;
   [[nodiscard]] Expected<void> set_amplitude_v(double amplitude_v) override;
   [[nodiscard]] Expected<void> set_output(bool on) override;
+  // A rectangle in place of the sine, until the next connection: for the calibration of trigger delays.
+  [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   [[nodiscard]] Expected<double> clock_now_s() override;
   [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override;
 
 private:
   ScpiGenerator() = default;
-  Expected<void> set_up();
+  void choose_clock();
+  Expected<void> reconnect();
   Expected<void> command(const std::string& text);
   Expected<std::string> query(const std::string& text);
   Expected<double> query_bench_time(const std::string& text);
 
   StopSignal never_; // waits here end by their own limit
   std::string address_;
-  std::unique_ptr<TcpConnection> connection_;
+  std::optional<ScpiConnection> connection_;
   std::string identity_;
   bool has_bench_clock_ = false;
   std::chrono::steady_clock::time_point host_origin_;

@@ -1,0 +1,143 @@
+#include "drivers/scpi_connection.hpp"
+
+#include <utility>
+
+#include "drivers/scpi_answer.hpp"
+
+namespace dyncal::drivers {
+namespace {
+
+constexpr std::chrono::milliseconds connect_limit{5000};
+constexpr std::size_t longest_line = 4096;
+
+} // namespace
+
+Expected<ScpiConnection> ScpiConnection::connect(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+                                                 const StopSignal& stop) {
+  auto transport = connect_scpi_transport(address, connect_limit, stop);
+  if (!transport) {
+    return tl::unexpected(Error{transport.error().code, instrument + " " + transport.error().message});
+  }
+  return ScpiConnection(std::move(instrument), std::move(address), answer_limit, std::move(*transport));
+}
+
+ScpiConnection::ScpiConnection(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+                               std::unique_ptr<ScpiTransport> transport)
+    : instrument_(std::move(instrument)), address_(std::move(address)), answer_limit_(answer_limit), transport_(std::move(transport)) {}
+
+// The transport's errors begin with the address.
+tl::unexpected<Error> ScpiConnection::failure(const Error& error, const std::string& text) {
+  lost_ = true;
+  return tl::unexpected(Error{error.code, instrument_ + " " + error.message + " (" + text + ")"});
+}
+
+tl::unexpected<Error> ScpiConnection::misunderstood(const Error& error, const std::string& text) {
+  return failure(Error{error.code, address_ + ": " + error.message}, text);
+}
+
+Expected<void> ScpiConnection::send(const std::string& text) {
+  if (lost_) {
+    return failure(Error{ErrorCode::disconnected, address_ + ": the connection is lost"}, text);
+  }
+  if (auto sent = transport_->send(text + "\n", answer_limit_); !sent) {
+    return failure(sent.error(), text);
+  }
+  return {};
+}
+
+Expected<std::string> ScpiConnection::query(const std::string& text) {
+  if (transport_->has_unread()) {
+    return misunderstood(Error{ErrorCode::malformed, "the instrument has answered something that was not asked"}, text);
+  }
+  if (auto sent = send(text); !sent) {
+    return tl::unexpected(sent.error());
+  }
+  auto answer = transport_->read_line(longest_line, answer_limit_);
+  if (!answer) {
+    return failure(answer.error(), text);
+  }
+  return answer;
+}
+
+Expected<double> ScpiConnection::query_number(const std::string& text) {
+  const auto answer = query(text);
+  if (!answer) {
+    return tl::unexpected(answer.error());
+  }
+  auto number = parse_scpi_number(*answer);
+  if (!number) {
+    return misunderstood(number.error(), text);
+  }
+  return number;
+}
+
+Expected<void> ScpiConnection::command(const std::string& text) {
+  if (auto sent = send(text); !sent) {
+    return sent;
+  }
+  const auto answer = query(":SYSTem:ERRor?");
+  if (!answer) {
+    return tl::unexpected(answer.error());
+  }
+  const auto error = parse_instrument_error(*answer);
+  if (!error) {
+    return misunderstood(error.error(), text);
+  }
+  if (error->code == 0) {
+    return {};
+  }
+  return tl::unexpected(Error{ErrorCode::refused, instrument_ + " " + address_ + " refuses " + text + ": " + shown(*answer)});
+}
+
+Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text, std::size_t longest) {
+  if (transport_->has_unread()) {
+    return misunderstood(Error{ErrorCode::malformed, "the instrument has answered something that was not asked"}, text);
+  }
+  if (auto sent = send(text); !sent) {
+    return tl::unexpected(sent.error());
+  }
+  auto block = read_block(longest);
+  if (!block) {
+    return failure(block.error(), text);
+  }
+  return block;
+}
+
+Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
+  const auto malformed = [this](const std::string& message) {
+    return tl::unexpected(Error{ErrorCode::malformed, address_ + ": " + message});
+  };
+  char header[2];
+  if (auto read = transport_->read_exactly(header, answer_limit_); !read) {
+    return tl::unexpected(read.error());
+  }
+  const auto digit_count = parse_block_digit_count({header, sizeof(header)});
+  if (!digit_count) {
+    return malformed(digit_count.error().message);
+  }
+  char digits[9];
+  if (auto read = transport_->read_exactly({digits, *digit_count}, answer_limit_); !read) {
+    return tl::unexpected(read.error());
+  }
+  const auto length = parse_block_length({digits, *digit_count});
+  if (!length) {
+    return malformed(length.error().message);
+  }
+  if (*length > longest) {
+    return malformed("a block of " + std::to_string(*length) + " octets where at most " + std::to_string(longest) + " can be");
+  }
+  std::vector<char> block(*length);
+  if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
+    return tl::unexpected(read.error());
+  }
+  const auto end = transport_->read_line(longest_line, answer_limit_);
+  if (!end) {
+    return tl::unexpected(end.error());
+  }
+  if (!end->empty()) {
+    return malformed("a block is longer than the " + std::to_string(*length) + " octets it announces");
+  }
+  return block;
+}
+
+} // namespace dyncal::drivers

@@ -1,0 +1,42 @@
+#include "drivers/scpi_transport.hpp"
+
+#include <utility>
+
+namespace dyncal::drivers {
+namespace {
+
+class SocketTransport : public ScpiTransport {
+public:
+  explicit SocketTransport(TcpConnection connection) : connection_(std::move(connection)) {}
+  Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override { return connection_.send_all(message, limit); }
+  Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
+    return connection_.read_line(longest, limit);
+  }
+  Expected<void> read_exactly(std::span<char> octets, std::chrono::milliseconds limit) override {
+    return connection_.read_exactly(octets, limit);
+  }
+  bool has_unread() override { return connection_.has_unread(); }
+
+private:
+  TcpConnection connection_;
+};
+
+} // namespace
+
+Expected<std::unique_ptr<ScpiTransport>> connect_scpi_transport(const std::string& address, std::chrono::milliseconds limit,
+                                                                const StopSignal& stop) {
+  if (address.starts_with("vxi11:")) {
+    return connect_vxi11_transport(address, limit);
+  }
+  const auto parsed = parse_address(address);
+  if (!parsed) {
+    return tl::unexpected(parsed.error());
+  }
+  auto connection = TcpConnection::connect(*parsed, limit, stop);
+  if (!connection) {
+    return tl::unexpected(connection.error());
+  }
+  return std::make_unique<SocketTransport>(std::move(*connection));
+}
+
+} // namespace dyncal::drivers
