@@ -1,0 +1,35 @@
+// What :WAVeform:PREamble? and :WAVeform:DATA? say about one trace.
+//
+// Preamble: format,type,points,count,xincrement,xorigin,xreference,yincrement,yorigin,yreference. Time of sample i relative to the
+// trigger: (i - xreference) * xincrement + xorigin. Volts follow the family's VoltageRule. One octet a sample (format BYTE).
+// Fails: malformed when a field is missing or cannot be (no increment, more points than an oscilloscope holds, another format than octets).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "drivers/dso/scope_commands.hpp"
+#include "drivers/error.hpp"
+
+namespace dyncal::drivers::dso {
+
+struct Preamble {
+  std::size_t points = 0;
+  double x_increment_s = 0.0;
+  double x_origin_s = 0.0;
+  double x_reference = 0.0;
+  double y_increment_v = 0.0;
+  double y_origin = 0.0; // codes (Rigol) or volt (Keysight)
+  double y_reference = 0.0;
+
+  [[nodiscard]] double first_sample_s() const { return x_origin_s - x_reference * x_increment_s; }
+};
+
+[[nodiscard]] Expected<Preamble> parse_preamble(std::string_view answer);
+
+// Appends one value per octet.
+void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes, std::vector<double>& volts);
+
+} // namespace dyncal::drivers::dso
