@@ -1,0 +1,101 @@
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "drivers/tss/series_source.hpp"
+
+namespace dyncal::drivers::tss {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds look_interval{20};
+
+class FolderSource : public SeriesSource {
+public:
+  FolderSource(std::filesystem::path folder, const StopSignal& stop) : folder_(std::move(folder)), stop_(stop) {}
+
+  Expected<void> discard_pending() override {
+    auto names = csv_names();
+    if (!names) {
+      return tl::unexpected(names.error());
+    }
+    seen_ = std::move(*names);
+    looked_ = true;
+    return {};
+  }
+
+  Expected<Series> next(milliseconds limit) override {
+    if (!looked_) {
+      if (auto done = discard_pending(); !done) {
+        return tl::unexpected(done.error());
+      }
+    }
+    const auto deadline = Clock::now() + limit;
+    for (;;) {
+      const auto names = csv_names();
+      if (!names) {
+        return tl::unexpected(names.error());
+      }
+      for (const std::string& name : *names) { // in the order of their names
+        if (seen_.insert(name).second) {
+          return read(folder_ / name);
+        }
+      }
+      if (Clock::now() >= deadline) {
+        return failure(ErrorCode::timeout, folder_.string() + ": no new series within " + std::to_string(limit.count()) + " ms");
+      }
+      if (stop_.wait_for(look_interval)) {
+        return failure(ErrorCode::disconnected, folder_.string() + ": stopped");
+      }
+    }
+  }
+
+private:
+  Expected<std::set<std::string>> csv_names() const {
+    std::error_code problem;
+    std::set<std::string> names;
+    for (std::filesystem::directory_iterator entry(folder_, problem), end; !problem && entry != end; entry.increment(problem)) {
+      if (entry->path().extension() == ".csv") {
+        names.insert(entry->path().filename().string());
+      }
+    }
+    if (problem) {
+      return failure(ErrorCode::not_found, folder_.string() + ": cannot be read (" + problem.message() + ")");
+    }
+    return names;
+  }
+
+  static Expected<Series> read(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    if (!file) {
+      return failure(ErrorCode::not_found, path.string() + ": cannot be read");
+    }
+    auto series = parse_series_csv(text);
+    if (!series) {
+      return failure(series.error().code, path.string() + ": " + series.error().message);
+    }
+    series->received_utc_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    return series;
+  }
+
+  static tl::unexpected<Error> failure(ErrorCode code, std::string message) {
+    return tl::unexpected(Error{code, "time series sensor " + std::move(message)});
+  }
+
+  std::filesystem::path folder_;
+  const StopSignal& stop_;
+  std::set<std::string> seen_;
+  bool looked_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder, const StopSignal& stop) {
+  return std::make_unique<FolderSource>(std::move(folder), stop);
+}
+
+} // namespace dyncal::drivers::tss

@@ -1,0 +1,127 @@
+#include <array>
+#include <utility>
+
+#include "drivers/scpi_answer.hpp"
+#include "drivers/tss/series_source.hpp"
+
+namespace dyncal::drivers::tss {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds connect_limit{3000};
+constexpr milliseconds rest_limit{5000};  // for the octets behind a header that has come
+constexpr milliseconds leftover_limit{1}; // what has come is there at once
+constexpr std::size_t longest_header = 65'536;
+
+class SocketSource : public SeriesSource {
+public:
+  SocketSource(std::string address, const StopSignal& stop) : address_(std::move(address)), stop_(stop) {}
+
+  Expected<void> discard_pending() override {
+    if (auto connected = connect(); !connected) {
+      return connected;
+    }
+    while (connection_ && connection_->has_unread()) {
+      if (auto old = next(leftover_limit); !old && old.error().code == ErrorCode::disconnected && stop_.raised()) {
+        return tl::unexpected(old.error());
+      }
+    }
+    return connect();
+  }
+
+  Expected<Series> next(milliseconds limit) override {
+    if (auto connected = connect(); !connected) {
+      return tl::unexpected(connected.error());
+    }
+    auto line = connection_->read_line(longest_header, limit);
+    if (!line) {
+      // Nothing has come yet: the connection is as good as before.
+      return line.error().code == ErrorCode::timeout && !connection_->has_unread() ? failure(line.error()) : give_up(line.error());
+    }
+    auto header = parse_series_header(*line);
+    if (!header) {
+      return give_up({header.error().code, address_ + ": " + header.error().message});
+    }
+    auto octets = read_block(header->octets());
+    if (!octets) {
+      return give_up(octets.error());
+    }
+    auto series = decode_series(std::move(*header), *octets);
+    if (!series) {
+      return give_up({series.error().code, address_ + ": " + series.error().message});
+    }
+    series->received_utc_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    return series;
+  }
+
+private:
+  Expected<void> connect() {
+    if (connection_) {
+      return {};
+    }
+    const auto parsed = parse_address(address_);
+    if (!parsed) {
+      return failure(parsed.error());
+    }
+    auto connection = TcpConnection::connect(*parsed, connect_limit, stop_);
+    if (!connection) {
+      return failure(connection.error());
+    }
+    connection_.emplace(std::move(*connection));
+    return {};
+  }
+
+  Expected<std::vector<char>> read_block(std::size_t wanted) {
+    std::array<char, 2> head{};
+    std::array<char, 9> digits{};
+    if (auto read = connection_->read_exactly(head, rest_limit); !read) {
+      return tl::unexpected(read.error());
+    }
+    const auto count = parse_block_digit_count({head.data(), head.size()});
+    if (!count) {
+      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": " + count.error().message});
+    }
+    if (auto read = connection_->read_exactly({digits.data(), *count}, rest_limit); !read) {
+      return tl::unexpected(read.error());
+    }
+    const auto length = parse_block_length({digits.data(), *count});
+    if (!length || *length != wanted) {
+      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a block of '" + shown({digits.data(), *count}) +
+                                                            "' octets where the series has " + std::to_string(wanted)});
+    }
+    std::vector<char> octets(wanted);
+    if (auto read = connection_->read_exactly(octets, rest_limit); !read) {
+      return tl::unexpected(read.error());
+    }
+    const auto end = connection_->read_line(longest_header, rest_limit);
+    if (!end) {
+      return tl::unexpected(end.error());
+    }
+    if (!end->empty()) {
+      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a series is longer than it announces"});
+    }
+    return octets;
+  }
+
+  static tl::unexpected<Error> failure(const Error& error) {
+    return tl::unexpected(Error{error.code, "time series sensor " + error.message});
+  }
+  tl::unexpected<Error> give_up(const Error& error) {
+    connection_.reset();
+    return failure(error);
+  }
+
+  std::string address_;
+  const StopSignal& stop_;
+  std::optional<TcpConnection> connection_;
+};
+
+} // namespace
+
+std::unique_ptr<SeriesSource> series_from_socket(std::string address, const StopSignal& stop) {
+  return std::make_unique<SocketSource>(std::move(address), stop);
+}
+
+} // namespace dyncal::drivers::tss
