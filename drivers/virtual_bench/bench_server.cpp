@@ -31,7 +31,11 @@ BenchServer::BenchServer(VirtualBench& bench, const ServerSettings& settings)
     : bench_(bench), settings_(settings), instrument_(bench), generator_clients_(instrument_),
       packer_(settings.sensor_id, bench.settings().preset.sensor_name, settings.with_ticks),
       path_(bench.settings().seed, settings.path, [this](const std::string& datagram) { send_datagram(datagram); }),
-      receiver_on_this_host_(is_loopback(settings.dau.host)) {}
+      receiver_on_this_host_(is_loopback(settings.dau.host)) {
+  if (settings.triggered) {
+    triggered_.emplace(*settings.triggered);
+  }
+}
 
 Expected<void> BenchServer::open() {
   auto acs = listen_tcp(settings_.acs_listen);
@@ -40,6 +44,11 @@ Expected<void> BenchServer::open() {
   for (const auto* opened : {&acs, &generator, &unit}) {
     if (!*opened) {
       return tl::unexpected(opened->error());
+    }
+  }
+  if (triggered_) {
+    if (auto done = triggered_->open(); !done) {
+      return done;
     }
   }
   acs_listener_ = std::move(*acs);
@@ -81,6 +90,9 @@ void BenchServer::serve_sockets() {
   }
   stream_.serve();
   generator_clients_.serve(bench_.now_s());
+  if (triggered_) {
+    triggered_->serve();
+  }
 }
 
 void BenchServer::wait_for_events(const StopSignal& stop, milliseconds limit) const {
@@ -91,6 +103,12 @@ void BenchServer::wait_for_events(const StopSignal& stop, milliseconds limit) co
   }
   for (const int descriptor : generator_clients_.descriptors()) {
     watched.push_back({descriptor, POLLIN, 0});
+  }
+  if (triggered_) {
+    for (const int descriptor : triggered_->descriptors()) {
+      watched.push_back({descriptor, POLLIN, 0});
+    }
+    limit = triggered_->has_backlog() ? milliseconds(1) : limit;
   }
   poll(watched.data(), watched.size(), static_cast<int>(limit.count()));
 }
@@ -152,6 +170,9 @@ void BenchServer::advance_to(double time_s) {
       path_.send(*datagram);
     }
   });
+  if (triggered_) {
+    triggered_->advance_to(time_s, bench_.excitation());
+  }
   while (bench_.now_s() >= next_description_s_) {
     for (const std::string& datagram : packer_.descriptions(bench_.unit().channels())) {
       path_.send(datagram);

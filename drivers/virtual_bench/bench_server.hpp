@@ -1,4 +1,5 @@
-// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP), and the pace of bench time.
+// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP), where wanted oscilloscope and time series
+// sensor (TCP), and the pace of bench time.
 //
 // Speed x: bench time runs x times as fast as the host's clock. Speed 0 ("max"): while a client of the generator waits for a bench time
 // and the ACS stream is being read, as fast as the consumers allow; otherwise in real time. Bench time never runs ahead of what the ACS
@@ -7,11 +8,13 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "drivers/virtual_bench/datagram_path.hpp"
 #include "drivers/virtual_bench/line_clients.hpp"
 #include "drivers/virtual_bench/smartup_format.hpp"
 #include "drivers/virtual_bench/stream_client.hpp"
+#include "drivers/virtual_bench/triggered_server.hpp"
 #include "drivers/virtual_bench/virtual_bench.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -26,6 +29,7 @@ struct ServerSettings {
   double datagrams_per_s = 4000.0; // of the host's seconds
   std::uint32_t sensor_id = 0xbccb0100;
   bool with_ticks = false;
+  std::optional<TriggeredSettings> triggered; // oscilloscope and time series sensor
 };
 
 class BenchServer {
@@ -36,6 +40,7 @@ public:
   [[nodiscard]] Expected<void> open();
   [[nodiscard]] std::uint16_t acs_port() const;
   [[nodiscard]] std::uint16_t generator_port() const;
+  [[nodiscard]] const std::optional<TriggeredServer>& triggered() const { return triggered_; }
 
   // Returns at the end of the duration or when stopped.
   void run(const StopSignal& stop);
@@ -61,6 +66,7 @@ private:
   StreamClient stream_;
   SmartUpPacker packer_;
   DatagramPath path_;
+  std::optional<TriggeredServer> triggered_;
   Descriptor acs_listener_;
   Descriptor generator_listener_;
   Descriptor unit_socket_;

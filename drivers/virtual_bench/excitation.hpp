@@ -18,6 +18,7 @@ struct Drive { // what the generator is set to
   double frequency_hz = 100.0;
   double amplitude_v = 0.0; // zero to peak
   bool on = false;
+  bool rectangle = false; // of the sync line only; the exciter keeps its sine
 };
 
 struct ExciterModel {

@@ -112,6 +112,11 @@ std::optional<Preset> preset_by_name(const std::string& name) {
   if (name == "mpu9250-ptb") {
     return mpu9250(name, ptb_delay_s, ptb_residual_phase());
   }
+  if (name == "tss") {
+    Preset preset = mpu9250(name, ptb_delay_s, ptb_residual_phase());
+    preset.triggered = true;
+    return preset;
+  }
   if (name == "bma280") {
     return bma280();
   }
@@ -119,7 +124,7 @@ std::optional<Preset> preset_by_name(const std::string& name) {
 }
 
 std::vector<std::string> preset_names() {
-  return {"mpu9250-paper", "mpu9250-ptb", "bma280"};
+  return {"mpu9250-paper", "mpu9250-ptb", "bma280", "tss"};
 }
 
 } // namespace dyncal::drivers::virtual_bench

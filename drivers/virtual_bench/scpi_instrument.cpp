@@ -142,9 +142,7 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
   } else if (header == "OUTP1" || header == "OUTP1:STAT") {
     set_output(argument);
   } else if (header == "SOUR1:FUNC") {
-    if (!upper(argument).starts_with("SIN")) {
-      complain("-224,\"Illegal parameter value\"");
-    }
+    set_function(argument);
   } else if (header == "SOUR1:VOLT:UNIT") {
     if (upper(argument) != "VPP") {
       complain("-224,\"Illegal parameter value\"");
@@ -156,6 +154,17 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
   } else {
     complain("-113,\"Undefined header\"");
   }
+}
+
+void ScpiInstrument::set_function(std::string_view argument) {
+  const std::string word = upper(argument);
+  Drive drive = bench_.drive();
+  drive.rectangle = word.starts_with("SQU");
+  if (!drive.rectangle && !word.starts_with("SIN")) {
+    complain("-224,\"Illegal parameter value\"");
+    return;
+  }
+  bench_.set_drive(drive);
 }
 
 void ScpiInstrument::set_frequency(std::string_view argument) {

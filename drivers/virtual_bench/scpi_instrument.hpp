@@ -1,9 +1,8 @@
 // The generator's side of SCPI: one line in, perhaps one line out; errors wait in a queue as IEEE 488.2 has it.
 //
 // Understands (long or short form, any case) *IDN?, *RST, *CLS, *OPC?, :SOURce1:FREQuency[?], :SOURce1:VOLTage[?] (peak to peak),
-// :SOURce1:VOLTage:UNIT VPP, :SOURce1:FUNCtion SINusoid, :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity, :SYSTem:ERRor?, and of the bench
-// itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when that time has come.
-// One thread.
+// :SOURce1:VOLTage:UNIT VPP, :SOURce1:FUNCtion SINusoid|SQUare, :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity, :SYSTem:ERRor?, and of the
+// bench itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when that time has come. One thread.
 #pragma once
 
 #include <deque>
@@ -31,6 +30,7 @@ public:
 private:
   [[nodiscard]] Reply query(const std::string& header, std::string_view argument);
   void set(const std::string& header, std::string_view argument);
+  void set_function(std::string_view argument);
   void set_frequency(std::string_view argument);
   void set_voltage(std::string_view argument);
   void set_output(std::string_view argument);

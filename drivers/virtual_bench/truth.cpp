@@ -23,7 +23,7 @@ std::string axis_name(std::size_t axis) {
 
 Json transfer_function(const Preset& preset, const std::vector<std::string>& frequencies_hz) {
   Json points = Json::array();
-  for (std::size_t axis = 0; axis < preset.axes.size(); ++axis) {
+  for (std::size_t axis = preset.triggered ? 2 : 0; axis < preset.axes.size(); ++axis) { // a time series sensor measures z alone
     for (const std::string& text : frequencies_hz) {
       const std::complex<double> value = preset.axes[axis].at(to_hz(text));
       points.push_back({{"channel", axis_name(axis)},

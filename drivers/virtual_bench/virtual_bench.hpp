@@ -47,6 +47,7 @@ public:
   [[nodiscard]] const AcsInstrument& acs() const { return acs_; }
   [[nodiscard]] const SensorUnit& unit() const { return unit_; }
   [[nodiscard]] const SyncAdcModel& adc() const { return adc_; }
+  [[nodiscard]] const Excitation& excitation() const { return excitation_; }
   [[nodiscard]] const ExciterModel& exciter() const { return exciter_; }
 
 private:

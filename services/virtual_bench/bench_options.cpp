@@ -19,7 +19,12 @@ struct Words {
   std::string dau = "127.0.0.1:7654";
   std::string acs = "127.0.0.1:0";
   std::string generator = "127.0.0.1:0";
+  std::string dso = "127.0.0.1:0";
+  std::string tss = "127.0.0.1:0";
   std::string sensor = "0xbccb0100";
+  std::vector<std::string> scope_faults;
+  std::size_t scope_pieces = 0;
+  bool free_running = false;
   std::vector<std::string> faults;
   std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
   std::vector<double> levels{10.0};
@@ -38,6 +43,12 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")->capture_default_str();
   app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")->capture_default_str();
   app.add_option("--generator-listen", words.generator, "HOST:PORT of the generator's SCPI (port 0: chosen)")->capture_default_str();
+  app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")->capture_default_str();
+  app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")->capture_default_str();
+  app.add_flag("--tss-free-running", words.free_running, "the time series sensor starts with its next own sample");
+  app.add_option("--scope-fault", words.scope_faults,
+                 fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}", fmt::join(device::scope_fault_names(), ", ")));
+  app.add_option("--scope-pieces", words.scope_pieces, "the oscilloscope's answers come in pieces of so many octets (0: whole)");
   app.add_option("--ports-file", options.ports_file, "write the ports to this file as JSON once they are open");
   app.add_option("--truth", options.truth_file, "write what is true to this file");
   app.add_option("--adc-file", options.adc_file, "write the calibration of the sync ADC to this file");
@@ -88,17 +99,17 @@ Expected<void> read_addresses(const Words& words, device::ServerSettings& server
   return {};
 }
 
-Expected<void> read_faults(const Words& words, device::FaultProbabilities& faults) {
-  const std::vector<std::string>& known = device::fault_names();
-  for (const std::string& text : words.faults) {
+Expected<void> read_faults(const std::string& option, const std::vector<std::string>& texts, const std::vector<std::string>& known,
+                           std::map<std::string, double>& faults) {
+  for (const std::string& text : texts) {
     const std::size_t sign = text.find('=');
     const std::string name = text.substr(0, sign);
     double probability = 0.0;
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      return refuse(fmt::format("--fault {}: no such fault; there are: {}", text, fmt::join(known, ", ")));
+      return refuse(fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
     }
     if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) || !(probability >= 0.0 && probability <= 1.0)) {
-      return refuse(fmt::format("--fault {}: write NAME=PROBABILITY with a probability from 0 to 1", text));
+      return refuse(fmt::format("{} {}: write NAME=PROBABILITY with a probability from 0 to 1", option, text));
     }
     faults[name] = probability;
   }
@@ -127,6 +138,27 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
   return {};
 }
 
+// After everything else: the sensor's range follows from the levels.
+Expected<void> read_triggered(const Words& words, BenchOptions& options) {
+  if (!options.bench.preset.triggered) {
+    return {};
+  }
+  device::TriggeredSettings triggered;
+  triggered.trigger.seed = options.bench.seed;
+  triggered.trigger.sync_amplitude_v = device::VirtualBench::sync_amplitude_v;
+  triggered.piece_octets = words.scope_pieces;
+  const auto scope = drivers::parse_address(words.dso);
+  const auto sensor = drivers::parse_address(words.tss);
+  if (!scope || !sensor) {
+    return refuse(scope ? sensor.error().message : scope.error().message);
+  }
+  triggered.scope_listen = *scope;
+  triggered.sensor_listen = *sensor;
+  options.server.triggered = triggered;
+  options.free_running_sensor = words.free_running;
+  return read_faults("--scope-fault", words.scope_faults, device::scope_fault_names(), options.server.triggered->faults);
+}
+
 Expected<void> read_words(const Words& words, BenchOptions& options) {
   const auto preset = device::preset_by_name(words.preset);
   if (!preset) {
@@ -141,9 +173,10 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
   if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id, hexadecimal ? 16 : 10)) {
     return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
   }
-  return read_addresses(words, options.server).and_then([&] { return read_faults(words, options.bench.faults); }).and_then([&] {
-    return read_programme(words, options);
-  });
+  return read_addresses(words, options.server)
+      .and_then([&] { return read_faults("--fault", words.faults, device::fault_names(), options.bench.faults); })
+      .and_then([&] { return read_programme(words, options); })
+      .and_then([&] { return read_triggered(words, options); });
 }
 
 } // namespace

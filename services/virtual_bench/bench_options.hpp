@@ -21,6 +21,7 @@ struct BenchOptions {
   std::filesystem::path adc_file;
   std::filesystem::path ports_file;
   std::filesystem::path record_folder; // set: files instead of sockets
+  bool free_running_sensor = false;    // of the time series sensor, whose other settings follow from the bench
   bool exit_with_parent = false;
 };
 

@@ -59,16 +59,25 @@ Expected<void> record(device::VirtualBench& bench, const BenchOptions& options) 
 }
 
 Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
-  device::BenchServer server(bench, options.server);
+  device::ServerSettings settings = options.server;
+  if (settings.triggered) {
+    settings.triggered->sensor = device::series_sensor_of(options.bench.preset, options.bench.seed, bench.unit().range_m_s2());
+    settings.triggered->sensor.free_running = options.free_running_sensor;
+  }
+  device::BenchServer server(bench, settings);
   if (auto opened = server.open(); !opened) {
     return tl::unexpected(Error{ErrorCode::device, opened.error().message});
   }
-  const nlohmann::json ports = {{"acs", server.acs_port()}, {"generator", server.generator_port()}, {"process_id", getpid()}};
+  nlohmann::json ports = {{"acs", server.acs_port()}, {"generator", server.generator_port()}, {"process_id", getpid()}};
+  if (server.triggered()) {
+    ports["dso"] = server.triggered()->scope_port();
+    ports["tss"] = server.triggered()->sensor_port();
+  }
   if (auto written = write_file(options.ports_file, ports.dump() + "\n"); !written) {
     return written;
   }
-  fmt::print(stderr, "dyncal-virtual-bench: {}, ACS stream on port {}, generator on port {}, datagrams to {}\n", options.bench.preset.name,
-             server.acs_port(), server.generator_port(), options.server.dau.text());
+  fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n", options.bench.preset.name, ports.dump(),
+             options.server.dau.text());
   server.run(stop_signal());
   return {};
 }
