@@ -1,0 +1,60 @@
+// Delay of an oscilloscope's trigger output, from traces of sync and of that output taken at once (paper section 2.4).
+//
+// Times u are in seconds from the trigger point of the time axis. The output's rising edge lies at u_out, where a straight line through the
+// samples between 20 % and 80 % of its height passes half the height.
+//   rectangle  sync is a rectangle whose edge triggers, found likewise at u_in:  tau = u_out - u_in
+//   sine       sync(u) = A sin(w u + beta) + C passes zero at u_0 = -beta / w. From there to the output's edge takes u_out - u_0, which
+//   holds
+//              what noise did to the trigger, -u_0 (early: negative). The output delay is what remains:  tau = (u_out - u_0) - (-u_0)
+// Series time stamping adds beta from the trace of every shot and tau on the same axis, so tau must not hold trigger noise too.
+// u(tau): standard deviation of the mean over shots, and the time resolution of one trace as a rectangle (interval / sqrt(12)), which
+// does not average out when trigger and sampling are locked.
+// Fails: too_few_samples, no_excitation (no edge that rises, or more than one), as sine_fit.hpp does. Any thread.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analysis/error.hpp"
+#include "analysis/frequency.hpp"
+
+namespace dyncal::analysis {
+
+struct DelayTrace {
+  double first_s = 0.0;
+  double interval_s = 0.0;
+  std::span<const double> sync{};
+  std::span<const double> output{};
+};
+
+struct ShotDelay {
+  double output_delay_s = 0.0;       // tau
+  double from_zero_crossing_s = 0.0; // u_out - u_0; for a rectangle the same as tau
+};
+
+// Where the trace rises through half of its height.
+[[nodiscard]] Expected<double> rising_edge_s(double first_s, double interval_s, std::span<const double> volts);
+
+[[nodiscard]] Expected<ShotDelay> delay_by_rectangle(const DelayTrace& trace);
+[[nodiscard]] Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& frequency);
+
+struct HistogramOfDelays {
+  double first_s = 0.0; // lower end of the first bin
+  double width_s = 0.0;
+  std::vector<std::size_t> counts;
+};
+
+struct TriggerDelay {
+  double delay_s = 0.0;
+  double u_delay_s = 0.0;
+  double scatter_s = 0.0; // standard deviation of one shot
+  double from_zero_crossing_s = 0.0;
+  double scatter_from_zero_crossing_s = 0.0;
+  std::size_t shots = 0;
+  HistogramOfDelays histogram;
+};
+
+[[nodiscard]] Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, double interval_s);
+
+} // namespace dyncal::analysis
