@@ -1,19 +1,18 @@
 #include "analysis/series_stamping.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
+#include "analysis/disturbances.hpp"
 #include "analysis/equidistant_axis.hpp"
 #include "analysis/phasor.hpp"
 #include "analysis/recorded_system.hpp"
 
 namespace dyncal::analysis {
 namespace {
-
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
 
 Error of_shot(std::size_t shot, const std::string& what, Error error) {
   error.message = "shot " + std::to_string(shot + 1) + ", " + what + ": " + error.message;
@@ -59,13 +58,36 @@ std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput&
   return result;
 }
 
+Error of_channel(const std::string& channel, Error error) {
+  error.message = channel + ": " + error.message;
+  return error;
+}
+
+// The apparent frequency, shared by all shots, without what harmonics and hum do to it.
+Expected<FrequencyFit> fit_apparent_frequency(const SeriesStampingInput& input, const Frequency& start,
+                                              std::span<const std::int64_t> stamps) {
+  auto series = shots_of_channel(input, 0);
+  const auto raw = fit_sine_and_frequency(start, input.rate_tolerance_rel, 0, stamps, series);
+  if (!raw) return tl::unexpected(raw.error());
+  const auto undisturbed = fit_sine_beside_disturbances(raw->frequency, 0, stamps, series);
+  if (!undisturbed) return tl::unexpected(undisturbed.error());
+  bool cleaned = false;
+  for (std::size_t j = 0; j < series.size(); ++j) {
+    if ((*undisturbed)[j].values.empty()) continue;
+    series[j] = (*undisturbed)[j].values;
+    cleaned = true;
+  }
+  return cleaned ? fit_sine_and_frequency(raw->frequency, input.rate_tolerance_rel, 0, stamps, series) : raw;
+}
+
 // One shot's H with what is random in it and what all shots share.
-Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, std::complex<double> link, double u_phase_start,
-                       const Budget& common) {
+Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool correct_trigger, std::complex<double> link,
+                       double u_phase_start, const Budget& common) {
   const double u_amplitude = series.u_amplitude();
   const double snr = u_amplitude > 0.0 ? series.amplitude() / u_amplitude : 1e12;
   Repetition result;
-  result.h = std::complex<double>(series.sine, series.cosine) * link / unit_phasor(trigger.sync);
+  result.h = std::complex<double>(series.sine, series.cosine) * link;
+  if (correct_trigger) result.h /= unit_phasor(trigger.sync);
   result.u_random_magnitude_rel = 1.0 / std::max(snr, 1e-6);
   const double u_series = snr < 10.0 ? phase_standard_uncertainty(snr) : series.u_phase_rad();
   result.u_random_phase_rad = std::hypot(std::hypot(u_series, trigger.u_rad), u_phase_start);
@@ -74,10 +96,11 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, std::
   return result;
 }
 
-Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w) {
+Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w, double u_phase_apparent) {
   Budget budget;
   add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
+  budget.add("apparent frequency, from the middle of the series to sample 0", "normal", 0.0, 0.0, u_phase_apparent);
   budget.add("trigger delay of the oscilloscope", "normal", 0.0, 0.0, w * input.u_dso_delay_s);
   budget.add("start of the series after the trigger", "normal", 0.0, 0.0, w * input.u_start_latency_s);
   budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * input.acs_delay_s);
@@ -106,29 +129,28 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
 
   const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
   const std::vector<std::int64_t> stamps = axis.stamps_ns(input.shots.front().series.front().size());
-  const auto pilot =
-      fit_sine_and_frequency(axis.on_axis(sync.frequency.hz()), input.rate_tolerance_rel, 0, stamps, shots_of_channel(input, 0));
-  if (!pilot) return failure(pilot.error().code, input.channels.front() + ": " + pilot.error().message);
+  const auto pilot = fit_apparent_frequency(input, axis.on_axis(sync.frequency.hz()), stamps);
+  if (!pilot) return tl::unexpected(of_channel(input.channels.front(), pilot.error()));
   const auto rate = real_rate_from_apparent_frequency(input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
                                                       axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
   if (!rate) return tl::unexpected(rate.error());
 
   // Everything that is the same for all shots: the reference's phasor against sync, and the way from trigger point to sample 0.
-  const std::complex<double> link =
-      unit_phasor(acs->pilot.phasor()) / reference.phasor() * std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s));
-  const Budget common = common_budget(input, *acs, w);
+  const std::complex<double> link = unit_phasor(acs->pilot.phasor()) / reference.phasor() *
+                                    std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
+  const Budget common = common_budget(input, *acs, w, std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) * pilot->u_frequency_hz);
   SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
   for (const TriggerPhase& trigger : triggers) {
     result.trigger_phase_rad.push_back(std::arg(trigger.sync));
     result.u_trigger_phase_rad.push_back(trigger.u_rad);
   }
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
-    const auto fits =
-        c == 0 ? Expected<std::vector<SineFit>>(pilot->channels) : fit_sine(pilot->frequency, 0, stamps, shots_of_channel(input, c));
-    if (!fits) return failure(fits.error().code, input.channels[c] + ": " + fits.error().message);
+    const auto fits = fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
+    if (!fits) return tl::unexpected(of_channel(input.channels[c], fits.error()));
     SeriesChannelResult channel{input.channels[c], {}, {}};
     for (std::size_t j = 0; j < fits->size(); ++j)
-      channel.shots.push_back(shot_result((*fits)[j], triggers[j], link, w * input.start_scatter_s, common));
+      channel.shots.push_back(
+          shot_result((*fits)[j].fit, triggers[j], input.correct_trigger_phase, link, w * input.start_scatter_s, common));
     const auto mean = mean_of_repetitions(channel.shots);
     if (!mean) return tl::unexpected(mean.error());
     channel.mean = *mean;

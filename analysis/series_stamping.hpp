@@ -10,7 +10,8 @@
 // term has a plus, and (8)'s e^{-i dphi} would be the conjugate (errata T7).
 // The sensor's samples lie on the time axis of its nominal rate; one apparent frequency w_TSS is shared by all shots (four-parameter
 // fit), theta_TSS is that of sample 0, and (6) gives the real rate f_nom w / w_TSS. No correction of the rate is needed at n = 0
-// (paper section 2.5), but u(theta_0) is twice that of the middle.
+// (paper section 2.5), but what w_TSS is wrong by turns theta_0 of all shots alike by u(w_TSS) T / 2, beside the noise of each shot.
+// Harmonics and hum that stand out in a series are fitted beside the signal (disturbances.hpp).
 // A TSS that runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s / sqrt(12) (T9).
 // Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots and frequencies.
 // Channels are those of `channels`; the first must be excited.
@@ -54,6 +55,8 @@ struct SeriesStampingInput {
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
   double acs_delay_s = 0.0;
+  double reference_delay_s = 0.0;    // known delay of the reference's channel against the ACS's sync, taken out
+  bool correct_trigger_phase = true; // false: beta_j is taken as 0, to see what the correction is worth
 };
 
 struct SeriesChannelResult {

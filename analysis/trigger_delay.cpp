@@ -61,6 +61,10 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
   if (!(height > 0.0) || above == volts.end() || begin == 0) {
     return failure(ErrorCode::no_excitation, "the trace shows no rising edge");
   }
+  const auto low_again = std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
+  if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
+    return failure(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of them belongs to the trigger is unknown");
+  }
   // Line through what lies between, both neighbours included when the edge is as steep as the sampling.
   double n = 0.0;
   double sum_t = 0.0;

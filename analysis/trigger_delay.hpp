@@ -3,8 +3,7 @@
 // Times u are in seconds from the trigger point of the time axis. The output's rising edge lies at u_out, where a straight line through the
 // samples between 20 % and 80 % of its height passes half the height.
 //   rectangle  sync is a rectangle whose edge triggers, found likewise at u_in:  tau = u_out - u_in
-//   sine       sync(u) = A sin(w u + beta) + C passes zero at u_0 = -beta / w. From there to the output's edge takes u_out - u_0, which
-//   holds
+//   sine       sync(u) = A sin(w u + beta) + C passes C at u_0 = -beta / w. From there to the output's edge takes u_out - u_0, which holds
 //              what noise did to the trigger, -u_0 (early: negative). The output delay is what remains:  tau = (u_out - u_0) - (-u_0)
 // Series time stamping adds beta from the trace of every shot and tau on the same axis, so tau must not hold trigger noise too.
 // u(tau): standard deviation of the mean over shots, and the time resolution of one trace as a rectangle (interval / sqrt(12)), which
