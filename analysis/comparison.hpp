@@ -19,6 +19,11 @@ struct ComparedResult {
   double u_phase_rad = 0.0;
 };
 
+struct SharedUncertainty { // standard uncertainties of what both results have in common
+  double magnitude_rel = 0.0;
+  double phase_rad = 0.0;
+};
+
 struct ComplexComparison {
   double en_magnitude = 0.0;
   double en_phase = 0.0; // of the difference modulo 2 pi
@@ -26,6 +31,7 @@ struct ComplexComparison {
   double probability = 0.0; // that chance gives at least this difference, exp(-chi^2 / 2)
 };
 
-[[nodiscard]] Expected<ComplexComparison> compare_transfer(const ComparedResult& x, const ComparedResult& y);
+[[nodiscard]] Expected<ComplexComparison> compare_transfer(const ComparedResult& x, const ComparedResult& y,
+                                                           const SharedUncertainty& shared = {});
 
 } // namespace dyncal::analysis

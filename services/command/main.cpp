@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/command/analyse_command.hpp"
+#include "services/command/compare_command.hpp"
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
@@ -75,8 +76,24 @@ void add_intervals(CLI::App& app, IntervalsCommand& intervals) {
   command->add_flag("--json", intervals.json, "print JSON");
 }
 
+void add_compare(CLI::App& app, CompareCommand& compare) {
+  CLI::App* command = app.add_subcommand("compare", "do two results agree? E_n of magnitude and phase at every common frequency");
+  command->add_option("A.json", compare.first, "result of dyncal")->required();
+  command->add_option("B.json", compare.second, "the other result")->required();
+  command->add_option("--channel", compare.first_channel, "only this channel (default: all)");
+  command->add_option("--other-channel", compare.second_channel, "its name in the other result (default: the same)");
+  command
+      ->add_option("--common-magnitude", compare.common_magnitude_rel,
+                   "relative standard uncertainty that both share, e.g. of one reference")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--common-phase", compare.common_phase_rad, "standard uncertainty of the phase that both share, in rad")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", compare.json, "print JSON");
+}
+
 struct Commands {
   AnalyseCommand analyse;
+  CompareCommand compare;
   DemoCommand demo;
   FitCommand fit;
   IntervalsCommand intervals;
@@ -85,6 +102,9 @@ struct Commands {
 };
 
 int execute(const CLI::App& app, const Commands& commands) {
+  if (app.got_subcommand("compare")) {
+    return run_compare(commands.compare);
+  }
   if (app.got_subcommand("fit")) {
     return run_fit(commands.fit);
   }
@@ -115,6 +135,7 @@ int main(int argc, char** argv) {
   add_run(app, commands.run);
   add_watch(app, commands.watch);
   add_analyse(app, commands.analyse);
+  add_compare(app, commands.compare);
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);
   CLI11_PARSE(app, argc, argv);

@@ -115,5 +115,34 @@ TEST_F(FileCommands, IntervalsFindsAGapAndALateEarlyPair) {
   EXPECT_EQ(json["events"][1]["missing"], 1);
 }
 
+std::filesystem::path result_file(const std::filesystem::path& path, double magnitude, double phase, const char* unit = "\\\\one") {
+  std::ofstream(path) << fmt::format(
+      R"({{"transfer_function": [{{"channel": "dau/acceleration_z", "frequency_hz": 80, "magnitude": {}, "u_magnitude": 0.003,
+           "phase_rad": {}, "u_phase_rad": 0.004, "unit": "{}"}}]}})",
+      magnitude, phase, unit);
+  return path;
+}
+
+TEST_F(FileCommands, CompareGivesTheNormalisedErrorOfTwoResults) {
+  const auto a = result_file(folder / "a.json", 1.01, 3.14);
+  const auto b = result_file(folder / "b.json", 1.0, -3.14);
+  const auto json = json_of({"compare", a, b, "--json"});
+  const auto& point = json["points"][0];
+  EXPECT_NEAR(point["en_magnitude"], 0.01 / (2.0 * 0.003 * std::sqrt(2.0)), 1e-12);
+  EXPECT_NEAR(point["phase_difference_rad"], 6.28 - 2.0 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(point["en_phase"], (6.28 - 2.0 * std::numbers::pi) / (2.0 * 0.004 * std::sqrt(2.0)), 1e-12);
+  EXPECT_FALSE(point["agrees"]);
+  const auto shared = json_of({"compare", a, b, "--common-magnitude", "0.002", "--json"});
+  EXPECT_NEAR(shared["points"][0]["en_magnitude"], 0.01 / (2.0 * std::sqrt(2.0 * 9e-6 - 2.0 * 4e-6 * 1.01)), 1e-12);
+}
+
+TEST_F(FileCommands, CompareRefusesWhatCannotBeCompared) {
+  const auto a = result_file(folder / "a.json", 1.01, 3.14);
+  EXPECT_THAT(error_of({"compare", a, result_file(folder / "b.json", 1.0, 3.1, "V")}), HasSubstr("different units"));
+  EXPECT_THAT(error_of({"compare", a, a, "--channel", "acs/none"}), HasSubstr("no channel and frequency in common"));
+  std::ofstream(folder / "c.json") << "[1, 2";
+  EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("is no result of dyncal"));
+}
+
 } // namespace
 } // namespace dyncal::tests
