@@ -83,7 +83,8 @@ TEST(Repetitions, RefusesNothingAndWhatIsNoNumber) {
   EXPECT_EQ(mean_of_repetitions(repetitions).error().code, ErrorCode::not_finite);
 }
 
-// Between-run scatter three times the noise of the fits, n = 3, and a common part as large as the noise.
+// Between-run scatter three times the noise of the fits, n = 3, and a common part as large as the noise. In the long run 95.05 % are
+// covered (200 000 runs).
 TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
   const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
   const int runs = text ? std::stoi(text) : 4000;
@@ -103,8 +104,8 @@ TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
     magnitude_covered += std::abs(mean->magnitude - 0.95) <= 2.0 * mean->u_magnitude;
     phase_covered += std::abs(wrap_phase(mean->phase_rad - 2.0)) <= 2.0 * mean->u_phase_rad;
   }
-  EXPECT_NEAR(static_cast<double>(magnitude_covered) / runs, 0.9545, 0.0145);
-  EXPECT_NEAR(static_cast<double>(phase_covered) / runs, 0.9545, 0.0145);
+  EXPECT_NEAR(static_cast<double>(magnitude_covered) / runs, 0.95, 0.014);
+  EXPECT_NEAR(static_cast<double>(phase_covered) / runs, 0.95, 0.014);
 }
 
 } // namespace
