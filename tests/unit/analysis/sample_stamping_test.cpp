@@ -98,7 +98,7 @@ double true_phase(const Bench& bench) {
 
 std::size_t coverage_runs() {
   const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
-  return text ? std::stoul(text) : 250;
+  return text ? std::stoul(text) : 1000;
 }
 
 // k = 2 intervals of a normal distribution cover 95.45 %; the limits are 3 standard deviations of the count.
