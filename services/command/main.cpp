@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/command/analyse_command.hpp"
+#include "services/command/calibrate_options.hpp"
 #include "services/command/compare_command.hpp"
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
@@ -93,6 +94,7 @@ void add_compare(CLI::App& app, CompareCommand& compare) {
 
 struct Commands {
   AnalyseCommand analyse;
+  CalibrateCommands calibrate;
   CompareCommand compare;
   DemoCommand demo;
   FitCommand fit;
@@ -110,6 +112,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (app.got_subcommand("intervals")) {
     return run_intervals(commands.intervals);
+  }
+  if (app.got_subcommand("calibrate")) {
+    return run_calibrate(app, commands.calibrate);
   }
   const std::stop_token stop = stop_on_signals();
   if (app.got_subcommand("analyse")) {
@@ -138,6 +143,7 @@ int main(int argc, char** argv) {
   add_compare(app, commands.compare);
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);
+  add_calibrate(app, commands.calibrate);
   CLI11_PARSE(app, argc, argv);
   set_up_log("dyncal");
   return execute(app, commands);

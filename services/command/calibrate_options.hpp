@@ -1,0 +1,22 @@
+// `dyncal calibrate INSTRUMENT`: the command line of the calibrations of single instruments of a bench; each has a file of its own.
+#pragma once
+
+#include "services/command/calibrate_time_command.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace dyncal::services {
+
+struct CalibrateCommands {
+  CalibrateTimeCommand time;
+};
+
+// The options are kept in `commands`, which must outlive the parsing.
+void add_calibrate(CLI::App& app, CalibrateCommands& commands);
+
+// REQUIRES: the command line was parsed and has the sub-command.
+[[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands);
+
+} // namespace dyncal::services
