@@ -113,8 +113,7 @@ Interpolated interpolate(const std::vector<double>& f, const std::vector<double>
   if (i > 0) curvature = second_difference(i - 1);
   if (i + 2 < f.size()) curvature = std::max(curvature, second_difference(i));
   const double missed = curvature * (at - f[i]) * (f[i + 1] - at) / std::sqrt(3.0);
-  return {values[i] + weight * (values[i + 1] - values[i]),
-          std::sqrt(std::pow((1.0 - weight) * u[i], 2) + std::pow(weight * u[i + 1], 2) + missed * missed)};
+  return {values[i] + weight * (values[i + 1] - values[i]), std::hypot((1.0 - weight) * u[i] + weight * u[i + 1], missed)};
 }
 
 double median(std::span<const double> all) {
@@ -159,6 +158,8 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
     for (; end < sorted.size() && same(sorted[end].frequency_hz, group.mean.frequency_hz); ++end) {
       gain += sorted[end].gain;
       lag += sorted[end].phase_lag_rad;
+      group.mean.u_gain = std::max(group.mean.u_gain, sorted[end].u_gain);
+      group.mean.u_phase_lag_rad = std::max(group.mean.u_phase_lag_rad, sorted[end].u_phase_lag_rad);
       group.count += 1.0;
     }
     group.mean.gain = gain / group.count;
@@ -198,8 +199,9 @@ std::vector<AdcCalibrationPoint> points_of_one_amplitude(std::span<const AdcCali
     return local >= 1.0 ? std::sqrt(sum(around(squares, i)) / local) : std::sqrt(sum(squares) / sum(freedom));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].u_gain = points[i].gain * scatter(gain_squares, gain_deviations, i) / std::sqrt(groups[i].count);
-    points[i].u_phase_lag_rad = scatter(phase_squares, lag_deviations, i) / std::sqrt(groups[i].count);
+    const double root = std::sqrt(groups[i].count);
+    points[i].u_gain = std::hypot(points[i].u_gain, points[i].gain * scatter(gain_squares, gain_deviations, i) / root);
+    points[i].u_phase_lag_rad = std::hypot(points[i].u_phase_lag_rad, scatter(phase_squares, lag_deviations, i) / root);
   }
   return points;
 }

@@ -3,8 +3,8 @@
 // Model: G(f) = g0 e^{-i w tau} / (1 + i f / fc), approximated to the points (1 / g^2 is linear in f^2; the rest of the lag is
 // w tau); the ratio of points and model is interpolated, log gain and phase each linearly in f. A pure delay and a first-order
 // low pass are therefore exact. Sign: phase_lag_rad = -arg G, positive = the ADC reads late (analysis/sample_stamping.hpp).
-// u^2 = (w1 u1)^2 + (w2 u2)^2 + e^2 / 3 with e the larger of the neighbouring second differences as a bound of what a straight
-// line misses; the points are taken as independent, what they have in common (generator, oscilloscope) is the caller's to add.
+// u^2 = (w1 u1 + w2 u2)^2 + e^2 / 3 with e the larger of the neighbouring second differences as a bound of what a straight line misses;
+// the first term holds however much the two points have in common (time scales, voltmeter), and is an upper bound where they have nothing.
 // Points of different test amplitudes are never mixed: gains differ by per cents, delays by a factor.
 // Fails: invalid_argument (no points, not positive, several test amplitudes and none chosen), out_of_calibration (frequency
 // outside the calibrated range, or no points within a factor of two of the test amplitude): nothing is extrapolated.
@@ -33,9 +33,10 @@ struct AdcCalibrationPoint {
 [[nodiscard]] Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> points, double frequency_hz,
                                                     std::optional<double> test_amplitude_vpp = std::nullopt);
 
-// Makes points from repeated or single measurements (their u_ fields are not looked at): the mean of those at the same frequency
-// and amplitude, u from their scatter, pooled over four frequencies on either side; where nothing was repeated, from how far these
-// points lie from the line through their neighbours (median). Ordered by amplitude, then frequency.
+// Makes points from repeated or single measurements: the mean of those at the same frequency and amplitude, u from their scatter, pooled
+// over four frequencies on either side; where nothing was repeated, from how far these points lie from the line through their neighbours
+// (median). The u_ fields of measurements say what repeating does not show, because repetitions have it in common; the largest of a
+// frequency is added (in squares). Ordered by amplitude, then frequency.
 [[nodiscard]] std::vector<AdcCalibrationPoint> adc_calibration_points(std::span<const AdcCalibrationPoint> measurements);
 
 } // namespace dyncal::analysis

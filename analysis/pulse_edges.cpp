@@ -40,7 +40,8 @@ private:
   bool wraps_;
 };
 
-double median_second(std::span<const PulseEdge> record, const Counter& counter) {
+// The length that most intervals agree on within the tolerance: a glitch spoils two intervals, so that a median may be none of a second.
+double usual_interval(std::span<const PulseEdge> record, const Counter& counter, double tolerance_s) {
   std::vector<double> intervals;
   std::array<const PulseEdge*, 2> last{};
   for (const PulseEdge& edge : record) {
@@ -48,10 +49,18 @@ double median_second(std::span<const PulseEdge> record, const Counter& counter) 
     if (before != nullptr) intervals.push_back(static_cast<double>(counter.onwards(*before, edge)));
     before = &edge;
   }
-  if (intervals.empty()) return 0.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  std::sort(intervals.begin(), intervals.end());
+  double usual = 0.0;
+  std::size_t most = 0;
+  for (std::size_t begin = 0, end = 0; begin < intervals.size(); ++begin) {
+    while (end < intervals.size() && intervals[end] <= intervals[begin] * (1.0 + tolerance_s))
+      ++end;
+    if (end - begin > most) {
+      most = end - begin;
+      usual = intervals[begin + most / 2];
+    }
+  }
+  return usual;
 }
 
 class Sorter {
@@ -201,14 +210,14 @@ std::uint64_t SortedPulses::count(PulseFault fault, PulseInput input) const {
 Expected<SortedPulses> sort_pulse_edges(std::span<const PulseEdge> record, const PulseEdgeSettings& settings) {
   if (!(settings.tolerance_s > 0.0 && settings.tolerance_s < 0.1))
     return tl::unexpected(Error{ErrorCode::invalid_argument, "the tolerance of a pulse must be above 0 and below 0.1 s"});
-  const double second_ticks = record.size() < 3 ? 0.0 : median_second(record, Counter(record));
+  const double second_ticks = record.size() < 3 ? 0.0 : usual_interval(record, Counter(record), settings.tolerance_s);
   if (!(second_ticks >= shortest_second_ticks))
     return tl::unexpected(Error{ErrorCode::too_few_samples, "the record has no edges that are a second apart"});
   SortedPulses sorted = Sorter(record, settings.tolerance_s, second_ticks).sort();
   std::size_t kept = 0;
   for (const PulseSession& session : sorted.sessions)
     kept += session.gps.size() + session.reference.size();
-  // Any edges have a median distance: only when most of them lie on the grid is it a second.
+  // Any edges have a most usual distance: only when most of them lie on its grid is it a second.
   if (2 * kept < record.size())
     return tl::unexpected(
         Error{ErrorCode::too_few_samples, "most edges of the record are not whole seconds apart: is it a record of pulses per second?"});

@@ -61,7 +61,7 @@ struct PulseEdgeSettings {
 struct SortedPulses {
   std::vector<PulseSession> sessions;
   std::vector<PulseEvent> events; // in the order of the record
-  double ticks_per_second = 0.0;  // median over the record
+  double ticks_per_second = 0.0;  // most usual distance of two edges
 
   [[nodiscard]] std::uint64_t count(PulseFault fault, PulseInput input) const; // missing: seconds, else events
 };

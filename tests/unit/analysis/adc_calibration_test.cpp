@@ -98,6 +98,7 @@ TEST(AdcCalibration, RepeatedMeasurementsGiveTheirMeanAndPooledScatter) {
     for (AdcCalibrationPoint point : points_of(adc)) {
       point.gain *= 1.0 + 2e-5 * noise(random);
       point.phase_lag_rad += 6e-5 * noise(random);
+      point.u_gain = point.u_phase_lag_rad = 0.0;
       measurements.push_back(point);
     }
   const auto points = adc_calibration_points(measurements);
@@ -107,6 +108,21 @@ TEST(AdcCalibration, RepeatedMeasurementsGiveTheirMeanAndPooledScatter) {
               (measurements[3].phase_lag_rad + measurements[14].phase_lag_rad + measurements[25].phase_lag_rad) / 3.0, 1e-15);
   EXPECT_NEAR(points[3].u_phase_lag_rad, 6e-5 / std::sqrt(3.0), 1.2e-5);
   EXPECT_NEAR(points[3].u_gain / points[3].gain, 2e-5 / std::sqrt(3.0), 5e-6);
+}
+
+TEST(AdcCalibration, WhatRepetitionsHaveInCommonIsAddedToTheirScatter) {
+  std::vector<AdcCalibrationPoint> measurements;
+  for (const double lag : {1e-3 - 3e-5, 1e-3 + 3e-5})
+    measurements.push_back({100.0, 19.5, 0.166, lag, 1e-4, 4e-5});
+  const auto points = adc_calibration_points(measurements);
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_NEAR(points[0].u_phase_lag_rad, std::hypot(4e-5, 3e-5), 1e-12); // scatter sqrt(2) 3e-5 over sqrt(2) repetitions
+  EXPECT_NEAR(points[0].u_gain, 1e-4, 1e-15);
+}
+
+TEST(AdcCalibration, WhatTwoPointsHaveInCommonDoesNotAverageOutBetweenThem) {
+  const std::vector<AdcCalibrationPoint> points{{100.0, 19.5, 1.0, 1e-3, 0.0, 5e-5}, {200.0, 19.5, 1.0, 2e-3, 0.0, 5e-5}};
+  EXPECT_NEAR(adc_response_at(points, 150.0)->u_phase_lag_rad, 5e-5, 1e-12);
 }
 
 TEST(AdcCalibration, SingleMeasurementsTakeTheirScatterFromTheirNeighbours) {

@@ -109,7 +109,7 @@ TEST_F(CalibrateTime, TheRealRecordsAreReadWithTheirKnownFaults) {
   EXPECT_EQ(json["gps"]["seconds"], 134);
   EXPECT_EQ(json["reference"]["seconds"], 133);
   EXPECT_EQ(json["gps"]["extra"], 0);
-  EXPECT_EQ(json["deviation"]["untrusted"], 6);
+  EXPECT_EQ(json["deviation"]["untrusted"], 7);
   EXPECT_LT(json["deviation"]["spread_s"].get<double>(), 1e-6);
 
   const CalibrateTimeCommand glitches{
