@@ -25,6 +25,9 @@ std::int32_t to_counts(double value, double scale) {
 AcsInstrument::AcsInstrument(const AcsSettings& settings) : settings_(settings), noise_(settings.seed, "ACS noise") {
   Random draws(settings.seed, "ACS errors");
   rate_error_ = draws.uniform(-settings.largest_rate_error, settings.largest_rate_error);
+  if (settings.utc) {
+    rate_error_ = 0.0;
+  }
   gain_error_ = draws.normal(settings.reference_magnitude_rel);
   phase_error_rad_ = draws.normal(settings.reference_phase_rad);
   hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
@@ -45,7 +48,8 @@ void AcsInstrument::sample_until(double time_s, const Excitation& excitation, Ac
     const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
     const double reference =
         excitation.acceleration(motion, reference_gains_) + reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2);
-    const double sync = (motion.sync_on ? settings_.sync_amplitude_v * motion.sine : 0.0) + sync_hum_v * hum + noise_.normal(sync_noise_v);
+    const double sync_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+    const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v);
     samples.counts.push_back(to_counts(reference, reference_scale_));
     samples.counts.push_back(to_counts(sync, sync_scale_));
   }
@@ -74,7 +78,7 @@ std::string AcsInstrument::description_line() const {
                      {"serial", std::to_string(settings_.seed)},
                      {"sample_rate_hz", {{"numerator", settings_.rate_hz}, {"denominator", 1}}},
                      {"origin_ns", settings_.origin_ns},
-                     {"time_base", "local"},
+                     {"time_base", settings_.utc ? "utc" : "local"},
                      {"values", "int32"},
                      {"channels", Json::array({reference, sync})}};
   return line.dump();

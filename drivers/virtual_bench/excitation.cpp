@@ -49,6 +49,7 @@ void Excitation::change(double time_s, const Drive& drive) {
   next.initial = envelope(last, time_s);
   next.target = drive.on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
   next.on = drive.on;
+  next.amplitude_v = drive.on ? drive.amplitude_v : 0.0;
   drive_ = drive;
   segments_.push_back(next);
   while (segments_.size() > 2 && segments_[1].begin_s < time_s - memory_s) {
@@ -60,7 +61,7 @@ Motion Excitation::motion(double time_s) const {
   const Segment& segment = segment_at(time_s);
   const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
   const double angle = two_pi * (turns - std::floor(turns));
-  return {std::sin(angle), std::cos(angle), envelope(segment, time_s), segment.frequency_hz, segment.on};
+  return {std::sin(angle), std::cos(angle), envelope(segment, time_s), segment.frequency_hz, segment.on, segment.amplitude_v};
 }
 
 double Excitation::acceleration(const Motion& motion, const HarmonicGains& gains) const {

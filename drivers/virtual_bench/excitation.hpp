@@ -41,6 +41,7 @@ struct Motion {
   std::complex<double> envelope; // fundamental is Im{envelope * e^{i theta}}
   double frequency_hz = 0.0;
   bool sync_on = false;
+  double generator_v = 0.0; // amplitude of the generator's first output, zero to peak
 };
 
 // Response at the fundamental and the harmonics, without the delay (which shifts the instant instead).
@@ -69,6 +70,7 @@ public:
 
 private:
   struct Segment {
+    double amplitude_v = 0.0; // of the first output
     double begin_s = 0.0;
     double turns = 0.0; // of the carrier at the beginning, 0..1
     double frequency_hz = 100.0;

@@ -117,7 +117,8 @@ void SensorUnit::measure_rest(UnitSample& sample, double temperature_degc) {
 
 void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation) {
   const Motion motion = excitation.motion(time_s - settings_.adc.lag_s);
-  const double sync_v = motion.sync_on ? settings_.sync_amplitude_v * motion.sine : 0.0;
+  const double amplitude_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+  const double sync_v = amplitude_v * motion.sine;
   for (std::size_t adc = 0; adc < 3; ++adc) {
     const double input_v = (adc == 0 ? sync_v : 0.0) + noise_.normal(adc_step_v);
     sample.data[10 + adc] = static_cast<float>(settings_.adc.gain * static_cast<double>(quantised(input_v, adc_step_v, adc_range_v)));

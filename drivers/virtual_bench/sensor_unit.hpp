@@ -32,6 +32,7 @@ struct SensorUnitSettings {
   double highest_level_m_s2 = 130.0; // decides the range of the sensor
   double thermal_cycle_s = 100.0;
   double sync_amplitude_v = 9.75;
+  bool sync_is_first_output = false;
   SyncAdcModel adc;
   FaultProbabilities faults;
 };

@@ -30,12 +30,23 @@ SyncAdcModel draw_adc(std::uint64_t seed) {
   return adc;
 }
 
+// Bench time 0.
+std::int64_t start_utc_ns(std::uint64_t seed) {
+  Random random(seed, "unit epoch");
+  return unit_day_ns + std::llround(random.uniform(0.0, 8e13));
+}
+
 AcsSettings acs_settings(const BenchSettings& settings) {
   Random random(settings.seed, "ACS epoch");
   AcsSettings acs;
   acs.seed = settings.seed;
   acs.rate_hz = settings.acs_rate_hz;
   acs.origin_ns = std::llround(random.uniform(0.0, 1e15)); // counts from when it was switched on, up to 11 days ago
+  if (settings.acs_utc) {
+    acs.utc = true;
+    acs.origin_ns = start_utc_ns(settings.seed);
+  }
+  acs.sync_is_first_output = settings.sync_is_first_output;
   acs.highest_level_m_s2 = settings.highest_level_m_s2;
   acs.sync_amplitude_v = VirtualBench::sync_amplitude_v;
   acs.reference_magnitude_rel = settings.reference_magnitude_rel;
@@ -44,14 +55,14 @@ AcsSettings acs_settings(const BenchSettings& settings) {
 }
 
 SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcModel& adc) {
-  Random random(settings.seed, "unit epoch");
   SensorUnitSettings unit;
   unit.preset = settings.preset;
   unit.seed = settings.seed;
-  unit.start_ns = unit_day_ns + std::llround(random.uniform(0.0, 8e13));
+  unit.start_ns = start_utc_ns(settings.seed);
   unit.highest_level_m_s2 = settings.highest_level_m_s2;
   unit.thermal_cycle_s = settings.thermal_cycle_s;
   unit.sync_amplitude_v = VirtualBench::sync_amplitude_v;
+  unit.sync_is_first_output = settings.sync_is_first_output;
   unit.adc = adc;
   unit.faults = settings.faults;
   return unit;

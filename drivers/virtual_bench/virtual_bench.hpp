@@ -26,6 +26,8 @@ struct BenchSettings {
   double reference_magnitude_rel = 1e-3; // standard uncertainties that the recipe states
   double reference_phase_rad = 1.7e-3;
   FaultProbabilities faults;
+  bool acs_utc = false;              // the ACS stamps in UTC too
+  bool sync_is_first_output = false; // see acs_instrument.hpp
 };
 
 class VirtualBench {

@@ -82,6 +82,9 @@ Expected<analysis::AdcCalibrationPoint> read_measurement(const Json& measurement
   point.test_amplitude_vpp = *amplitude;
   point.gain = *gain;
   point.phase_lag_rad = settings.phase_sign == PhaseSign::lag ? *phase : -*phase;
+  point.u_gain = number(measurement, "u_Amplitude").value_or(0.0);
+  point.u_phase_lag_rad = number(measurement, "u_Phase").value_or(0.0);
+  if (!(point.u_gain >= 0.0) || !(point.u_phase_lag_rad >= 0.0)) return bad_file(settings, where("a standard uncertainty is negative"));
   return point;
 }
 

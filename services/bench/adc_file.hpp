@@ -4,10 +4,11 @@
 //
 // Three variants are met and accepted: this one, the same without the levels "MeataData" and "FitResults", and a file of one ADC
 // without the ADC's level. "Phase" is positive for a lag in most files; older ones have the other sign, so the bench file says it.
-// Several measurements of a frequency become one point with the uncertainty of their mean (analysis/adc_calibration.hpp); test
-// amplitudes are never mixed: one is returned, the nearest to the one asked for.
-// Fails (bad_file), one sentence with file, channel and what is wrong: missing or no JSON, the channel is not in it, values that are not
-// numbers or not possible, several test amplitudes and none chosen, none within a factor of two.
+// `dyncal calibrate adc` adds "u_Amplitude" and "u_Phase" to a measurement (services/bench/adc_file_writer.hpp): standard uncertainties of
+// what all measurements of a frequency have in common; other files have none. Several measurements of a frequency become one point with the
+// uncertainty of their mean (analysis/adc_calibration.hpp); test amplitudes are never mixed: one is returned, the nearest to the one asked
+// for. Fails (bad_file), one sentence with file, channel and what is wrong: missing or no JSON, the channel is not in it, values that are
+// not numbers or not possible, several test amplitudes and none chosen, none within a factor of two.
 #pragma once
 
 #include <vector>

@@ -18,15 +18,43 @@ void add_time(CLI::App& calibrate, CalibrateTimeCommand& time) {
       ->capture_default_str();
 }
 
+void add_adc(CLI::App& calibrate, CalibrateAdcCommand& adc) {
+  CLI::App* command =
+      calibrate.add_subcommand("adc", "response of a DAU's sync ADC over frequency and amplitude, against the ACS; both must stamp in UTC");
+  command->add_option("BENCH.toml", adc.bench_file, "bench file: its frequencies and repetitions are measured")->required();
+  command
+      ->add_option(
+          "--amplitudes", adc.amplitudes_vpp,
+          "of sync, in V peak to peak, comma separated; the generator's output must be sync (default: the bench's levels, one amplitude)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command->add_option("--channel", adc.channel, "name of the ADC in the file")->capture_default_str();
+  command
+      ->add_option("--time-uncertainty", adc.u_time_scale_s,
+                   "standard uncertainty of the stamps of DAU and ACS against each other, in seconds (see calibrate time)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--gain-uncertainty", adc.u_acs_gain_rel, "relative standard uncertainty of the ACS's sync channel")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--output", adc.output, "file that [corrections] adc of a bench file names")->capture_default_str();
+  add_network_options(*command, adc.network);
+}
+
 } // namespace
 
 void add_calibrate(CLI::App& app, CalibrateCommands& commands) {
   CLI::App* calibrate = app.add_subcommand("calibrate", "calibrate an instrument of the bench");
   calibrate->require_subcommand(1);
+  add_adc(*calibrate, commands.adc);
   add_time(*calibrate, commands.time);
 }
 
-int run_calibrate(const CLI::App&, const CalibrateCommands& commands) {
+int run_calibrate(const CLI::App& app, const CalibrateCommands& commands, const std::stop_token& stop) {
+  const CLI::App* calibrate = app.get_subcommand("calibrate");
+  if (calibrate->got_subcommand("adc")) {
+    return run_calibrate_adc(commands.adc, stop);
+  }
   return run_calibrate_time(commands.time);
 }
 

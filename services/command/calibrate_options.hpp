@@ -1,6 +1,9 @@
 // `dyncal calibrate INSTRUMENT`: the command line of the calibrations of single instruments of a bench; each has a file of its own.
 #pragma once
 
+#include <stop_token>
+
+#include "services/command/calibrate_adc_command.hpp"
 #include "services/command/calibrate_time_command.hpp"
 
 namespace CLI {
@@ -10,6 +13,7 @@ class App;
 namespace dyncal::services {
 
 struct CalibrateCommands {
+  CalibrateAdcCommand adc;
   CalibrateTimeCommand time;
 };
 
@@ -17,6 +21,6 @@ struct CalibrateCommands {
 void add_calibrate(CLI::App& app, CalibrateCommands& commands);
 
 // REQUIRES: the command line was parsed and has the sub-command.
-[[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands);
+[[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands, const std::stop_token& stop);
 
 } // namespace dyncal::services

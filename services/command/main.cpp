@@ -113,10 +113,10 @@ int execute(const CLI::App& app, const Commands& commands) {
   if (app.got_subcommand("intervals")) {
     return run_intervals(commands.intervals);
   }
-  if (app.got_subcommand("calibrate")) {
-    return run_calibrate(app, commands.calibrate);
-  }
   const std::stop_token stop = stop_on_signals();
+  if (app.got_subcommand("calibrate")) {
+    return run_calibrate(app, commands.calibrate, stop);
+  }
   if (app.got_subcommand("analyse")) {
     return run_analyse(commands.analyse, stop);
   }

@@ -17,17 +17,6 @@
 namespace dyncal::services {
 namespace {
 
-// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script starts in the same second.
-std::string run_from_time() {
-  const std::int64_t now_ms = utc_now_ns() / 1'000'000;
-  const auto seconds = static_cast<std::time_t>(now_ms / 1000);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
-  return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
-}
-
 std::size_t steps_with_a_result(const RunOutcome& outcome) {
   std::set<std::uint32_t> steps;
   for (const CalibrationResult& result : outcome.results) {
@@ -39,6 +28,16 @@ std::size_t steps_with_a_result(const RunOutcome& outcome) {
 }
 
 } // namespace
+
+std::string run_from_time() {
+  const std::int64_t now_ms = utc_now_ns() / 1'000'000;
+  const auto seconds = static_cast<std::time_t>(now_ms / 1000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
+  return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
+}
 
 Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
   if (!bench.corrections.adc) {

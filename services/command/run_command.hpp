@@ -24,6 +24,9 @@ struct RunCommand {
 // Does the run and prints; the outcome is for callers that look further into it.
 [[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop);
 
+// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script starts in the same second.
+[[nodiscard]] std::string run_from_time();
+
 // The points of the ADC calibration that the bench file names; none when it names none.
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench);
 

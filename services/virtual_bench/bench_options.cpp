@@ -55,6 +55,9 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")->delimiter(',');
   app.add_option("--levels", words.levels, "in m/s^2, one or one per frequency; the highest decides the ranges")->delimiter(',');
   app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")->check(CLI::Range(100, 1000000))->capture_default_str();
+  app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
+  app.add_flag("--sync-is-first-output", options.bench.sync_is_first_output,
+               "sync is the output that drives the exciter, not a second one of constant amplitude");
   app.add_option("--thermal-cycle", options.bench.thermal_cycle_s, "seconds for the sensor's warm-up")->check(CLI::PositiveNumber);
   app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel, "standard uncertainty, relative")->check(probability);
   app.add_option("--reference-phase-rad", options.bench.reference_phase_rad, "standard uncertainty in rad")->check(probability);

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/bench/adc_file_writer.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -108,6 +110,35 @@ TEST_F(AdcFile, ReadsTheFilesOfThePublishedUnits) {
   const auto older = read_adc_file(settings_for("ADC1", folder / "200310_ADC1_AC_cal.json", PhaseSign::lead));
   ASSERT_TRUE(older.has_value()) << older.error().message;
   EXPECT_GT(analysis::adc_response_at(*older, 1000.0)->phase_lag_rad, 0.0);
+}
+
+TEST_F(AdcFile, ReadsWhatTheWriterWrites) {
+  std::vector<analysis::AdcCalibrationPoint> measurements;
+  for (const double vpp : {19.5, 1.95}) {
+    for (const double frequency_hz : {12.5, 100.0, 199.87}) {
+      const double lag_rad = 2.0 * std::numbers::pi * frequency_hz * 0.46e-6;
+      for (const double sign : {-1.0, 1.0})
+        measurements.push_back({frequency_hz, vpp, 0.16625 * (1.0 + sign * 1e-5), lag_rad + sign * 2e-5, 3e-6, frequency_hz * 1e-7});
+    }
+  }
+  ASSERT_TRUE(write_adc_file(path_, {"ADC2", 0xbccb0000U, "2026-01-31 12:00:00", {{"Path", "data-ready"}}}, measurements));
+  auto settings = settings_for("ADC2", path_, PhaseSign::lag, 1.95);
+  const auto points = read_adc_file(settings);
+  ASSERT_TRUE(points) << points.error().message;
+  ASSERT_EQ(points->size(), 3u);
+  const auto& last = points->back();
+  EXPECT_EQ(last.frequency_hz, 199.87);
+  EXPECT_EQ(last.test_amplitude_vpp, 1.95);
+  EXPECT_NEAR(last.gain, 0.16625, 1e-15);
+  EXPECT_NEAR(last.phase_lag_rad, 2.0 * std::numbers::pi * 199.87 * 0.46e-6, 1e-15);
+  EXPECT_NEAR(last.u_phase_lag_rad, std::hypot(2e-5, 199.87e-7), 1e-12);
+  EXPECT_NEAR(last.u_gain, std::hypot(0.16625e-5, 3e-6), 1e-12);
+  settings.channel = "ADC1";
+  EXPECT_FALSE(read_adc_file(settings));
+}
+
+TEST_F(AdcFile, RefusesANegativeUncertainty) {
+  EXPECT_FALSE(read(R"({"10.0": [{"Freq": 10.0, "Amplitude": 0.16621, "Phase": 3e-5, "TestAmplVPP.": 19.5, "u_Phase": -1e-5}]})"));
 }
 
 } // namespace

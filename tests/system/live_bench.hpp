@@ -1,0 +1,99 @@
+// A virtual bench with its source services and an analysis service on a DDS domain of the test's own, for commands that conduct runs.
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+
+inline int free_udp_port() {
+  const int socket_number = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  bind(socket_number, reinterpret_cast<sockaddr*>(&address), size);
+  getsockname(socket_number, reinterpret_cast<sockaddr*>(&address), &size);
+  close(socket_number);
+  return ntohs(address.sin_port);
+}
+
+struct LiveBenchSettings {
+  std::vector<std::string> bench_arguments; // of dyncal-virtual-bench
+  std::string excitation;                   // lines of the bench file's tables
+  std::string generator;
+  std::string source_dau = R"(time_base = "utc")";
+  std::string rest; // further tables
+};
+
+class LiveBench {
+public:
+  LiveBench(const std::filesystem::path& folder, int domain, const LiveBenchSettings& settings)
+      : folder_(folder), domain_(domain), laboratory_(folder, domain) {
+    const std::string dau = fmt::format("127.0.0.1:{}", free_udp_port());
+    std::vector<std::string> arguments{"--preset",     "mpu9250-ptb",         "--dau",   dau,
+                                       "--ports-file", folder / "ports.json", "--truth", folder / "truth.json"};
+    arguments.insert(arguments.end(), settings.bench_arguments.begin(), settings.bench_arguments.end());
+    virtual_bench_ = std::make_unique<ProgramRun>("dyncal-virtual-bench", arguments, folder);
+    EXPECT_TRUE(virtual_bench_->wait_for_error_text("datagrams to", std::chrono::seconds(20))) << virtual_bench_->errors();
+    const auto ports = read_json(folder / "ports.json");
+    generator_port_ = ports["generator"].get<int>();
+    write_bench_file(settings, dau, ports["acs"].get<int>());
+    laboratory_.start("dyncal-analysis", {}, "fastdds");
+    laboratory_.start("dyncal-dau", {bench_file()}, "fastdds");
+    laboratory_.start("dyncal-acs", {bench_file()}, "fastdds");
+  }
+
+  [[nodiscard]] std::filesystem::path bench_file() const { return folder_ / "bench.toml"; }
+  [[nodiscard]] int generator_port() const { return generator_port_; }
+  [[nodiscard]] nlohmann::json truth() const { return read_json(folder_ / "truth.json"); }
+  ProgramRun& start(const std::vector<std::string>& arguments) { return laboratory_.start("dyncal", arguments, "fastdds"); }
+  // The bench file once more, with `text` in place of what one of its lines begins with.
+  std::filesystem::path changed_bench_file(const std::string& name, const std::string& line_begin, const std::string& text) const {
+    std::ifstream in(bench_file());
+    std::ofstream out(folder_ / name);
+    for (std::string line; std::getline(in, line);)
+      out << (line.starts_with(line_begin) ? text : line) << '\n';
+    return folder_ / name;
+  }
+
+private:
+  void write_bench_file(const LiveBenchSettings& settings, const std::string& dau, int acs_port) const {
+    std::ofstream(bench_file()) << "bench = \"live-" << domain_ << "\"\n[excitation]\n"
+                                << settings.excitation << "\n[generator]\n"
+                                << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\nlevel_per_volt = 50.0\n", generator_port_)
+                                << settings.generator << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
+                                << "listen = \"" << dau << "\"\nchannels = { Data_11 = \"sync\" }\n"
+                                << settings.source_dau << "\n[sources.acs]\ndriver = \"socket\"\n"
+                                << fmt::format("address = \"127.0.0.1:{}\"\n", acs_port) << R"([method]
+kind = "sample-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]
+[uncertainty]
+reference_magnitude_rel = 1e-3
+reference_phase_rad = 1.7e-3
+)" << settings.rest;
+  }
+
+  std::filesystem::path folder_;
+  int domain_;
+  int generator_port_ = 0;
+  std::unique_ptr<ProgramRun> virtual_bench_;
+  Laboratory laboratory_;
+};
+
+} // namespace dyncal::tests
