@@ -1,6 +1,7 @@
 #include "analysis/sine_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -13,38 +14,72 @@ namespace {
 
 using namespace kernel;
 
-// The start value comes from groups of eight samples spread over the record; a short record is its own start.
-constexpr Selection pilot_selection(std::size_t samples) {
-  constexpr std::size_t groups = 16;
-  if (samples < 2 * groups * lanes) return {};
-  return {lanes, samples / groups};
+// The start values come from groups of eight samples spread over the record; a short record is its own start.
+constexpr std::size_t pilot_groups = 16;
+constexpr std::size_t pilot_samples = pilot_groups * lanes;
+
+// Without start values for sine and cosine a pass is quicker, but the residual sum of squares is the difference of numbers this many
+// times as large: 10 digits of it are kept.
+constexpr double most_cancellation = 1e6;
+
+struct Start {
+  std::vector<Parameters> parameters;
+  bool plain = false; // offsets only
+};
+
+// Calls see(first, n) for every group.
+template <class See>
+void for_each_pilot_group(std::size_t samples, See see) {
+  for (std::size_t group = 0; group < pilot_groups; ++group)
+    see(group * (samples / pilot_groups), group * lanes);
 }
 
-// Parameters that leave residuals of the size of the noise, or the plain level when the groups do not tell more.
-Expected<std::vector<Parameters>> pilot(const Record& record, const Frequency& frequency) {
-  std::vector<Parameters> start;
+Expected<PassSums> pilot_sums(const Record& record, const Frequency& frequency, std::span<const Parameters> start) {
+  if (record.size() < 2 * pilot_samples) return accumulate(record, frequency, start);
+  std::array<std::int64_t, pilot_samples> stamps;
+  std::vector<double> values(pilot_samples * start.size());
+  for_each_pilot_group(record.size(), [&](std::size_t from, std::size_t to) {
+    std::copy_n(record.stamps().data() + from, lanes, stamps.data() + to);
+    for (std::size_t j = 0; j < start.size(); ++j)
+      std::copy_n(record.channels()[j].data() + from, lanes, values.data() + j * pilot_samples + to);
+  });
+  return accumulate(record, frequency, start, stamps, values);
+}
+
+// Parameters that leave residuals of the size of the noise, or the plain level when the groups do not tell more or `plain_allowed`
+// and the noise is large enough for it.
+Expected<Start> pilot(const Record& record, const Frequency& frequency, bool plain_allowed) {
+  Start start;
   for (const auto& channel : record.channels())
-    start.push_back({0.0, 0.0, channel.front()});
-  const auto sums = accumulate(record, frequency, start, pilot_selection(record.size()));
+    start.parameters.push_back({0.0, 0.0, channel.front()});
+  const auto sums = pilot_sums(record, frequency, start.parameters);
   if (!sums) return tl::unexpected(sums.error());
   if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
   const NormalMatrix matrix(sums->samples, sums->design);
-  for (std::size_t j = 0; j < start.size(); ++j) {
+  start.plain = plain_allowed && matrix.smallest > 0.1;
+  for (std::size_t j = 0; j < start.parameters.size(); ++j) {
+    Parameters& p = start.parameters[j];
     if (matrix.smallest > 1e-2) {
-      start[j] = solve(matrix, sums->channels[j], start[j]).p;
+      const Solution solution = solve(matrix, sums->channels[j], p);
+      p = solution.p;
+      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples < most_cancellation * solution.rss;
     } else {
-      start[j].offset += sums->channels[j].e / sums->samples;
+      p.offset += sums->channels[j].e / sums->samples;
     }
+  }
+  if (start.plain) {
+    for (Parameters& p : start.parameters)
+      p.sine = p.cosine = 0.0;
   }
   return start;
 }
 
 // Another pass about the result is worth its time when the start was far off, so that the last digits of the sums matter.
-bool too_far(const NormalMatrix& matrix, const Solution& solution) {
+bool too_far(const NormalMatrix& matrix, const Solution& solution, double cancellation) {
   constexpr double rounding = 1e-15;
   const double step = std::hypot(solution.step.sine, solution.step.cosine);
   const double size = std::hypot(solution.p.sine, solution.p.cosine);
-  return solution.ee > 4.0 * solution.rss + rounding * rounding * size * size * matrix.n || step * 1e-2 > matrix.smallest * size;
+  return solution.ee > cancellation * solution.rss + rounding * rounding * size * size * matrix.n || step * 1e-2 > matrix.smallest * size;
 }
 
 SineFit fit_from(const Record& record, const NormalMatrix& matrix, const Solution& solution) {
@@ -106,25 +141,27 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
     return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
   }
-  auto start = pilot(*record, frequency);
+  const auto grid = sample_grid(record->stamps(), frequency);
+  auto start = pilot(*record, frequency, grid.has_value());
   if (!start) return tl::unexpected(start.error());
 
   std::vector<SineFit> fits(channels.size());
   constexpr int most_passes = 3;
   for (int pass = 1; pass <= most_passes; ++pass) {
-    const auto sums = accumulate(*record, frequency, *start);
+    const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid) : accumulate(*record, frequency, start->parameters);
     if (!sums) return tl::unexpected(sums.error());
     if (!all_finite(*sums)) return tl::unexpected(record->not_finite());
     const NormalMatrix matrix(sums->samples, sums->design);
     if (!matrix.well_conditioned()) return tl::unexpected(ill_conditioned(*record, frequency));
     bool again = false;
     for (std::size_t j = 0; j < fits.size(); ++j) {
-      const Solution solution = solve(matrix, sums->channels[j], (*start)[j]);
+      const Solution solution = solve(matrix, sums->channels[j], start->parameters[j]);
       fits[j] = fit_from(*record, matrix, solution);
-      (*start)[j] = solution.p;
-      again |= too_far(matrix, solution);
+      start->parameters[j] = solution.p;
+      again |= too_far(matrix, solution, start->plain ? 4.0 * most_cancellation : 4.0);
     }
     if (!again) break;
+    start->plain = false;
   }
   if (std::none_of(fits.begin(), fits.end(), [](const SineFit& fit) { return stands_out(fit); })) {
     return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +

@@ -6,7 +6,8 @@
 // Stamps are int64 ns, strictly increasing, any spacing; t_ref is the caller's (the record's middle keeps w and theta
 // uncorrelated). All channels of a call share stamps and thus the design; every channel is fitted on its own.
 // Uncertainties come from the residuals: V = s^2 (D'D)^-1 with s^2 = rss / (n - p) (analysis of white noise; jitter and
-// systematic parts are added by uncertainty.hpp).
+// systematic parts are added by uncertainty.hpp). A, B, C keep 14 digits of the amplitude, rss at least nine.
+// Nearly equidistant records take a faster form (sine_grid.hpp); which samples do is decided by the stamps alone.
 // Fails: too_few_samples (n <= p), stamps_not_increasing, not_finite, frequency_out_of_range (more than half a turn per
 // sample interval, unless these are so uneven that there is no alias), ill_conditioned, no_excitation (no channel has an
 // amplitude of four standard uncertainties), not_converged, invalid_argument (sizes; a record of more than 26 days).
@@ -24,11 +25,11 @@
 namespace dyncal::analysis {
 
 struct SineFit {
-  double sine = 0.0;    // A
-  double cosine = 0.0;  // B
-  double offset = 0.0;  // C
+  double sine = 0.0;                  // A
+  double cosine = 0.0;                // B
+  double offset = 0.0;                // C
   std::array<double, 6> covariance{}; // of (A, B, C): AA, AB, AC, BB, BC, CC
-  double rss = 0.0;     // residual sum of squares
+  double rss = 0.0;                   // residual sum of squares
   std::uint64_t samples = 0;
   double degrees_of_freedom = 0.0;
 
@@ -45,9 +46,9 @@ struct SineFit {
                                                       std::span<const std::span<const double>> channels);
 
 struct FrequencyFit {
-  Frequency frequency;            // refined, shared by all channels
+  Frequency frequency; // refined, shared by all channels
   double u_frequency_hz = 0.0;
-  std::vector<SineFit> channels;  // refitted at the final frequency; covariance includes that w was estimated
+  std::vector<SineFit> channels; // refitted at the final frequency; covariance includes that w was estimated
   int iterations = 0;
 };
 

@@ -17,8 +17,9 @@ namespace {
 using namespace kernel;
 
 constexpr int most_passes = 40;
-constexpr double series_limit = 0.5;        // rad over half the record that one series may be moved
-constexpr double allowed_error_rad = 1e-11; // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
+constexpr std::size_t long_record = 16 * block_samples; // its first passes look at a part of it
+constexpr double series_limit = 0.5;                    // rad over half the record that one series may be moved
+constexpr double allowed_error_rad = 1e-11;             // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
 
 struct Estimate {
   Frequency frequency; // expansion frequency of the pass
@@ -97,11 +98,10 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
   Estimate estimate{*found, {}, {}, 0};
   for (const auto& channel : record.channels())
     estimate.start.push_back({0.0, 0.0, channel.front()});
-  constexpr std::size_t long_record = 16 * block_samples;
   if (record.size() >= long_record) {
     constexpr double close_rad = 0.02;
-    const std::size_t length = std::clamp<std::size_t>(record.size() / 512, 64, block_samples) / lanes * lanes;
-    const Selection part{length, 8 * length};
+    const std::size_t length = std::clamp<std::size_t>(record.size() / 512, 64, grid_samples) / lanes * lanes;
+    const Selection part{length, (record.size() < 8 * long_record ? 8 : 16) * length};
     // A part that does not settle decides nothing; the whole record is tried all the same.
     const auto done = iterate(record, part, close_rad, estimate);
     if (!done && done.error().code != ErrorCode::not_converged) return tl::unexpected(done.error());
@@ -110,7 +110,8 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
     estimate.passes = 0;
   }
   // Short blocks in short records: the series is exact up to the square of their length.
-  const std::size_t length = std::clamp<std::size_t>(record.size() / 64, 64, block_samples) / lanes * lanes;
+  const std::size_t wanted = std::clamp<std::size_t>(record.size() / 64, 64, grid_call_samples);
+  const std::size_t length = wanted / (wanted < grid_samples ? lanes : grid_samples) * (wanted < grid_samples ? lanes : grid_samples);
   if (const auto done = iterate(record, {length, length}, allowed_error_rad, estimate); !done) return tl::unexpected(done.error());
   return estimate;
 }

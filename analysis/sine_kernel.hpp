@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "analysis/sine_grid.hpp"
+
 namespace dyncal::analysis::kernel {
 
 inline constexpr std::size_t lanes = 8;
@@ -63,8 +65,22 @@ struct ResidualMoments {
   double us[moment_count], uc[moment_count]; // sum e u^m s, e u^m c
 };
 
+// Sums over blocks of samples near the instants of a grid, one call up to `grid_call_samples`.
+inline constexpr std::size_t grid_call_samples = lanes * grid_samples;
+inline constexpr std::size_t grid_call_channels = 4;
+
 struct SineKernel {
   const char* name;
+  // The same sums as fit_block's, by sine_grid.hpp: n a multiple of eight, at most grid_call_samples, channels at most
+  // grid_call_channels. Takes whole blocks of the grid (the last one may be shorter) as long as their samples are near enough, and
+  // returns how many samples these are; stamps within a block then increase, those across are for the caller to compare.
+  std::size_t (*fit_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const SampleGrid& grid,
+                             const double* const* values, std::size_t channels, const Parameters* start, DesignSums& sums,
+                             ResidualSums* residual_sums);
+  // Likewise with the sums weighted with u.
+  std::size_t (*series_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const SampleGrid& grid,
+                                const double* const* values, std::size_t channels, const Parameters* start, DesignSums& design,
+                                SlopeSums& slope, ResidualSums* residuals, ResidualSlopeSums* residual_slopes);
   // Design and residual sums of several channels at once; as design() and residuals() give them, bit for bit.
   bool (*fit_block)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
                     const Parameters* start, DesignSums& sums, ResidualSums* residual_sums);

@@ -8,6 +8,7 @@ namespace {
 
 struct Lanes {
   __m256d a, b; // lanes 0..3 and 4..7
+  static constexpr std::size_t channels_at_once = 1;
 
   static Lanes all(double value) { return {_mm256_set1_pd(value), _mm256_set1_pd(value)}; }
   static Lanes load(const double* from) { return {_mm256_loadu_pd(from), _mm256_loadu_pd(from + 4)}; }
@@ -19,6 +20,11 @@ struct Lanes {
   void store(double* to) const {
     _mm256_storeu_pd(to, a);
     _mm256_storeu_pd(to + 4, b);
+  }
+
+  bool all_at_most(double limit) const {
+    const __m256d most = _mm256_set1_pd(limit);
+    return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(a, most, _CMP_LE_OQ), _mm256_cmp_pd(b, most, _CMP_LE_OQ))) == 0xf;
   }
 
   double total() const {
@@ -54,15 +60,35 @@ inline __m256i load_four(const std::int64_t* stamps) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(stamps));
 }
 
-// |difference| < 2^51: the integer is put into the mantissa of rounding_shift.
-inline __m256d four_differences(const std::int64_t* stamps, std::int64_t origin) {
+// |integer| < 2^51: it is put into the mantissa of rounding_shift.
+inline __m256d four_doubles(__m256i integers) {
   const __m256d shift = _mm256_set1_pd(dyncal::analysis::kernel::rounding_shift);
-  const __m256i difference = _mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin));
-  return _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(difference, _mm256_castpd_si256(shift))), shift);
+  return _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(integers, _mm256_castpd_si256(shift))), shift);
+}
+
+inline __m256d four_differences(const std::int64_t* stamps, std::int64_t origin) {
+  return four_doubles(_mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin)));
+}
+
+inline __m256d four_differences(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
+  return four_doubles(_mm256_sub_epi64(_mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin)), load_four(offsets)));
 }
 
 inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
   return {four_differences(stamps, origin), four_differences(stamps + 4, origin)};
+}
+
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
+  return {four_differences(stamps, offsets, origin), four_differences(stamps + 4, offsets + 4, origin)};
+}
+
+inline __m256d larger_magnitude_of_four(__m256d a, __m256d b) {
+  const __m256d sign = _mm256_set1_pd(-0.0);
+  return _mm256_max_pd(_mm256_andnot_pd(sign, a), _mm256_andnot_pd(sign, b));
+}
+
+inline Lanes larger_magnitude(Lanes x, Lanes y) {
+  return {larger_magnitude_of_four(x.a, y.a), larger_magnitude_of_four(x.b, y.b)};
 }
 
 inline void turn_four(__m256d shifted, __m256d& sine, __m256d& cosine) {
@@ -94,7 +120,11 @@ struct StepCheck {
 
 #include "analysis/sine_kernel_body.hpp"
 
+#include "analysis/sine_grid_body.hpp"
+
+#include "analysis/sine_grid_series_body.hpp"
+
 namespace dyncal::analysis::kernel {
-const SineKernel avx2_kernel{"avx2",         fit_block,       design, design_with_slope, residuals, residuals_with_slope,
-                             design_moments, residual_moments};
+const SineKernel avx2_kernel{"avx2",    fit_on_grid,          series_on_grid, fit_block,       design, design_with_slope,
+                             residuals, residuals_with_slope, design_moments, residual_moments};
 }

@@ -8,6 +8,7 @@ namespace {
 
 struct Lanes {
   __m512d v;
+  static constexpr std::size_t channels_at_once = 4;
 
   static Lanes all(double value) { return {_mm512_set1_pd(value)}; }
   static Lanes load(const double* from) { return {_mm512_loadu_pd(from)}; }
@@ -15,6 +16,8 @@ struct Lanes {
     return {_mm512_castsi512_pd(_mm512_maskz_set1_epi64(static_cast<__mmask8>(count >= 8 ? 0xff : (1u << count) - 1u), -1))};
   }
   void store(double* to) const { _mm512_storeu_pd(to, v); }
+
+  bool all_at_most(double limit) const { return _mm512_cmp_pd_mask(v, _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff; }
 
   double total() const {
     const __m512d pairs = _mm512_add_pd(v, _mm512_permute_pd(v, 0x55));                   // 0+1, 2+3, ...
@@ -50,6 +53,15 @@ inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
   return {_mm512_cvtepi64_pd(_mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin)))};
 }
 
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
+  const __m512i difference = _mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin));
+  return {_mm512_cvtepi64_pd(_mm512_sub_epi64(difference, _mm512_loadu_si512(offsets)))};
+}
+
+inline Lanes larger_magnitude(Lanes a, Lanes b) {
+  return {_mm512_max_pd(_mm512_abs_pd(a.v), _mm512_abs_pd(b.v))};
+}
+
 inline void turn_quadrants(Lanes shifted, Lanes& sine, Lanes& cosine) {
   const __m512i k = _mm512_castpd_si512(shifted.v);
   const __mmask8 odd = _mm512_test_epi64_mask(k, _mm512_set1_epi64(1));
@@ -73,7 +85,11 @@ struct StepCheck {
 
 #include "analysis/sine_kernel_body.hpp"
 
+#include "analysis/sine_grid_body.hpp"
+
+#include "analysis/sine_grid_series_body.hpp"
+
 namespace dyncal::analysis::kernel {
-const SineKernel avx512_kernel{"avx512",       fit_block,       design, design_with_slope, residuals, residuals_with_slope,
-                               design_moments, residual_moments};
+const SineKernel avx512_kernel{"avx512",          fit_on_grid, series_on_grid,       fit_block,      design,
+                               design_with_slope, residuals,   residuals_with_slope, design_moments, residual_moments};
 }

@@ -11,6 +11,7 @@ using dyncal::analysis::kernel::Double2;
 
 struct Lanes {
   Double2 v[4];
+  static constexpr std::size_t channels_at_once = 1;
 
   static Lanes all(double value) {
     const Double2 two = {value, value};
@@ -30,6 +31,13 @@ struct Lanes {
     return result;
   }
   void store(double* to) const { __builtin_memcpy(to, this, sizeof(*this)); }
+
+  bool all_at_most(double limit) const {
+    bool all = true;
+    for (const Double2 two : v)
+      all &= two[0] <= limit && two[1] <= limit;
+    return all;
+  }
 
   double total() const { return ((v[0][0] + v[0][1]) + (v[1][0] + v[1][1])) + ((v[2][0] + v[2][1]) + (v[3][0] + v[3][1])); }
 };
@@ -79,6 +87,16 @@ inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
   return each([&](int i) { return Double2{static_cast<double>(stamps[2 * i] - origin), static_cast<double>(stamps[2 * i + 1] - origin)}; });
 }
 
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
+  const auto one = [&](int i) { return static_cast<double>(stamps[i] - origin - offsets[i]); };
+  return each([&](int i) { return Double2{one(2 * i), one(2 * i + 1)}; });
+}
+
+inline Lanes larger_magnitude(const Lanes& x, const Lanes& y) {
+  const auto larger = [](double a, double b) { return __builtin_fmax(__builtin_fabs(a), __builtin_fabs(b)); };
+  return each([&](int i) { return Double2{larger(x.v[i][0], y.v[i][0]), larger(x.v[i][1], y.v[i][1])}; });
+}
+
 inline void turn_quadrants(const Lanes& shifted, Lanes& sine, Lanes& cosine) {
   for (int i = 0; i < 4; ++i) {
     const Bits2 k = to_bits(shifted.v[i]);
@@ -104,7 +122,11 @@ struct StepCheck {
 
 #include "analysis/sine_kernel_body.hpp"
 
+#include "analysis/sine_grid_body.hpp"
+
+#include "analysis/sine_grid_series_body.hpp"
+
 namespace dyncal::analysis::kernel {
-const SineKernel baseline_kernel{"baseline",           fit_block,      design,          design_with_slope, residuals,
-                                 residuals_with_slope, design_moments, residual_moments};
+const SineKernel baseline_kernel{"baseline",        fit_on_grid, series_on_grid,       fit_block,      design,
+                                 design_with_slope, residuals,   residuals_with_slope, design_moments, residual_moments};
 }

@@ -1,6 +1,7 @@
 #include "analysis/sine_pass.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -11,73 +12,109 @@ namespace {
 // The kernel's limit is 2^51 ns on either side of the origin.
 constexpr std::int64_t longest_span_ns = std::int64_t{1} << 51;
 
+// Of blocks beside the grid, before it is given up.
+constexpr std::size_t most_left_over = 8;
+
 tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected(Error{code, std::move(message)});
 }
 
-void add(DesignSums& total, const DesignSums& block) {
-  total.s += block.s;
-  total.c += block.c;
-  total.ss += block.ss;
-  total.sc += block.sc;
-}
+// Sums of any number of blocks, with what rounding took from them: the squares of a thousand blocks have the digits of one's.
+class Totals {
+public:
+  explicit Totals(std::size_t channels) : sums_(4 + 4 * channels), rests_(4 + 4 * channels) {}
 
-void add(ResidualSums& total, const ResidualSums& block) {
-  total.e += block.e;
-  total.es += block.es;
-  total.ec += block.ec;
-  total.ee += block.ee;
-}
-
-// Powers of the middle of a block.
-struct Powers {
-  double value[moment_count];
-  explicit Powers(double u) {
-    value[0] = 1.0;
-    for (std::size_t m = 1; m < moment_count; ++m)
-      value[m] = value[m - 1] * u;
+  void add(std::size_t samples, const DesignSums& design, std::span<const ResidualSums> residuals) {
+    samples_ += static_cast<double>(samples);
+    add(0, {design.s, design.c, design.ss, design.sc});
+    for (std::size_t j = 0; j < residuals.size(); ++j)
+      add(j + 1, {residuals[j].e, residuals[j].es, residuals[j].ec, residuals[j].ee});
   }
+
+  [[nodiscard]] PassSums sums() const {
+    PassSums result;
+    result.samples = samples_;
+    const auto [s, c, ss, sc] = four(0);
+    result.design = {s, c, ss, sc};
+    for (std::size_t j = 1; 4 * j < sums_.size(); ++j) {
+      const auto [e, es, ec, ee] = four(j);
+      result.channels.push_back({e, es, ec, ee});
+    }
+    return result;
+  }
+
+private:
+  void add(std::size_t place, const std::array<double, 4>& values) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      double& total = sums_[4 * place + k];
+      const double sum = total + values[k];
+      const double part = sum - total;
+      rests_[4 * place + k] += (total - (sum - part)) + (values[k] - part);
+      total = sum;
+    }
+  }
+  [[nodiscard]] std::array<double, 4> four(std::size_t place) const {
+    std::array<double, 4> result;
+    for (std::size_t k = 0; k < 4; ++k)
+      result[k] = sums_[4 * place + k] + rests_[4 * place + k];
+    return result;
+  }
+
+  double samples_ = 0.0;
+  std::vector<double> sums_, rests_;
 };
 
-// sum u^m f over a block, for m >= 3, from its first three moments: u = middle + v, powers of v above the second left out.
-void add_high_orders(double* total, const Powers& middle, double zero, double one, double two) {
-  const double b = middle.value[1];
-  const double v1 = one - b * zero;
-  const double v2 = two - b * (2.0 * one - b * zero);
-  for (std::size_t m = 3; m < moment_count; ++m) {
-    const double order = static_cast<double>(m);
-    total[m] += middle.value[m] * zero + order * middle.value[m - 1] * v1 + 0.5 * order * (order - 1.0) * middle.value[m - 2] * v2;
-  }
-}
+// Stretches of a record, summed one after the other.
+class Stretches {
+public:
+  Stretches(const Record& record, const Frequency& frequency, std::span<const Parameters> start)
+      : kernel_(best_kernel()), record_(record), axis_(record.axis(frequency)), start_(start), totals_(start.size()), values_(start.size()),
+        residuals_(start.size()) {}
 
-void add(DesignMoments& total, const Powers& middle, double n, const DesignSums& sums, const SlopeSums& slope) {
-  const auto add_one = [&](double* moments, double zero, double one, double two) {
-    moments[0] += zero;
-    moments[1] += one;
-    moments[2] += two;
-    add_high_orders(moments, middle, zero, one, two);
-  };
-  add_one(total.u, n, slope.u, slope.uu);
-  add_one(total.us, sums.s, slope.us, slope.uus);
-  add_one(total.uc, sums.c, slope.uc, slope.uuc);
-  add_one(total.uss, sums.ss, slope.uss, slope.uuss);
-  add_one(total.usc, sums.sc, slope.usc, slope.uusc);
-}
-
-// Residual moments for m >= 2 from the first two.
-void add(ResidualMoments& total, const Powers& middle, const ResidualSums& sums, const ResidualSlopeSums& slope) {
-  total.e += sums.e;
-  total.ee += sums.ee;
-  total.us[0] += sums.es;
-  total.uc[0] += sums.ec;
-  total.us[1] += slope.eus;
-  total.uc[1] += slope.euc;
-  for (std::size_t m = 2; m < moment_count; ++m) {
-    const double order = static_cast<double>(m);
-    total.us[m] += order * middle.value[m - 1] * slope.eus - (order - 1.0) * middle.value[m] * sums.es;
-    total.uc[m] += order * middle.value[m - 1] * slope.euc - (order - 1.0) * middle.value[m] * sums.ec;
+  // All samples of a stretch, at most a block. False: stamps do not increase.
+  bool add(std::size_t first, std::size_t n) {
+    const std::int64_t* stamps = begin(first);
+    DesignSums design{};
+    if (!kernel_.fit_block(stamps, n, axis_, values_.data(), start_.size(), start_.data(), design, residuals_.data())) return false;
+    totals_.add(n, design, residuals_);
+    return follows(first);
   }
-}
+
+  // The leading blocks of a stretch that are near the grid; how many samples these are.
+  std::size_t add_on_grid(std::size_t first, std::size_t n, const SampleGrid& grid) {
+    const std::int64_t* stamps = begin(first);
+    DesignSums design{};
+    std::size_t near = n;
+    for (std::size_t j = 0; j < start_.size() && near > 0; j += grid_call_channels) {
+      const std::size_t channels = std::min(grid_call_channels, start_.size() - j);
+      near = kernel_.fit_on_grid(stamps, near, axis_, grid, values_.data() + j, channels, start_.data() + j, design, residuals_.data() + j);
+    }
+    if (near > 0) totals_.add(near, design, residuals_);
+    for (std::size_t i = 0; i < near; i += grid_samples)
+      increasing_ &= follows(first + i);
+    return near;
+  }
+
+  [[nodiscard]] bool increasing() const { return increasing_; } // across the blocks of add_on_grid()
+  [[nodiscard]] PassSums sums() const { return totals_.sums(); }
+
+private:
+  const std::int64_t* begin(std::size_t first) {
+    for (std::size_t j = 0; j < values_.size(); ++j)
+      values_[j] = record_.channels()[j].data() + first;
+    return record_.stamps().data() + first;
+  }
+  [[nodiscard]] bool follows(std::size_t i) const { return i == 0 || record_.stamps()[i] > record_.stamps()[i - 1]; }
+
+  const SineKernel& kernel_;
+  const Record& record_;
+  TimeAxis axis_;
+  std::span<const Parameters> start_;
+  Totals totals_;
+  std::vector<const double*> values_;
+  std::vector<ResidualSums> residuals_;
+  bool increasing_ = true;
+};
 
 } // namespace
 
@@ -155,66 +192,48 @@ Error Record::not_finite() const {
 }
 
 Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start, Selection selection) {
-  const SineKernel& kernel = best_kernel();
-  const TimeAxis axis = record.axis(frequency);
-  const std::int64_t* stamps = record.stamps().data();
-  const std::size_t count = start.size();
-  std::vector<const double*> values(count);
-  std::vector<ResidualSums> block(count);
-  PassSums result;
-  result.channels.resize(record.channels().size());
+  Stretches stretches(record, frequency, start);
   for (std::size_t i = 0; i < record.size(); i += selection.step) {
-    const std::size_t n = std::min(selection.length, record.size() - i);
-    for (std::size_t j = 0; j < count; ++j)
-      values[j] = record.channels()[j].data() + i;
-    DesignSums design;
-    const bool increasing = kernel.fit_block(stamps + i, n, axis, values.data(), count, start.data(), design, block.data());
-    if (!increasing || (i > 0 && stamps[i] <= stamps[i - 1])) return tl::unexpected(record.not_increasing());
-    add(result.design, design);
-    result.samples += static_cast<double>(n);
-    for (std::size_t j = 0; j < count; ++j)
-      add(result.channels[j], block[j]);
+    if (!stretches.add(i, std::min(selection.length, record.size() - i))) return tl::unexpected(record.not_increasing());
   }
-  return result;
+  return stretches.sums();
+}
+
+Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
+                              std::span<const std::int64_t> stamps, std::span<const double> values) {
+  std::vector<const double*> channels(start.size());
+  for (std::size_t j = 0; j < start.size(); ++j)
+    channels[j] = values.data() + j * stamps.size();
+  PassSums sums;
+  sums.samples = static_cast<double>(stamps.size());
+  sums.channels.resize(start.size());
+  const bool increasing = best_kernel().fit_block(stamps.data(), stamps.size(), record.axis(frequency), channels.data(), start.size(),
+                                                  start.data(), sums.design, sums.channels.data());
+  if (!increasing) return tl::unexpected(record.not_increasing());
+  return sums;
+}
+
+Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start, const SampleGrid& grid) {
+  Stretches stretches(record, frequency, start);
+  std::size_t left_over = 0; // blocks that were not near the grid, less those that were
+  for (std::size_t i = 0; i < record.size();) {
+    const std::size_t rest = record.size() - i;
+    const std::size_t near =
+        left_over < most_left_over ? stretches.add_on_grid(i, std::min(rest / lanes * lanes, grid_call_samples), grid) : 0;
+    left_over -= std::min(left_over, near / grid_samples);
+    i += near;
+    if (near > 0 || i == record.size()) continue;
+    ++left_over;
+    const std::size_t n = std::min(rest, grid_samples);
+    if (!stretches.add(i, n)) return tl::unexpected(record.not_increasing());
+    i += n;
+  }
+  if (!stretches.increasing()) return tl::unexpected(record.not_increasing());
+  return stretches.sums();
 }
 
 bool all_finite(const PassSums& sums) {
   return std::all_of(sums.channels.begin(), sums.channels.end(), [](const ResidualSums& s) { return std::isfinite(s.ee); });
-}
-
-Expected<SeriesSums> accumulate_series(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
-                                       Selection selection) {
-  const SineKernel& kernel = best_kernel();
-  const TimeAxis axis = record.axis(frequency);
-  const std::int64_t* stamps = record.stamps().data();
-  BlockBasis basis;
-  DesignMoments design{};
-  std::vector<ResidualMoments> channels(start.size(), ResidualMoments{});
-  SeriesSums result;
-  for (std::size_t i = 0; i < record.size(); i += selection.step) {
-    const std::size_t n = std::min(selection.length, record.size() - i);
-    DesignSums sums;
-    SlopeSums slope;
-    const bool increasing = kernel.design_with_slope(stamps + i, n, axis, basis, sums, slope);
-    if (!increasing || (i > 0 && stamps[i] <= stamps[i - 1])) return tl::unexpected(record.not_increasing());
-    const Powers middle(0.5 * (basis.u[0] + basis.u[n - 1]));
-    result.block_half_length = std::max(result.block_half_length, 0.5 * (basis.u[n - 1] - basis.u[0]));
-    add(design, middle, static_cast<double>(n), sums, slope);
-    for (std::size_t j = 0; j < start.size(); ++j) {
-      ResidualSums residuals;
-      ResidualSlopeSums residual_slopes;
-      kernel.residuals_with_slope(record.channels()[j].data() + i, n, basis, start[j], residuals, residual_slopes);
-      add(channels[j], middle, residuals, residual_slopes);
-    }
-  }
-  result.design = design_series(design, 0.0);
-  for (const ResidualMoments& moments : channels)
-    result.channels.push_back(residual_series(moments));
-  return result;
-}
-
-bool all_finite(const SeriesSums& sums) {
-  return std::all_of(sums.channels.begin(), sums.channels.end(), [](const ResidualSeries& s) { return std::isfinite(s.ee); });
 }
 
 } // namespace dyncal::analysis::kernel

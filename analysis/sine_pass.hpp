@@ -11,6 +11,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/frequency.hpp"
+#include "analysis/sine_grid.hpp"
 #include "analysis/sine_kernel.hpp"
 #include "analysis/sine_series.hpp"
 
@@ -61,6 +62,14 @@ struct PassSums {
 // Sums about the start values. Fails: stamps_not_increasing.
 [[nodiscard]] Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
                                             Selection selection = {});
+
+// The same of samples copied out of the record, at most a block: `values` channel by channel.
+[[nodiscard]] Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
+                                            std::span<const std::int64_t> stamps, std::span<const double> values);
+
+// The same of all samples, by the fast form where they are near the grid (sine_grid.hpp).
+[[nodiscard]] Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, std::span<const Parameters> start,
+                                            const SampleGrid& grid);
 
 [[nodiscard]] bool all_finite(const PassSums& sums);
 

@@ -63,16 +63,40 @@ GridPoint misfit_of(const PassSums& sums, std::span<const Parameters> start, dou
   return point;
 }
 
-Expected<GridPoint> search_grid(const Record& record, const Frequency& start, double half_range_bins, Selection selection) {
-  const auto level = levels(record, start, selection);
+// The samples of a selection side by side, where every frequency of a grid finds them in the cache.
+class Excerpt {
+public:
+  Excerpt(const Record& record, Selection selection) : values_(record.channels().size()) {
+    const auto copy = [&](auto from, auto& to) {
+      for (std::size_t i = 0; i < record.size(); i += selection.step)
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i),
+                  from.begin() + static_cast<std::ptrdiff_t>(std::min(i + selection.length, record.size())));
+    };
+    copy(record.stamps(), stamps_);
+    for (std::size_t j = 0; j < values_.size(); ++j) {
+      copy(record.channels()[j], values_[j]);
+      channels_.emplace_back(values_[j]);
+    }
+  }
+  [[nodiscard]] Expected<Record> record() const { return Record::make(stamps_, channels_, 3); }
+
+private:
+  std::vector<std::int64_t> stamps_;
+  std::vector<std::vector<double>> values_;
+  std::vector<std::span<const double>> channels_;
+};
+
+// `bin_hz`: of the whole record.
+Expected<GridPoint> search_grid(const Record& record, const Frequency& start, double half_range_bins, double bin_hz) {
+  const auto level = levels(record, start, {});
   if (!level) return tl::unexpected(level.error());
   const int half = static_cast<int>(std::ceil(half_range_bins / grid_step_bins));
   GridPoint best;
   for (int i = -half; i <= half; ++i) {
     const double bins = half_range_bins * i / std::max(half, 1);
-    const Frequency frequency = start.shifted_by_hz(bins / record.span_s());
+    const Frequency frequency = start.shifted_by_hz(bins * bin_hz);
     if (!(frequency.hz() > 0.0)) continue;
-    const auto sums = accumulate(record, frequency, *level, selection);
+    const auto sums = accumulate(record, frequency, *level);
     if (!sums) return tl::unexpected(sums.error());
     const GridPoint point = misfit_of(*sums, *level, bins);
     if (point.misfit < best.misfit) best = point;
@@ -189,14 +213,21 @@ Expected<Frequency> search_frequency(const Record& record, const Frequency& star
   const double half_range_bins = search_rel * start.hz() * record.span_s();
   if (half_range_bins <= basin_bins) return start;
   const bool grid = half_range_bins < fewest_bins || start.hz() * (1.0 - search_rel) * record.span_s() < fewest_cycles;
+  const double bin_hz = 1.0 / record.span_s();
+  const auto search = [&](bool whole) -> Expected<GridPoint> {
+    if (!grid) return search_spectrum(record, start, half_range_bins, whole);
+    if (whole) return search_grid(record, start, half_range_bins, bin_hz);
+    const Excerpt excerpt(record, part_of(record.size()));
+    return excerpt.record().and_then([&](const Record& part) { return search_grid(part, start, half_range_bins, bin_hz); });
+  };
   const Selection part = part_of(record.size());
-  auto found = grid ? search_grid(record, start, half_range_bins, part) : search_spectrum(record, start, half_range_bins, false);
+  const bool long_record = part.length < part.step;
+  auto found = search(!long_record);
+  if (found && found->significance < certain_amplitude && long_record) found = search(true);
+  if (!found && found.error().code == ErrorCode::stamps_not_increasing) return tl::unexpected(record.not_increasing());
+  if (!found && found.error().code == ErrorCode::not_finite) return tl::unexpected(record.not_finite());
   if (!found) return tl::unexpected(found.error());
-  if (found->significance < certain_amplitude && part.length < part.step) {
-    found = grid ? search_grid(record, start, half_range_bins, {}) : search_spectrum(record, start, half_range_bins, true);
-    if (!found) return tl::unexpected(found.error());
-  }
-  return start.shifted_by_hz(found->bins / record.span_s());
+  return start.shifted_by_hz(found->bins * bin_hz);
 }
 
 } // namespace dyncal::analysis::kernel
