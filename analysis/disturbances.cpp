@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -32,15 +34,29 @@ std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, do
   return result;
 }
 
-std::vector<double> without_sine(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
-                                 std::span<const double> values, double sine, double cosine, double offset) {
-  std::vector<double> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double angle = 2.0 * std::numbers::pi * frequency.reduced_turns(stamps_ns[i] - reference_ns);
-    result[i] = values[i] - offset - sine * std::sin(angle) - cosine * std::cos(angle);
+// A frequency's sine and cosine at all stamps, phases about the first one.
+class Line {
+public:
+  Line(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns)
+      : sine_(stamps_ns.size()), cosine_(stamps_ns.size()) {
+    fill_sine_cosine(frequency, stamps_ns.front(), stamps_ns, sine_.data(), cosine_.data());
+    const double angle = 2.0 * std::numbers::pi * frequency.reduced_turns(stamps_ns.front() - reference_ns);
+    turn_ = {std::cos(angle), std::sin(angle)};
   }
-  return result;
-}
+
+  // The values less the line and the offset; sine and cosine about the reference instant.
+  [[nodiscard]] std::vector<double> removed_from(std::span<const double> values, double sine, double cosine, double offset) const {
+    const std::complex<double> p = std::complex<double>(sine, cosine) * turn_;
+    std::vector<double> result(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      result[i] = values[i] - offset - p.real() * sine_[i] - p.imag() * cosine_[i];
+    return result;
+  }
+
+private:
+  std::vector<double> sine_, cosine_;
+  std::complex<double> turn_;
+};
 
 struct Disturbances { // of one channel
   ExtendedBasis basis;
@@ -56,8 +72,9 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
   if (tried.empty()) return found;
   std::vector<std::vector<double>> residuals;
   std::vector<std::span<const double>> residual_channels;
+  const Line fundamental(frequency, reference_ns, stamps_ns);
   for (std::size_t j = 0; j < channels.size(); ++j)
-    residuals.push_back(without_sine(frequency, reference_ns, stamps_ns, channels[j], fits[j].sine, fits[j].cosine, fits[j].offset));
+    residuals.push_back(fundamental.removed_from(channels[j], fits[j].sine, fits[j].cosine, fits[j].offset));
   for (const std::vector<double>& residual : residuals)
     residual_channels.push_back(residual);
 
@@ -81,7 +98,7 @@ void take_out(UndisturbedFit& result, const Frequency& frequency, const Extended
   result.fit = fit.fundamental;
   result.values.assign(values.begin(), values.end());
   const auto take = [&](const Frequency& line, const FurtherPhasor& phasor) {
-    result.values = without_sine(line, reference_ns, stamps_ns, result.values, phasor.sine, phasor.cosine, 0.0);
+    result.values = Line(line, reference_ns, stamps_ns).removed_from(result.values, phasor.sine, phasor.cosine, 0.0);
     result.removed_hz.push_back(line.hz());
   };
   for (std::size_t k = 0; k < fit.harmonics.size(); ++k)

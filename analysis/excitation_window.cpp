@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/sine_values.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -55,7 +57,8 @@ void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns, std::
       ++ignored_samples_;
       continue;
     }
-    const std::int64_t index = floor_divide(stamps_ns[i], frame_ns_);
+    const bool of_open_frame = origin_ns_ && stamps_ns[i] < (open_index_ + 1) * frame_ns_; // later than the one before, as it is
+    const std::int64_t index = of_open_frame ? open_index_ : floor_divide(stamps_ns[i], frame_ns_);
     if (!origin_ns_) {
       origin_ns_ = index * frame_ns_;
       first_stamp_ns_ = stamps_ns[i];
@@ -101,16 +104,16 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   Design design;
   design.sine.resize(n);
   design.cosine.resize(n);
-  double mean_value = 0.0;
+  fill_sine_cosine(frequency_, centre_ns, stamps_ns_, design.sine.data(), design.cosine.data());
+  double value_sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double angle = 2.0 * pi * frequency_.reduced_turns(stamps_ns_[i] - centre_ns);
-    design.sine[i] = std::sin(angle);
-    design.cosine[i] = std::cos(angle);
-    design.mean_sine += design.sine[i] / count;
-    design.mean_cosine += design.cosine[i] / count;
-    mean_value += (values_[i] - values_[0]) / count;
+    design.mean_sine += design.sine[i];
+    design.mean_cosine += design.cosine[i];
+    value_sum += values_[i] - values_[0];
   }
-  mean_value += values_[0];
+  design.mean_sine /= count;
+  design.mean_cosine /= count;
+  const double mean_value = values_[0] + value_sum / count;
 
   double ss = 0.0, sc = 0.0, cc = 0.0, ys = 0.0, yc = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -131,14 +134,15 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   const auto slices = static_cast<std::size_t>(std::max(10.0, std::ceil(static_cast<double>(frame_ns_) * 1e-9 / slice_s)));
   std::vector<double> slice_power(slices, 0.0);
   std::vector<double> slice_count(slices, 0.0);
+  const double slices_a_ns = static_cast<double>(slices) / static_cast<double>(frame_ns_);
   double power = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double residual =
         values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
     power += residual * residual;
     frame.largest_residual = std::max(frame.largest_residual, std::abs(residual));
-    const double place = static_cast<double>(stamps_ns_[i] - open_index_ * frame_ns_) / static_cast<double>(frame_ns_);
-    const auto slice = std::min(slices - 1, static_cast<std::size_t>(place * static_cast<double>(slices)));
+    const double place = static_cast<double>(stamps_ns_[i] - open_index_ * frame_ns_) * slices_a_ns;
+    const auto slice = std::min(slices - 1, static_cast<std::size_t>(place));
     slice_power[slice] += residual * residual;
     slice_count[slice] += 1.0;
   }
