@@ -3,7 +3,7 @@
 // The comparator is ready once the signal has been half its amplitude below the level; from then on the first instant at which signal plus
 // noise reach the level triggers, whichever excursion of the noise that is. So the trigger comes early: by about two and a half standard
 // deviations of the noise divided by the slope. Noise is white in a band of 1 MHz: a new value every microsecond, independent of what
-// traces show. The output's rising edge follows the trigger by `output_delay_s` (drawn once, 236(1) ns) with a jitter of its own. A
+// traces show. The output's rising edge follows the trigger by `output_delay_s` with a jitter of its own: 236(1) ns as in the paper. A
 // rectangle rises in 8 ns and triggers where it crosses the level; noise hardly matters there. One thread.
 #pragma once
 
@@ -20,8 +20,8 @@ struct TriggerSettings {
   double sync_amplitude_v = 9.75;
   double noise_v = 0.0975; // of the comparator
   double output_delay_s = 236e-9;
-  double u_output_delay_s = 1e-9; // of the draw
-  double output_jitter_s = 0.4e-9;
+  double u_output_delay_s = 0.0; // of a draw for this instrument
+  double output_jitter_s = 1e-9; // from shot to shot
 };
 
 struct TriggerEvent {

@@ -36,8 +36,8 @@ Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, Netwo
     }
     add_network_settings(bench->network, network);
     for (const SourceSettings& settings : bench->sources) {
-      if (settings.driver == SourceDriver::smartup || settings.driver == SourceDriver::can) {
-        continue; // dyncal-dau or dyncal-can publishes it
+      if (settings.driver != SourceDriver::socket && settings.driver != SourceDriver::file) {
+        continue; // dyncal-dau, dyncal-can or dyncal-dso publishes it
       }
       auto source = PlayedSource::prepare(settings, stop);
       if (!source) {

@@ -127,7 +127,7 @@ void RunSession::work(const KnownSources& sources, Clock::time_point now) {
 void RunSession::take_descriptions(const KnownSources& sources) {
   for (auto& [name, link] : links_) {
     const auto known = sources.find(name);
-    if (known == sources.end() || !known->second.description || known->second.description->session() == link.session) {
+    if (known == sources.end() || !known->second.description || (known->second.description->session() == link.session && !link.triggered)) {
       continue;
     }
     const SourceDescription& description = *known->second.description;
@@ -137,7 +137,8 @@ void RunSession::take_descriptions(const KnownSources& sources) {
       return;
     }
     link.described = true;
-    open_reader(description.kind());
+    link.triggered = description.kind() == SOURCE_DSO || description.kind() == SOURCE_TSS;
+    link.triggered ? open_record_reader(description.kind()) : open_reader(description.kind());
   }
 }
 
@@ -153,6 +154,19 @@ void RunSession::open_reader(SourceKind kind) {
   readers_.emplace(kind, std::move(*reader));
 }
 
+void RunSession::open_record_reader(SourceKind kind) {
+  if (record_readers_.contains(kind)) {
+    return;
+  }
+  const char* topic = kind == SOURCE_DSO ? bus::topics::dso_record : bus::topics::tss_record;
+  auto reader = participant_.reader<TriggeredRecord>(topic, bus::Profile::samples, bench_, wake_up_);
+  if (!reader) {
+    refuse(reader.error().message);
+    return;
+  }
+  record_readers_.emplace(kind, std::move(*reader));
+}
+
 void RunSession::take_samples(Clock::time_point now) {
   for (auto& entry : readers_) {
     entry.second.take([&](const SampleBlock& block, const bus::SampleInfo& info) {
@@ -161,19 +175,33 @@ void RunSession::take_samples(Clock::time_point now) {
       }
     });
   }
+  for (auto& entry : record_readers_) {
+    entry.second.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+      SourceLink* link = info.valid ? link_of(record.source().to_string(), record.answers_run()) : nullptr;
+      if (link != nullptr) {
+        link->last_block = now;
+        link->ended = record.end_of_stream();
+        evaluator_->add(record);
+      }
+    });
+  }
+}
+
+// Nothing when the source is not of this run, or has not answered yet.
+RunSession::SourceLink* RunSession::link_of(const std::string& source, const std::string& answers_run) {
+  const auto link = links_.find(source);
+  if (link == links_.end()) {
+    return nullptr;
+  }
+  link->second.answered = link->second.answered || answers_run == run_;
+  return link->second.answered ? &link->second : nullptr;
 }
 
 void RunSession::take_block(const SampleBlock& block, Clock::time_point now) {
-  const auto link = links_.find(block.source().to_string());
-  if (link == links_.end()) {
-    return;
-  }
-  if (block.answers_run() == run_) {
-    link->second.answered = true;
-  }
-  if (link->second.answered) {
-    link->second.last_block = now;
-    link->second.ended = block.end_of_stream();
+  SourceLink* link = link_of(block.source().to_string(), block.answers_run());
+  if (link != nullptr) {
+    link->last_block = now;
+    link->ended = block.end_of_stream();
     evaluator_->add(block);
   }
 }
@@ -236,7 +264,7 @@ void RunSession::watch_sources(Clock::time_point now) {
   for (const auto& [name, link] : links_) {
     if (link.ended && excited_by_steps_) {
       report_failure(fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_));
-    } else if (!link.ended && now - std::max(link.last_block, last_progress_) > silence_limit) {
+    } else if (!link.ended && !link.triggered && now - std::max(link.last_block, last_progress_) > silence_limit) {
       report_failure(fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name, bench_, silence_limit.count()));
     }
   }
@@ -273,6 +301,7 @@ void RunSession::evaluate(Clock::time_point now) {
   if (evaluator_->finished()) {
     arm_ = ARM_FINISHED;
     readers_.clear();
+    record_readers_.clear();
     evaluator_.reset();
     spdlog::info("bench {}, run {}: finished, {} results", bench_, run_, results_published_);
     publish_status();
@@ -296,6 +325,7 @@ void RunSession::refuse(std::string message) {
   message_ = std::move(message);
   spdlog::warn("bench {}, run {}: refused: {}", bench_, run_, message_);
   readers_.clear();
+  record_readers_.clear();
   publish_status();
 }
 

@@ -62,6 +62,7 @@ private:
     bool described = false;
     bool answered = false;
     bool ended = false;
+    bool triggered = false; // sends records when there is a shot, and may be silent else
     std::uint64_t session = 0;
     Clock::time_point last_block;
   };
@@ -71,6 +72,8 @@ private:
   Expected<void> open_writers();
   void take_descriptions(const KnownSources& sources);
   void open_reader(SourceKind kind);
+  void open_record_reader(SourceKind kind);
+  [[nodiscard]] SourceLink* link_of(const std::string& source, const std::string& answers_run);
   void take_samples(Clock::time_point now);
   void take_block(const SampleBlock& block, Clock::time_point now);
   void arm(const KnownSources& sources, Clock::time_point now);
@@ -99,6 +102,7 @@ private:
   std::unique_ptr<RunEvaluator> evaluator_;
   std::map<std::string, SourceLink> links_;
   std::map<SourceKind, bus::Reader<SampleBlock>> readers_;
+  std::map<SourceKind, bus::Reader<TriggeredRecord>> record_readers_;
   std::optional<bus::Writer<Command>> command_writer_;
   std::optional<bus::Writer<ServiceStatus>> status_writer_;
   std::optional<bus::Writer<CalibrationResult>> result_writer_;

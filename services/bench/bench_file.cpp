@@ -12,6 +12,7 @@
 #include "services/bench/can_source.hpp"
 #include "services/bench/digest.hpp"
 #include "services/bench/toml_table.hpp"
+#include "services/bench/triggered_source.hpp"
 #include "services/bench/unit.hpp"
 
 namespace dyncal::services {
@@ -175,7 +176,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  const std::string driver = table.one_of("driver", {"smartup", "socket", "file", "can"}, "");
+  const std::string driver = table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
   if (driver == "smartup") {
     read_smartup(table, source);
   } else if (driver == "socket") {
@@ -188,6 +189,10 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
     if (!source.can->log.empty()) {
       read_play(table, source);
     }
+  } else if (driver == "oscilloscope") {
+    read_oscilloscope_source(table, source);
+  } else if (driver == "series") {
+    read_series_source(table, folder, source);
   }
   source.channels = table.text_map("channels");
   read_units(table, source);
@@ -248,18 +253,24 @@ MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& s
   if (method.kind != EvaluationMethod::analogue && method.kind != EvaluationMethod::absolute_time) {
     method.sync_acs = read_role(table, "sync_acs", sources, table.required_text("sync_acs"));
   }
-  if (method.kind == EvaluationMethod::sample_timestamping) {
-    method.sync_dau = read_role(table, "sync_dau", sources, table.required_text("sync_dau"));
+  const bool stamped = method.kind == EvaluationMethod::sample_timestamping;
+  const bool by_series = method.kind == EvaluationMethod::series_timestamping;
+  if (stamped || by_series) {
+    const char* sync = stamped ? "sync_dau" : "sync_dso";
+    method.sync_dau = read_role(table, sync, sources, table.required_text(sync));
     if (method.reference.source != method.sync_acs.source) {
       table.refuse("sync_acs", "must be of the same source as the reference: the two share a clock");
     }
   }
   for (const std::string& text : table.texts("dut")) {
     method.dut.push_back(read_role(table, "dut", sources, text));
-    if (method.kind == EvaluationMethod::sample_timestamping && method.dut.back().source != method.sync_dau.source) {
+    if (stamped && method.dut.back().source != method.sync_dau.source) {
       table.refuse("dut",
                    fmt::format("names \"{}\", but the sensor's channels must be of the source of sync_dau: they share its stamps", text));
     }
+  }
+  if (by_series) {
+    read_shots(table, sources, method);
   }
   if (table.has("temperature")) {
     method.temperature = read_role(table, "temperature", sources, table.required_text("temperature"));
@@ -289,9 +300,7 @@ CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path
   }
   corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");
   if (auto delay = table.table("dso_delay")) {
-    corrections.dso_delay_s = delay->number("value_s", 0.0, "seconds");
-    corrections.u_dso_delay_s = delay->number("u_s", 0.0, "seconds");
-    delay->finish();
+    read_trigger_delay(*delay, folder, corrections);
   }
   table.finish();
   return corrections;
@@ -309,6 +318,7 @@ UncertaintySettings read_uncertainty(TomlTable table) {
   uncertainty.reference_magnitude_rel = read("reference_magnitude_rel", "parts of the magnitude");
   uncertainty.reference_phase_rad = read("reference_phase_rad", "rad");
   uncertainty.acs_delay_s = read("acs_delay_s", "seconds");
+  uncertainty.acs_rate_rel = read("acs_rate_rel", "parts of the rate");
   table.finish();
   return uncertainty;
 }

@@ -53,7 +53,7 @@ struct GeneratorSettings {
   double level_per_volt = 1.0; // m/s^2 per V
 };
 
-enum class SourceDriver { smartup, socket, file, can };
+enum class SourceDriver { smartup, socket, file, can, oscilloscope, series };
 
 struct CanSourceSettings {
   std::string interface_name;
@@ -63,17 +63,25 @@ struct CanSourceSettings {
   std::optional<double> restart_after_bus_off_s;
 };
 
+struct OscilloscopeSourceSettings {
+  std::string family;         // of drivers/dso/scope_commands.hpp; empty: by its identity
+  int sync_input = 1;         // sees sync and triggers
+  double sync_range_v = 20.0; // peak to peak
+  double trigger_level_v = 0.0;
+};
+
 struct SourceSettings {
   std::string name;
   SourceDriver driver = SourceDriver::file;
   std::string listen;                          // smartup
   std::optional<std::uint32_t> sensor;         // smartup
   std::optional<std::uint32_t> sync_sensor;    // smartup: sensor id that carries the sync ADC of later firmware
-  std::string address;                         // socket
-  std::filesystem::path path;                  // file, absolute
+  std::string address;                         // socket, oscilloscope, series
+  std::filesystem::path path;                  // file; series: the folder; absolute
   double play_speed = 0.0;                     // file, log of can: times real time; 0: at once
   std::optional<double> sample_rate_hz;        // file without a time column
   std::optional<CanSourceSettings> can;        // can
+  OscilloscopeSourceSettings oscilloscope;     // oscilloscope
   std::map<std::string, std::string> channels; // device's name -> ours
   std::map<std::string, std::string> units;    // our name -> D-SI
   drivers::TimeBase time_base = drivers::TimeBase::utc;
@@ -86,8 +94,10 @@ struct MethodSettings {
   EvaluationMethod kind = EvaluationMethod::sample_timestamping;
   ChannelName reference;
   ChannelName sync_acs;
-  ChannelName sync_dau;
-  std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
+  ChannelName sync_dau;                 // series time stamping: the oscilloscope's sync
+  int shots = 5;                        // series time stamping: per step
+  bool trigger_phase_correction = true; // series time stamping; false shows what the correction of every shot is worth
+  std::vector<ChannelName> dut;         // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
   double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency; 0: exactly there in both clocks
 };
@@ -104,7 +114,7 @@ struct AdcCorrectionSettings {
 struct CorrectionSettings {
   std::optional<AdcCorrectionSettings> adc;
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
-  double dso_delay_s = 0.0;
+  double dso_delay_s = 0.0;       // of the oscilloscope's trigger output
   double u_dso_delay_s = 0.0;
 };
 
@@ -112,6 +122,7 @@ struct UncertaintySettings { // standard uncertainties
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
   double acs_delay_s = 0.0;
+  double acs_rate_rel = 0.0; // of the ACS's clock, for sample rates
 };
 
 struct BenchFile {

@@ -5,6 +5,28 @@
 namespace dyncal::services {
 namespace {
 
+void add_dso_delay(CLI::App& calibrate, CalibrateDsoDelayCommand& delay) {
+  CLI::App* command = calibrate.add_subcommand("dso-delay", "delay of an oscilloscope's trigger output");
+  command->add_option("--oscilloscope", delay.oscilloscope, "HOST:PORT, or vxi11:HOST")->required();
+  command->add_option("--family", delay.family, "of the oscilloscope (default: by its identity)");
+  command->add_option("--generator", delay.generator, "HOST:PORT (default: set by hand)");
+  command->add_option("--by", delay.by, "rectangle or sine")->check(CLI::IsMember({"rectangle", "sine"}))->capture_default_str();
+  command->add_option("--frequency", delay.frequency_hz, "of the generator in Hz, decimal text")->capture_default_str();
+  command->add_option("--amplitude", delay.amplitude_v, "of the generator in V, zero to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--sync-input", delay.sync_input, "of the oscilloscope, also triggers")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command->add_option("--output-input", delay.output_input, "that the trigger output is connected to")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command->add_option("--sync-range", delay.sync_range_v, "V peak to peak")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--output-range", delay.output_range_v, "V peak to peak")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--shots", delay.shots, "to take")->check(CLI::Range(3, 100000))->capture_default_str();
+  command->add_option("--output", delay.output, "file for the result as JSON")->capture_default_str();
+}
+
 void add_time(CLI::App& calibrate, CalibrateTimeCommand& time) {
   CLI::App* command = calibrate.add_subcommand("time", "deviation of a DAU's time stamps from a reference pulse per second");
   command->add_option("FILE", time.files, "records of pulse edges, lines of GPST;n;ticks and REFT;n;ticks; several are one record")
@@ -47,6 +69,7 @@ void add_calibrate(CLI::App& app, CalibrateCommands& commands) {
   CLI::App* calibrate = app.add_subcommand("calibrate", "calibrate an instrument of the bench");
   calibrate->require_subcommand(1);
   add_adc(*calibrate, commands.adc);
+  add_dso_delay(*calibrate, commands.dso_delay);
   add_time(*calibrate, commands.time);
 }
 
@@ -54,6 +77,9 @@ int run_calibrate(const CLI::App& app, const CalibrateCommands& commands, const 
   const CLI::App* calibrate = app.get_subcommand("calibrate");
   if (calibrate->got_subcommand("adc")) {
     return run_calibrate_adc(commands.adc, stop);
+  }
+  if (calibrate->got_subcommand("dso-delay")) {
+    return run_calibrate_dso_delay(commands.dso_delay, stop);
   }
   return run_calibrate_time(commands.time);
 }

@@ -4,6 +4,7 @@
 #include <stop_token>
 
 #include "services/command/calibrate_adc_command.hpp"
+#include "services/command/calibrate_dso_delay_command.hpp"
 #include "services/command/calibrate_time_command.hpp"
 
 namespace CLI {
@@ -14,6 +15,7 @@ namespace dyncal::services {
 
 struct CalibrateCommands {
   CalibrateAdcCommand adc;
+  CalibrateDsoDelayCommand dso_delay;
   CalibrateTimeCommand time;
 };
 

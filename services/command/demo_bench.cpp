@@ -14,46 +14,7 @@ std::vector<std::string> quoted(const std::vector<std::string>& texts) {
   return result;
 }
 
-} // namespace
-
-const std::vector<DemoPreset>& demo_presets() {
-  static const std::vector<DemoPreset> presets{
-      {.name = "mpu9250-paper",
-       .shows = "an MPU-9250 as in the paper: delay 8.1 ms, sample interval 996.96 us with its strange histogram",
-       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "180",
-                          "200"},
-       .levels_m_s2 = {2.5, 2.5, 5, 5, 10, 10, 20, 50, 50, 50, 100, 100, 100, 100, 100, 100, 100}},
-      {.name = "mpu9250-ptb",
-       .shows = "an MPU-9250 with the response that a national institute has published: delay 1.511 ms",
-       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "200",
-                          "250"},
-       .levels_m_s2 = {2.75, 2.76, 5.57, 5.59, 11.28, 11.43, 23.25, 58.54, 58.76, 59.09, 115.4, 119.2, 122.9, 125.0, 126.8, 126.6, 126.1}},
-      {.name = "bma280",
-       .shows = "a BMA280: sample interval 485 us, a late and an early sample every 2200",
-       .frequencies_hz = {"10", "20", "40", "80", "160", "315", "500"},
-       .levels_m_s2 = {5, 10, 20, 50, 100, 100, 100}},
-  };
-  return presets;
-}
-
-std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
-                            const DemoUncertainty& uncertainty) {
-  return fmt::format(R"(# Written by "dyncal demo"; a bench of your own looks the same.
-bench = "{bench}"
-
-[excitation]
-frequencies_hz = [{frequencies}]
-level = [{levels}]   # m/s^2
-repetitions = {repetitions}
-settling_s = {settling}
-duration_s = {duration}
-
-[generator]
-driver = "scpi"
-address = "{generator}"
-level_per_volt = 50.0   # m/s^2 per V
-
-[sources.dau]
+constexpr const char* stamped_sources = R"([sources.dau]
 driver = "smartup"
 listen = "{dau}"
 sensor = "0xbccb0100"
@@ -73,16 +34,95 @@ temperature = "dau/temperature"
 
 [corrections]
 adc = {{ file = "adc.json", channel = "ADC1", phase_sign = "lag" }}
+)";
 
+constexpr const char* triggered_sources = R"([sources.dso]
+driver = "oscilloscope"
+address = "{dso}"
+
+[sources.tss]
+driver = "series"
+address = "{tss}"
+units = {{ acceleration_z = "m/s^2" }}
+
+[sources.acs]
+driver = "socket"
+address = "{acs}"
+
+[method]
+kind = "series-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dso = "dso/sync"
+dut = ["tss/acceleration_z"]
+shots = 5
+trigger_phase_correction = {correction}
+
+[corrections]
+dso_delay = {{ file = "dso-delay.json" }}
+)";
+
+} // namespace
+
+const std::vector<DemoPreset>& demo_presets() {
+  static const std::vector<DemoPreset> presets{
+      {.name = "mpu9250-paper",
+       .shows = "an MPU-9250 as in the paper: delay 8.1 ms, sample interval 996.96 us with its strange histogram",
+       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "180",
+                          "200"},
+       .levels_m_s2 = {2.5, 2.5, 5, 5, 10, 10, 20, 50, 50, 50, 100, 100, 100, 100, 100, 100, 100}},
+      {.name = "mpu9250-ptb",
+       .shows = "an MPU-9250 with the response that a national institute has published: delay 1.511 ms",
+       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "200",
+                          "250"},
+       .levels_m_s2 = {2.75, 2.76, 5.57, 5.59, 11.28, 11.43, 23.25, 58.54, 58.76, 59.09, 115.4, 119.2, 122.9, 125.0, 126.8, 126.6, 126.1}},
+      {.name = "bma280",
+       .shows = "a BMA280: sample interval 485 us, a late and an early sample every 2200",
+       .frequencies_hz = {"10", "20", "40", "80", "160", "315", "500"},
+       .levels_m_s2 = {5, 10, 20, 50, 100, 100, 100}},
+      {.name = "tss",
+       .shows = "a sensor that records a series after the trigger of an oscilloscope, series time stamping",
+       .frequencies_hz = {"10", "20", "40", "80", "125", "200"},
+       .levels_m_s2 = {2.75, 5.5, 23, 100, 100, 100},
+       .repetitions = 1,
+       .triggered = true},
+  };
+  return presets;
+}
+
+std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
+                            const DemoUncertainty& uncertainty) {
+  const std::string sources =
+      fmt::format(fmt::runtime(preset.triggered ? triggered_sources : stamped_sources), fmt::arg("dau", addresses.dau_listen),
+                  fmt::arg("acs", addresses.acs), fmt::arg("dso", addresses.oscilloscope), fmt::arg("tss", addresses.sensor),
+                  fmt::arg("correction", preset.trigger_phase_correction));
+  return fmt::format(R"(# Written by "dyncal demo"; a bench of your own looks the same.
+bench = "{bench}"
+
+[excitation]
+frequencies_hz = [{frequencies}]
+level = [{levels}]   # m/s^2
+repetitions = {repetitions}
+settling_s = {settling}
+duration_s = {duration}
+
+[generator]
+driver = "scpi"
+address = "{generator}"
+level_per_volt = 50.0   # m/s^2 per V
+
+{sources}
 [uncertainty]
 reference_magnitude_rel = {u_magnitude}
 reference_phase_rad = {u_phase}
+acs_rate_rel = {u_rate}
 )",
                      fmt::arg("bench", bench), fmt::arg("frequencies", fmt::join(quoted(preset.frequencies_hz), ", ")),
                      fmt::arg("levels", fmt::join(preset.levels_m_s2, ", ")), fmt::arg("repetitions", preset.repetitions),
                      fmt::arg("settling", preset.settling_s), fmt::arg("duration", preset.duration_s),
-                     fmt::arg("generator", addresses.generator), fmt::arg("dau", addresses.dau_listen), fmt::arg("acs", addresses.acs),
-                     fmt::arg("u_magnitude", uncertainty.reference_magnitude_rel), fmt::arg("u_phase", uncertainty.reference_phase_rad));
+                     fmt::arg("generator", addresses.generator), fmt::arg("sources", sources),
+                     fmt::arg("u_magnitude", uncertainty.reference_magnitude_rel), fmt::arg("u_phase", uncertainty.reference_phase_rad),
+                     fmt::arg("u_rate", uncertainty.acs_rate_rel));
 }
 
 } // namespace dyncal::services

@@ -16,6 +16,8 @@ struct DemoPreset {
   int repetitions = 3;
   double settling_s = 0.5;
   double duration_s = 3.0;
+  bool triggered = false;               // series time stamping with oscilloscope and time series sensor
+  bool trigger_phase_correction = true; // of every shot
 };
 
 [[nodiscard]] const std::vector<DemoPreset>& demo_presets();
@@ -24,12 +26,15 @@ struct DemoAddresses {
   std::string dau_listen;
   std::string acs;
   std::string generator;
+  std::string oscilloscope; // presets that are triggered
+  std::string sensor;
 };
 
 // What the virtual bench says of itself in its truth file's settings: the recipe must state the same.
 struct DemoUncertainty {
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
+  double acs_rate_rel = 0.0;
 };
 
 [[nodiscard]] std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,

@@ -31,7 +31,7 @@ constexpr int first_demo_domain = 20;
 constexpr int demo_domains = 80;
 
 // Of the virtual laser: the bench draws its errors from them and the recipe states them.
-constexpr DemoUncertainty reference_uncertainty{.reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4};
+constexpr DemoUncertainty reference_uncertainty{.reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4, .acs_rate_rel = 3e-7};
 
 struct Demo {
   DemoPreset preset;
@@ -68,12 +68,14 @@ Expected<Demo> prepare(const DemoCommand& command) {
   const auto& presets = demo_presets();
   const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) { return one.name == command.preset; });
   if (preset == presets.end()) {
-    return tl::unexpected(Error{ErrorCode::bad_argument,
-                                fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280", command.preset)});
+    return tl::unexpected(
+        Error{ErrorCode::bad_argument,
+              fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280, tss", command.preset)});
   }
   demo.preset = *preset;
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
   demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
+  demo.preset.trigger_phase_correction = command.trigger_phase_correction;
   const auto dds = parse_vendor_assignment(command.dds);
   if (!dds) {
     return tl::unexpected(dds.error());
@@ -161,7 +163,11 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
   }
   const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
                                 .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
-                                .generator = fmt::format("127.0.0.1:{}", ports->value("generator", 0))};
+                                .generator = fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
+                                .oscilloscope = fmt::format("127.0.0.1:{}", ports->value("dso", 0)),
+                                .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0))};
+  // As "dyncal calibrate dso-delay" would have found it; the paper's value.
+  std::ofstream(demo.folder / "dso-delay.json") << R"({"value_s": 236e-9, "u_s": 1e-9})" << '\n';
   std::ofstream bench_file(demo.folder / "bench.toml");
   bench_file << demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty);
   if (!bench_file.flush()) {
@@ -175,7 +181,7 @@ Expected<void> start_services(Demo& demo) {
   const std::string domain = std::to_string(demo.domain);
   return start(demo, "dyncal-analysis", {"--dds", demo.dds["analysis"], "--domain", domain})
       .and_then([&] {
-        return start(demo, "dyncal-dau", {bench_file, "--dds", demo.dds["dau"], "--domain", domain});
+        return start(demo, demo.preset.triggered ? "dyncal-dso" : "dyncal-dau", {bench_file, "--dds", demo.dds["dau"], "--domain", domain});
       })
       .and_then([&] {
         return start(demo, "dyncal-acs", {bench_file, "--dds", demo.dds["acs"], "--domain", domain});

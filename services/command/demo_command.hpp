@@ -23,7 +23,8 @@ struct DemoCommand {
   std::optional<std::filesystem::path> json;
   std::optional<int> repetitions;
   std::optional<double> duration_s;
-  double loss = 0.0; // of datagrams, 0..1
+  bool trigger_phase_correction = true; // series time stamping
+  double loss = 0.0;                    // of datagrams, 0..1
   double duplicates = 0.0;
 };
 

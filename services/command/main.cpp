@@ -25,9 +25,11 @@ void add_run(CLI::App& app, RunCommand& run) {
 
 void add_demo(CLI::App& app, DemoCommand& demo) {
   CLI::App* command = app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
-  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb or bma280")->capture_default_str();
+  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb, bma280 or tss")->capture_default_str();
   command->add_option("--dds", demo.dds,
                       "fastdds, cyclonedds, or one for each: dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
+  command->add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
+                    "of preset tss: take the phase of sync at the trigger out of every shot (default), or see what that is worth");
   command->add_option("--speed", demo.speed, "times real time, or max")->capture_default_str();
   command->add_option("--seed", demo.seed, "of the virtual bench's randomness")->capture_default_str();
   command->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")->check(CLI::Range(0, 232));

@@ -22,7 +22,9 @@ constexpr auto armed_limit = 9s;     // to be armed or refused
 constexpr auto analysis_limit = 10s; // between two of its lines
 constexpr auto results_limit = 25s;  // from the end of the excitation to the last result
 constexpr auto alive_interval = 2s;
-constexpr double off_s = 0.3;       // between two steps
+constexpr auto shots_limit = 60s; // for the shots of one step, series time stamping
+constexpr double off_s = 0.3;     // between two steps
+constexpr double shot_slice_s = 0.25;
 constexpr double slice_s = 1.0;     // bench time between two looks at the network
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
@@ -109,6 +111,13 @@ Expected<void> RunController::open_endpoints() {
   }
   endpoints_ = std::make_unique<Endpoints>(Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
                                                      std::move(*results), std::move(*transfer), std::move(*clocks)});
+  if (bench_.method.kind == EvaluationMethod::series_timestamping) {
+    auto counter = ShotCounter::create(participant_, bench, wake_up_);
+    if (!counter) {
+      return tl::unexpected(counter.error());
+    }
+    shots_.emplace(std::move(*counter));
+  }
   return {};
 }
 
@@ -193,10 +202,33 @@ Expected<void> RunController::excite_step(const PlannedStep& step, const std::st
   if (const auto settled = hold_until(*began + step.settling_s(), stop); !settled || !*settled) {
     return settled.map([](bool) {});
   }
+  if (shots_) {
+    shots_->begin(run_, step.step());
+  }
   announce(step, EXCITATION_STEADY);
   show("measuring");
   const double frequency_hz = analysis::Frequency::parse(step.frequency_hz())->hz(); // the bench file was checked
-  return hold_until(*began + step.settling_s() + step.duration_s() + margin_s(frequency_hz), stop).map([](bool) {});
+  const auto held = hold_until(*began + step.settling_s() + step.duration_s() + margin_s(frequency_hz), stop);
+  if (!held || !*held || !shots_) {
+    return held.map([](bool) {});
+  }
+  return hold_until_shots_are_taken(stop);
+}
+
+// A step without all of its shots is measured with those there are; the analysis says how many.
+Expected<void> RunController::hold_until_shots_are_taken(const std::stop_token& stop) {
+  const auto deadline = Clock::now() + shots_limit;
+  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline && !stop.stop_requested()) {
+    show("shots");
+    const auto now = generator_->clock_now_s();
+    if (!now) {
+      return tl::unexpected(device_error(now.error()));
+    }
+    if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
+      return tl::unexpected(held.error());
+    }
+  }
+  return {};
 }
 
 Expected<bool> RunController::hold_until(double bench_time_s, const std::stop_token& stop) {

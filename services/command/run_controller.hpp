@@ -21,6 +21,7 @@
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
+#include "services/command/shot_counter.hpp"
 
 namespace dyncal::services {
 
@@ -69,6 +70,7 @@ private:
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> excite(const std::stop_token& stop);
   Expected<void> excite_step(const PlannedStep& step, const std::stop_token& stop);
+  Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
   // Waits until the bench time and keeps the run alive on the network meanwhile; false when it shall stop.
   Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
   Expected<void> wait_for_results(const std::stop_token& stop);
@@ -85,6 +87,7 @@ private:
   ShowProgress show_progress_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::unique_ptr<Endpoints> endpoints_;
+  std::optional<ShotCounter> shots_; // series time stamping only
   std::unique_ptr<drivers::generator::Generator> generator_;
   RunOutcome outcome_;
   std::optional<ServiceStatus> analysis_;

@@ -91,6 +91,9 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
     }
   }
   for (const SampleClockReport& report : outcome.clock_reports) {
+    if (report.intervals() == 0) {
+      continue; // series have no stamps
+    }
     const std::string source = report.source().to_string();
     drawn.push_back(figures::interval_histogram_figure(histogram_data(report), file_name("interval-histogram", source)));
     drawn.push_back(figures::interval_over_time_figure(time_data(outcome, report), file_name("interval-over-time", source)));

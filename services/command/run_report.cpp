@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,6 +70,12 @@ Json point_json(const CalibrationResult& result) {
   if (!result.valid()) {
     point["problem"] = result.problem();
   }
+  if (!result.series_start().empty()) {
+    point["sample_rate_hz"] = number(result.sample_rate_hz());
+    point["u_sample_rate_hz"] = number(result.u_sample_rate_hz());
+    point["series_start"] = result.series_start();
+    point["series_start_scatter_s"] = number(result.series_start_scatter_s());
+  }
   return point;
 }
 
@@ -104,6 +111,7 @@ Json clock_json(const SampleClockReport& report) {
           {"median_s", report.median_s()},
           {"mad_sd_s", report.mad_sd_s()},
           {"count", report.intervals()},
+          {"nominal_rate_hz", report.nominal_rate_hz()},
           {"mean_rate_hz", report.mean_rate_hz()},
           {"tick_s", report.tick_s()},
           {"lattice_statistic", report.lattice_statistic()},
@@ -132,6 +140,19 @@ std::string channel_table(const TransferFunction& function) {
   return text;
 }
 
+// A series has no stamps: its rate is known by eq. (6) alone.
+std::string series_clock_line(const RunOutcome& outcome, const SampleClockReport& report) {
+  std::set<std::string> starts;
+  for (const CalibrationResult& result : outcome.results) {
+    if (!result.series_start().empty()) {
+      starts.insert(result.series_start());
+    }
+  }
+  const double u_rate_hz = report.u_mean_interval_s() * report.mean_rate_hz() * report.mean_rate_hz();
+  return fmt::format("\nSample rate of {}: {:.6f} Hz, u = {:.1g} Hz, nominal {:g} Hz; its series start {}\n", report.source().c_str(),
+                     report.mean_rate_hz(), u_rate_hz, report.nominal_rate_hz(), fmt::join(starts, " or "));
+}
+
 } // namespace
 
 bool responds(const TransferFunction& function) {
@@ -154,6 +175,10 @@ std::string result_table(const RunOutcome& outcome) {
     text += fmt::format("\nNo response above three times its uncertainty in: {}\n", fmt::join(quiet, ", "));
   }
   for (const SampleClockReport& report : outcome.clock_reports) {
+    if (report.intervals() == 0) {
+      text += series_clock_line(outcome, report);
+      continue;
+    }
     text += fmt::format(
         "\nSample clock of {}: mean interval {:.5f} us, sd {:.1f} ns, spread {:.0f} ns, {} intervals, {} events, {} samples lost\n",
         report.source().c_str(), report.mean_interval_s() * 1e6, report.sd_s() * 1e9, (report.maximum_s() - report.minimum_s()) * 1e9,

@@ -17,11 +17,16 @@ struct TruePoint {
   double phase_rad;
 };
 
+struct Truth {
+  std::vector<TruePoint> points;
+  double mean_interval_s; // NaN: not told
+};
+
 Error unreadable(const std::filesystem::path& path, const std::string& why) {
   return {ErrorCode::bad_file, fmt::format("{}: the truth of the virtual bench cannot be read: {}", path.string(), why)};
 }
 
-Expected<std::vector<TruePoint>> read_truth(const std::filesystem::path& path) {
+Expected<Truth> read_truth(const std::filesystem::path& path) {
   std::ifstream stream(path);
   try {
     std::vector<TruePoint> points;
@@ -29,7 +34,9 @@ Expected<std::vector<TruePoint>> read_truth(const std::filesystem::path& path) {
     for (const auto& point : truth.at("transfer_function")) {
       points.push_back({point.at("channel"), point.at("frequency_text_hz"), point.at("magnitude"), point.at("phase_rad")});
     }
-    return points;
+    const double mean_interval_s =
+        truth.contains("sample_clock") ? truth["sample_clock"].at("mean_interval_s").get<double>() : std::nan("");
+    return Truth{std::move(points), mean_interval_s};
   } catch (const nlohmann::json::exception& error) {
     return tl::unexpected(unreadable(path, error.what()));
   }
@@ -67,7 +74,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesyste
     return tl::unexpected(truth.error());
   }
   TruthCheck check;
-  for (const TruePoint& point : *truth) {
+  for (const TruePoint& point : truth->points) {
     std::string channel;
     const TransferPoint* measured = measured_point(outcome, point, channel);
     if (measured == nullptr) {
@@ -81,6 +88,12 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesyste
     compare(check, measured->magnitude() - point.magnitude, measured->u_magnitude(),
             fmt::format("{}, {} Hz, magnitude", channel, point.frequency_text_hz));
     compare(check, phase_rad, measured->u_phase_rad(), fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
+  }
+  for (const SampleClockReport& report : outcome.clock_reports) {
+    if (report.intervals() == 0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
+      compare(check, report.mean_interval_s() - truth->mean_interval_s, report.u_mean_interval_s(),
+              fmt::format("{}, sample interval", report.source().c_str()));
+    }
   }
   return check;
 }

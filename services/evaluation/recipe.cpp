@@ -116,6 +116,11 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
 
 std::vector<std::string> Recipe::sources() const {
   std::vector<std::string> names{reference.source, sync_dau.source};
+  for (const ChannelName& channel : dut) {
+    if (std::find(names.begin(), names.end(), channel.source) == names.end()) {
+      names.push_back(channel.source);
+    }
+  }
   if (temperature && std::find(names.begin(), names.end(), temperature->source) == names.end()) {
     names.push_back(temperature->source);
   }
@@ -149,21 +154,34 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   measurement.frequency_search_rel(file.method.frequency_search_rel);
   measurement.reference_delay_s(file.corrections.reference_delay_s);
   measurement.whole_record(file.excitation.whole_record);
+  measurement.shots(static_cast<std::uint32_t>(file.method.shots));
+  measurement.trigger_phase_correction(file.method.trigger_phase_correction);
+  measurement.u_acs_rate_rel(file.uncertainty.acs_rate_rel);
   measurement.recipe(file.text);
   measurement.recipe_sha256(file.sha256);
   return measurement;
 }
 
 Expected<Recipe> parse_recipe(const Measurement& measurement) {
-  if (measurement.method() != METHOD_SAMPLE_TIMESTAMPING) {
+  if (measurement.method() != METHOD_SAMPLE_TIMESTAMPING && measurement.method() != METHOD_SERIES_TIMESTAMPING) {
     return tl::unexpected(
-        refused("this version evaluates method.kind = \"sample-timestamping\" on live sources; choose that, or update dyncal-analysis"));
+        refused("this version evaluates method.kind = \"sample-timestamping\" and \"series-timestamping\" on live sources; "
+                "choose one of them, or update dyncal-analysis"));
   }
   Recipe recipe;
+  recipe.method = measurement.method();
+  recipe.dso_delay_s = measurement.dso_delay_s();
+  recipe.u_dso_delay_s = measurement.u_dso_delay_s();
+  recipe.shots = measurement.shots();
+  recipe.trigger_phase_correction = measurement.trigger_phase_correction();
+  recipe.u_acs_rate_rel = measurement.u_acs_rate_rel();
   recipe.bench = measurement.bench().to_string();
   recipe.run = measurement.run().to_string();
   if (const auto roles = parse_roles(measurement, recipe); !roles) {
     return tl::unexpected(roles.error());
+  }
+  if (recipe.method == METHOD_SERIES_TIMESTAMPING && recipe.dut.empty()) {
+    return tl::unexpected(refused("the recipe of a series time stamping names no channel under calibration"));
   }
   if (const auto steps = parse_steps(measurement, recipe); !steps) {
     return tl::unexpected(steps.error());

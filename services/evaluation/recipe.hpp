@@ -33,7 +33,8 @@ struct Recipe {
   std::string run;
   ChannelName reference;
   ChannelName sync_acs;
-  ChannelName sync_dau;
+  Method method = METHOD_SAMPLE_TIMESTAMPING;
+  ChannelName sync_dau;         // series time stamping: the oscilloscope's sync
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
   std::vector<RecipeStep> steps;
@@ -42,6 +43,11 @@ struct Recipe {
   double reference_delay_s = 0.0;                             // of the reference's channel against the ACS's sync
   std::vector<analysis::AdcCalibrationPoint> adc_calibration; // empty: no correction
   analysis::SystematicUncertainty systematic;
+  double dso_delay_s = 0.0; // from the oscilloscope's trigger point to its trigger output
+  double u_dso_delay_s = 0.0;
+  std::uint32_t shots = 0; // of a step, series time stamping
+  bool trigger_phase_correction = true;
+  double u_acs_rate_rel = 0.0;
   std::string sha256;
 
   // The sources whose samples the evaluation needs, each once: the ACS first.

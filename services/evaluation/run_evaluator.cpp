@@ -1,10 +1,13 @@
 #include "services/evaluation/run_evaluator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -32,6 +35,10 @@ std::vector<std::string> flags_of(const Recipe& recipe, const RecipeStep& step, 
   return flags;
 }
 
+std::string no_sine(const RecipeStep& step, const ChannelName& sync) {
+  return fmt::format("no steady sine of {} Hz was found in {}; is the sync signal connected?", step.frequency_text_hz, sync.text());
+}
+
 } // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe) : recipe_(std::move(recipe)), clock_(recipe_), summary_(recipe_) {
@@ -39,7 +46,9 @@ RunEvaluator::RunEvaluator(Recipe recipe) : recipe_(std::move(recipe)), clock_(r
     records_.emplace(source, std::make_unique<SourceRecord>(source));
   }
   acs_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_acs.source), recipe_.sync_acs.channel);
-  dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source), recipe_.sync_dau.channel);
+  if (!by_series()) {
+    dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source), recipe_.sync_dau.channel);
+  }
 }
 
 RunEvaluator::~RunEvaluator() = default;
@@ -85,6 +94,20 @@ void RunEvaluator::add(const SampleBlock& block) {
   SourceRecord* source = record(block.source().to_string());
   if (source != nullptr && !finished_ && source->add(block)) {
     clock_.add(block);
+  }
+}
+
+void RunEvaluator::add(const TriggeredRecord& record) {
+  const bool evaluated = std::any_of(recipe_.steps.begin(), recipe_.steps.begin() + static_cast<std::ptrdiff_t>(next_step_),
+                                     [&](const RecipeStep& step) { return step.step == record.step(); });
+  if (finished_ || !by_series() || evaluated || record.run() != recipe_.run) {
+    return;
+  }
+  const std::string source = record.source().to_string();
+  if (source == recipe_.sync_dau.source) {
+    shots_.add_trace(record);
+  } else if (source == recipe_.dut.front().source) {
+    shots_.add_series(record);
   }
 }
 
@@ -137,34 +160,93 @@ void RunEvaluator::follow(StepSearch& search, const SourceRecord& source) {
   }
 }
 
+// All that were wanted; or when none can come any more, which has the same grace as the samples of the ACS.
+bool RunEvaluator::shots_are_there(std::size_t step) const {
+  const bool complete = over_utc_ns_.contains(step) && shots_.of_step(recipe_.steps[step].step).size() >= recipe_.shots;
+  return complete || over_in(*records_.at(recipe_.sync_acs.source), step);
+}
+
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
-  const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
-  const SourceRecord& dau = *records_.at(recipe_.sync_dau.source);
-  while (next_step_ < steps_expected() && acs_search_->step() > next_step_ && dau_search_->step() > next_step_) {
+  while (next_step_ < steps_expected() && acs_search_->step() > next_step_ &&
+         (by_series() ? shots_are_there(next_step_) : dau_search_->step() > next_step_)) {
     const RecipeStep& step = recipe_.steps[next_step_];
-    const auto acs_stretch = acs_search_->stretch(next_step_);
-    const auto dau_stretch = dau_search_->stretch(next_step_);
-    std::vector<CalibrationResult> results;
-    if (acs_stretch && dau_stretch) {
-      std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
-      const std::vector<std::string> dau_flags = flags_of(recipe_, step, dau, *dau_stretch);
-      flags.insert(flags.end(), dau_flags.begin(), dau_flags.end());
-      if (broken_off_.contains(next_step_)) {
-        flags.emplace_back("excitation broken off");
-      }
-      results = evaluate_step(recipe_, step, acs, *acs_stretch, dau, *dau_stretch, flags);
-    } else {
-      const ChannelName& sync = acs_stretch ? recipe_.sync_dau : recipe_.sync_acs;
-      results = results_of_missing_step(
-          recipe_, step, dau,
-          fmt::format("no steady sine of {} Hz was found in {}; is the sync signal connected?", step.frequency_text_hz, sync.text()));
-    }
-    for (CalibrationResult& result : results) {
+    for (CalibrationResult& result : by_series() ? evaluate_triggered_step(step) : evaluate_stamped_step(step)) {
       summary_.add(result);
       output.results.push_back(std::move(result));
     }
     ++next_step_;
   }
+}
+
+std::vector<CalibrationResult> RunEvaluator::evaluate_stamped_step(const RecipeStep& step) {
+  const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
+  const SourceRecord& dau = *records_.at(recipe_.sync_dau.source);
+  const auto acs_stretch = acs_search_->stretch(next_step_);
+  const auto dau_stretch = dau_search_->stretch(next_step_);
+  if (!acs_stretch || !dau_stretch) {
+    return results_of_missing_step(recipe_, step, dau, no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs));
+  }
+  std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
+  const std::vector<std::string> dau_flags = flags_of(recipe_, step, dau, *dau_stretch);
+  flags.insert(flags.end(), dau_flags.begin(), dau_flags.end());
+  if (broken_off_.contains(next_step_)) {
+    flags.emplace_back("excitation broken off");
+  }
+  return evaluate_step(recipe_, step, acs, *acs_stretch, dau, *dau_stretch, flags);
+}
+
+std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const RecipeStep& step) {
+  const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
+  const SourceRecord& sensor = *records_.at(recipe_.dut.front().source);
+  const auto stretch = acs_search_->stretch(next_step_);
+  if (!stretch) {
+    return results_of_missing_step(recipe_, step, sensor, no_sine(step, recipe_.sync_acs));
+  }
+  std::vector<std::string> flags = flags_of(recipe_, step, acs, *stretch);
+  if (broken_off_.contains(next_step_)) {
+    flags.emplace_back("excitation broken off");
+  }
+  SeriesStepOutput evaluated = evaluate_series_step(recipe_, step, acs, *stretch, *records_.at(recipe_.sync_dau.source), sensor,
+                                                    shots_.of_step(step.step), start_, std::move(flags));
+  start_ = evaluated.start;
+  if (evaluated.rate) {
+    rates_.push_back(*evaluated.rate);
+  }
+  shots_.forget_step(step.step);
+  return std::move(evaluated.results);
+}
+
+// Mean over the steps, weighted by their uncertainties; where they scatter by more than these say, by what the scatter says. The clock of
+// the ACS, in which all of them were measured, is common to them.
+void RunEvaluator::add_sensor_clock(EvaluationOutput& output) const {
+  if (rates_.empty()) {
+    return;
+  }
+  double weights = 0.0;
+  double sum = 0.0;
+  const auto weight_of = [](const analysis::NominalFrequency& rate) { return 1.0 / (rate.u_real_rate_hz * rate.u_real_rate_hz); };
+  for (const analysis::NominalFrequency& rate : rates_) {
+    weights += weight_of(rate);
+    sum += weight_of(rate) * rate.real_rate_hz;
+  }
+  const double mean_hz = sum / weights;
+  double chi_square = 0.0;
+  for (const analysis::NominalFrequency& rate : rates_) {
+    chi_square += weight_of(rate) * std::pow(rate.real_rate_hz - mean_hz, 2);
+  }
+  const double birge = rates_.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates_.size() - 1)) : 1.0;
+  const double u_rel = std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe_.u_acs_rate_rel);
+  const SourceRecord& sensor = *records_.at(recipe_.dut.front().source);
+  SampleClockReport report;
+  report.bench(recipe_.bench);
+  report.run(recipe_.run);
+  report.source(sensor.source());
+  report.nominal_rate_hz(rates_.front().real_rate_hz / rates_.front().lambda);
+  report.mean_rate_hz(mean_hz);
+  report.mean_interval_s(1.0 / mean_hz);
+  report.u_mean_interval_s(u_rel / mean_hz);
+  report.software(software_version());
+  output.clock_reports.push_back(std::move(report));
 }
 
 void RunEvaluator::forget_what_is_evaluated() {
@@ -178,7 +260,9 @@ void RunEvaluator::forget_what_is_evaluated() {
     source.forget_before(needed);
   };
   forget(*records_.at(recipe_.sync_acs.source), *acs_search_);
-  forget(*records_.at(recipe_.sync_dau.source), *dau_search_);
+  if (dau_search_) {
+    forget(*records_.at(recipe_.sync_dau.source), *dau_search_);
+  }
 }
 
 EvaluationOutput RunEvaluator::take_output() {
@@ -187,7 +271,9 @@ EvaluationOutput RunEvaluator::take_output() {
     return output;
   }
   follow(*acs_search_, *records_.at(recipe_.sync_acs.source));
-  follow(*dau_search_, *records_.at(recipe_.sync_dau.source));
+  if (dau_search_) {
+    follow(*dau_search_, *records_.at(recipe_.sync_dau.source));
+  }
   evaluate_next_steps(output);
   forget_what_is_evaluated();
   const bool all_steps = next_step_ >= steps_expected() && (excitation_done_ || next_step_ >= recipe_.steps.size());
@@ -204,7 +290,11 @@ void RunEvaluator::finish_now() {
 void RunEvaluator::finish(EvaluationOutput& output) {
   finished_ = true;
   output.transfer_functions = summary_.transfer_functions();
-  output.clock_reports = clock_.reports();
+  if (by_series()) {
+    add_sensor_clock(output);
+  } else {
+    output.clock_reports = clock_.reports();
+  }
 }
 
 } // namespace dyncal::services

@@ -18,6 +18,8 @@
 #include "services/error.hpp"
 #include "services/evaluation/clock_report.hpp"
 #include "services/evaluation/recipe.hpp"
+#include "services/evaluation/series_step_evaluation.hpp"
+#include "services/evaluation/shot_record.hpp"
 #include "services/evaluation/source_record.hpp"
 #include "services/evaluation/step_search.hpp"
 #include "services/evaluation/transfer_summary.hpp"
@@ -45,6 +47,8 @@ public:
   [[nodiscard]] std::vector<std::string> undescribed() const;
 
   void add(const SampleBlock& block);
+  // Series time stamping: of the oscilloscope or of the sensor, by its source.
+  void add(const TriggeredRecord& record);
   void announce(const Excitation& excitation);
   // No excitation comes any more: the run is done, or was broken off after the steps announced so far.
   void end_of_excitation(bool aborted);
@@ -62,6 +66,11 @@ private:
   [[nodiscard]] bool over_in(const SourceRecord& source, std::size_t step) const;
   void follow(StepSearch& search, const SourceRecord& source);
   void evaluate_next_steps(EvaluationOutput& output);
+  [[nodiscard]] bool by_series() const { return recipe_.method == METHOD_SERIES_TIMESTAMPING; }
+  [[nodiscard]] bool shots_are_there(std::size_t step) const;
+  [[nodiscard]] std::vector<CalibrationResult> evaluate_stamped_step(const RecipeStep& step);
+  [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);
+  void add_sensor_clock(EvaluationOutput& output) const;
   void forget_what_is_evaluated();
   void finish(EvaluationOutput& output);
 
@@ -73,7 +82,10 @@ private:
   TransferSummary summary_;
   std::size_t next_step_ = 0;                       // not evaluated yet
   std::map<std::size_t, std::int64_t> over_utc_ns_; // host time at which the excitation of a step was over
-  std::set<std::size_t> broken_off_;                // steps whose excitation was aborted
+  ShotRecord shots_;
+  analysis::StartKind start_ = analysis::StartKind::undecided; // of the series, as far as the steps so far tell
+  std::vector<analysis::NominalFrequency> rates_;              // of the sensor, one a step
+  std::set<std::size_t> broken_off_;                           // steps whose excitation was aborted
   std::size_t steps_announced_ = 0;
   bool excitation_done_ = false;
   bool excitation_aborted_ = false;

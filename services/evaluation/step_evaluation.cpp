@@ -7,51 +7,14 @@
 #include <fmt/format.h>
 
 #include "services/bench/digest.hpp"
-#include "services/bench/unit.hpp"
-#include "services/version.hpp"
+#include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-
-// One source's part of a step: the stamps and the columns asked for, cleaned, each sample once.
-struct Series {
-  std::vector<std::int64_t> stamps_ns;
-  std::vector<std::vector<double>> columns;
-  std::uint64_t not_trusted = 0;
-};
-
-Series cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels) {
-  Series series;
-  series.columns.resize(channels.size());
-  std::vector<std::span<const double>> columns;
-  for (const std::size_t channel : channels) {
-    columns.push_back(record.column(channel));
-  }
-  const auto stamps = record.stamps_ns();
-  const auto flags = record.flags();
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (stamps[i] < stretch.begin_ns || stamps[i] > stretch.end_ns) {
-      continue;
-    }
-    const bool increasing = series.stamps_ns.empty() || stamps[i] > series.stamps_ns.back();
-    const bool measured = std::all_of(columns.begin(), columns.end(), [&](auto column) { return std::isfinite(column[i]); });
-    if (flags[i] != 0 || !increasing || !measured) {
-      ++series.not_trusted;
-      continue;
-    }
-    series.stamps_ns.push_back(stamps[i]);
-    for (std::size_t channel = 0; channel < columns.size(); ++channel) {
-      series.columns[channel].push_back(columns[channel][i]);
-    }
-  }
-  return series;
-}
-
-std::string digest_of(const Series& acs, const Series& dau) {
+std::string digest_of(const StepSamples& acs, const StepSamples& dau) {
   Digest digest;
-  for (const Series* series : {&acs, &dau}) {
+  for (const StepSamples* series : {&acs, &dau}) {
     digest.add(series->stamps_ns.data(), series->stamps_ns.size() * sizeof(std::int64_t));
     for (const auto& column : series->columns) {
       digest.add(column.data(), column.size() * sizeof(double));
@@ -60,78 +23,8 @@ std::string digest_of(const Series& acs, const Series& dau) {
   return digest.hex();
 }
 
-SourceSamples samples_message(const SourceRecord& record, const Series& series, const StretchOfTime& stretch) {
-  SourceSamples samples;
-  samples.source(record.source());
-  samples.used(series.stamps_ns.size());
-  samples.lost(record.lost_between(stretch.begin_ns, stretch.end_ns));
-  samples.not_trusted(series.not_trusted);
-  samples.first_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.front());
-  samples.last_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.back());
-  return samples;
-}
-
-SineFit fit_message(const analysis::SeriesFit& series) {
-  SineFit message;
-  message.series(series.series);
-  message.frequency_hz(series.frequency.hz());
-  message.u_frequency_hz(series.u_frequency_hz);
-  message.reference_ns(series.reference_ns);
-  message.sine(series.fit.sine);
-  message.cosine(series.fit.cosine);
-  message.offset(series.fit.offset);
-  message.u_sine(std::sqrt(series.fit.covariance[0]));
-  message.u_cosine(std::sqrt(series.fit.covariance[3]));
-  message.u_offset(std::sqrt(series.fit.covariance[5]));
-  message.residual_rms(std::sqrt(series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
-  message.samples(series.fit.samples);
-  return message;
-}
-
-CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step, const std::string& channel) {
-  CalibrationResult result;
-  result.bench(recipe.bench);
-  result.run(recipe.run);
-  result.channel(channel);
-  result.step(step.step);
-  result.repetition(step.repetition);
-  result.frequency_text_hz(step.frequency_text_hz);
-  result.frequency_hz(step.frequency.hz());
-  result.level_m_s2(step.level_m_s2);
-  result.valid(false);
-  result.magnitude(nan_value);
-  result.u_magnitude(nan_value);
-  result.phase_rad(nan_value);
-  result.u_phase_rad(nan_value);
-  result.software(software_version());
-  result.recipe_sha256(recipe.sha256);
-  return result;
-}
-
-// Output per input, as D-SI knows it: "\one" when both are the same.
-std::string ratio_unit(const SourceRecord& acs, const std::string& reference, const SourceRecord& dau, const std::string& channel) {
-  const std::string in = acs.description().channels()[*acs.channel(reference)].unit();
-  const std::string out = dau.description().channels()[*dau.channel(channel)].unit();
-  if (in == out) {
-    return R"(\one)";
-  }
-  return in.empty() || out.empty() ? "" : fmt::format("({})/({})", short_form(out), short_form(in));
-}
-
 double resolution_of(const SourceRecord& record, std::size_t channel) {
   return record.description().channels()[channel].resolution();
-}
-
-void add_budget(const analysis::TransferPoint& point, CalibrationResult& result) {
-  for (const analysis::Contribution& line : point.budget) {
-    BudgetContribution message;
-    message.name(line.name);
-    message.distribution(line.distribution);
-    message.degrees_of_freedom(line.degrees_of_freedom);
-    message.u_magnitude_rel(line.u_magnitude_rel);
-    message.u_phase_rad(line.u_phase_rad);
-    result.budget().push_back(message);
-  }
 }
 
 analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step) {
@@ -178,8 +71,8 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
   for (const ChannelName& name : dut) {
     dau_channels.push_back(*dau.channel(name.channel));
   }
-  const Series acs_series = cut(acs, acs_stretch, acs_channels);
-  const Series dau_series = cut(dau, dau_stretch, dau_channels);
+  const StepSamples acs_series = cut(acs, acs_stretch, acs_channels);
+  const StepSamples dau_series = cut(dau, dau_stretch, dau_channels);
 
   const auto adc = adc_response(recipe, step);
   if (!adc) {
@@ -219,7 +112,7 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
     for (const analysis::SeriesFit* fit : {&evaluated->reference, &evaluated->sync_acs, &evaluated->sync_dau, &point.dut}) {
       result.fits().push_back(fit_message(*fit));
     }
-    add_budget(point, result);
+    add_budget(point.budget, result);
     result.samples().push_back(samples_message(acs, acs_series, acs_stretch));
     result.samples().push_back(samples_message(dau, dau_series, dau_stretch));
     result.lost(result.samples()[0].lost() + result.samples()[1].lost());

@@ -13,13 +13,9 @@
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"
+#include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {
-
-struct StretchOfTime { // in a source's own clock, both ends included
-  std::int64_t begin_ns = 0;
-  std::int64_t end_ns = 0;
-};
 
 // The channels under calibration: the recipe's, or all of the DAU but sync and temperature.
 [[nodiscard]] std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const SourceRecord& dau);

@@ -1,0 +1,43 @@
+#include "services/command/shot_counter.hpp"
+
+#include <algorithm>
+
+#include "services/bus/topics.hpp"
+
+namespace dyncal::services {
+
+Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench, std::shared_ptr<bus::WakeUp> wake_up) {
+  auto traces = participant.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench, wake_up);
+  if (!traces) {
+    return tl::unexpected(traces.error());
+  }
+  auto series = participant.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench, wake_up);
+  if (!series) {
+    return tl::unexpected(series.error());
+  }
+  return ShotCounter(std::move(*traces), std::move(*series));
+}
+
+void ShotCounter::begin(const std::string& run, std::uint32_t step) {
+  run_ = run;
+  step_ = step;
+  trace_numbers_.clear();
+  series_numbers_.clear();
+}
+
+void ShotCounter::take(bus::Reader<TriggeredRecord>& reader, Numbers& numbers) const {
+  reader.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+    if (info.valid && record.sample_count() > 0 && record.step() == step_ && record.run() == run_) {
+      numbers.insert({record.session(), record.shot()});
+    }
+  });
+}
+
+int ShotCounter::shots() {
+  take(traces_, trace_numbers_);
+  take(series_, series_numbers_);
+  return static_cast<int>(
+      std::count_if(trace_numbers_.begin(), trace_numbers_.end(), [&](const auto& number) { return series_numbers_.contains(number); }));
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,41 @@
+// Counts the shots of the step that is being measured: pairs of an oscilloscope's and a sensor's record with the same session and number
+// that name the step. `dyncal run` excites a step until it has the shots that the recipe asks for.
+// Belongs to one thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "idl/dyncal.h"
+#include "services/bus/bus.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+class ShotCounter {
+public:
+  [[nodiscard]] static Expected<ShotCounter> create(bus::Participant& participant, const std::string& bench,
+                                                    std::shared_ptr<bus::WakeUp> wake_up);
+
+  // Forgets what has been counted.
+  void begin(const std::string& run, std::uint32_t step);
+  [[nodiscard]] int shots();
+
+private:
+  using Numbers = std::set<std::pair<std::uint64_t, std::uint64_t>>; // session, shot
+  ShotCounter(bus::Reader<TriggeredRecord> traces, bus::Reader<TriggeredRecord> series)
+      : traces_(std::move(traces)), series_(std::move(series)) {}
+  void take(bus::Reader<TriggeredRecord>& reader, Numbers& numbers) const;
+
+  bus::Reader<TriggeredRecord> traces_;
+  bus::Reader<TriggeredRecord> series_;
+  std::string run_;
+  std::uint32_t step_ = 0;
+  Numbers trace_numbers_;
+  Numbers series_numbers_;
+};
+
+} // namespace dyncal::services

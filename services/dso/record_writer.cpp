@@ -1,0 +1,96 @@
+#include "services/dso/record_writer.hpp"
+
+#include <utility>
+
+#include "services/bus/topics.hpp"
+#include "services/utc_clock.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services::dso {
+namespace {
+
+constexpr auto status_interval = std::chrono::milliseconds(500);
+
+} // namespace
+
+Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const std::string& bench, const std::string& source,
+                                            const std::string& topic, SourceKind kind, std::uint64_t session) {
+  auto description = participant.writer<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench);
+  if (!description) {
+    return tl::unexpected(description.error());
+  }
+  auto status = participant.writer<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench);
+  if (!status) {
+    return tl::unexpected(status.error());
+  }
+  auto records = participant.writer<TriggeredRecord>(topic, bus::Profile::samples, bench);
+  if (!records) {
+    return tl::unexpected(records.error());
+  }
+  return RecordWriter(bench, source, kind, session, std::move(*description), std::move(*status), std::move(*records));
+}
+
+void RecordWriter::describe(SourceDescription description) {
+  description.bench(bench_);
+  description.source(source_);
+  description.session(session_);
+  description.kind(kind_);
+  description.software(software_version());
+  description.time_base(TIME_BASE_LOCAL);
+  description.stamp_instant(STAMP_TRIGGER_EDGE);
+  if (description_ && *description_ == description) {
+    return;
+  }
+  description_writer_.write(description);
+  description_ = std::move(description);
+}
+
+void RecordWriter::answer(const std::string& run) {
+  TriggeredRecord record;
+  record.answers_run(run);
+  write(std::move(record));
+}
+
+bool RecordWriter::write(TriggeredRecord record) {
+  const bool holds_samples = record.sample_count() > 0;
+  record.bench(bench_);
+  record.source(source_);
+  record.session(session_);
+  if (record_writer_.write(record) != bus::WriteOutcome::written) {
+    ++not_written_;
+    return false;
+  }
+  written_ += holds_samples ? 1 : 0;
+  return true;
+}
+
+void RecordWriter::status(SourceState state, const std::string& message, std::chrono::steady_clock::time_point now) {
+  if (state_ == state && message_ == message && now < next_status_) {
+    return;
+  }
+  state_ = state;
+  message_ = message;
+  next_status_ = now + status_interval;
+  SourceStatus status;
+  status.bench(bench_);
+  status.source(source_);
+  status.session(session_);
+  status.state(state);
+  status.published_utc_ns(utc_now_ns());
+  status.received(written_ + rejected_ + not_written_);
+  status.rejected(rejected_);
+  status.dropped_in_service(not_written_);
+  status.matched_readers(static_cast<std::uint32_t>(record_writer_.matched_readers()));
+  status.message(message);
+  status_writer_.write(status);
+}
+
+void RecordWriter::end() {
+  TriggeredRecord record;
+  record.end_of_stream(true);
+  write(std::move(record));
+  status(SOURCE_ENDED, "", std::chrono::steady_clock::now());
+  record_writer_.wait_for_acknowledgments(std::chrono::seconds(2));
+}
+
+} // namespace dyncal::services::dso

@@ -1,0 +1,69 @@
+#include "services/dso/shot_device.hpp"
+
+#include <fmt/format.h>
+
+namespace dyncal::services::dso {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double periods = 2.0;
+constexpr std::size_t points = 10'000;
+constexpr milliseconds least_trigger_limit{3000};
+constexpr milliseconds series_limit{10'000}; // from the trigger to the end of the series
+
+Error device_error(const drivers::Error& error) {
+  return {ErrorCode::device, error.message};
+}
+
+drivers::dso::OscilloscopeSettings oscilloscope_settings(const SourceSettings& source) {
+  drivers::dso::OscilloscopeSettings settings;
+  settings.address = source.address;
+  settings.family = source.oscilloscope.family;
+  settings.inputs.push_back({"sync", source.oscilloscope.sync_input, source.oscilloscope.sync_range_v, 0.0});
+  settings.trigger_level_v = source.oscilloscope.trigger_level_v;
+  return settings;
+}
+
+} // namespace
+
+drivers::dso::Acquisition acquisition_for(double frequency_hz) {
+  const double half_s = 0.5 * periods / frequency_hz;
+  return {.before_trigger_s = half_s, .after_trigger_s = half_s, .points = points};
+}
+
+ShotDevice::ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor, const drivers::StopSignal& stop)
+    : oscilloscope_(oscilloscope_settings(oscilloscope), stop),
+      sensor_(sensor.path.empty() ? drivers::tss::series_from_socket(sensor.address, stop)
+                                  : drivers::tss::series_from_folder(sensor.path, stop)) {}
+
+Expected<void> ShotDevice::connect(double frequency_hz) {
+  return oscilloscope_.prepare(acquisition_for(frequency_hz)).and_then([&] { return sensor_->discard_pending(); }).map_error(device_error);
+}
+
+Expected<ShotPair> ShotDevice::take(double frequency_hz) {
+  if (auto ready = connect(frequency_hz); !ready) {
+    return tl::unexpected(ready.error());
+  }
+  const milliseconds trigger_limit = least_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
+  auto trace = oscilloscope_.acquire(trigger_limit);
+  if (!trace) {
+    last_trigger_.reset(); // whether the sensor saw a trigger is not known
+    return tl::unexpected(device_error(trace.error()));
+  }
+  auto series = sensor_->next(series_limit);
+  if (!series) {
+    last_trigger_.reset();
+    return tl::unexpected(device_error(series.error()));
+  }
+  const auto before = std::exchange(last_trigger_, series->shot);
+  if (before && *before != 0 && series->shot != *before + 1) {
+    return tl::unexpected(
+        Error{ErrorCode::device, fmt::format("the sensor counts trigger {} after {}: a trigger that was none, or one that was "
+                                             "missed; this shot is left out",
+                                             series->shot, *before)});
+  }
+  return ShotPair{std::move(*trace), std::move(*series)};
+}
+
+} // namespace dyncal::services::dso

@@ -1,0 +1,116 @@
+#include "services/evaluation/step_message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "services/bench/unit.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+} // namespace
+
+StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels) {
+  StepSamples series;
+  series.columns.resize(channels.size());
+  std::vector<std::span<const double>> columns;
+  for (const std::size_t channel : channels) {
+    columns.push_back(record.column(channel));
+  }
+  const auto stamps = record.stamps_ns();
+  const auto flags = record.flags();
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (stamps[i] < stretch.begin_ns || stamps[i] > stretch.end_ns) {
+      continue;
+    }
+    const bool increasing = series.stamps_ns.empty() || stamps[i] > series.stamps_ns.back();
+    const bool measured = std::all_of(columns.begin(), columns.end(), [&](auto column) { return std::isfinite(column[i]); });
+    if (flags[i] != 0 || !increasing || !measured) {
+      ++series.not_trusted;
+      continue;
+    }
+    series.stamps_ns.push_back(stamps[i]);
+    for (std::size_t channel = 0; channel < columns.size(); ++channel) {
+      series.columns[channel].push_back(columns[channel][i]);
+    }
+  }
+  return series;
+}
+
+SourceSamples samples_message(const SourceRecord& record, const StepSamples& series, const StretchOfTime& stretch) {
+  SourceSamples samples;
+  samples.source(record.source());
+  samples.used(series.stamps_ns.size());
+  samples.lost(record.lost_between(stretch.begin_ns, stretch.end_ns));
+  samples.not_trusted(series.not_trusted);
+  samples.first_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.front());
+  samples.last_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.back());
+  return samples;
+}
+
+SineFit fit_message(const analysis::SeriesFit& series) {
+  SineFit message;
+  message.series(series.series);
+  message.frequency_hz(series.frequency.hz());
+  message.u_frequency_hz(series.u_frequency_hz);
+  message.reference_ns(series.reference_ns);
+  message.sine(series.fit.sine);
+  message.cosine(series.fit.cosine);
+  message.offset(series.fit.offset);
+  message.u_sine(std::sqrt(series.fit.covariance[0]));
+  message.u_cosine(std::sqrt(series.fit.covariance[3]));
+  message.u_offset(std::sqrt(series.fit.covariance[5]));
+  message.residual_rms(std::sqrt(series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
+  message.samples(series.fit.samples);
+  return message;
+}
+
+CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step, const std::string& channel) {
+  CalibrationResult result;
+  result.bench(recipe.bench);
+  result.run(recipe.run);
+  result.channel(channel);
+  result.step(step.step);
+  result.repetition(step.repetition);
+  result.frequency_text_hz(step.frequency_text_hz);
+  result.frequency_hz(step.frequency.hz());
+  result.level_m_s2(step.level_m_s2);
+  result.valid(false);
+  result.magnitude(nan_value);
+  result.u_magnitude(nan_value);
+  result.phase_rad(nan_value);
+  result.u_phase_rad(nan_value);
+  result.software(software_version());
+  result.recipe_sha256(recipe.sha256);
+  return result;
+}
+
+// Output per input, as D-SI knows it: "\one" when both are the same.
+std::string ratio_unit(const SourceRecord& acs, const std::string& reference, const SourceRecord& dau, const std::string& channel) {
+  const std::string in = acs.description().channels()[*acs.channel(reference)].unit();
+  const std::string out = dau.description().channels()[*dau.channel(channel)].unit();
+  if (in == out) {
+    return R"(\one)";
+  }
+  return in.empty() || out.empty() ? "" : fmt::format("({})/({})", short_form(out), short_form(in));
+}
+
+void add_budget(std::span<const analysis::Contribution> budget, CalibrationResult& result) {
+  for (const analysis::Contribution& line : budget) {
+    BudgetContribution message;
+    message.name(line.name);
+    message.distribution(line.distribution);
+    message.degrees_of_freedom(line.degrees_of_freedom);
+    message.u_magnitude_rel(line.u_magnitude_rel);
+    message.u_phase_rad(line.u_phase_rad);
+    result.budget().push_back(message);
+  }
+}
+
+} // namespace dyncal::services
