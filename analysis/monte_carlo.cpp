@@ -189,7 +189,7 @@ bool is_drawn_as_phasor(const Contribution& row) {
 
 } // namespace
 
-Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingResult& result, std::size_t point, const AdcResponse& adc,
+Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingInput& input, const SampleStampingResult& result, std::size_t point,
                                                    const MonteCarloSettings& settings) {
   if (point >= result.points.size()) return failure(ErrorCode::invalid_argument, "there is no such channel in the result");
   DrawnChain chain;
@@ -200,9 +200,10 @@ Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingResult& r
   auto draws = Draws::prepare(chain.inputs, chain.correlations, settings.seed);
   if (!draws) return tl::unexpected(draws.error());
 
+  const std::complex<double> corrections = std::polar(1.0, -input.adc.phase_lag_rad - input.frequency.angular() * input.reference_delay_s);
   const auto transfer = [&](std::span<const double> drawn) {
     const auto phasor = [&](std::size_t i) { return std::complex<double>(drawn[2 * i], drawn[2 * i + 1]); };
-    std::complex<double> h = phasor(0) / phasor(1) * unit_phasor(phasor(2)) / unit_phasor(phasor(3)) * std::polar(1.0, -adc.phase_lag_rad);
+    std::complex<double> h = phasor(0) / phasor(1) * unit_phasor(phasor(2)) / unit_phasor(phasor(3)) * corrections;
     for (std::size_t i = 8; i < drawn.size(); i += 2)
       h *= (1.0 + drawn[i]) * std::polar(1.0, drawn[i + 1]);
     return h;

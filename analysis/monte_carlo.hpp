@@ -49,8 +49,8 @@ struct MonteCarloTransfer {
 };
 
 // Paper eqs. (3), (4) on drawn phasors: the four fits with the covariances of their coefficients, every other row of the point's
-// budget as it stands there. Never resamples raw data.
-[[nodiscard]] Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingResult& result, std::size_t point,
-                                                                 const AdcResponse& adc, const MonteCarloSettings& settings = {});
+// budget as it stands there. Of `input` only the corrections are used: never resamples raw data.
+[[nodiscard]] Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingInput& input, const SampleStampingResult& result,
+                                                                 std::size_t point, const MonteCarloSettings& settings = {});
 
 } // namespace dyncal::analysis

@@ -96,17 +96,18 @@ TEST(MonteCarlo, AgreesWithTheBudgetOfSampleStamping) {
   input.sync_dau = {"sync", dau.second};
   input.dut = {{"sensor", dau.first}};
   input.adc = {1.0, 1e-3, 0.0, 2e-4};
+  input.reference_delay_s = 4e-6;
   input.systematic = {.reference_magnitude_rel = 1e-3, .reference_phase_rad = 5e-4};
   const auto result = evaluate_sample_stamping(input);
   ASSERT_TRUE(result.has_value());
-  const auto check = check_sample_stamping(*result, 0, input.adc);
+  const auto check = check_sample_stamping(input, *result, 0);
   ASSERT_TRUE(check.has_value()) << check.error().message;
   const TransferPoint& point = result->points[0];
   EXPECT_NEAR(check->magnitude.u / point.u_magnitude, 1.0, 0.02);
   EXPECT_NEAR(check->phase_rad.u / point.u_phase_rad, 1.0, 0.02);
   EXPECT_NEAR(check->magnitude.mean, point.magnitude, 0.05 * point.u_magnitude);
   EXPECT_NEAR(check->phase_rad.mean, point.phase_rad, 0.05 * point.u_phase_rad);
-  EXPECT_FALSE(check_sample_stamping(*result, 1, input.adc).has_value());
+  EXPECT_FALSE(check_sample_stamping(input, *result, 1).has_value());
 }
 
 } // namespace
