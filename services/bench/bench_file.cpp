@@ -58,7 +58,7 @@ void read_window(TomlTable& table, ExcitationSettings& excitation) {
   if (excitation.frequencies_hz.size() != 1 || excitation.repetitions != 1) {
     table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: records of several steps must be searched");
   }
-  for (const char* key : {"settling_s", "duration_s"}) {
+  for (const char* key : {"settling", "settling_s", "duration_s"}) {
     if (table.has(key)) {
       table.refuse(key, "has no meaning when window is \"whole-record\": every sample is evaluated");
     }
@@ -87,6 +87,7 @@ ExcitationSettings read_excitation(TomlTable table) {
   if (excitation.duration_s <= 0.0) {
     table.refuse("duration_s", "must be positive");
   }
+  excitation.settling_from_data = table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
   read_window(table, excitation);
   table.finish();
   return excitation;
@@ -318,6 +319,7 @@ UncertaintySettings read_uncertainty(TomlTable table) {
   uncertainty.reference_magnitude_rel = read("reference_magnitude_rel", "parts of the magnitude");
   uncertainty.reference_phase_rad = read("reference_phase_rad", "rad");
   uncertainty.acs_delay_s = read("acs_delay_s", "seconds");
+  uncertainty.monte_carlo_trials = static_cast<std::uint64_t>(table.whole_number("monte_carlo_trials", 0, 0));
   uncertainty.acs_rate_rel = read("acs_rate_rel", "parts of the rate");
   table.finish();
   return uncertainty;

@@ -44,7 +44,8 @@ struct ExcitationSettings {
   int repetitions = 1;
   double settling_s = 1.0;
   double duration_s = 3.0;
-  bool whole_record = false; // evaluate each record as a whole: one step, nothing searched, nothing left out
+  bool settling_from_data = false; // settling_s is the longest that may be left out
+  bool whole_record = false;       // evaluate each record as a whole: one step, nothing searched, nothing left out
 };
 
 struct GeneratorSettings {
@@ -122,7 +123,8 @@ struct UncertaintySettings { // standard uncertainties
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
   double acs_delay_s = 0.0;
-  double acs_rate_rel = 0.0; // of the ACS's clock, for sample rates
+  std::uint64_t monte_carlo_trials = 0; // at most, for the cross-check of every result; 0: none
+  double acs_rate_rel = 0.0;            // of the ACS's clock, for sample rates
 };
 
 struct BenchFile {

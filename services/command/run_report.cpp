@@ -46,6 +46,15 @@ Json budget_json(const CalibrationResult& result) {
   return lines;
 }
 
+Json monte_carlo_json(const MonteCarloCheck& check) {
+  return {{"trials", check.trials()},
+          {"stable", check.stable()},
+          {"u_magnitude", number(check.u_magnitude())},
+          {"magnitude_interval", {number(check.magnitude_low()), number(check.magnitude_high())}},
+          {"u_phase_rad", number(check.u_phase_rad())},
+          {"phase_interval_rad", {number(check.phase_low_rad()), number(check.phase_high_rad())}}};
+}
+
 Json point_json(const CalibrationResult& result) {
   Json samples = Json::object();
   for (const SourceSamples& source : result.samples()) {
@@ -69,6 +78,9 @@ Json point_json(const CalibrationResult& result) {
              {"data_sha256", result.data_sha256()}};
   if (!result.valid()) {
     point["problem"] = result.problem();
+  }
+  for (const MonteCarloCheck& check : result.monte_carlo()) {
+    point["monte_carlo"] = monte_carlo_json(check);
   }
   if (!result.series_start().empty()) {
     point["sample_rate_hz"] = number(result.sample_rate_hz());

@@ -152,8 +152,11 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   measurement.u_dso_delay_s(file.corrections.u_dso_delay_s);
   measurement.u_acs_delay_s(file.uncertainty.acs_delay_s);
   measurement.frequency_search_rel(file.method.frequency_search_rel);
+  measurement.frequency_exact(file.method.frequency_search_rel == 0.0);
   measurement.reference_delay_s(file.corrections.reference_delay_s);
   measurement.whole_record(file.excitation.whole_record);
+  measurement.settling_from_data(file.excitation.settling_from_data);
+  measurement.monte_carlo_trials(file.uncertainty.monte_carlo_trials);
   measurement.shots(static_cast<std::uint32_t>(file.method.shots));
   measurement.trigger_phase_correction(file.method.trigger_phase_correction);
   measurement.u_acs_rate_rel(file.uncertainty.acs_rate_rel);
@@ -191,11 +194,17 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
         {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
   }
   recipe.whole_record = measurement.whole_record();
+  recipe.settling_from_data = measurement.settling_from_data();
+  recipe.monte_carlo_trials = measurement.monte_carlo_trials();
   if (recipe.whole_record && recipe.steps.size() != 1) {
     return tl::unexpected(
         refused(fmt::format("the recipe evaluates whole records but has {} steps; only one is possible", recipe.steps.size())));
   }
-  recipe.frequency_search_rel = measurement.frequency_search_rel();
+  if (measurement.frequency_exact()) {
+    recipe.frequency_search_rel = 0.0;
+  } else if (measurement.frequency_search_rel() > 0.0) {
+    recipe.frequency_search_rel = measurement.frequency_search_rel();
+  }
   recipe.reference_delay_s = measurement.reference_delay_s();
   recipe.systematic.reference_magnitude_rel = measurement.reference_magnitude_rel();
   recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();

@@ -38,6 +38,8 @@ struct Recipe {
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
   std::vector<RecipeStep> steps;
+  bool settling_from_data = false;                            // RecipeStep::settling_s is the longest that is left out
+  std::uint64_t monte_carlo_trials = 0;                       // 0: no cross-check
   bool whole_record = false;                                  // one step; nothing is searched, nothing is left out
   double frequency_search_rel = 1e-3;                         // 0: the frequency is known exactly in every clock
   double reference_delay_s = 0.0;                             // of the reference's channel against the ACS's sync

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "services/bench/digest.hpp"
+#include "services/evaluation/monte_carlo_check.hpp"
+#include "services/evaluation/settled_part.hpp"
 #include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {
@@ -23,8 +25,58 @@ std::string digest_of(const StepSamples& acs, const StepSamples& dau) {
   return digest.hex();
 }
 
-double resolution_of(const SourceRecord& record, std::size_t channel) {
-  return record.description().channels()[channel].resolution();
+// One source's samples of the step.
+struct StepPart {
+  const SourceRecord& record;
+  StretchOfTime stretch;
+  std::vector<std::size_t> channels;
+  StepSamples samples;
+
+  void cut_samples() { samples = cut(record, stretch, channels); }
+  [[nodiscard]] analysis::ChannelSamples channel(std::size_t column, const ChannelName& name) const {
+    return {name.text(), samples.columns[column], record.description().channels()[channels[column]].resolution()};
+  }
+};
+
+void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& acs, StepPart& dau, std::vector<std::string>& flags) {
+  SettlingColumns sensor{dau.samples, 0, {}};
+  for (std::size_t column = 1; column < dau.channels.size(); ++column) {
+    sensor.settling.push_back(column);
+  }
+  const Settled settled = settled_part(step, recipe.frequency_search_rel, {acs.samples, 1, {0}}, sensor);
+  flags.insert(flags.end(), settled.flags.begin(), settled.flags.end());
+  const auto ns = [](double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); };
+  for (StepPart* part : {&acs, &dau}) {
+    part->stretch.begin_ns += ns(settled.settling_s);
+    part->stretch.end_ns = std::min(part->stretch.end_ns, part->stretch.begin_ns + ns(step.duration_s) - 1);
+    part->cut_samples();
+  }
+}
+
+CalibrationResult channel_result(const Recipe& recipe, const RecipeStep& step, const analysis::SampleStampingResult& evaluated,
+                                 std::size_t place, const ChannelName& name) {
+  const analysis::TransferPoint& point = evaluated.points[place];
+  CalibrationResult result = result_head(recipe, step, name.text());
+  result.valid(true);
+  result.magnitude(point.magnitude);
+  result.u_magnitude(point.u_magnitude);
+  result.phase_rad(point.phase_rad);
+  result.u_phase_rad(point.u_phase_rad);
+  for (const analysis::SeriesFit* fit : {&evaluated.reference, &evaluated.sync_acs, &evaluated.sync_dau, &point.dut}) {
+    result.fits().push_back(fit_message(*fit));
+  }
+  add_budget(point.budget, result);
+  return result;
+}
+
+void check_by_drawing(const Recipe& recipe, const analysis::SampleStampingInput& input, const analysis::SampleStampingResult& evaluated,
+                      std::size_t place, CalibrationResult& result) {
+  const auto check = monte_carlo_check(input, evaluated, place, recipe.monte_carlo_trials);
+  if (check) {
+    result.monte_carlo().push_back(*check);
+  } else {
+    result.flags().push_back("no Monte Carlo check: " + check.error().message);
+  }
 }
 
 analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step) {
@@ -66,13 +118,17 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
                                              const StretchOfTime& acs_stretch, const SourceRecord& dau, const StretchOfTime& dau_stretch,
                                              const std::vector<std::string>& flags) {
   const std::vector<ChannelName> dut = channels_under_calibration(recipe, dau);
-  const std::vector<std::size_t> acs_channels{*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)};
-  std::vector<std::size_t> dau_channels{*dau.channel(recipe.sync_dau.channel)};
+  StepPart acs_part{acs, acs_stretch, {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)}, {}};
+  StepPart dau_part{dau, dau_stretch, {*dau.channel(recipe.sync_dau.channel)}, {}};
   for (const ChannelName& name : dut) {
-    dau_channels.push_back(*dau.channel(name.channel));
+    dau_part.channels.push_back(*dau.channel(name.channel));
   }
-  const StepSamples acs_series = cut(acs, acs_stretch, acs_channels);
-  const StepSamples dau_series = cut(dau, dau_stretch, dau_channels);
+  acs_part.cut_samples();
+  dau_part.cut_samples();
+  std::vector<std::string> all_flags = flags;
+  if (recipe.settling_from_data) {
+    leave_settling_out(recipe, step, acs_part, dau_part, all_flags);
+  }
 
   const auto adc = adc_response(recipe, step);
   if (!adc) {
@@ -80,17 +136,17 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
   }
   analysis::SampleStampingInput input{.frequency = step.frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
-                                      .acs_stamps_ns = acs_series.stamps_ns,
-                                      .reference = {recipe.reference.text(), acs_series.columns[0], resolution_of(acs, acs_channels[0])},
-                                      .sync_acs = {recipe.sync_acs.text(), acs_series.columns[1], resolution_of(acs, acs_channels[1])},
-                                      .dau_stamps_ns = dau_series.stamps_ns,
-                                      .sync_dau = {recipe.sync_dau.text(), dau_series.columns[0], resolution_of(dau, dau_channels[0])},
+                                      .acs_stamps_ns = acs_part.samples.stamps_ns,
+                                      .reference = acs_part.channel(0, recipe.reference),
+                                      .sync_acs = acs_part.channel(1, recipe.sync_acs),
+                                      .dau_stamps_ns = dau_part.samples.stamps_ns,
+                                      .sync_dau = dau_part.channel(0, recipe.sync_dau),
                                       .dut = {},
                                       .adc = *adc,
                                       .reference_delay_s = recipe.reference_delay_s,
                                       .systematic = recipe.systematic};
   for (std::size_t i = 0; i < dut.size(); ++i) {
-    input.dut.push_back({dut[i].text(), dau_series.columns[i + 1], resolution_of(dau, dau_channels[i + 1])});
+    input.dut.push_back(dau_part.channel(i + 1, dut[i]));
   }
   input.systematic.dau_tick_s = dau.description().tick_s();
   const auto evaluated = analysis::evaluate_sample_stamping(input);
@@ -98,26 +154,19 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
     return results_of_missing_step(recipe, step, dau, evaluated.error().message);
   }
 
-  const std::string data_sha256 = digest_of(acs_series, dau_series);
+  const std::string data_sha256 = digest_of(acs_part.samples, dau_part.samples);
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < dut.size(); ++i) {
-    const analysis::TransferPoint& point = evaluated->points[i];
-    CalibrationResult result = result_head(recipe, step, dut[i].text());
-    result.valid(true);
-    result.magnitude(point.magnitude);
-    result.u_magnitude(point.u_magnitude);
-    result.phase_rad(point.phase_rad);
-    result.u_phase_rad(point.u_phase_rad);
+    CalibrationResult result = channel_result(recipe, step, *evaluated, i, dut[i]);
     result.unit(ratio_unit(acs, recipe.reference.channel, dau, dut[i].channel));
-    for (const analysis::SeriesFit* fit : {&evaluated->reference, &evaluated->sync_acs, &evaluated->sync_dau, &point.dut}) {
-      result.fits().push_back(fit_message(*fit));
-    }
-    add_budget(point.budget, result);
-    result.samples().push_back(samples_message(acs, acs_series, acs_stretch));
-    result.samples().push_back(samples_message(dau, dau_series, dau_stretch));
+    result.samples().push_back(samples_message(acs, acs_part.samples, acs_part.stretch));
+    result.samples().push_back(samples_message(dau, dau_part.samples, dau_part.stretch));
     result.lost(result.samples()[0].lost() + result.samples()[1].lost());
-    result.flags() = flags;
+    result.flags() = all_flags;
     result.data_sha256(data_sha256);
+    if (recipe.monte_carlo_trials > 0) {
+      check_by_drawing(recipe, input, *evaluated, i, result);
+    }
     results.push_back(std::move(result));
   }
   return results;

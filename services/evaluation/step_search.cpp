@@ -82,8 +82,9 @@ void StepSearch::feed() {
 
 void StepSearch::accept(const analysis::ExcitationWindow& window) {
   const RecipeStep& step = recipe_.steps[step_];
-  const std::int64_t begin = window.begin_ns + to_ns(step.settling_s);
-  const std::int64_t end = std::min(begin + to_ns(step.duration_s), window.end_ns) - 1;
+  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
+  const std::int64_t begin = recipe_.settling_from_data ? window.begin_ns : planned_begin;
+  const std::int64_t end = std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1;
   if (end > begin) {
     found_[step_] = {begin, end};
   }

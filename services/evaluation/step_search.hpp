@@ -25,7 +25,8 @@ public:
   // Looks at the samples that have come since the last call, as far as `last_step` (an index into the recipe's steps).
   void advance(std::size_t last_step);
 
-  // The stretch to evaluate for the step: settling dropped, at most the planned duration. Empty until the step's excitation is over.
+  // The stretch to evaluate for the step: settling dropped, at most the planned duration; when settling is found from the data, from the
+  // beginning of the excitation. Empty until the step's excitation is over.
   [[nodiscard]] std::optional<StretchOfTime> stretch(std::size_t step) const;
   // The step whose excitation is looked for now.
   [[nodiscard]] std::size_t step() const { return step_; }

@@ -13,8 +13,8 @@ namespace {
 
 using testing::HasSubstr;
 
-EvaluationOutput evaluate(const tests::SyntheticRun& run) {
-  RunEvaluator evaluator(*parse_recipe(run.measurement()));
+EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement) {
+  RunEvaluator evaluator(*parse_recipe(measurement));
   EXPECT_TRUE(evaluator.describe(run.acs_description()));
   EXPECT_TRUE(evaluator.describe(run.dau_description()));
   EvaluationOutput all;
@@ -41,6 +41,10 @@ EvaluationOutput evaluate(const tests::SyntheticRun& run) {
   return all;
 }
 
+EvaluationOutput evaluate(const tests::SyntheticRun& run) {
+  return evaluate(run, run.measurement());
+}
+
 TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
   const tests::SyntheticRun run;
   const EvaluationOutput output = evaluate(run);
@@ -60,6 +64,56 @@ TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
   EXPECT_EQ(output.transfer_functions.front().points().size(), 2U);
   ASSERT_EQ(output.clock_reports.size(), 1U);
   EXPECT_NEAR(output.clock_reports.front().mean_interval_s(), 997e-6, 1e-9);
+}
+
+TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
+  tests::SyntheticRun run;
+  run.settling_time_constant_s = 0.05;
+  Measurement measurement = run.measurement();
+  measurement.settling_from_data(true);
+  for (PlannedStep& step : measurement.steps()) {
+    step.settling_s(0.7);
+    step.duration_s(0.6);
+  }
+  for (const CalibrationResult& result : evaluate(run, measurement).results) {
+    ASSERT_TRUE(result.valid()) << result.problem();
+    EXPECT_TRUE(result.flags().empty()) << result.flags().front();
+    EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
+    // 0.05 s ln(0.1 / 1e-4) = 0.35 s after the beginning, whole blocks of periods and the window's edge beside it.
+    const double begin_s = run.off_s + (result.step() - 1) * (run.on_s + run.off_s);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].first_ns()) * 1e-9 - begin_s, 0.4, 0.15);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].last_ns() - result.samples()[0].first_ns()) * 1e-9, 0.6, 0.001);
+  }
+}
+
+TEST(RunEvaluator, SaysSoWhenSettlingTakesLongerThanPlanned) {
+  tests::SyntheticRun run;
+  run.settling_time_constant_s = 0.05;
+  Measurement measurement = run.measurement();
+  measurement.settling_from_data(true);
+  for (PlannedStep& step : measurement.steps()) {
+    step.settling_s(0.05);
+    step.duration_s(1.2);
+  }
+  for (const CalibrationResult& result : evaluate(run, measurement).results) {
+    ASSERT_EQ(result.flags().size(), 1U);
+    EXPECT_THAT(result.flags().front(), HasSubstr("settles for"));
+  }
+}
+
+TEST(RunEvaluator, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
+  const tests::SyntheticRun run;
+  Measurement measurement = run.measurement();
+  measurement.monte_carlo_trials(50'000);
+  measurement.reference_delay_s(2e-6);
+  for (const CalibrationResult& result : evaluate(run, measurement).results) {
+    ASSERT_EQ(result.monte_carlo().size(), 1U);
+    const MonteCarloCheck& check = result.monte_carlo().front();
+    EXPECT_NEAR(check.u_magnitude() / result.u_magnitude(), 1.0, 0.05);
+    EXPECT_NEAR(check.u_phase_rad() / result.u_phase_rad(), 1.0, 0.05);
+    EXPECT_LT(check.phase_low_rad(), result.phase_rad());
+    EXPECT_GT(check.phase_high_rad(), result.phase_rad());
+  }
 }
 
 TEST(RunEvaluator, GivesTheSameBitsHoweverTheStreamsWereCut) {

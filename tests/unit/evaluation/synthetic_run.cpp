@@ -92,7 +92,8 @@ double SyntheticRun::excitation(double t_s, double& phase_turns) const {
   }
   const SyntheticStep& step = steps[static_cast<std::size_t>(index)];
   phase_turns = std::stod(step.frequency_hz) * t_s;
-  return step.amplitude;
+  const double on_for_s = in_list - static_cast<double>(index) * period;
+  return settling_time_constant_s > 0.0 ? step.amplitude * (1.0 - 0.1 * std::exp(-on_for_s / settling_time_constant_s)) : step.amplitude;
 }
 
 double SyntheticRun::signal(double t_s, double gain, double delay) const {

@@ -1,0 +1,55 @@
+#include "services/evaluation/settled_part.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "analysis/settling.hpp"
+#include "analysis/sine_fit.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// Of each settling column, in their order; the reason where there is none.
+std::vector<analysis::Expected<double>> settling_times_s(const RecipeStep& step, double frequency_search_rel,
+                                                         const SettlingColumns& source) {
+  const StepSamples& samples = source.samples;
+  analysis::Frequency frequency = step.frequency;
+  if (frequency_search_rel > 0.0 && !samples.stamps_ns.empty()) {
+    const std::array sync{std::span<const double>(samples.columns[source.sync])};
+    const auto fit =
+        analysis::fit_sine_and_frequency(step.frequency, frequency_search_rel, samples.stamps_ns.front(), samples.stamps_ns, sync);
+    if (!fit) {
+      return std::vector<analysis::Expected<double>>(source.settling.size(), tl::unexpected(fit.error()));
+    }
+    frequency = fit->frequency;
+  }
+  std::vector<analysis::Expected<double>> times;
+  for (const std::size_t column : source.settling) {
+    times.push_back(analysis::find_settling(frequency, samples.stamps_ns, samples.columns[column]).map([](const auto& found) {
+      return found.settling_s;
+    }));
+  }
+  return times;
+}
+
+} // namespace
+
+Settled settled_part(const RecipeStep& step, double frequency_search_rel, const SettlingColumns& acs, const SettlingColumns& sensor) {
+  const auto reference = settling_times_s(step, frequency_search_rel, acs).front();
+  if (!reference) {
+    return {step.settling_s, {fmt::format("settling not found, {} s left out: {}", step.settling_s, reference.error().message)}};
+  }
+  double longest_s = *reference;
+  for (const auto& channel : settling_times_s(step, frequency_search_rel, sensor)) {
+    longest_s = std::max(longest_s, channel.value_or(0.0));
+  }
+  if (longest_s > step.settling_s) {
+    return {step.settling_s, {fmt::format("settles for {:.3g} s, {} s left out", longest_s, step.settling_s)}};
+  }
+  return {longest_s, {}};
+}
+
+} // namespace dyncal::services
