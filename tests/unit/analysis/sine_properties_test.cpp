@@ -22,10 +22,11 @@ struct DrawnRecord {
 
 DrawnRecord drawn_record() {
   DrawnRecord record;
-  const auto samples = *rc::gen::inRange<int>(20, 400);
+  const auto samples = *rc::gen::inRange<int>(20, 1500);
   const auto interval_ns = *rc::gen::inRange<std::int64_t>(1'000, 5'000'000);
-  const auto steps = *rc::gen::container<std::vector<std::int64_t>>(static_cast<std::size_t>(samples),
-                                                                    rc::gen::inRange<std::int64_t>(interval_ns / 2 + 1, interval_ns * 2));
+  const std::int64_t jitter_ns = *rc::gen::element(std::int64_t{0}, interval_ns / 10'000, interval_ns / 100, interval_ns / 2 - 1);
+  const auto steps = *rc::gen::container<std::vector<std::int64_t>>(
+      static_cast<std::size_t>(samples), rc::gen::inRange<std::int64_t>(interval_ns - jitter_ns, interval_ns + jitter_ns + 1));
   const double turns_per_interval = 1e-3 * *rc::gen::inRange<int>(5, 200);
   record.frequency = Frequency::from_hz(turns_per_interval * 1e9 / static_cast<double>(interval_ns));
   std::int64_t stamp_ns = epoch_ns;
