@@ -1,0 +1,72 @@
+// `dyncal calibrate dso-delay` at the virtual bench's oscilloscope, whose trigger output comes 236(1) ns after the trigger.
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::HasSubstr;
+
+class CalibrateDsoDelay : public testing::TestWithParam<const char*> {
+protected:
+  void start_bench(const std::vector<std::string>& options) {
+    folder_ = fresh_folder(std::string("calibrate-dso-delay-") + GetParam() + std::to_string(options.size()));
+    std::vector<std::string> arguments{"--preset", "tss", "--ports-file", folder_ / "ports.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    bench_.emplace("dyncal-virtual-bench", arguments, folder_);
+    ASSERT_TRUE(bench_->wait_for_error_text("ports", std::chrono::seconds(10)));
+    const auto ports = read_json(folder_ / "ports.json");
+    oscilloscope_ = "127.0.0.1:" + ports["dso"].dump();
+    generator_ = "127.0.0.1:" + ports["generator"].dump();
+  }
+
+  std::filesystem::path folder_;
+  std::optional<ProgramRun> bench_;
+  std::string oscilloscope_;
+  std::string generator_;
+};
+
+TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
+  start_bench({});
+  const auto file = folder_ / "dso-delay.json";
+  const auto work = fresh_folder(std::string("calibrate-dso-delay-run-") + GetParam());
+  ProgramRun calibrate(
+      "dyncal",
+      {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--output", file}, work);
+  ASSERT_EQ(calibrate.wait(std::chrono::seconds(60)), 0) << calibrate.errors();
+  const auto json = read_json(file);
+  EXPECT_NEAR(json["value_s"].get<double>(), 236e-9, 1e-9);
+  EXPECT_GT(json["u_s"].get<double>(), 0.1e-9);
+  EXPECT_LE(json["u_s"].get<double>(), 1e-9);
+  EXPECT_NEAR(json["scatter_s"].get<double>(), 1e-9, 0.5e-9);
+  EXPECT_EQ(json["shots"], 50);
+  const auto counts = json["histogram"]["counts"].get<std::vector<int>>();
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 50);
+  EXPECT_THAT(calibrate.output(), HasSubstr("dso_delay = { file = \"" + file.string() + "\" }"));
+}
+
+TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
+  start_bench({"--scope-fault", "garbage=0.01", "--scope-fault", "other-answer=0.01"});
+  const auto work = fresh_folder(std::string("calibrate-dso-delay-bad-") + GetParam());
+  ProgramRun calibrate("dyncal",
+                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
+                        "20", "--output", work / "delay.json"},
+                       work);
+  ASSERT_EQ(calibrate.wait(std::chrono::seconds(100)), 0) << calibrate.errors();
+  const auto json = read_json(work / "delay.json");
+  EXPECT_GT(json["failed_shots"], 0);
+  EXPECT_EQ(json["shots"], 20);
+  EXPECT_NEAR(json["value_s"].get<double>(), 236e-9, 1.5e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByBothWays, CalibrateDsoDelay, testing::Values("rectangle", "sine"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace dyncal::tests

@@ -1,0 +1,99 @@
+// A run by series time stamping over bad instruments: every shot that fails is repeated, and the run reaches its result.
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+
+struct Place {
+  std::string name;
+  int domain;
+};
+
+class SeriesFaults : public testing::Test {
+protected:
+  // A virtual bench with `options`, the services, and a bench file for a run.
+  void start(const Place& place, const std::vector<std::string>& options) {
+    folder_ = fresh_folder("series-faults-" + place.name);
+    laboratory_.emplace(folder_, place.domain);
+    std::filesystem::create_directories(folder_ / "bench");
+    std::vector<std::string> arguments{"--preset",      "tss",
+                                       "--speed",       "8",
+                                       "--frequencies", "40,160",
+                                       "--levels",      "100",
+                                       "--ports-file",  folder_ / "ports.json",
+                                       "--truth",       folder_ / "truth.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    virtual_bench_.emplace("dyncal-virtual-bench", arguments, folder_ / "bench");
+    ASSERT_TRUE(virtual_bench_->wait_for_error_text("ports", std::chrono::seconds(10)));
+    write_bench_file(read_json(folder_ / "ports.json"));
+    laboratory_->start("dyncal-analysis", {}, "fastdds");
+    laboratory_->start("dyncal-acs", {folder_ / "bench.toml"}, "cyclonedds");
+    dso_ = &laboratory_->start("dyncal-dso", {folder_ / "bench.toml"}, "fastdds");
+  }
+
+  void write_bench_file(const nlohmann::json& ports) const {
+    const auto address = [&](const char* port) { return "\"127.0.0.1:" + ports[port].dump() + "\"\n"; };
+    std::ofstream(folder_ / "bench.toml") << "bench = \"series-faults\"\n[excitation]\nfrequencies_hz = [\"40\", \"160\"]\n"
+                                          << "level = 100.0\nsettling_s = 0.5\nduration_s = 2.0\n"
+                                          << "[generator]\ndriver = \"scpi\"\nlevel_per_volt = 50.0\naddress = " << address("generator")
+                                          << "[sources.dso]\ndriver = \"oscilloscope\"\naddress = " << address("dso")
+                                          << "[sources.tss]\ndriver = \"series\"\naddress = " << address("tss")
+                                          << "[sources.acs]\ndriver = \"socket\"\naddress = " << address("acs")
+                                          << "[method]\nkind = \"series-timestamping\"\nreference = \"acs/reference\"\n"
+                                          << "sync_acs = \"acs/sync\"\nsync_dso = \"dso/sync\"\ndut = [\"tss/acceleration_z\"]\n"
+                                          << "shots = 4\n[corrections]\ndso_delay = { value_s = 236e-9, u_s = 1e-9 }\n"
+                                          << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n";
+  }
+
+  nlohmann::json run() {
+    ProgramRun& run = laboratory_->start("dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
+    EXPECT_EQ(run.wait(std::chrono::seconds(120)), 0) << run.errors();
+    return read_json(folder_ / "result.json");
+  }
+
+  static void expect_complete(const nlohmann::json& result) {
+    ASSERT_FALSE(result.is_discarded());
+    ASSERT_EQ(result["points"].size(), 2U);
+    for (const auto& point : result["points"]) {
+      EXPECT_TRUE(point["valid"].get<bool>()) << point;
+      EXPECT_EQ(point["samples"]["tss"], 4 * 1000) << "all four shots: " << point;
+      EXPECT_EQ(point["flags"], nlohmann::json::array()) << point;
+    }
+  }
+
+  std::filesystem::path folder_;
+  std::optional<ProgramRun> virtual_bench_;
+  std::optional<Laboratory> laboratory_;
+  ProgramRun* dso_ = nullptr;
+};
+
+TEST_F(SeriesFaults, ShotsSpoiledByABadLineAreRepeatedUntilTheStepHasAll) {
+  start({"line", 96}, {"--scope-fault", "garbage=0.01", "--scope-fault", "half-answer=0.005", "--scope-fault", "other-answer=0.01",
+                       "--scope-fault", "wrong-length=0.05", "--scope-fault", "disconnect=0.01", "--scope-pieces", "1500"});
+  expect_complete(run());
+  EXPECT_THAT(dso_->errors(), HasSubstr("oscilloscope 127.0.0.1:")); // clear lines about it
+}
+
+TEST_F(SeriesFaults, ASensorThatRunsFreeIsNoticedAndCorrected) {
+  start({"free", 97}, {"--tss-free-running"});
+  const auto result = run();
+  ASSERT_FALSE(result.is_discarded());
+  const auto truth = read_json(folder_ / "truth.json");
+  for (const auto& point : result["points"]) {
+    EXPECT_THAT(point["series_start"].get<std::string>(), AnyOf(HasSubstr("uniform over one sample"), HasSubstr("undecided")));
+    EXPECT_GT(point["series_start_scatter_s"].get<double>(), 20e-6);
+    EXPECT_GT(point["u_phase_rad"].get<double>(), 0.01); // four shots of a start that is not known
+  }
+  EXPECT_EQ(result["points"][1]["series_start"], "uniform over one sample after the trigger");
+}
+
+} // namespace
+} // namespace dyncal::tests
