@@ -22,6 +22,7 @@ using drivers::generator::ScpiGenerator;
 using std::chrono::milliseconds;
 
 constexpr milliseconds trigger_limit{3000};
+constexpr milliseconds pause_after_failure{200};
 
 struct Delays {
   analysis::TriggerDelay mean;
@@ -69,17 +70,18 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command, const analysis
        .inputs = {{"sync", command.sync_input, command.sync_range_v, 0.0},
                   {"output", command.output_input, command.output_range_v, 0.4 * command.output_range_v}}},
       device_stop);
-  if (auto ready = oscilloscope.prepare(acquisition_for(command, frequency.hz())); !ready) {
-    return tl::unexpected(device_error(ready.error()));
-  }
   Delays delays;
   std::vector<analysis::ShotDelay> shots;
   double interval_s = 0.0;
   while (static_cast<int>(shots.size()) < command.shots) {
-    const auto shot = oscilloscope.acquire(trigger_limit);
+    const auto shot =
+        oscilloscope.prepare(acquisition_for(command, frequency.hz())).and_then([&] { return oscilloscope.acquire(trigger_limit); });
     std::optional<std::string> problem;
     if (!shot) {
       problem = shot.error().message;
+      if (shots.empty() && (shot.error().code == drivers::ErrorCode::refused || shot.error().code == drivers::ErrorCode::not_found)) {
+        return tl::unexpected(device_error(shot.error())); // a wrong address or instrument does not get better
+      }
     } else {
       const analysis::DelayTrace trace{shot->first_sample_s, shot->interval_s, shot->traces[0].volts, shot->traces[1].volts};
       const auto delay = command.by == "rectangle" ? analysis::delay_by_rectangle(trace) : analysis::delay_by_sine(trace, frequency);
@@ -95,6 +97,9 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command, const analysis
     }
     if (problem && ++delays.failures > command.shots) {
       return tl::unexpected(Error{ErrorCode::device, fmt::format("too many shots fail, the last one: {}", *problem)});
+    }
+    if (problem) {
+      static_cast<void>(device_stop.wait_for(pause_after_failure));
     }
   }
   const auto mean = analysis::mean_trigger_delay(shots, interval_s);

@@ -103,7 +103,7 @@ void BenchService::run(const std::stop_token& stop) {
 
 void BenchService::report() {
   const SourceState state = connected_ ? SOURCE_RUNNING : SOURCE_SILENT;
-  const std::string& message = connected_ ? shot_problem_ : connection_problem_;
+  const std::string& message = connection_problem_.empty() ? shot_problem_ : connection_problem_;
   const auto now = std::chrono::steady_clock::now();
   endpoints_.oscilloscope.status(state, message, now);
   endpoints_.sensor.status(state, message, now);
@@ -140,6 +140,7 @@ void BenchService::follow(const Excitation& excitation) {
   const auto frequency = analysis::Frequency::parse(excitation.frequency_hz());
   if (frequency && !in_step(run, excitation.step())) {
     step_ = Step{run, excitation.step(), frequency->hz(), 0};
+    shot_problem_.clear();
   }
 }
 
@@ -188,7 +189,6 @@ void BenchService::take_shot() {
     connected_ = false; // unless connecting says otherwise
     return;
   }
-  shot_problem_.clear();
   ++step_->shots;
   publish(*pair, step);
 }

@@ -2,9 +2,9 @@
 // of records, DsoRecord and TssRecord, with the same session and shot number.
 //
 // Per step `shots` pairs are taken, however often one fails in between, as long as the step is steady: a shot that fails is counted as
-// rejected, named in the log and in the status of both sources, and repeated over new connections where these were lost. While the devices
-// cannot be reached both sources are silent. Shot numbers count the pairs of a session from 1; each names its run and step. The sensor
-// tells its device and units only with a series; its channels are those that the bench calibrates, from the beginning.
+// rejected, named in the log and until the next step in the status of both sources, and repeated over new connections where these were
+// lost. While the devices cannot be reached both sources are silent. Shot numbers count the pairs of a session from 1; each names its run
+// and step. The sensor tells its device and units only with a series; its channels are those that the bench calibrates, from the beginning.
 // run() belongs to one thread; `stop` may be requested from any.
 #pragma once
 
@@ -71,7 +71,7 @@ private:
   std::optional<Step> step_; // steady now
   std::uint64_t shot_ = 0;
   std::string connection_problem_;
-  std::string shot_problem_; // until the next shot that succeeds
+  std::string shot_problem_; // the last one of this step
 };
 
 } // namespace dyncal::services::dso

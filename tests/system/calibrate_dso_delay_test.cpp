@@ -52,7 +52,7 @@ TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
 }
 
 TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
-  start_bench({"--scope-fault", "garbage=0.01", "--scope-fault", "other-answer=0.01"});
+  start_bench({"--scope-fault", "garbage=0.003", "--scope-fault", "other-answer=0.003"});
   const auto work = fresh_folder(std::string("calibrate-dso-delay-bad-") + GetParam());
   ProgramRun calibrate("dyncal",
                        {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
@@ -66,7 +66,7 @@ TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ByBothWays, CalibrateDsoDelay, testing::Values("rectangle", "sine"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& way) { return std::string(way.param); });
 
 } // namespace
 } // namespace dyncal::tests

@@ -76,7 +76,7 @@ TEST_P(SeriesDemo, AgreesWithTheTruthInMagnitudePhaseAndSampleRate) {
 INSTANTIATE_TEST_SUITE_P(BothVendorsAndMixed, SeriesDemo,
                          testing::Values("fastdds", "cyclonedds", "dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds",
                                          "dau=fastdds,acs=cyclonedds,analysis=fastdds,run=cyclonedds"),
-                         [](const auto& info) { return "case" + std::to_string(info.index + 1); });
+                         [](const auto& vendors) { return "case" + std::to_string(vendors.index + 1); });
 
 TEST(SeriesDemoWithoutCorrection, IsWrongByMoreThanTenMilliradians) {
   const auto folder = fresh_folder("series-demo-without");

@@ -1,4 +1,4 @@
-// A VXI-11 instrument for tests, as far as messages go: portmapper (port 111) and core channel over ONC RPC, on all addresses of this host,
+// A VXI-11 instrument for tests, as far as messages go: portmapper (port 111) and core channel over ONC RPC, on the loopback interface,
 // from a thread of its own. The wire forms are those of the VXIbus specification's RPCL; procedures: create_link, device_write,
 // device_read, destroy_link. An answer leaves in pieces of `piece_octets`, the last with the END reason; a read without an answer is error
 // 15 (timeout). One at a time in a process: the RPC library's tables are global. open() is false when port 111 is not to be had.
@@ -35,9 +35,7 @@ public:
         svc_destroy(transport);
       }
     }
-    svc_unregister(core_program, 1);
-    svc_unregister(PMAPPROG, PMAPVERS);
-    current() = nullptr;
+    current() = nullptr; // the functions stay registered: the same for every server
   }
   Vxi11Server(const Vxi11Server&) = delete;
   Vxi11Server& operator=(const Vxi11Server&) = delete;
@@ -102,7 +100,8 @@ private:
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     const void* raw = &address;
-    return bind(descriptor, static_cast<const sockaddr*>(raw), sizeof address) == 0 ? descriptor : -1;
+    const bool open = bind(descriptor, static_cast<const sockaddr*>(raw), sizeof address) == 0;
+    return open && (type == SOCK_DGRAM || listen(descriptor, 8) == 0) ? descriptor : -1;
   }
 
   // Whoever asks for a program is sent to the core channel.
@@ -120,26 +119,29 @@ private:
 
   using Coder = bool_t (*)(XDR*, void*);
   // The RPC library wants a function of any arguments.
+  static bool_t chosen_coder(XDR* xdr, ...) {
+    va_list arguments;
+    va_start(arguments, xdr);
+    void* value = va_arg(arguments, void*);
+    va_end(arguments);
+    return coder()(xdr, value);
+  }
+  static Coder& coder() {
+    static Coder chosen = nullptr; // of the server's thread
+    return chosen;
+  }
   static void answer_with(SVCXPRT* transport, Coder code, void* value) {
-    static thread_local Coder chosen;
-    chosen = code;
-    const xdrproc_t through = [](XDR* xdr, ...) -> bool_t {
-      va_list arguments;
-      va_start(arguments, xdr);
-      void* given = va_arg(arguments, void*);
-      va_end(arguments);
-      return chosen(xdr, given);
-    };
-    svc_sendreply(transport, through, static_cast<char*>(value));
+    coder() = code;
+    svc_sendreply(transport, chosen_coder, static_cast<char*>(value));
   }
 
-  template <int numbers, bool with_text>
+  template <int count, bool with_text>
   static bool_t read_parameters(XDR* xdr, ...) {
     va_list arguments;
     va_start(arguments, xdr);
     auto* parameters = va_arg(arguments, Parameters*);
     va_end(arguments);
-    for (int i = 0; i < numbers; ++i) {
+    for (int i = 0; i < count; ++i) {
       if (xdr_int32_t(xdr, &parameters->numbers[i]) == 0) {
         return 0;
       }
