@@ -127,18 +127,26 @@ void RunSession::work(const KnownSources& sources, Clock::time_point now) {
 void RunSession::take_descriptions(const KnownSources& sources) {
   for (auto& [name, link] : links_) {
     const auto known = sources.find(name);
-    if (known == sources.end() || !known->second.description || (known->second.description->session() == link.session && !link.triggered)) {
+    if (known == sources.end() || !known->second.description || known->second.description == link.description) {
       continue;
     }
     const SourceDescription& description = *known->second.description;
-    link.session = description.session();
+    const bool only_told_more = link.description && link.description->session() == description.session() && !link.triggered;
+    link.description = description;
+    if (only_told_more) {
+      continue; // what its samples mean was known from the beginning
+    }
     if (const auto described = evaluator_->describe(description); !described) {
       refuse(described.error().message);
       return;
     }
     link.described = true;
     link.triggered = description.kind() == SOURCE_DSO || description.kind() == SOURCE_TSS;
-    link.triggered ? open_record_reader(description.kind()) : open_reader(description.kind());
+    if (link.triggered) {
+      open_record_reader(description.kind());
+    } else {
+      open_reader(description.kind());
+    }
   }
 }
 

@@ -62,8 +62,8 @@ private:
     bool described = false;
     bool answered = false;
     bool ended = false;
-    bool triggered = false; // sends records when there is a shot, and may be silent else
-    std::uint64_t session = 0;
+    bool triggered = false;                       // sends records when there is a shot, and may be silent else
+    std::optional<SourceDescription> description; // as the evaluation knows it
     Clock::time_point last_block;
   };
 

@@ -66,14 +66,19 @@ double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoin
   return largest_s;
 }
 
+// What shifts all frequencies alike: it adds in full to the group delay.
+double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
+  const bool by_series = recipe.method == METHOD_SERIES_TIMESTAMPING;
+  return std::hypot(recipe.systematic.acs_delay_s, by_series ? recipe.u_dso_delay_s : u_adc_delay_s(recipe, phases));
+}
+
 void add_group_delay(const Recipe& recipe, std::vector<PointOfMean>& points, TransferFunction& function) {
   const std::vector<std::size_t> chosen = first_of_each_frequency(points);
   std::vector<analysis::PhasePoint> phases;
   for (const std::size_t i : chosen) {
     phases.push_back(points[i].phase);
   }
-  const auto delay = analysis::evaluate_group_delay(
-      phases, {std::hypot(recipe.systematic.acs_delay_s, u_adc_delay_s(recipe, phases)), recipe.systematic.reference_phase_rad});
+  const auto delay = analysis::evaluate_group_delay(phases, {u_common_delay_s(recipe, phases), recipe.systematic.reference_phase_rad});
   function.group_delay_valid(delay.has_value());
   if (!delay) {
     function.group_delay_problem(delay.error().message);
