@@ -1,5 +1,7 @@
 #include "services/dso/shot_device.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace dyncal::services::dso {
@@ -48,22 +50,37 @@ Expected<ShotPair> ShotDevice::take(double frequency_hz) {
   const milliseconds trigger_limit = least_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
   auto trace = oscilloscope_.acquire(trigger_limit);
   if (!trace) {
-    last_trigger_.reset(); // whether the sensor saw a trigger is not known
+    triggers_.trigger_may_have_come();
     return tl::unexpected(device_error(trace.error()));
   }
-  auto series = sensor_->next(series_limit);
+  triggers_.trigger_came();
+  auto series = series_of_last_trigger();
   if (!series) {
-    last_trigger_.reset();
-    return tl::unexpected(device_error(series.error()));
-  }
-  const auto before = std::exchange(last_trigger_, series->shot);
-  if (before && *before != 0 && series->shot != *before + 1) {
-    return tl::unexpected(
-        Error{ErrorCode::device, fmt::format("the sensor counts trigger {} after {}: a trigger that was none, or one that was "
-                                             "missed; this shot is left out",
-                                             series->shot, *before)});
+    return tl::unexpected(series.error());
   }
   return ShotPair{std::move(*trace), std::move(*series)};
+}
+
+Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
+  const auto before = triggers_.last();
+  const auto deadline = std::chrono::steady_clock::now() + series_limit;
+  for (;;) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
+    auto series = sensor_->next(std::max(left, milliseconds(0)));
+    if (!series) {
+      return tl::unexpected(device_error(series.error()));
+    }
+    switch (triggers_.judge(series->shot)) {
+    case SeriesVerdict::belongs:
+      return std::move(*series);
+    case SeriesVerdict::late:
+      break; // the right one is still to come
+    case SeriesVerdict::open:
+      return tl::unexpected(Error{ErrorCode::device, fmt::format("the sensor counts trigger {} after {}: which of them its series belongs "
+                                                                 "to is open; this shot is left out",
+                                                                 series->shot, before.value_or(0))});
+    }
+  }
 }
 
 } // namespace dyncal::services::dso

@@ -1,20 +1,20 @@
 // One shot of the bench: the oscilloscope's single acquisition and the series that its trigger output started.
 //
 // Before the oscilloscope is armed, series that were left over are dropped; after it has triggered, the sensor's series is waited for. The
-// sensor counts its triggers: unless exactly one more has been taken than at the shot before, the two records do not belong together, and
-// the shot fails (a spurious or missed trigger). A shot that fails changes nothing; the next call tries again, over new connections where
-// these were lost. One thread.
+// sensor counts its triggers: a series that is late is dropped, and where the count leaves open whether the two records belong together
+// (a spurious or missed trigger, trigger_count.hpp), the shot fails. A shot that fails changes nothing; the next call tries again, over new
+// connections where these were lost. One thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/tss/series_source.hpp"
 #include "services/bench/bench_file.hpp"
+#include "services/dso/trigger_count.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services::dso {
@@ -36,9 +36,11 @@ public:
   [[nodiscard]] const std::string& oscilloscope_identity() const { return oscilloscope_.identity(); }
 
 private:
+  [[nodiscard]] Expected<drivers::tss::Series> series_of_last_trigger();
+
   drivers::dso::Oscilloscope oscilloscope_;
   std::unique_ptr<drivers::tss::SeriesSource> sensor_;
-  std::optional<std::uint64_t> last_trigger_; // the sensor's count at the last shot
+  TriggerCount triggers_;
 };
 
 // The trace of sync that a shot needs: some periods, the trigger in the middle.
