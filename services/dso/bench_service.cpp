@@ -157,7 +157,9 @@ void BenchService::try_to_connect() {
     connection_problem_ = connected.error().message;
     return;
   }
-  spdlog::info("bench {}: {} is ready", bench_, device_.oscilloscope_identity());
+  if (!endpoints_.oscilloscope.described() || !connection_problem_.empty()) {
+    spdlog::info("bench {}: {} is ready", bench_, device_.oscilloscope_identity());
+  }
   connected_ = true;
   connection_problem_.clear();
   SourceDescription oscilloscope;
@@ -186,7 +188,9 @@ void BenchService::take_shot() {
     spdlog::warn("bench {}, run {}, step {}: {}", bench_, step.run, step.step, shot_problem_);
     endpoints_.oscilloscope.count_rejected();
     endpoints_.sensor.count_rejected();
-    connected_ = false; // unless connecting says otherwise
+    connected_ = false;
+    try_to_connect(); // says whether the devices can still be reached
+    wake_up_->wait_until(std::chrono::steady_clock::now() + retry_wait);
     return;
   }
   ++step_->shots;
