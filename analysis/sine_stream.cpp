@@ -16,9 +16,9 @@ constexpr std::int64_t longest_span_ns = std::int64_t{1} << 50;
 using namespace kernel;
 
 Expected<void> SineStream::State::check(std::span<const std::int64_t> stamps, std::span<const std::span<const double>> channels) const {
-  if (channels.size() != values_.size()) {
+  if (channels.size() != samples_.values.size()) {
     return fail(ErrorCode::invalid_argument,
-                "the stream has " + std::to_string(values_.size()) + " channels but was given " + std::to_string(channels.size()));
+                "the stream has " + std::to_string(samples_.values.size()) + " channels but was given " + std::to_string(channels.size()));
   }
   for (std::size_t j = 0; j < channels.size(); ++j) {
     if (channels[j].size() != stamps.size()) {
@@ -50,14 +50,16 @@ Expected<void> SineStream::State::push(std::span<const std::int64_t> stamps, std
     for (std::size_t j = 0; j < start_.size(); ++j)
       start_[j] = {0.0, 0.0, channels[j][0]};
   }
+  if (reduction_.pending()) reduce_piece();
   for (std::size_t i = 0; i < stamps.size();) {
-    const std::size_t n = without_gap(stamps.subspan(i, std::min(stamps.size() - i, block_length - filled_)));
-    std::copy_n(stamps.data() + i, n, stamps_.data() + filled_);
-    for (std::size_t j = 0; j < values_.size(); ++j)
-      std::copy_n(channels[j].data() + i, n, values_[j].data() + filled_);
+    const std::size_t n = without_gap(stamps.subspan(i, std::min(stamps.size() - i, BlockSamples::most - samples_.filled)));
+    std::copy_n(stamps.data() + i, n, samples_.stamps.data() + samples_.filled);
+    for (std::size_t j = 0; j < samples_.values.size(); ++j)
+      std::copy_n(channels[j].data() + i, n, samples_.values[j].data() + samples_.filled);
     i += n;
-    filled_ += n;
-    if (filled_ == block_length || (n == 0 && filled_ > 0)) close_block();
+    samples_.filled += n;
+    if (samples_.filled >= BlockSamples::most / 2) prepare_block();
+    if (samples_.filled == BlockSamples::most || (n == 0 && samples_.filled > 0)) close_block();
   }
   return {};
 }
@@ -65,7 +67,7 @@ Expected<void> SineStream::State::push(std::span<const std::int64_t> stamps, std
 // How many of the stamps belong to the open block: all, or those before a gap.
 std::size_t SineStream::State::without_gap(std::span<const std::int64_t> stamps) {
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    const bool first = filled_ + i == 0;
+    const bool first = samples_.filled + i == 0;
     const std::int64_t interval = stamps[i] - last_ns_;
     if (!first && interval / gap_intervals > last_interval_ns_) return i;
     if (samples() + i > 0) last_interval_ns_ = interval;
@@ -74,54 +76,56 @@ std::size_t SineStream::State::without_gap(std::span<const std::int64_t> stamps)
   return stamps.size();
 }
 
-// Series of the buffered samples: computed about the middle of the block, phases then turned to the first stamp.
-Block SineStream::State::reduce() const {
+void kernel::BlockReduction::take_piece(const BlockSamples& samples, const Frequency& frequency, std::int64_t first_ns,
+                                        std::span<const Parameters> start, Block& block) {
   const SineKernel& kernel = best_kernel();
-  const std::int64_t middle_ns = stamps_[0] + (stamps_[filled_ - 1] - stamps_[0]) / 2;
-  const double turns = frequency_.reduced_turns(middle_ns - first_ns_);
-  const auto [s, c] = sine_cosine_of_turns(turns);
-  const Complex back{c, -s};
-  const Complex back_twice = times(back, back);
-  const TimeAxis axis{frequency_.turns_per_ns_high(), frequency_.turns_per_ns_low(), middle_ns, 1e-9};
-  BlockBasis basis;
-  DesignMoments moments;
-  kernel.design_moments(stamps_.data(), filled_, axis, basis, moments);
-  Block block;
-  block.half_length_s = static_cast<double>(stamps_[filled_ - 1] - stamps_[0]) * 0.5e-9;
-  block.design = design_series(moments, static_cast<double>(middle_ns - first_ns_) * 1e-9);
-  for (Complex& x : block.design.x)
-    x = times(x, back);
-  for (Complex& xx : block.design.xx)
-    xx = times(xx, back_twice);
-  block.channels.reserve(values_.size());
-  for (std::size_t j = 0; j < values_.size(); ++j) {
-    const Complex p = times({start_[j].sine, start_[j].cosine}, std::conj(back));
-    ResidualMoments residuals;
-    kernel.residual_moments(values_[j].data(), filled_, basis, {p.real(), p.imag(), start_[j].offset}, residuals);
-    block.channels.push_back(residual_series(residuals));
-    for (Complex& ex : block.channels.back().ex)
-      ex = times(ex, back);
+  if (pieces_-- == start.size() + 1) {
+    const auto [s, c] = sine_cosine_of_turns(frequency.reduced_turns(samples.middle_ns() - first_ns));
+    back_ = {c, -s};
+    const Complex back_twice = times(back_, back_);
+    const TimeAxis axis{frequency.turns_per_ns_high(), frequency.turns_per_ns_low(), samples.middle_ns(), 1e-9};
+    DesignMoments moments;
+    kernel.design_moments(samples.stamps.data(), samples.filled, axis, basis_, moments);
+    block.half_length_s = samples.half_length_s();
+    block.design = design_series(moments, static_cast<double>(samples.middle_ns() - first_ns) * 1e-9);
+    for (Complex& x : block.design.x)
+      x = times(x, back_);
+    for (Complex& xx : block.design.xx)
+      xx = times(xx, back_twice);
+    return;
   }
-  return block;
+  const std::size_t j = pieces_;
+  const Complex p = times({start[j].sine, start[j].cosine}, std::conj(back_));
+  ResidualMoments residuals;
+  kernel.residual_moments(samples.values[j].data(), samples.filled, basis_, {p.real(), p.imag(), start[j].offset}, residuals);
+  block.channels[j] = residual_series(residuals);
+  for (Complex& ex : block.channels[j].ex)
+    ex = times(ex, back_);
 }
 
-// The buffered samples' part of the sums, without their series.
-void SineStream::State::add_open_block(Totals& totals) const {
-  const std::int64_t middle_ns = stamps_[0] + (stamps_[filled_ - 1] - stamps_[0]) / 2;
+void SineStream::State::reduce_piece() {
+  reduction_.take_piece(full_, frequency_, first_ns_, start_, blocks_[closed_ - 1]);
+}
+
+// All sums so far, the buffered samples' without their series.
+const Totals& SineStream::State::totals_with_open_block() {
+  if (samples_.filled == 0) return totals_;
+  Totals& totals = open_.totals;
+  totals = totals_;
+  const std::int64_t middle_ns = samples_.middle_ns();
   const auto [s, c] = sine_cosine_of_turns(frequency_.reduced_turns(middle_ns - first_ns_));
   const Complex back{c, -s};
   const TimeAxis axis{frequency_.turns_per_ns_high(), frequency_.turns_per_ns_low(), middle_ns, 1e-9};
-  std::vector<Parameters> start;
-  std::vector<const double*> values;
-  for (std::size_t j = 0; j < values_.size(); ++j) {
+  for (std::size_t j = 0; j < samples_.values.size(); ++j) {
     const Complex p = times({start_[j].sine, start_[j].cosine}, std::conj(back));
-    start.push_back({p.real(), p.imag(), start_[j].offset});
-    values.push_back(values_[j].data());
+    open_.start[j] = {p.real(), p.imag(), start_[j].offset};
+    open_.values[j] = samples_.values[j].data();
   }
   DesignSums sums;
-  std::vector<ResidualSums> residuals(values_.size());
-  best_kernel().fit_block(stamps_.data(), filled_, axis, values.data(), values.size(), start.data(), sums, residuals.data());
-  const double n = static_cast<double>(filled_);
+  const std::vector<ResidualSums>& residuals = open_.residuals;
+  best_kernel().fit_block(samples_.stamps.data(), samples_.filled, axis, open_.values.data(), samples_.values.size(), open_.start.data(),
+                          sums, open_.residuals.data());
+  const double n = static_cast<double>(samples_.filled);
   totals.n += n;
   totals.x += times({sums.c, -sums.s}, back);
   totals.xx += times({n - 2.0 * sums.ss, -2.0 * sums.sc}, times(back, back));
@@ -130,14 +134,12 @@ void SineStream::State::add_open_block(Totals& totals) const {
     totals.channels[j].ee += residuals[j].ee;
     totals.channels[j].ex += times({residuals[j].ec, -residuals[j].es}, back);
   }
+  return totals;
 }
 
 // A first block that sees enough of a period gives start parameters that leave only noise in the residuals.
 void SineStream::State::choose_start() {
-  const Block block = reduce();
-  Totals totals;
-  totals.channels.resize(values_.size());
-  totals.add(block.design, block.channels);
+  const Totals& totals = totals_with_open_block();
   constexpr double enough = 0.05;
   const NormalMatrix matrix(totals.n, totals.design());
   for (std::size_t j = 0; j < start_.size(); ++j) {
@@ -149,14 +151,25 @@ void SineStream::State::choose_start() {
   }
 }
 
+// Half a block before the memory is needed: the sample that closes a block has enough to do.
+void SineStream::State::prepare_block() {
+  if (blocks_.size() > closed_) return;
+  blocks_.emplace_back();
+  blocks_.back().channels.resize(samples_.values.size());
+}
+
 void SineStream::State::close_block() {
-  if (blocks_.empty()) choose_start();
-  blocks_.push_back(reduce());
-  if (filled_ > 1) {
-    highest_rate_hz_ = std::max(highest_rate_hz_, static_cast<double>(filled_ - 1) / (2.0 * blocks_.back().half_length_s));
-  }
-  totals_.add(blocks_.back().design, blocks_.back().channels);
-  filled_ = 0;
+  while (reduction_.pending())
+    reduce_piece();
+  if (closed_ == 0) choose_start();
+  prepare_block();
+  totals_ = totals_with_open_block();
+  std::swap(samples_, full_);
+  samples_.filled = 0;
+  if (full_.filled > 1)
+    highest_rate_hz_ = std::max(highest_rate_hz_, static_cast<double>(full_.filled - 1) / (2.0 * full_.half_length_s()));
+  ++closed_;
+  reduction_.begin(start_.size());
 }
 
 Expected<void> SineStream::State::ready(std::size_t parameters) const {
@@ -165,7 +178,7 @@ Expected<void> SineStream::State::ready(std::size_t parameters) const {
                                                 std::to_string(parameters) + " parameters needs at least " +
                                                 std::to_string(parameters + 1));
   }
-  if (blocks_.empty()) return {};
+  if (closed_ == 0) return {};
   if (frequency_.hz() > 0.5 * highest_rate_hz_) {
     return fail(ErrorCode::frequency_out_of_range, "the frequency of " + std::to_string(frequency_.hz()) +
                                                        " Hz is above half the sample rate of " + std::to_string(highest_rate_hz_) + " Hz");
@@ -181,18 +194,17 @@ Expected<std::int64_t> SineStream::State::shift_to(std::int64_t reference_ns) co
   return shift_ns;
 }
 
-Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns) const {
+Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns) {
   if (const auto checked = ready(3); !checked) return tl::unexpected(checked.error());
   const auto shift_ns = shift_to(reference_ns);
   if (!shift_ns) return tl::unexpected(shift_ns.error());
-  if (blocks_.empty()) {
+  if (closed_ == 0) {
     std::vector<std::span<const double>> channels;
-    for (const auto& values : values_)
-      channels.emplace_back(values.data(), filled_);
-    return fit_sine(frequency_, reference_ns, {stamps_.data(), filled_}, channels);
+    for (const auto& values : samples_.values)
+      channels.emplace_back(values.data(), samples_.filled);
+    return fit_sine(frequency_, reference_ns, {samples_.stamps.data(), samples_.filled}, channels);
   }
-  Totals totals = totals_;
-  if (filled_ > 0) add_open_block(totals);
+  const Totals& totals = totals_with_open_block();
   const NormalMatrix matrix(totals.n, totals.design());
   if (!matrix.well_conditioned()) {
     return fail(ErrorCode::ill_conditioned, "sine, cosine and constant of " + std::to_string(frequency_.hz()) +
@@ -200,7 +212,7 @@ Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns)
   }
   const double turns = frequency_.reduced_turns(*shift_ns);
   const std::array<double, 6> unit = unit_covariance(matrix);
-  std::vector<SineFit> fits(values_.size());
+  std::vector<SineFit> fits(samples_.values.size());
   bool excited = false;
   for (std::size_t j = 0; j < fits.size(); ++j) {
     const Solution solution = solve(matrix, totals.residuals(j), start_[j]);

@@ -5,7 +5,8 @@
 // alone and not on how they were cut into pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share
 // the stamps. Phases refer to the first stamp inside, results to the caller's reference instant.
 //
-// fit() evaluates at the frequency given at the start, from running sums, in well under a microsecond.
+// fit() evaluates at the frequency given at the start, from running sums: with the push of the last sample it is there in well under a
+// microsecond, whatever that sample closes (the series of a full block is made while the next samples come).
 // fit_with_frequency() refines the frequency (shared by all channels, as fit_sine_and_frequency) on the kept series, without the
 // samples: exact while the refined frequency is within about 0.1 turns per block half length of the start, which is checked
 // (not_converged names it). Its residual sum of squares keeps 16 digits of the squared amplitude, not of the noise.

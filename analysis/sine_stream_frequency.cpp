@@ -74,7 +74,7 @@ void SineStream::State::add_spectra(std::span<const Segment> segments, double st
   }
 }
 
-Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel, std::int64_t reference_ns) const {
+Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel, std::int64_t reference_ns) {
   if (const auto checked = ready(4); !checked) return tl::unexpected(checked.error());
   if (!(search_rel >= 0.0 && search_rel < 1.0)) {
     return fail(ErrorCode::invalid_argument, "the search range of the frequency must be at least 0 and below 1, relative to the start");
@@ -87,10 +87,18 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel, 
     segments.push_back({&block.design, block.channels.data()});
     half_length_s = std::max(half_length_s, block.half_length_s);
   };
-  for (const Block& block : blocks_)
-    take(block);
-  const Block last = filled_ > 0 ? reduce() : Block{};
-  if (filled_ > 0) take(last);
+  while (reduction_.pending())
+    reduce_piece();
+  for (std::size_t i = 0; i < closed_; ++i)
+    take(blocks_[i]);
+  Block last;
+  if (samples_.filled > 0) {
+    last.channels.resize(start_.size());
+    BlockReduction reduction;
+    for (reduction.begin(start_.size()); reduction.pending();)
+      reduction.take_piece(samples_, frequency_, first_ns_, start_, last);
+    take(last);
+  }
 
   const double bin = 2.0 * std::numbers::pi / span_s();
   const double half_range = search_rel * frequency_.angular();

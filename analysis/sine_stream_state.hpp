@@ -42,16 +42,6 @@ struct Totals {
   };
   std::vector<Channel> channels;
 
-  void add(const DesignSeries& design, const std::vector<ResidualSeries>& residuals) {
-    n += design.u[0];
-    x += design.x[0];
-    xx += design.xx[0];
-    for (std::size_t j = 0; j < residuals.size(); ++j) {
-      channels[j].e += residuals[j].e;
-      channels[j].ee += residuals[j].ee;
-      channels[j].ex += residuals[j].ex[0];
-    }
-  }
   [[nodiscard]] DesignSums design() const { return {-x.imag(), x.real(), 0.5 * (n - xx.real()), -0.5 * xx.imag()}; }
   [[nodiscard]] ResidualSums residuals(std::size_t j) const {
     return {channels[j].e, -channels[j].ex.imag(), channels[j].ex.real(), channels[j].ee};
@@ -64,29 +54,59 @@ struct Block {
   double half_length_s = 0.0;
 };
 
+// Samples of one block.
+struct BlockSamples {
+  static constexpr std::size_t most = 64;
+  explicit BlockSamples(std::size_t channels) : values(channels) {}
+
+  std::array<std::int64_t, most> stamps{};
+  std::vector<std::array<double, most>> values;
+  std::size_t filled = 0;
+
+  [[nodiscard]] std::int64_t middle_ns() const { return stamps[0] + (stamps[filled - 1] - stamps[0]) / 2; }
+  [[nodiscard]] double half_length_s() const { return static_cast<double>(stamps[filled - 1] - stamps[0]) * 0.5e-9; }
+};
+
+// Series of a block's samples: computed about the middle of the block, phases then turned to the first stamp of the stream. In pieces,
+// the design and then one channel each, so that no sample of a stream has to wait for all of them.
+class BlockReduction {
+public:
+  // To begin with samples; their block, start values and the rest stay the same until all pieces are done.
+  void begin(std::size_t channels) { pieces_ = channels + 1; }
+  [[nodiscard]] bool pending() const { return pieces_ > 0; }
+  // REQUIRES: pending().
+  void take_piece(const BlockSamples& samples, const Frequency& frequency, std::int64_t first_ns, std::span<const Parameters> start,
+                  Block& block);
+
+private:
+  std::size_t pieces_ = 0; // that are left
+  Complex back_;           // the turn to the first stamp
+  BlockBasis basis_;
+};
+
 } // namespace kernel
 
 class SineStream::State {
 public:
-  static constexpr std::size_t block_length = 64;
-
-  State(const Frequency& frequency, std::size_t channels) : frequency_(frequency), values_(channels), start_(channels) {
+  State(const Frequency& frequency, std::size_t channels)
+      : frequency_(frequency), samples_(channels), full_(channels), start_(channels), open_(channels) {
     totals_.channels.resize(channels);
   }
 
   Expected<void> push(std::span<const std::int64_t> stamps, std::span<const std::span<const double>> channels);
-  [[nodiscard]] std::uint64_t samples() const { return static_cast<std::uint64_t>(totals_.n) + filled_; }
-  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t reference_ns) const;
-  [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel, std::int64_t reference_ns) const;
+  [[nodiscard]] std::uint64_t samples() const { return static_cast<std::uint64_t>(totals_.n) + samples_.filled; }
+  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t reference_ns);
+  [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel, std::int64_t reference_ns);
 
 private:
   [[nodiscard]] Expected<void> check(std::span<const std::int64_t> stamps, std::span<const std::span<const double>> channels) const;
   [[nodiscard]] Expected<void> ready(std::size_t parameters) const;
   [[nodiscard]] Expected<std::int64_t> shift_to(std::int64_t reference_ns) const;
-  [[nodiscard]] kernel::Block reduce() const;
-  void add_open_block(kernel::Totals& totals) const;
+  [[nodiscard]] const kernel::Totals& totals_with_open_block();
   [[nodiscard]] std::size_t without_gap(std::span<const std::int64_t> stamps);
+  void prepare_block();
   void close_block();
+  void reduce_piece();
   void choose_start();
   [[nodiscard]] double span_s() const { return static_cast<double>(last_ns_ - first_ns_) * 1e-9; }
   [[nodiscard]] double search(std::span<const kernel::Segment> segments, double half_range) const;
@@ -94,16 +114,27 @@ private:
   [[nodiscard]] double misfit(std::span<const kernel::Segment> segments, double delta, kernel::ShiftedSums& sums) const;
 
   Frequency frequency_;
-  std::array<std::int64_t, block_length> stamps_{};
-  std::vector<std::array<double, block_length>> values_;
-  std::size_t filled_ = 0;
+  kernel::BlockSamples samples_; // of the open block
+  kernel::BlockSamples full_;    // of the last closed one, until its series is there
+  kernel::BlockReduction reduction_;
   std::int64_t first_ns_ = 0;
   std::int64_t last_ns_ = 0;
   std::int64_t last_interval_ns_ = std::numeric_limits<std::int64_t>::max();
   std::vector<kernel::Parameters> start_; // about the first stamp
   kernel::Totals totals_;
-  std::deque<kernel::Block> blocks_;
+  std::deque<kernel::Block> blocks_; // closed_ of them, and perhaps one whose memory is ready for the open block
+  std::size_t closed_ = 0;
   double highest_rate_hz_ = 0.0; // mean of a block
+
+  // Where a result is put together, so that it needs no fresh memory.
+  struct OpenBlock {
+    explicit OpenBlock(std::size_t channels) : start(channels), values(channels), residuals(channels) {}
+    kernel::Totals totals;
+    std::vector<kernel::Parameters> start;
+    std::vector<const double*> values;
+    std::vector<kernel::ResidualSums> residuals;
+  };
+  OpenBlock open_;
 };
 
 } // namespace dyncal::analysis

@@ -1,13 +1,19 @@
-// Reads the samples of a CSV file, a stretch at a time. README.md has the format; every error names file and line.
+// Reads the samples of a CSV file, a stretch at a time; README.md has the format, every error names file and line.
+//
+// The file is mapped into memory; the next stretches of it are read by threads of their own while the current one is taken, as many as
+// the processor has, 2 MB of text each. Samples and errors come in the order of the file whatever thread meets them first.
 #pragma once
 
-#include <fstream>
+#include <deque>
+#include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "drivers/acs/csv_rows.hpp"
 #include "drivers/acs/file_source.hpp"
+#include "drivers/acs/mapped_file.hpp"
 
 namespace dyncal::drivers::acs {
 
@@ -19,37 +25,26 @@ public:
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
 
 private:
-  enum class Meaning { time, number, channel };
-  struct Row {
-    std::uint64_t sample = 0;
-    std::int64_t stamp_ns = 0;
-    std::vector<double> values;
-  };
-
-  explicit CsvReader(const FileSettings& settings) : settings_(settings) {}
+  CsvReader(const FileSettings& settings, MappedFile file) : settings_(settings), file_(std::move(file)), rest_(file_.text()) {}
   Expected<void> read_header();
-  Expected<void> name_columns(const std::vector<std::string>& names);
-  Expected<bool> read_row(); // into row_; false: the end
-  Expected<void> parse_row(std::string_view line);
-  Expected<void> check_order(std::uint64_t sample_before, std::int64_t stamp_before) const;
-  template <class Number>
-  Expected<Number> number(std::string_view field, std::size_t column) const;
-  [[nodiscard]] tl::unexpected<Error> malformed(const std::string& problem) const;
-  [[nodiscard]] tl::unexpected<Error> wrong_field(std::string_view field, std::size_t column, const char* wanted) const;
+  void read_ahead();
+  Expected<bool> next_stretch();                    // into rows_; false: the end
+  [[nodiscard]] Expected<void> check_order() const; // of the first row of rows_ after the last one before it
+  [[nodiscard]] std::size_t without_gap(std::size_t samples) const;
+  [[nodiscard]] tl::unexpected<Error> malformed(std::size_t line, const std::string& problem) const;
 
   FileSettings settings_;
-  std::ifstream file_;
-  std::string line_;
-  std::size_t line_number_ = 0;
-  char separator_ = ',';
-  std::vector<std::string> columns_;
-  std::vector<Meaning> meanings_;
-  bool has_time_ = false;
-  bool has_number_ = false;
+  MappedFile file_;
+  std::string_view rest_; // not yet given to a thread
+  CsvLayout layout_;
   SourceDescription description_;
-  Row row_;
-  bool row_waits_ = false; // row_ belongs to the next block: a gap stands before it
-  bool first_row_ = true;
+  std::deque<std::future<CsvRows>> ahead_; // their threads read file_ and layout_: they end before these go
+  CsvRows rows_;
+  std::size_t taken_ = 0;      // rows of rows_
+  std::size_t first_line_ = 2; // of rows_ in the file
+  std::uint64_t next_sample_ = 0;
+  std::optional<std::int64_t> last_stamp_ns_;
+  std::optional<std::uint64_t> last_sample_;
 };
 
 } // namespace dyncal::drivers::acs

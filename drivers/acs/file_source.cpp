@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "drivers/acs/csv_reader.hpp"
+#include "drivers/acs/npy_reader.hpp"
 #include "drivers/acs/wav_reader.hpp"
 
 namespace dyncal::drivers::acs {
@@ -32,7 +33,10 @@ Expected<std::unique_ptr<SampleReader>> open_as(const FileSettings& settings) {
 Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings) {
   std::string extension = settings.path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".wav" ? open_as<WavReader>(settings) : open_as<CsvReader>(settings);
+  if (extension == ".wav") {
+    return open_as<WavReader>(settings);
+  }
+  return extension == ".npy" ? open_as<NpyReader>(settings) : open_as<CsvReader>(settings);
 }
 
 } // namespace

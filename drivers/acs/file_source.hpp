@@ -1,4 +1,4 @@
-// A recorded series played as a source: CSV (time column or constant rate) or WAV, of any kind of instrument.
+// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy) or WAV, of any kind of instrument.
 //
 // The file is read as it is played, never as a whole. Where the stamps of a block are exactly equidistant the block carries a
 // RegularClock, otherwise one stamp a sample; either way the stamps are those of the file. Pace: at once, in real time or x times

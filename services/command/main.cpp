@@ -58,7 +58,7 @@ void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
 
 void add_fit(CLI::App& app, FitCommand& fit) {
   CLI::App* command = app.add_subcommand("fit", "one sine approximation of a recorded series, for checking");
-  command->add_option("DATA.csv", fit.file, "header line, column t_ns, further columns")->required();
+  command->add_option("DATA.csv", fit.file, "CSV with a header line, or .npy: column t_ns, further columns")->required();
   command->add_option("--frequency", fit.frequency, "in Hz, decimal text (default: estimated as fourth parameter)");
   command->add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
   command->add_option("--reference-time", fit.reference_time_ns, "in ns, of the phase (default: the first stamp)");
@@ -72,7 +72,7 @@ void add_fit(CLI::App& app, FitCommand& fit) {
 
 void add_intervals(CLI::App& app, IntervalsCommand& intervals) {
   CLI::App* command = app.add_subcommand("intervals", "sample intervals of a recorded series: statistics and events");
-  command->add_option("DATA.csv", intervals.file, "header line, column t_ns")->required();
+  command->add_option("DATA.csv", intervals.file, "CSV with a header line, or .npy: column t_ns")->required();
   command->add_option("--temperature", intervals.temperature, "column with the sensor's temperature");
   command->add_option("--tick", intervals.tick_s, "of the counter that made the stamps, in seconds")->check(CLI::PositiveNumber);
   command->add_option("--nominal-rate", intervals.nominal_rate_hz, "in Hz")->check(CLI::PositiveNumber);

@@ -1,4 +1,4 @@
-// A recorded series as a whole in memory, for commands that look at one file: stamps and columns of a CSV (or WAV) file.
+// A recorded series as a whole in memory, for commands that look at one file: stamps and columns of a CSV, NumPy or WAV file.
 // drivers/acs/README.md has the format. Any thread.
 #pragma once
 

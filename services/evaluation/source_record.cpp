@@ -68,8 +68,11 @@ void SourceRecord::append(const SampleBlock& block) {
   columns_.resize(block.channel_count());
   if (block.stamps_ns().empty()) {
     const drivers::RegularClock clock = regular_clock(block);
+    const std::int64_t first_ns = clock.stamp_ns(block.first_sample());
+    const bool whole = clock.interval_denominator == 1; // then no division a sample is needed
     for (std::size_t i = 0; i < samples; ++i) {
-      stamps_ns_.push_back(clock.stamp_ns(block.first_sample() + i));
+      stamps_ns_.push_back(whole ? first_ns + static_cast<std::int64_t>(i) * clock.interval_numerator_ns
+                                 : clock.stamp_ns(block.first_sample() + i));
     }
   } else {
     stamps_ns_.insert(stamps_ns_.end(), block.stamps_ns().begin(), block.stamps_ns().end());

@@ -1,0 +1,145 @@
+#include "drivers/acs/npy_header.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace dyncal::drivers::acs {
+namespace {
+
+// Reads the few forms of Python's literals that NumPy writes: {'descr': [('t_ns', '<i8'), ...], 'fortran_order': False, 'shape': (12,), }
+class LiteralReader {
+public:
+  explicit LiteralReader(std::string_view text) : text_(text) {}
+
+  bool take(char c) {
+    skip_blanks();
+    if (!text_.starts_with(c)) {
+      return false;
+    }
+    text_.remove_prefix(1);
+    return true;
+  }
+
+  bool take_text(std::string& value) {
+    const char quote = take('\'') ? '\'' : take('"') ? '"' : '\0';
+    const std::size_t end = quote == '\0' ? std::string_view::npos : text_.find(quote);
+    if (end == std::string_view::npos) {
+      return false;
+    }
+    value = text_.substr(0, end);
+    text_.remove_prefix(end + 1);
+    return true;
+  }
+
+  bool take_word(std::string_view word) {
+    skip_blanks();
+    if (!text_.starts_with(word)) {
+      return false;
+    }
+    text_.remove_prefix(word.size());
+    return true;
+  }
+
+  bool take_count(std::size_t& value) {
+    skip_blanks();
+    const auto [end, status] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
+    if (status != std::errc()) {
+      return false;
+    }
+    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    return true;
+  }
+
+private:
+  void skip_blanks() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size())); }
+  std::string_view text_;
+};
+
+bool read_type(std::string_view type, NpyField& field) {
+  if (type.size() < 3 || (type[0] != '<' && type[0] != '|')) {
+    return false;
+  }
+  field.kind = type[1];
+  const auto [end, status] = std::from_chars(type.data() + 2, type.data() + type.size(), field.size);
+  if (status != std::errc() || end != type.data() + type.size()) {
+    return false;
+  }
+  const bool integer = field.kind == 'i' || field.kind == 'u';
+  const bool known_size = field.size == 8 || field.size == 4 || (integer && (field.size == 2 || field.size == 1));
+  return field.kind == 'V' || ((integer || field.kind == 'f') && known_size);
+}
+
+tl::expected<std::vector<NpyField>, std::string> read_fields(LiteralReader& reader) {
+  if (!reader.take('[')) {
+    return tl::unexpected<std::string>("holds no structured array; its rows must have named fields, one of them t_ns");
+  }
+  std::vector<NpyField> fields;
+  std::size_t place = 0;
+  while (reader.take('(')) {
+    NpyField field;
+    std::string type;
+    if (!reader.take_text(field.name) || !reader.take(',') || !reader.take_text(type) || !reader.take(')')) {
+      return tl::unexpected("has a field '" + field.name + "' that is not a plain number");
+    }
+    if (!read_type(type, field)) {
+      return tl::unexpected("has a field '" + field.name + "' of type '" + type +
+                            "'; little-endian integers and floating-point numbers of up to 8 octets can be read");
+    }
+    field.place = place;
+    place += field.size;
+    fields.push_back(std::move(field));
+    reader.take(',');
+  }
+  if (fields.empty() || !reader.take(']')) {
+    return tl::unexpected<std::string>("has a header that cannot be read");
+  }
+  return fields;
+}
+
+bool read_shape(LiteralReader& reader, std::size_t& rows) {
+  return reader.take('(') && reader.take_count(rows) && reader.take(',') && reader.take(')');
+}
+
+} // namespace
+
+tl::expected<NpyHeader, std::string> NpyHeader::of(std::string_view file) {
+  constexpr std::string_view magic = "\x93NUMPY";
+  const auto octet = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(file[i])); };
+  if (!file.starts_with(magic) || file.size() < 12 || octet(6) < 1 || octet(6) > 3) {
+    return tl::unexpected<std::string>("is not a NumPy file");
+  }
+  const bool short_length = octet(6) == 1;
+  const std::size_t begin = short_length ? 10 : 12;
+  const std::size_t length = octet(8) + (octet(9) << 8U) + (short_length ? 0 : (octet(10) << 16U) + (octet(11) << 24U));
+  if (length > file.size() - begin) {
+    return tl::unexpected<std::string>("ends within its header");
+  }
+  NpyHeader header;
+  header.header_bytes = begin + length;
+  LiteralReader reader(file.substr(begin, length));
+  bool has_rows = false;
+  reader.take('{');
+  for (std::string key; reader.take_text(key) && reader.take(':'); reader.take(',')) {
+    if (key == "descr") {
+      auto fields = read_fields(reader);
+      if (!fields) {
+        return tl::unexpected(fields.error());
+      }
+      header.fields = std::move(*fields);
+    } else if (key == "shape") {
+      has_rows = read_shape(reader, header.rows);
+    } else if (key != "fortran_order" || !(reader.take_word("False") || reader.take_word("True"))) {
+      break;
+    }
+  }
+  if (header.fields.empty() || !has_rows || !reader.take('}')) {
+    return tl::unexpected<std::string>("holds no array of one dimension with named fields");
+  }
+  header.row_bytes = header.fields.back().place + header.fields.back().size;
+  if (header.rows > (file.size() - header.header_bytes) / header.row_bytes) {
+    return tl::unexpected("ends before its " + std::to_string(header.rows) + " rows do");
+  }
+  return header;
+}
+
+} // namespace dyncal::drivers::acs

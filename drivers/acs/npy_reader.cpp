@@ -1,0 +1,147 @@
+#include "drivers/acs/npy_reader.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "drivers/acs/file_channels.hpp"
+#include "drivers/acs/regular_stamps.hpp"
+
+namespace dyncal::drivers::acs {
+namespace {
+
+// A field of `rows` rows, one number after the other.
+template <class Stored, class Number>
+void copy_as(const char* from, std::size_t row_bytes, std::size_t rows, Number* to) {
+  for (std::size_t i = 0; i < rows; ++i, from += row_bytes) {
+    Stored value;
+    std::memcpy(&value, from, sizeof(value));
+    to[i] = static_cast<Number>(value);
+  }
+}
+
+} // namespace
+
+Expected<std::unique_ptr<NpyReader>> NpyReader::open(const FileSettings& settings) {
+  auto file = MappedFile::open(settings.path);
+  if (!file) {
+    return tl::unexpected(file.error());
+  }
+  std::unique_ptr<NpyReader> reader(new NpyReader(settings, std::move(*file)));
+  auto header = NpyHeader::of(reader->file_.text());
+  if (!header) {
+    return reader->malformed(header.error());
+  }
+  reader->header_ = std::move(*header);
+  if (auto named = reader->name_fields(); !named) {
+    return tl::unexpected(named.error());
+  }
+  return reader;
+}
+
+tl::unexpected<Error> NpyReader::malformed(const std::string& problem) const {
+  return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ": " + problem});
+}
+
+Expected<void> NpyReader::name_fields() {
+  std::vector<std::string> names;
+  for (const NpyField& field : header_.fields) {
+    if (field.kind == 'V') {
+      continue;
+    }
+    if (field.name == "t_ns" || field.name == "sample_number") {
+      if (field.kind == 'f') {
+        return malformed("the field '" + field.name + "' must hold integers");
+      }
+      (field.name == "t_ns" ? time_ : number_) = field;
+      continue;
+    }
+    names.push_back(field.name);
+    channels_.push_back(field);
+  }
+  if (!time_ && !settings_.sample_rate) {
+    return tl::unexpected(Error{ErrorCode::invalid_setting,
+                                settings_.path.string() + ": no field t_ns and no sample_rate_hz; one of them must tell the time"});
+  }
+  auto described = describe_file_channels(settings_, names);
+  if (!described) {
+    return tl::unexpected(described.error());
+  }
+  description_ = std::move(*described);
+  return {};
+}
+
+template <class Number>
+void NpyReader::copy(const NpyField& field, std::size_t rows, Number* to) const {
+  const char* const from = file_.text().data() + header_.header_bytes + row_ * header_.row_bytes + field.place;
+  const auto as = [&]<class Stored>(Stored) { copy_as<Stored>(from, header_.row_bytes, rows, to); };
+  const bool is_signed = field.kind == 'i';
+  if (field.kind == 'f') {
+    field.size == 8 ? as(double{}) : as(float{});
+  } else if (field.size == 8) {
+    is_signed ? as(std::int64_t{}) : as(std::uint64_t{});
+  } else if (field.size == 4) {
+    is_signed ? as(std::int32_t{}) : as(std::uint32_t{});
+  } else if (field.size == 2) {
+    is_signed ? as(std::int16_t{}) : as(std::uint16_t{});
+  } else {
+    is_signed ? as(std::int8_t{}) : as(std::uint8_t{});
+  }
+}
+
+Expected<void> NpyReader::check_order(const std::vector<std::uint64_t>& numbers, const SampleBlock& block) const {
+  const auto at_row = [&](std::size_t i, const std::string& problem) {
+    return malformed("row " + std::to_string(row_ + i) + ": " + problem);
+  };
+  if (!numbers.empty() && row_ > 0 && numbers.front() < next_sample_) {
+    return at_row(0, not_rising(numbers.front(), next_sample_ - 1));
+  }
+  if (block.stamps_ns.empty()) {
+    return {};
+  }
+  if (last_stamp_ns_ && block.stamps_ns.front() <= *last_stamp_ns_) {
+    return at_row(0, not_rising(block.stamps_ns.front(), *last_stamp_ns_));
+  }
+  const auto later = std::adjacent_find(block.stamps_ns.begin(), block.stamps_ns.end(), [](auto a, auto b) { return b <= a; });
+  if (later != block.stamps_ns.end()) {
+    return at_row(static_cast<std::size_t>(later - block.stamps_ns.begin()) + 1, not_rising(*(later + 1), *later));
+  }
+  return {};
+}
+
+Expected<SampleBlock> NpyReader::read(std::size_t samples) {
+  SampleBlock block;
+  block.samples = std::min(samples, header_.rows - row_);
+  if (block.samples == 0) {
+    return block;
+  }
+  std::vector<std::uint64_t> numbers;
+  if (number_) {
+    numbers.resize(block.samples);
+    copy(*number_, block.samples, numbers.data());
+    const auto gap = std::adjacent_find(numbers.begin(), numbers.end(), [](auto a, auto b) { return b != a + 1; });
+    block.samples = gap == numbers.end() ? block.samples : static_cast<std::size_t>(gap - numbers.begin()) + 1;
+  }
+  block.first_sample = number_ ? numbers.front() : next_sample_;
+  if (time_) {
+    block.stamps_ns.resize(block.samples);
+    copy(*time_, block.samples, block.stamps_ns.data());
+  }
+  if (const auto order = check_order(numbers, block); !order) {
+    return tl::unexpected(order.error());
+  }
+  block.values.resize(block.samples * channels_.size());
+  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+    copy(channels_[channel], block.samples, block.values.data() + channel * block.samples);
+  }
+  row_ += block.samples;
+  next_sample_ = block.first_sample + block.samples;
+  if (time_) {
+    last_stamp_ns_ = block.stamps_ns.back();
+    make_regular(block);
+  } else {
+    block.clock = settings_.sample_rate->clock(0);
+  }
+  return block;
+}
+
+} // namespace dyncal::drivers::acs

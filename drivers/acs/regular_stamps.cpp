@@ -1,0 +1,33 @@
+#include "drivers/acs/regular_stamps.hpp"
+
+namespace dyncal::drivers::acs {
+
+void make_regular(SampleBlock& block) {
+  if (block.samples < 2) {
+    return;
+  }
+  const std::int64_t interval = block.stamps_ns[1] - block.stamps_ns[0];
+  for (std::size_t i = 2; i < block.samples; ++i) {
+    if (block.stamps_ns[i] - block.stamps_ns[i - 1] != interval) {
+      return;
+    }
+  }
+  std::int64_t since_origin = 0;
+  std::int64_t origin = 0;
+  if (__builtin_mul_overflow(block.first_sample, interval, &since_origin) ||
+      __builtin_sub_overflow(block.stamps_ns[0], since_origin, &origin)) {
+    return;
+  }
+  block.clock = RegularClock{origin, interval, 1};
+  block.stamps_ns.clear();
+}
+
+std::string not_rising(std::int64_t stamp_ns, std::int64_t before_ns) {
+  return "t_ns " + std::to_string(stamp_ns) + " after " + std::to_string(before_ns) + "; the stamps must rise";
+}
+
+std::string not_rising(std::uint64_t sample, std::uint64_t before) {
+  return "sample_number " + std::to_string(sample) + " after " + std::to_string(before) + "; it must rise";
+}
+
+} // namespace dyncal::drivers::acs

@@ -1,1 +1,0 @@
-dyncal_benchmark(csv_benchmark SOURCES csv_benchmark.cpp LIBRARIES dyncal_csv)
