@@ -147,9 +147,11 @@ Expected<void> take_key(std::string_view line, Series& series, std::string& unit
     unit = value;
   } else if (key == "nominal_rate_hz" && number) {
     series.nominal_rate_hz = *number;
+  } else if (key == "first_sample_s" && number) {
+    series.first_sample_s = *number;
   } else if (key == "shot" && number && *number >= 0.0 && *number < 9e15 && *number == std::floor(*number)) {
     series.shot = static_cast<std::uint64_t>(*number);
-  } else if (key == "shot" || key == "nominal_rate_hz") {
+  } else if (key == "shot" || key == "nominal_rate_hz" || key == "first_sample_s") {
     return malformed(std::string(key) + " = '" + shown(value) + "' is not possible");
   }
   return {};

@@ -23,6 +23,7 @@ struct Series {
   std::string serial;
   std::uint64_t shot = 0;
   double nominal_rate_hz = 0.0;
+  double first_sample_s = 0.0; // traces in files: after the trigger, negative before it
   std::size_t samples = 0;
   std::vector<ChannelDescription> channels;
   std::vector<double> values;

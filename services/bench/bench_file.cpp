@@ -191,7 +191,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
       read_play(table, source);
     }
   } else if (driver == "oscilloscope") {
-    read_oscilloscope_source(table, source);
+    read_oscilloscope_source(table, folder, source);
   } else if (driver == "series") {
     read_series_source(table, folder, source);
   }

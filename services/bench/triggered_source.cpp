@@ -17,11 +17,22 @@ void require_driver(TomlTable& table, const char* key, const std::vector<SourceS
   }
 }
 
+void read_place(TomlTable& table, const std::filesystem::path& folder, SourceSettings& source, const char* what) {
+  source.address = table.text("address");
+  const std::string path = table.text("path");
+  if (source.address.empty() == path.empty()) {
+    table.refuse("address", fmt::format("or 'path' must be given, one of them: {}", what));
+  }
+  if (!path.empty()) {
+    source.path = std::filesystem::absolute(folder / path).lexically_normal();
+  }
+}
+
 } // namespace
 
-void read_oscilloscope_source(TomlTable& table, SourceSettings& source) {
+void read_oscilloscope_source(TomlTable& table, const std::filesystem::path& folder, SourceSettings& source) {
   source.driver = SourceDriver::oscilloscope;
-  source.address = table.required_text("address");
+  read_place(table, folder, source, "where the oscilloscope answers, or the folder with files of its shots");
   OscilloscopeSourceSettings& oscilloscope = source.oscilloscope;
   oscilloscope.family = table.text("family");
   oscilloscope.sync_input = table.whole_number("sync_input", oscilloscope.sync_input, 1);
@@ -34,14 +45,7 @@ void read_oscilloscope_source(TomlTable& table, SourceSettings& source) {
 
 void read_series_source(TomlTable& table, const std::filesystem::path& folder, SourceSettings& source) {
   source.driver = SourceDriver::series;
-  source.address = table.text("address");
-  const std::string path = table.text("path");
-  if (source.address.empty() == path.empty()) {
-    table.refuse("address", "or 'path' must be given, one of them: where the sensor sends its series, or the folder it writes them into");
-  }
-  if (!path.empty()) {
-    source.path = std::filesystem::absolute(folder / path).lexically_normal();
-  }
+  read_place(table, folder, source, "where the sensor sends its series, or the folder it writes them into");
 }
 
 void read_shots(TomlTable& table, const std::vector<SourceSettings>& sources, MethodSettings& method) {

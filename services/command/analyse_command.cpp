@@ -10,6 +10,7 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/command/run_command.hpp"
+#include "services/command/shot_files.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/source/messages.hpp"
 #include "services/utc_clock.hpp"
@@ -134,9 +135,31 @@ private:
 
 using Inputs = std::vector<std::unique_ptr<FileInput>>;
 
+// All at once: a record of shots is small beside one of samples.
+Expected<void> take_shots(const BenchFile& bench, const std::string& source, RunEvaluator& evaluator) {
+  const auto files = read_shot_files(bench, source, evaluator.recipe().run);
+  if (!files) {
+    return tl::unexpected(files.error());
+  }
+  if (auto described = evaluator.describe(files->description); !described) {
+    return described;
+  }
+  for (const TriggeredRecord& record : files->records) {
+    evaluator.add(record);
+  }
+  return {};
+}
+
 Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
   Inputs inputs;
   for (const std::string& name : evaluator.recipe().sources()) {
+    const SourceDriver driver = bench.source(name)->driver;
+    if (driver == SourceDriver::oscilloscope || driver == SourceDriver::series) {
+      if (const auto read = take_shots(bench, name, evaluator); !read) {
+        return tl::unexpected(read.error());
+      }
+      continue;
+    }
     auto input = FileInput::open(*bench.source(name), bench);
     if (!input) {
       return tl::unexpected(input.error());

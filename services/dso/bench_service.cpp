@@ -51,6 +51,10 @@ Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& p
                                                "driver = \"series\"",
                                                bench.path.string())});
   }
+  if (oscilloscope->address.empty()) {
+    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no address; files of shots are for dyncal analyse",
+                                                                 oscilloscope->where, oscilloscope->name)});
+  }
   const std::uint64_t session = random_session();
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench.bench, wake_up);

@@ -1,0 +1,130 @@
+#include "services/command/shot_files.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "drivers/tss/series.hpp"
+#include "services/dso/series_channels.hpp"
+#include "services/evaluation/shot_record.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::uint64_t session = 1; // files are one session; nothing depends on its number
+
+using StepAndShot = std::pair<std::uint32_t, std::uint64_t>;
+
+tl::unexpected<Error> bad_file(const std::filesystem::path& path, const std::string& why) {
+  return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why)});
+}
+
+Expected<std::map<StepAndShot, std::filesystem::path>> find_files(const std::filesystem::path& folder) {
+  static const std::regex form("step-([0-9]{1,6})-shot-([0-9]{1,6})\\.csv");
+  std::map<StepAndShot, std::filesystem::path> files;
+  std::error_code problem;
+  for (std::filesystem::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
+    std::smatch match;
+    const std::string name = entry->path().filename().string();
+    if (std::regex_match(name, match, form)) {
+      files.emplace(StepAndShot{static_cast<std::uint32_t>(std::stoul(match[1])), std::stoul(match[2])}, entry->path());
+    }
+  }
+  if (problem) {
+    return bad_file(folder, "cannot be read: " + problem.message());
+  }
+  if (files.empty() || files.size() > ShotRecord::capacity) {
+    return bad_file(folder, fmt::format("holds {} files named like step-1-shot-1.csv; between 1 and {} can be evaluated", files.size(),
+                                        ShotRecord::capacity));
+  }
+  return files;
+}
+
+Expected<drivers::tss::Series> read_file(const std::filesystem::path& path, const SourceSettings& source,
+                                         const std::vector<std::string>& wanted) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) {
+    return bad_file(path, "cannot be read");
+  }
+  auto series = drivers::tss::parse_series_csv(text.str());
+  if (!series) {
+    return bad_file(path, series.error().message);
+  }
+  auto selected = dso::select_channels(std::move(*series), source.channels, wanted);
+  return selected ? std::move(selected) : bad_file(path, selected.error().message);
+}
+
+SourceDescription describe(const BenchFile& bench, const SourceSettings& source, SourceKind kind, const drivers::tss::Series& series) {
+  SourceDescription description;
+  description.bench(bench.bench);
+  description.source(source.name);
+  description.session(session);
+  description.kind(kind);
+  description.device(series.device);
+  description.serial(series.serial);
+  description.driver("files of shots");
+  description.software(software_version());
+  description.nominal_rate_hz(series.nominal_rate_hz);
+  for (const drivers::ChannelDescription& one : series.channels) {
+    ChannelDescription channel;
+    channel.name(one.name);
+    const auto unit = source.units.find(one.name);
+    channel.unit(unit == source.units.end() ? one.unit : unit->second);
+    description.channels().push_back(std::move(channel));
+  }
+  return description;
+}
+
+} // namespace
+
+Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name, const std::string& run) {
+  const SourceSettings& source = *bench.source(name); // a role names it: it was checked
+  const bool trace = name == bench.method.sync_dau.source;
+  if (source.path.empty()) {
+    return tl::unexpected(
+        Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates files, use 'dyncal run' for live sources",
+                                               source.where, source.name)});
+  }
+  const auto files = find_files(source.path);
+  if (!files) {
+    return tl::unexpected(files.error());
+  }
+  std::vector<std::string> wanted;
+  for (const ChannelName& channel : trace ? std::vector{bench.method.sync_dau} : bench.method.dut) {
+    wanted.push_back(channel.channel);
+  }
+  ShotFiles result;
+  for (const auto& [number, path] : *files) {
+    auto series = read_file(path, source, wanted);
+    if (!series) {
+      return tl::unexpected(series.error());
+    }
+    if (result.records.empty()) {
+      result.description = describe(bench, source, trace ? SOURCE_DSO : SOURCE_TSS, *series);
+    }
+    TriggeredRecord record;
+    record.bench(bench.bench);
+    record.source(name);
+    record.session(session);
+    record.run(run);
+    record.step(number.first);
+    // Shots are numbered within their step in files, and within the session in records.
+    record.shot((std::uint64_t{number.first} << 32U) | number.second);
+    record.first_sample_s(series->first_sample_s);
+    record.interval_s(1.0 / series->nominal_rate_hz);
+    record.sample_count(static_cast<std::uint32_t>(series->samples));
+    record.channel_count(static_cast<std::uint32_t>(wanted.size()));
+    record.values(std::move(series->values));
+    result.records.push_back(std::move(record));
+  }
+  return result;
+}
+
+} // namespace dyncal::services
