@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
+#include <limits>
+#include <malloc.h>
 #include <mutex>
 #include <thread>
 
@@ -202,6 +204,14 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
   return {};
 }
 
+// Columns of a million samples come and go with every step: pages fresh from the system would cost as much as the arithmetic on them.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  ::mallopt(M_MMAP_MAX, 0);
+  ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
@@ -232,6 +242,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
 } // namespace
 
 int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+  keep_freed_memory();
   const auto outcome = analyse(command, stop);
   if (!outcome) {
     return fail(outcome.error());
