@@ -1,7 +1,9 @@
 #include "drivers/acs/csv_rows.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -30,6 +32,46 @@ template <class Number>
 bool is_whole(std::string_view text, Number& value) {
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   return status == std::errc() && end == text.data() + text.size();
+}
+
+// Eight decimal digits at once, the sums of neighbours formed side by side in one word; false when they are not eight digits.
+bool eight_digits(const char* text, std::uint64_t& value) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, text, sizeof(word));
+  constexpr std::uint64_t zeros = 0x3030303030303030;
+  constexpr std::uint64_t high = 0xF0F0F0F0F0F0F0F0;
+  if ((word & high) != zeros || ((word + 0x0606060606060606) & high) != zeros) {
+    return false;
+  }
+  word = ((word - zeros) * (1 + (10U << 8U))) >> 8U;
+  word = ((word & 0x00FF00FF00FF00FF) * (1 + (100ULL << 16U))) >> 16U;
+  value = ((word & 0x0000FFFF0000FFFF) * (1 + (10000ULL << 32U))) >> 32U;
+  return true;
+}
+
+// As std::from_chars; stamps of 17 to 19 digits several times as fast.
+std::from_chars_result read_number(const char* at, const char* end, std::int64_t& value) {
+  if constexpr (std::endian::native == std::endian::little) {
+    std::uint64_t first = 0;
+    std::uint64_t second = 0;
+    if (end - at > 19 && eight_digits(at, first) && eight_digits(at + 8, second)) {
+      std::uint64_t number = first * 100'000'000 + second;
+      const char* c = at + 16;
+      for (; c != at + 19 && *c >= '0' && *c <= '9'; ++c) {
+        number = number * 10 + static_cast<std::uint64_t>(*c - '0');
+      }
+      if ((*c < '0' || *c > '9') && number <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+        value = static_cast<std::int64_t>(number);
+        return {c, std::errc()};
+      }
+    }
+  }
+  return std::from_chars(at, end, value);
+}
+
+template <class Number>
+std::from_chars_result read_number(const char* at, const char* end, Number& value) {
+  return std::from_chars(at, end, value);
 }
 
 class RowReader {
@@ -100,7 +142,7 @@ private:
   // Leaves at_ at the separator or the end of the line.
   template <class Number>
   void read_field(Number& value, std::size_t column) {
-    const auto [next, status] = std::from_chars(at_, end_, value);
+    const auto [next, status] = read_number(at_, end_, value);
     if (status == std::errc() && (next == end_ || *next == layout_.separator || *next == '\n')) {
       at_ = next;
       return;

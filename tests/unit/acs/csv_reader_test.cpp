@@ -37,6 +37,30 @@ TEST(CsvRows, HoldStampsAsIntegersAndValuesBitForBit) {
   EXPECT_EQ(rows.channel(1)[1], 1e22);
 }
 
+TEST(CsvRows, HoldIntegersOfAnyLength) {
+  std::string lines;
+  std::vector<std::int64_t> expected{std::numeric_limits<std::int64_t>::min(), -1'234'567'890'123'456'789, -5, 0};
+  for (std::int64_t power = 1; power < std::numeric_limits<std::int64_t>::max() / 10; power *= 10) {
+    for (const std::int64_t number : {power, power + 7, 9 * power, 9 * power + power / 3 * 2}) {
+      if (number > expected.back()) expected.push_back(number);
+    }
+  }
+  expected.push_back(std::numeric_limits<std::int64_t>::max());
+  for (const std::int64_t number : expected) {
+    lines += std::to_string(number) + ",1\n";
+  }
+  const CsvRows rows = rows_of("t_ns,y", lines);
+  ASSERT_FALSE(rows.problem) << rows.problem->sentence;
+  ASSERT_EQ(rows.rows, expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(rows.stamps_ns[i], expected[i]);
+  }
+  for (const char* wrong : {"12345678901234567890,1,                 \n", "9223372036854775808,1                   \n",
+                            "1234567890123456.5,1\n", "1234567x90123456789,1\n"}) {
+    EXPECT_TRUE(rows_of("t_ns,y", wrong).problem) << wrong;
+  }
+}
+
 TEST(CsvRows, AcceptEverySeparatorLineEndAndBlank) {
   for (const auto& [first_line, lines] : {std::pair{"a;t_ns;b", "1;2;3\n"},
                                           {"a\tt_ns\tb\r", "1\t2\t3"},
