@@ -1,8 +1,6 @@
 #include "drivers/generator/scpi_generator.hpp"
 
 #include <charconv>
-#include <condition_variable>
-#include <mutex>
 #include <utility>
 
 #include "drivers/scpi_answer.hpp"
@@ -34,7 +32,6 @@ ScpiGenerator::~ScpiGenerator() {
 }
 
 void ScpiGenerator::choose_clock() {
-  host_origin_ = std::chrono::steady_clock::now();
   // Only a virtual bench has a time of its own; an instrument that does not know the query says nothing or reports an error.
   has_bench_clock_ = identity_.find("dyncal virtual bench") != std::string::npos;
 }
@@ -114,21 +111,18 @@ Expected<double> ScpiGenerator::clock_now_s() {
   if (has_bench_clock_) {
     return query_bench_time(":BENCh:TIME?");
   }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - host_origin_).count();
+  return host_clock_.now_s();
 }
 
 Expected<double> ScpiGenerator::wait_until_s(double time_s, std::stop_token stop) {
+  if (!has_bench_clock_) {
+    return host_clock_.wait_until_s(time_s, stop);
+  }
   for (;;) {
     // The virtual bench answers :BENCh:WAIT? when the time has come, at the latest after half a second of the host.
-    auto now_s = has_bench_clock_ ? query_bench_time(":BENCh:WAIT? " + scpi_decimal(time_s)) : clock_now_s();
+    auto now_s = query_bench_time(":BENCh:WAIT? " + scpi_decimal(time_s));
     if (!now_s || *now_s >= time_s || stop.stop_requested()) {
       return now_s;
-    }
-    if (!has_bench_clock_) {
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any stopped;
-      stopped.wait_for(lock, stop, std::chrono::duration<double>(time_s - *now_s), [] { return false; });
     }
   }
 }

@@ -7,12 +7,12 @@
 // host's monotonic clock as bench time.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "drivers/generator/generator.hpp"
+#include "drivers/generator/host_clock.hpp"
 #include "drivers/scpi_connection.hpp"
 
 namespace dyncal::drivers::generator {
@@ -31,6 +31,7 @@ public:
   [[nodiscard]] Expected<void> set_output(bool on) override;
   // A rectangle in place of the sine, until the next connection: for the calibration of trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
+  [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
   [[nodiscard]] Expected<double> clock_now_s() override;
   [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override;
 
@@ -47,7 +48,7 @@ private:
   std::optional<ScpiConnection> connection_;
   std::string identity_;
   bool has_bench_clock_ = false;
-  std::chrono::steady_clock::time_point host_origin_;
+  HostClock host_clock_;
 };
 
 } // namespace dyncal::drivers::generator

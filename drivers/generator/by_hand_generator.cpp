@@ -1,0 +1,88 @@
+#include "drivers/generator/by_hand_generator.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace dyncal::drivers::generator {
+namespace {
+
+// As many digits as a generator has.
+std::string volts(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g V", value);
+  return text.data();
+}
+
+std::string amplitude(double amplitude_v) {
+  return volts(amplitude_v) + " amplitude (" + volts(2.0 * amplitude_v) + " peak to peak)";
+}
+
+} // namespace
+
+ByHandGenerator::~ByHandGenerator() {
+  if (on_) {
+    show_("switch the generator's output off");
+  }
+}
+
+void ByHandGenerator::ask(const std::string& what) {
+  if (isatty(input_) != 0) {
+    tcflush(input_, TCIFLUSH);
+  }
+  asked_ = true;
+  show_(what + ", then press Enter");
+}
+
+Expected<void> ByHandGenerator::set_frequency(const std::string& decimal_hz) {
+  frequency_hz_ = decimal_hz;
+  return {};
+}
+
+Expected<void> ByHandGenerator::set_amplitude_v(double amplitude_v) {
+  const bool changed = amplitude_v != amplitude_v_;
+  amplitude_v_ = amplitude_v;
+  if (on_ && changed) {
+    ask("generator: set " + amplitude(amplitude_v_));
+  }
+  return {};
+}
+
+Expected<void> ByHandGenerator::set_output(bool on) {
+  if (on) {
+    on_ = true; // from now on it may be
+    ask("generator: with the output off set sine, " + frequency_hz_ + " Hz, " + amplitude(amplitude_v_) + "; switch the output on");
+  } else if (on_) {
+    on_ = false;
+    ask("generator: switch the output off");
+  }
+  return {};
+}
+
+Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit) {
+  if (!asked_) {
+    return true;
+  }
+  pollfd waiting{input_, POLLIN, 0};
+  if (poll(&waiting, 1, static_cast<int>(limit.count())) <= 0) {
+    return false; // nothing came, or a signal did
+  }
+  // Byte by byte: what follows the line end is the answer to a later question.
+  for (char byte = 0;;) {
+    if (poll(&waiting, 1, 0) <= 0) {
+      return false; // the rest of the line is still to come
+    }
+    if (read(input_, &byte, 1) != 1) {
+      return tl::unexpected(Error{ErrorCode::disconnected, "generator by hand: standard input has ended, nobody can confirm the settings"});
+    }
+    if (byte == '\n') {
+      asked_ = false;
+      return true;
+    }
+  }
+}
+
+} // namespace dyncal::drivers::generator

@@ -1,0 +1,49 @@
+// A generator that a person sets: says what to set, and takes a line (Enter) as the word that it is done.
+//
+// set_frequency() and set_amplitude_v() are remembered; set_output(true) shows all of it with the order of the work (values first, output
+// last), set_output(false) asks to switch the output off, and a new amplitude while it is on asks for that alone. Nothing waits for the
+// person but wait_for_effect(), so that the caller can do other things meanwhile. Confirmations are lines of a descriptor, a terminal or
+// not. On a terminal what was typed before the question does not count. Destruction asks to switch the output off when it is, or may be,
+// on. Bench time is the host's. Fails: disconnected (the descriptor has ended). One thread.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "drivers/generator/generator.hpp"
+#include "drivers/generator/host_clock.hpp"
+
+namespace dyncal::drivers::generator {
+
+class ByHandGenerator : public Generator {
+public:
+  using Show = std::function<void(const std::string&)>; // one request to the person, without line end
+
+  // Reads confirmations from `input`, which stays open and stays the caller's.
+  ByHandGenerator(int input, Show show) : input_(input), show_(std::move(show)) {}
+  ~ByHandGenerator() override;
+  ByHandGenerator(const ByHandGenerator&) = delete;
+  ByHandGenerator& operator=(const ByHandGenerator&) = delete;
+
+  [[nodiscard]] const std::string& identity() const override { return identity_; }
+  [[nodiscard]] Expected<void> set_frequency(const std::string& decimal_hz) override;
+  [[nodiscard]] Expected<void> set_amplitude_v(double amplitude_v) override;
+  [[nodiscard]] Expected<void> set_output(bool on) override;
+  [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds limit) override;
+  [[nodiscard]] Expected<double> clock_now_s() override { return clock_.now_s(); }
+  [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override { return clock_.wait_until_s(time_s, stop); }
+
+private:
+  void ask(const std::string& what);
+
+  int input_;
+  Show show_;
+  HostClock clock_;
+  std::string identity_ = "set by hand";
+  std::string frequency_hz_;
+  double amplitude_v_ = 0.0;
+  bool on_ = false;
+  bool asked_ = false; // and not confirmed yet
+};
+
+} // namespace dyncal::drivers::generator

@@ -1,0 +1,19 @@
+// Bench time of a bench without a time of its own: the host's monotonic clock, from when the object was made. Any thread.
+#pragma once
+
+#include <chrono>
+#include <stop_token>
+
+namespace dyncal::drivers::generator {
+
+class HostClock {
+public:
+  [[nodiscard]] double now_s() const;
+  // The time at which it returns: at `time_s`, or as soon as a stop is requested.
+  [[nodiscard]] double wait_until_s(double time_s, const std::stop_token& stop) const;
+
+private:
+  std::chrono::steady_clock::time_point origin_ = std::chrono::steady_clock::now();
+};
+
+} // namespace dyncal::drivers::generator
