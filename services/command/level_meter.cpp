@@ -1,0 +1,112 @@
+#include "services/command/level_meter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/sine_fit.hpp"
+#include "services/bus/topics.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr double shortest_window_s = 0.2;
+constexpr double window_periods = 4.0;     // two for each half
+constexpr std::size_t fewest_samples = 16; // in half a window
+constexpr double kept_s = 20.0;
+constexpr double largest_drift = 1e-4; // of two clocks
+constexpr std::size_t most_samples = std::size_t{1} << 22U;
+
+std::int64_t ns(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+std::optional<double> amplitude(const analysis::Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+                                std::span<const double> values) {
+  if (stamps_ns.size() < fewest_samples) {
+    return std::nullopt;
+  }
+  const auto fit = analysis::fit_sine(frequency, stamps_ns.front(), stamps_ns, std::span(&values, 1));
+  return fit ? std::optional(fit->front().amplitude()) : std::nullopt;
+}
+
+} // namespace
+
+LevelMeter::LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions, bus::Reader<SampleBlock> samples)
+    : reference_(std::move(reference)), descriptions_(std::move(descriptions)), samples_(std::move(samples)),
+      record_(reference_.source, most_samples) {}
+
+Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench, std::shared_ptr<bus::WakeUp> wake_up) {
+  auto descriptions = participant.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
+  if (!descriptions) {
+    return tl::unexpected(descriptions.error());
+  }
+  auto samples = participant.reader<SampleBlock>(bus::topics::acs_samples, bus::Profile::samples, bench.bench, wake_up);
+  if (!samples) {
+    return tl::unexpected(samples.error());
+  }
+  return LevelMeter(bench.method.reference, std::move(*descriptions), std::move(*samples));
+}
+
+double LevelMeter::window_s(double frequency_hz) {
+  return std::max(shortest_window_s, window_periods / frequency_hz);
+}
+
+void LevelMeter::take(double bench_time_s) {
+  descriptions_.take([&](const SourceDescription& description, const bus::SampleInfo& info) {
+    if (info.valid && description.source() == reference_.source) {
+      record_.describe(description);
+    }
+  });
+  samples_.take([&](const SampleBlock& block, const bus::SampleInfo& info) {
+    if (info.valid && block.source() == reference_.source) {
+      record_.add(block);
+    }
+  });
+  if (record_.restarts() != restarts_) {
+    restarts_ = record_.restarts();
+    acs_minus_bench_ns_.reset();
+  }
+  if (record_.stamps_ns().empty()) {
+    return;
+  }
+  const std::int64_t newest_ns = record_.stamps_ns().back();
+  const std::int64_t difference_ns = newest_ns - ns(bench_time_s);
+  if (acs_minus_bench_ns_) {
+    *acs_minus_bench_ns_ -= ns(largest_drift * (bench_time_s - taken_s_)); // a slow ACS clock must not make everybody wait
+  }
+  acs_minus_bench_ns_ = std::max(acs_minus_bench_ns_.value_or(difference_ns), difference_ns);
+  taken_s_ = bench_time_s;
+  record_.forget_before(newest_ns - ns(kept_s));
+}
+
+std::optional<double> LevelMeter::level_after(double bench_time_s, const analysis::Frequency& frequency, double agreement_rel) const {
+  const auto stamps = record_.stamps_ns();
+  if (stamps.empty() || !acs_minus_bench_ns_ || !record_.described()) {
+    return std::nullopt;
+  }
+  const auto channel = record_.channel(reference_.channel);
+  if (!channel) {
+    return std::nullopt;
+  }
+  const std::int64_t window_ns = ns(window_s(frequency.hz()));
+  const std::int64_t begin_ns = stamps.back() - window_ns;
+  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(transport_s) || record_.lost_between(begin_ns, stamps.back()) > 0) {
+    return std::nullopt;
+  }
+  const auto place = [&](std::int64_t stamp_ns) {
+    return static_cast<std::size_t>(std::lower_bound(stamps.begin(), stamps.end(), stamp_ns) - stamps.begin());
+  };
+  const std::size_t begin = place(begin_ns);
+  const std::size_t middle = place(begin_ns + window_ns / 2);
+  const auto values = record_.column(*channel);
+  const auto whole = amplitude(frequency, stamps.subspan(begin), values.subspan(begin));
+  const auto first = amplitude(frequency, stamps.subspan(begin, middle - begin), values.subspan(begin, middle - begin));
+  const auto second = amplitude(frequency, stamps.subspan(middle), values.subspan(middle));
+  if (!whole || !first || !second || std::abs(*second - *first) > agreement_rel * *whole) {
+    return std::nullopt;
+  }
+  return whole;
+}
+
+} // namespace dyncal::services
