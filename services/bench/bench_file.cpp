@@ -11,6 +11,7 @@
 #include "analysis/frequency.hpp"
 #include "services/bench/can_source.hpp"
 #include "services/bench/digest.hpp"
+#include "services/bench/generator_table.hpp"
 #include "services/bench/toml_table.hpp"
 #include "services/bench/triggered_source.hpp"
 #include "services/bench/unit.hpp"
@@ -91,18 +92,6 @@ ExcitationSettings read_excitation(TomlTable table) {
   read_window(table, excitation);
   table.finish();
   return excitation;
-}
-
-GeneratorSettings read_generator(TomlTable table) {
-  GeneratorSettings generator;
-  generator.driver = table.one_of("driver", {"scpi", "none"}, "");
-  generator.level_per_volt = table.number("level_per_volt", 1.0, "m/s^2 per V");
-  generator.address = generator.driver == "scpi" ? table.required_text("address") : table.text("address");
-  if (generator.level_per_volt <= 0.0) {
-    table.refuse("level_per_volt", "must be positive, in m/s^2 per V");
-  }
-  table.finish();
-  return generator;
 }
 
 std::optional<std::uint32_t> read_sensor_id(TomlTable& table, const std::string& key) {
@@ -347,7 +336,7 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   file.excitation = read_excitation(required_table(root, "excitation"));
   file.generator.driver = "none";
   if (auto generator = root.table("generator")) {
-    file.generator = read_generator(std::move(*generator));
+    file.generator = read_generator(std::move(*generator), file.excitation);
   }
   file.sources = read_sources(required_table(root, "sources"), folder);
   file.method = read_method(required_table(root, "method"), file.sources);

@@ -49,9 +49,12 @@ struct ExcitationSettings {
 };
 
 struct GeneratorSettings {
-  std::string driver; // "scpi" or "none"
+  std::string driver; // "scpi", "by-hand" or "none"
   std::string address;
-  double level_per_volt = 1.0; // m/s^2 per V
+  double level_per_volt = 1.0;               // m/s^2 per V
+  std::optional<double> level_tolerance_rel; // closed loop on the reference's amplitude
+  std::optional<double> maximum_voltage_v;   // zero to peak
+  std::optional<double> maximum_level_m_s2;
 };
 
 enum class SourceDriver { smartup, socket, file, can, oscilloscope, series };

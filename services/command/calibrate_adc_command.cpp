@@ -241,6 +241,12 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
   }
   for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
     const SourceSettings* source = bench.source(role.source);
+    if (source != nullptr && source->driver == SourceDriver::oscilloscope) {
+      return tl::unexpected(
+          refused(fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its trigger, and the DAU does "
+                              "not stamp that; calibrate the ADC against a system that stamps in UTC",
+                              bench.path.string(), role.source)));
+    }
     const bool may_be_told_by_instrument = source != nullptr && source->driver == SourceDriver::socket;
     if (source != nullptr && source->time_base != drivers::TimeBase::utc && !may_be_told_by_instrument) {
       return tl::unexpected(no_time_scale(role.source));
@@ -262,6 +268,7 @@ BenchFile bench_of_adc_pass(const BenchFile& bench, std::optional<double> amplit
   pass.method.dut = {bench.method.sync_dau};
   pass.method.temperature.reset();
   pass.corrections.adc.reset();
+  pass.generator.level_tolerance_rel.reset(); // the reference may be without excitation
   pass.text += "\n# dyncal calibrate adc: reference = sync_acs, dut = sync_dau, no corrections";
   if (amplitude_vpp) {
     const double level = 0.5 * *amplitude_vpp * bench.generator.level_per_volt;

@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "analysis/sine_fit.hpp"
+#include "services/bench/level_settling.hpp"
 #include "services/bus/topics.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr double shortest_window_s = 0.2;
-constexpr double window_periods = 4.0;     // two for each half
 constexpr std::size_t fewest_samples = 16; // in half a window
 constexpr double kept_s = 20.0;
 constexpr double largest_drift = 1e-4; // of two clocks
@@ -46,10 +45,6 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
     return tl::unexpected(samples.error());
   }
   return LevelMeter(bench.method.reference, std::move(*descriptions), std::move(*samples));
-}
-
-double LevelMeter::window_s(double frequency_hz) {
-  return std::max(shortest_window_s, window_periods / frequency_hz);
 }
 
 void LevelMeter::take(double bench_time_s) {
@@ -89,9 +84,9 @@ std::optional<double> LevelMeter::level_after(double bench_time_s, const analysi
   if (!channel) {
     return std::nullopt;
   }
-  const std::int64_t window_ns = ns(window_s(frequency.hz()));
+  const std::int64_t window_ns = ns(level_window_s(frequency.hz()));
   const std::int64_t begin_ns = stamps.back() - window_ns;
-  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(transport_s) || record_.lost_between(begin_ns, stamps.back()) > 0) {
+  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) || record_.lost_between(begin_ns, stamps.back()) > 0) {
     return std::nullopt;
   }
   const auto place = [&](std::int64_t stamp_ns) {

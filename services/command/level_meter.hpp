@@ -3,9 +3,9 @@
 // Amplitude of the sine of the step's frequency (three-parameter approximation, analysis/sine_fit.hpp) in the newest window of samples that
 // were taken after a given bench time. The ACS's clock and bench time share nothing, so their difference is learnt from arrival: a block
 // with the newest stamp a that is there at bench time b says that the clocks differ by a - b at least, and the largest of these is short of
-// the truth by the smallest delay of any block. `transport_s` bounds that delay. Against a longer one, and a level that still moves: the
-// two halves of the window must show the same level within the agreement asked for. While it exists its blocks must be taken: call take()
-// at least every second. One thread.
+// the truth by the smallest delay of any block. level_transport_s bounds that delay. Against a longer one, and a level that still moves:
+// the two halves of the window must show the same level within the agreement asked for. While it exists its blocks must be taken: call
+// take() at least every second. One thread.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,6 @@ namespace dyncal::services {
 
 class LevelMeter {
 public:
-  static constexpr double transport_s = 0.3;
-
   // Of the channel that is the bench's reference. Fails as readers do.
   [[nodiscard]] static Expected<LevelMeter> create(bus::Participant& participant, const BenchFile& bench,
                                                    std::shared_ptr<bus::WakeUp> wake_up);
@@ -32,9 +30,6 @@ public:
 
   // Nothing while there is no full window of samples from after `bench_time_s`, or while its halves differ by more than `agreement_rel`.
   [[nodiscard]] std::optional<double> level_after(double bench_time_s, const analysis::Frequency& frequency, double agreement_rel) const;
-
-  // Long enough for an amplitude at this frequency.
-  [[nodiscard]] static double window_s(double frequency_hz);
 
 private:
   LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions, bus::Reader<SampleBlock> samples);

@@ -1,4 +1,6 @@
 // dyncal: the command for people.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 
 #include "services/command/analyse_command.hpp"
@@ -7,6 +9,7 @@
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
+#include "services/command/output_guard.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/watch_command.hpp"
 
@@ -94,12 +97,20 @@ void add_compare(CLI::App& app, CompareCommand& compare) {
   command->add_flag("--json", compare.json, "print JSON");
 }
 
+// Not for people: services/command/output_guard.hpp starts it.
+void add_guard_output(CLI::App& app, std::string& generator) {
+  CLI::App* command = app.add_subcommand("guard-output", "switch a generator's output off when standard input ends");
+  command->group("");
+  command->add_option("ADDRESS", generator, "of the generator, HOST:PORT")->required();
+}
+
 struct Commands {
   AnalyseCommand analyse;
   CalibrateCommands calibrate;
   CompareCommand compare;
   DemoCommand demo;
   FitCommand fit;
+  std::string guarded_generator;
   IntervalsCommand intervals;
   RunCommand run;
   WatchCommand watch;
@@ -114,6 +125,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (app.got_subcommand("intervals")) {
     return run_intervals(commands.intervals);
+  }
+  if (app.got_subcommand("guard-output")) {
+    return guard_output(commands.guarded_generator, STDIN_FILENO);
   }
   const std::stop_token stop = stop_on_signals();
   if (app.got_subcommand("calibrate")) {
@@ -146,6 +160,7 @@ int main(int argc, char** argv) {
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);
   add_calibrate(app, commands.calibrate);
+  add_guard_output(app, commands.guarded_generator);
   CLI11_PARSE(app, argc, argv);
   set_up_log("dyncal");
   return execute(app, commands);

@@ -26,6 +26,12 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(const RunProgress& progress) {
+  if (!progress.request.empty()) {
+    end();
+    fmt::print(stream_, "{}\n", progress.request);
+    std::fflush(stream_);
+    return;
+  }
   const std::string text = describe(progress);
   if (text == last_text_) {
     return;

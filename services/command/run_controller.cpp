@@ -1,13 +1,10 @@
 #include "services/command/run_controller.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include <fmt/format.h>
 
-#include "analysis/frequency.hpp"
-#include "drivers/generator/scpi_generator.hpp"
 #include "services/bus/topics.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/utc_clock.hpp"
@@ -22,20 +19,6 @@ constexpr auto armed_limit = 9s;     // to be armed or refused
 constexpr auto analysis_limit = 10s; // between two of its lines
 constexpr auto results_limit = 25s;  // from the end of the excitation to the last result
 constexpr auto alive_interval = 2s;
-constexpr auto shots_limit = 60s; // for the shots of one step, series time stamping
-constexpr double off_s = 0.3;     // between two steps
-constexpr double shot_slice_s = 0.25;
-constexpr double slice_s = 1.0;     // bench time between two looks at the network
-constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
-
-// Time beyond settling and duration for which a step is excited, see analysis/excitation_window.hpp.
-double margin_s(double frequency_hz) {
-  return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
-}
-
-Error device_error(const drivers::Error& error) {
-  return {ErrorCode::device, error.message};
-}
 
 template <class T>
 void keep_newest(std::vector<T>& all, const T& one, bool (*same)(const T&, const T&)) {
@@ -57,7 +40,7 @@ Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalib
                                             const std::stop_token& stop) {
   outcome_ = {};
   outcome_.measurement = plan_measurement(bench_, run_, utc_now_ns(), adc_calibration);
-  if (const auto ready = open_generator().and_then([&] { return open_endpoints(); }); !ready) {
+  if (const auto ready = open_endpoints().and_then([&] { return open_excitation(); }); !ready) {
     return tl::unexpected(ready.error());
   }
   set_state(MEASUREMENT_PLANNED);
@@ -67,12 +50,15 @@ Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalib
   }
   set_state(MEASUREMENT_RUNNING);
   Expected<void> excited = excite(stop);
+  if (excitation_) {
+    excitation_->end();
+  }
   outcome_.interrupted = stop.stop_requested();
   if (!excited) {
     outcome_.problem = excited.error().message;
   }
   outcome_.measurement.message(outcome_.interrupted ? "interrupted by the user" : outcome_.problem);
-  const bool from_files = generator_ == nullptr;
+  const bool from_files = excitation_ == nullptr;
   if (!from_files || outcome_.interrupted || !excited) {
     set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);
   }
@@ -111,25 +97,22 @@ Expected<void> RunController::open_endpoints() {
   }
   endpoints_ = std::make_unique<Endpoints>(Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
                                                      std::move(*results), std::move(*transfer), std::move(*clocks)});
-  if (bench_.method.kind == EvaluationMethod::series_timestamping) {
-    auto counter = ShotCounter::create(participant_, bench, wake_up_);
-    if (!counter) {
-      return tl::unexpected(counter.error());
-    }
-    shots_.emplace(std::move(*counter));
-  }
   return {};
 }
 
-Expected<void> RunController::open_generator() {
-  if (bench_.generator.driver != "scpi") {
+Expected<void> RunController::open_excitation() {
+  if (bench_.generator.driver == "none") {
     return {};
   }
-  auto generator = drivers::generator::ScpiGenerator::connect(bench_.generator.address);
-  if (!generator) {
-    return tl::unexpected(device_error(generator.error()));
+  auto excitation = StepExcitation::open(participant_, bench_, outcome_.measurement, wake_up_,
+                                         {.announce = [this](const PlannedStep& step, ExcitationState state) { announce(step, state); },
+                                          .show = [this](const std::string& phase) { show(phase); },
+                                          .ask = [this](const std::string& request) { show("asking", request); },
+                                          .attend = [this] { return attend(); }});
+  if (!excitation) {
+    return tl::unexpected(excitation.error());
   }
-  generator_ = std::move(*generator);
+  excitation_ = std::move(*excitation);
   return {};
 }
 
@@ -161,94 +144,33 @@ Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
 }
 
 Expected<void> RunController::excite(const std::stop_token& stop) {
-  if (!generator_) {
+  if (!excitation_) {
     return {};
+  }
+  if (const auto ready = excitation_->begin(); !ready) {
+    return ready;
   }
   first_step_began_ = Clock::now();
   for (const PlannedStep& step : outcome_.measurement.steps()) {
     ++step_;
-    auto excited = excite_step(step, stop);
-    const auto off = generator_->set_output(false);
-    if (!excited || stop.stop_requested()) {
-      announce(step, EXCITATION_ABORTED);
+    if (const auto excited = excitation_->excite(step, stop); !excited || stop.stop_requested()) {
       return excited;
     }
-    if (!off) {
-      return tl::unexpected(device_error(off.error()));
-    }
-    announce(step, EXCITATION_DONE);
-    const auto now = generator_->clock_now_s();
-    if (!now) {
-      return tl::unexpected(device_error(now.error()));
-    }
-    if (const auto held = hold_until(*now + off_s, stop); !held) {
-      return tl::unexpected(held.error());
-    }
   }
   return {};
 }
 
-Expected<void> RunController::excite_step(const PlannedStep& step, const std::stop_token& stop) {
-  const auto began = generator_->set_frequency(step.frequency_hz())
-                         .and_then([&] { return generator_->set_amplitude_v(step.level_m_s2() / bench_.generator.level_per_volt); })
-                         .and_then([&] { return generator_->set_output(true); })
-                         .and_then([&] { return generator_->clock_now_s(); });
-  if (!began) {
-    return tl::unexpected(device_error(began.error()));
+Expected<void> RunController::attend() {
+  keep_alive();
+  take_messages();
+  if (analysis_->health() == HEALTH_FAILED) {
+    return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
   }
-  window_begin_utc_ns_ = utc_now_ns();
-  announce(step, EXCITATION_SETTLING);
-  show("settling");
-  if (const auto settled = hold_until(*began + step.settling_s(), stop); !settled || !*settled) {
-    return settled.map([](bool) {});
-  }
-  if (shots_) {
-    shots_->begin(run_, step.step());
-  }
-  announce(step, EXCITATION_STEADY);
-  show("measuring");
-  const double frequency_hz = analysis::Frequency::parse(step.frequency_hz())->hz(); // the bench file was checked
-  const auto held = hold_until(*began + step.settling_s() + step.duration_s() + margin_s(frequency_hz), stop);
-  if (!held || !*held || !shots_) {
-    return held.map([](bool) {});
-  }
-  return hold_until_shots_are_taken(stop);
-}
-
-// A step without all of its shots is measured with those there are; the analysis says how many.
-Expected<void> RunController::hold_until_shots_are_taken(const std::stop_token& stop) {
-  const auto deadline = Clock::now() + shots_limit;
-  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline && !stop.stop_requested()) {
-    show("shots");
-    const auto now = generator_->clock_now_s();
-    if (!now) {
-      return tl::unexpected(device_error(now.error()));
-    }
-    if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
-      return tl::unexpected(held.error());
-    }
+  if (Clock::now() - analysis_heard_ > analysis_limit) {
+    return tl::unexpected(
+        Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
   }
   return {};
-}
-
-Expected<bool> RunController::hold_until(double bench_time_s, const std::stop_token& stop) {
-  auto now = generator_->clock_now_s();
-  while (now && *now < bench_time_s && !stop.stop_requested()) {
-    now = generator_->wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
-    keep_alive();
-    take_messages();
-    if (analysis_->health() == HEALTH_FAILED) {
-      return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
-    }
-    if (Clock::now() - analysis_heard_ > analysis_limit) {
-      return tl::unexpected(
-          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
-    }
-  }
-  if (!now) {
-    return tl::unexpected(device_error(now.error()));
-  }
-  return !stop.stop_requested();
 }
 
 // Topics have no order among each other: FINISHED may come before the results that were written before it.
@@ -260,7 +182,7 @@ bool RunController::everything_has_come() const {
 
 Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   const bool already_stopped = stop.stop_requested();
-  const bool from_files = generator_ == nullptr;
+  const bool from_files = excitation_ == nullptr;
   auto deadline = Clock::now() + results_limit;
   std::size_t results_before = outcome_.results.size();
   while (!everything_has_come()) {
@@ -292,6 +214,9 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
 }
 
 void RunController::announce(const PlannedStep& step, ExcitationState state) {
+  if (state == EXCITATION_SETTLING) {
+    window_begin_utc_ns_ = utc_now_ns();
+  }
   Excitation excitation;
   excitation.bench(bench_.bench);
   excitation.run(run_);
@@ -348,8 +273,9 @@ void RunController::take_messages() {
   });
 }
 
-void RunController::show(const std::string& phase) {
+void RunController::show(const std::string& phase, const std::string& request) {
   RunProgress progress;
+  progress.request = request;
   progress.step = step_;
   progress.steps = outcome_.measurement.steps().size();
   progress.phase = phase;

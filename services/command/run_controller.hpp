@@ -1,8 +1,6 @@
 // Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "The run protocol". Durations are in bench time (the generator's clock); each step holds the
-// output on for settling, duration and a margin in which the analysis finds the edges of the steady part, then off for a moment, which
-// separates it from the next.
+// Order of messages: idl/README.md, "The run protocol"; services/command/step_excitation.hpp excites the steps.
 // The generator's output is off on every way out: end, error, stop.
 // Fails: no_analysis (nobody answers, or the recipe is refused), no_source, device (generator), network, no_result. A stop is no failure:
 // the outcome says `interrupted` and holds what was measured. Belongs to one thread.
@@ -17,11 +15,10 @@
 #include <vector>
 
 #include "analysis/adc_calibration.hpp"
-#include "drivers/generator/generator.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/command/shot_counter.hpp"
+#include "services/command/step_excitation.hpp"
 
 namespace dyncal::services {
 
@@ -29,7 +26,8 @@ struct RunProgress {
   std::size_t step = 0; // 1..steps; 0 before the first
   std::size_t steps = 0;
   std::string frequency_hz;
-  std::string phase; // "waiting for the analysis", "settling", "measuring", ...
+  std::string phase;   // "waiting for the analysis", "settling", "measuring", ...
+  std::string request; // to the operator; "" for none
   std::size_t results = 0;
   std::optional<double> seconds_left; // of the host's clock
 };
@@ -66,19 +64,17 @@ private:
   };
 
   Expected<void> open_endpoints();
-  Expected<void> open_generator();
+  Expected<void> open_excitation();
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> excite(const std::stop_token& stop);
-  Expected<void> excite_step(const PlannedStep& step, const std::stop_token& stop);
-  Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
-  // Waits until the bench time and keeps the run alive on the network meanwhile; false when it shall stop.
-  Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
+  // Keeps the run alive on the network; fails when the analysis, or a source that it watches, is lost.
+  Expected<void> attend();
   Expected<void> wait_for_results(const std::stop_token& stop);
   void announce(const PlannedStep& step, ExcitationState state);
   void set_state(MeasurementState state);
   void keep_alive();
   void take_messages();
-  void show(const std::string& phase);
+  void show(const std::string& phase, const std::string& request = "");
   [[nodiscard]] bool everything_has_come() const;
 
   bus::Participant& participant_;
@@ -87,8 +83,6 @@ private:
   ShowProgress show_progress_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::unique_ptr<Endpoints> endpoints_;
-  std::optional<ShotCounter> shots_; // series time stamping only
-  std::unique_ptr<drivers::generator::Generator> generator_;
   RunOutcome outcome_;
   std::optional<ServiceStatus> analysis_;
   Clock::time_point analysis_heard_;
@@ -96,6 +90,7 @@ private:
   std::size_t step_ = 0;
   std::int64_t window_begin_utc_ns_ = 0;
   Clock::time_point first_step_began_;
+  std::unique_ptr<StepExcitation> excitation_; // last: its end may ask the operator to switch the output off
 };
 
 } // namespace dyncal::services

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "services/bench/level_settling.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -21,7 +23,8 @@ Method method_message(EvaluationMethod method) {
   return METHOD_SAMPLE_TIMESTAMPING;
 }
 
-void plan_steps(const ExcitationSettings& excitation, Measurement& measurement) {
+void plan_steps(const BenchFile& file, Measurement& measurement) {
+  const ExcitationSettings& excitation = file.excitation;
   std::uint32_t number = 0;
   for (int repetition = 1; repetition <= excitation.repetitions; ++repetition) {
     for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
@@ -30,7 +33,7 @@ void plan_steps(const ExcitationSettings& excitation, Measurement& measurement) 
       step.repetition(static_cast<std::uint32_t>(repetition));
       step.frequency_hz(excitation.frequencies_hz[i]);
       step.level_m_s2(excitation.levels_m_s2[i]);
-      step.settling_s(excitation.settling_s);
+      step.settling_s(planned_settling_s(file, analysis::Frequency::parse(excitation.frequencies_hz[i])->hz(), repetition));
       step.duration_s(excitation.duration_s);
       measurement.steps().push_back(step);
     }
@@ -144,7 +147,7 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   if (file.method.temperature) {
     measurement.temperature(file.method.temperature->text());
   }
-  plan_steps(file.excitation, measurement);
+  plan_steps(file, measurement);
   plan_adc(adc_calibration, measurement);
   measurement.reference_magnitude_rel(file.uncertainty.reference_magnitude_rel);
   measurement.reference_phase_rad(file.uncertainty.reference_phase_rad);

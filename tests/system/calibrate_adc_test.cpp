@@ -21,7 +21,6 @@ const LiveBenchSettings utc_bench{.bench_arguments = {"--speed", "max", "--seed"
                                   .excitation =
                                       "frequencies_hz = [\"20\", \"80\", \"200\"]\nlevel = 20.0\nrepetitions = 3\nsettling_s = 0.3\n"
                                       "duration_s = 2.0\n",
-                                  .generator = "",
                                   .rest = ""};
 
 void expect_the_adc_of_the_bench(const nlohmann::json& file, const nlohmann::json& truth) {

@@ -33,7 +33,7 @@ inline int free_udp_port() {
 struct LiveBenchSettings {
   std::vector<std::string> bench_arguments; // of dyncal-virtual-bench
   std::string excitation;                   // lines of the bench file's tables
-  std::string generator;
+  std::string generator = "level_per_volt = 50.0\n";
   std::string source_dau = R"(time_base = "utc")";
   std::string rest; // further tables
 };
@@ -59,6 +59,34 @@ public:
   [[nodiscard]] std::filesystem::path bench_file() const { return folder_ / "bench.toml"; }
   [[nodiscard]] int generator_port() const { return generator_port_; }
   [[nodiscard]] nlohmann::json truth() const { return read_json(folder_ / "truth.json"); }
+  // The answer of the bench's generator.
+  [[nodiscard]] std::string ask_generator(const std::string& query) const {
+    const int socket_number = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(generator_port_));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    std::string answer;
+    const std::string line = query + "\n";
+    if (connect(socket_number, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0 &&
+        send(socket_number, line.data(), line.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(line.size())) {
+      for (char byte = 0; query.ends_with('?') && recv(socket_number, &byte, 1, 0) == 1 && byte != '\n';)
+        answer += byte;
+    }
+    close(socket_number);
+    return answer;
+  }
+  void tell_generator(const std::string& command) const { static_cast<void>(ask_generator(command)); }
+  // True as soon as the generator's output is in this state, "ON" or "OFF".
+  [[nodiscard]] bool wait_for_output(const std::string& state, std::chrono::seconds limit) const {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (ask_generator(":OUTPut1?") == state) {
+        return true;
+      }
+    }
+    return false;
+  }
   ProgramRun& start(const std::vector<std::string>& arguments) { return laboratory_.start("dyncal", arguments, "fastdds"); }
   // The bench file once more, with `text` in place of what one of its lines begins with.
   std::filesystem::path changed_bench_file(const std::string& name, const std::string& line_begin, const std::string& text) const {
@@ -73,8 +101,8 @@ private:
   void write_bench_file(const LiveBenchSettings& settings, const std::string& dau, int acs_port) const {
     std::ofstream(bench_file()) << "bench = \"live-" << domain_ << "\"\n[excitation]\n"
                                 << settings.excitation << "\n[generator]\n"
-                                << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\nlevel_per_volt = 50.0\n", generator_port_)
-                                << settings.generator << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
+                                << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\n", generator_port_) << settings.generator
+                                << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
                                 << "listen = \"" << dau << "\"\nchannels = { Data_11 = \"sync\" }\n"
                                 << settings.source_dau << "\n[sources.acs]\ndriver = \"socket\"\n"
                                 << fmt::format("address = \"127.0.0.1:{}\"\n", acs_port) << R"([method]

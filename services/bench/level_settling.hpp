@@ -1,0 +1,23 @@
+// How long a step settles when its level is brought to the wanted one by closed loop: the loop's measurements happen before the evaluated
+// part of the step, so the recipe plans time for as many as may be needed. Durations in bench time. Any thread.
+//
+//   planned settling = settling + n (settling + transport + window + slack)
+//
+// n: 4 measurements in the first repetition, when the exciter's response at the frequency is not known, 2 in later ones.
+#pragma once
+
+#include "services/bench/bench_file.hpp"
+
+namespace dyncal::services {
+
+// Longest way of a sample from the instrument to a reader on DDS.
+inline constexpr double level_transport_s = 0.3;
+
+// Of samples that show the amplitude at this frequency.
+[[nodiscard]] double level_window_s(double frequency_hz);
+
+[[nodiscard]] int level_corrections(int repetition);
+
+[[nodiscard]] double planned_settling_s(const BenchFile& bench, double frequency_hz, int repetition);
+
+} // namespace dyncal::services

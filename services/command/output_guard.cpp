@@ -1,0 +1,93 @@
+#include "services/command/output_guard.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "drivers/generator/scpi_generator.hpp"
+#include "services/command/child_process.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr char farewell = '.';
+constexpr int attempts = 5; // the instrument may hold on to the dead program's connection for a moment
+
+Error cannot_start(const std::string& why) {
+  return {ErrorCode::device, fmt::format("the guard of the generator's output cannot be started: {}", why)};
+}
+
+} // namespace
+
+Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return tl::unexpected(cannot_start(std::strerror(errno)));
+  }
+  const drivers::Descriptor reading(ends[0]);
+  drivers::Descriptor writing(ends[1]);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, reading.number(), STDIN_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::vector<std::string> words{(program_folder() / "dyncal").string(), "guard-output", generator_address};
+  std::vector<char*> pointers;
+  for (std::string& word : words) {
+    pointers.push_back(word.data());
+  }
+  pointers.push_back(nullptr);
+  pid_t process = 0;
+  const int problem = posix_spawn(&process, pointers.front(), &actions, &attributes, pointers.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (problem != 0) {
+    return tl::unexpected(cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
+  }
+  return OutputGuard(std::move(writing), process);
+}
+
+OutputGuard::~OutputGuard() {
+  if (!pipe_.open()) {
+    return; // moved from
+  }
+  static_cast<void>(write(pipe_.number(), &farewell, 1)); // fails only when the guard is gone already
+  waitpid(process_, nullptr, 0);
+}
+
+int guard_output(const std::string& generator_address, int input) {
+  close_range(STDERR_FILENO + 1, ~0U, 0); // sockets of the guarded program, which must end with it
+  std::signal(SIGPIPE, SIG_IGN);
+  char byte = 0;
+  ssize_t count = 0;
+  do {
+    count = read(input, &byte, 1);
+  } while (count < 0 && errno == EINTR);
+  if (count == 1 && byte == farewell) {
+    return 0;
+  }
+  for (int attempt = 1;; ++attempt) {
+    // Connecting switches the output off.
+    const auto generator = drivers::generator::ScpiGenerator::connect(generator_address);
+    if (generator) {
+      fmt::print(stderr, "dyncal: the run has died; the output of the generator {} was switched off\n", generator_address);
+      return 0;
+    }
+    if (attempt == attempts) {
+      return fail(
+          {ErrorCode::device, fmt::format("the run has died, and its generator's output may be on: {}", generator.error().message)});
+    }
+  }
+}
+
+} // namespace dyncal::services

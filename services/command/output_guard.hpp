@@ -1,0 +1,37 @@
+// Switches a generator's output off when the program that switched it on dies without having done so: killed (SIGKILL), crashed, out of
+// memory.
+//
+// A process of its own ("dyncal guard-output HOST:PORT") waits for the end of a pipe whose other end only the guarded program holds. When
+// the pipe ends without a farewell the guard connects to the generator and switches its output off; with one it ends and does nothing. It
+// has a session of its own, so that what is sent to the terminal's programs does not reach it. Fails (device) when the guard cannot be
+// started. Belongs to one thread.
+#pragma once
+
+#include <string>
+
+#include "drivers/tcp_connection.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+class OutputGuard {
+public:
+  // From now on until the object goes. REQUIRES: the generator is switched off before the object goes.
+  [[nodiscard]] static Expected<OutputGuard> start(const std::string& generator_address);
+  ~OutputGuard();
+  OutputGuard(OutputGuard&&) noexcept = default;
+  OutputGuard& operator=(OutputGuard&&) = delete;
+  OutputGuard(const OutputGuard&) = delete;
+  OutputGuard& operator=(const OutputGuard&) = delete;
+
+private:
+  OutputGuard(drivers::Descriptor pipe, int process) : pipe_(std::move(pipe)), process_(process) {}
+
+  drivers::Descriptor pipe_;
+  int process_;
+};
+
+// What the guard does; the exit status of its program. `input` is the pipe.
+[[nodiscard]] int guard_output(const std::string& generator_address, int input);
+
+} // namespace dyncal::services

@@ -1,0 +1,301 @@
+#include "services/command/step_excitation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "analysis/frequency.hpp"
+#include "drivers/generator/by_hand_generator.hpp"
+#include "drivers/generator/scpi_generator.hpp"
+#include "services/bench/level_settling.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+using drivers::generator::LevelControl;
+
+constexpr auto shots_limit = 60s; // for the shots of one step, series time stamping
+constexpr auto look_interval = 20ms;
+constexpr auto confirmation_slice = 200ms;
+constexpr double off_s = 0.3; // between two steps
+constexpr double shot_slice_s = 0.25;
+constexpr double slice_s = 1.0;     // bench time between two looks at the network
+constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
+
+// Time beyond settling and duration for which a step is excited, see analysis/excitation_window.hpp.
+double margin_s(double frequency_hz) {
+  return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
+}
+
+Error device_error(const drivers::Error& error) {
+  return {ErrorCode::device, error.message};
+}
+
+analysis::Frequency frequency_of(const PlannedStep& step) {
+  return *analysis::Frequency::parse(step.frequency_hz()); // the bench file was checked
+}
+
+Error of_step(const PlannedStep& step, ErrorCode code, const std::string& what) {
+  return {code, fmt::format("step {}, {} Hz: {}", step.step(), step.frequency_hz(), what)};
+}
+
+} // namespace
+
+Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant& participant, const BenchFile& bench,
+                                                               const Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up,
+                                                               StepAttendance attendance) {
+  std::unique_ptr<StepExcitation> excitation(
+      new StepExcitation(participant, bench, measurement.run().to_string(), wake_up, std::move(attendance)));
+  if (const auto ready = excitation->check_levels(measurement).and_then([&] { return excitation->connect_generator(); }); !ready) {
+    return tl::unexpected(ready.error());
+  }
+  if (bench.method.kind == EvaluationMethod::series_timestamping) {
+    auto counter = ShotCounter::create(participant, bench.bench, wake_up);
+    if (!counter) {
+      return tl::unexpected(counter.error());
+    }
+    excitation->shots_.emplace(std::move(*counter));
+  }
+  return excitation;
+}
+
+Expected<void> StepExcitation::connect_generator() {
+  if (bench_.generator.driver == "by-hand") {
+    generator_ = std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, attendance_.ask);
+    return {};
+  }
+  auto guard = OutputGuard::start(bench_.generator.address);
+  if (!guard) {
+    return tl::unexpected(guard.error());
+  }
+  guard_.emplace(std::move(*guard));
+  auto generator = drivers::generator::ScpiGenerator::connect(bench_.generator.address);
+  if (!generator) {
+    return tl::unexpected(device_error(generator.error()));
+  }
+  generator_ = std::move(*generator);
+  return {};
+}
+
+Expected<void> StepExcitation::check_levels(const Measurement& measurement) const {
+  for (const PlannedStep& step : measurement.steps()) {
+    const auto voltage = drivers::generator::voltage_for_level(step.level_m_s2(), bench_.generator.level_per_volt, limits());
+    if (!voltage) {
+      return tl::unexpected(of_step(step, ErrorCode::bad_argument, voltage.error().message));
+    }
+  }
+  return {};
+}
+
+drivers::generator::LevelLimits StepExcitation::limits() const {
+  drivers::generator::LevelLimits limits;
+  limits.maximum_voltage_v = bench_.generator.maximum_voltage_v.value_or(limits.maximum_voltage_v);
+  limits.maximum_level_m_s2 = bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
+  return limits;
+}
+
+drivers::generator::LevelTarget StepExcitation::target_of(const PlannedStep& step) const {
+  const auto known = known_responses_.find(step.frequency_hz());
+  const bool is_known = known != known_responses_.end();
+  return {.level_m_s2 = step.level_m_s2(),
+          .tolerance_rel = *bench_.generator.level_tolerance_rel,
+          .level_per_volt = is_known ? known->second : bench_.generator.level_per_volt,
+          .response_known = is_known,
+          .corrections = level_corrections(static_cast<int>(step.repetition()))};
+}
+
+// Only while steps are excited: a reader that nobody empties would hold the source up.
+Expected<void> StepExcitation::begin() {
+  if (bench_.generator.level_tolerance_rel) {
+    auto meter = LevelMeter::create(participant_, bench_, wake_up_);
+    if (!meter) {
+      return tl::unexpected(meter.error());
+    }
+    meter_.emplace(std::move(*meter));
+  }
+  return {};
+}
+
+void StepExcitation::end() {
+  meter_.reset();
+}
+
+Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_token& stop) {
+  const auto excited = hold_step(step, stop);
+  const auto off = generator_->set_output(false);
+  if (!excited || stop.stop_requested()) {
+    attendance_.announce(step, EXCITATION_ABORTED);
+    return excited;
+  }
+  if (!off) {
+    return tl::unexpected(device_error(off.error()));
+  }
+  if (const auto confirmed = wait_for_effect(stop); !confirmed) {
+    return confirmed;
+  }
+  attendance_.announce(step, EXCITATION_DONE);
+  const auto now = generator_->clock_now_s();
+  if (!now) {
+    return tl::unexpected(device_error(now.error()));
+  }
+  return hold_until(*now + off_s, stop).map([](bool) {});
+}
+
+Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::stop_token& stop) {
+  const auto began = meter_ ? switch_on_to_level(step, stop) : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
+  if (!began || stop.stop_requested()) {
+    return began.map([](double) {});
+  }
+  const double steady_from_s = *began + step.settling_s();
+  attendance_.show("settling");
+  if (const auto settled = hold_until(steady_from_s, stop); !settled || !*settled) {
+    return settled.map([](bool) {});
+  }
+  if (shots_) {
+    shots_->begin(run_, step.step());
+  }
+  attendance_.announce(step, EXCITATION_STEADY);
+  attendance_.show("measuring");
+  const auto held = hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
+  if (!held || !*held || !shots_) {
+    return held.map([](bool) {});
+  }
+  return hold_until_shots_are_taken(stop);
+}
+
+// The bench time from which on the output is on.
+Expected<double> StepExcitation::switch_on(const PlannedStep& step, double voltage_v, const std::stop_token& stop) {
+  const auto set =
+      generator_->set_frequency(step.frequency_hz()).and_then([&] { return generator_->set_amplitude_v(voltage_v); }).and_then([&] {
+        return generator_->set_output(true);
+      });
+  if (!set) {
+    return tl::unexpected(device_error(set.error()));
+  }
+  if (const auto confirmed = wait_for_effect(stop); !confirmed) {
+    return tl::unexpected(confirmed.error());
+  }
+  const auto began = generator_->clock_now_s();
+  if (!began) {
+    return tl::unexpected(device_error(began.error()));
+  }
+  attendance_.announce(step, EXCITATION_SETTLING);
+  return *began;
+}
+
+// The same, and the level within its tolerance before the planned settling is over.
+Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step, const std::stop_token& stop) {
+  auto loop = LevelControl::start(target_of(step), limits());
+  if (!loop) {
+    return tl::unexpected(of_step(step, ErrorCode::bad_argument, loop.error().message));
+  }
+  const auto began = switch_on(step, loop->voltage_v(), stop);
+  if (!began || stop.stop_requested()) {
+    return began;
+  }
+  double changed_s = *began;
+  for (;;) {
+    const auto level = measure_level(step, changed_s, *began + step.settling_s(), stop);
+    if (!level || !*level) {
+      return level.map([&](std::optional<double>) { return *began; });
+    }
+    const auto reached = loop->take(**level);
+    if (!reached) {
+      return tl::unexpected(of_step(step, ErrorCode::device, reached.error().message));
+    }
+    known_responses_[step.frequency_hz()] = loop->level_per_volt();
+    if (*reached) {
+      return began;
+    }
+    const auto changed = generator_->set_amplitude_v(loop->voltage_v()).and_then([&] { return generator_->clock_now_s(); });
+    if (!changed) {
+      return tl::unexpected(device_error(changed.error()));
+    }
+    changed_s = *changed;
+  }
+}
+
+// Nothing when it shall stop.
+Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep& step, double changed_s, double deadline_s,
+                                                              const std::stop_token& stop) {
+  attendance_.show("setting the level");
+  if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
+    return tl::unexpected(settled.error());
+  }
+  while (!stop.stop_requested()) {
+    const auto now = generator_->clock_now_s();
+    if (!now) {
+      return tl::unexpected(device_error(now.error()));
+    }
+    meter_->take(*now);
+    const auto level =
+        meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step), 0.5 * *bench_.generator.level_tolerance_rel);
+    if (level) {
+      return level;
+    }
+    if (*now > deadline_s) {
+      return tl::unexpected(of_step(step, ErrorCode::device,
+                                    fmt::format("{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
+                                                bench_.method.reference.text(), *now - changed_s)));
+    }
+    wake_up_->wait_until(Clock::now() + look_interval);
+    if (const auto attended = attendance_.attend(); !attended) {
+      return tl::unexpected(attended.error());
+    }
+  }
+  return std::nullopt;
+}
+
+// A step without all of its shots is measured with those there are; the analysis says how many.
+Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token& stop) {
+  const auto deadline = Clock::now() + shots_limit;
+  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline && !stop.stop_requested()) {
+    attendance_.show("shots");
+    const auto now = generator_->clock_now_s();
+    if (!now) {
+      return tl::unexpected(device_error(now.error()));
+    }
+    if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
+      return tl::unexpected(held.error());
+    }
+  }
+  return {};
+}
+
+Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto in_effect = generator_->wait_for_effect(confirmation_slice);
+    if (!in_effect) {
+      return tl::unexpected(device_error(in_effect.error()));
+    }
+    if (*in_effect) {
+      return {};
+    }
+    if (const auto attended = attendance_.attend(); !attended) {
+      return attended;
+    }
+  }
+  return {};
+}
+
+Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_token& stop) {
+  auto now = generator_->clock_now_s();
+  while (now && *now < bench_time_s && !stop.stop_requested()) {
+    now = generator_->wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
+    if (const auto attended = attendance_.attend(); !attended) {
+      return tl::unexpected(attended.error());
+    }
+    if (now && meter_) {
+      meter_->take(*now);
+    }
+  }
+  if (!now) {
+    return tl::unexpected(device_error(now.error()));
+  }
+  return !stop.stop_requested();
+}
+
+} // namespace dyncal::services

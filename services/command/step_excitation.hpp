@@ -1,0 +1,83 @@
+// Excites the steps of a run one after the other: generator, level, durations, shots.
+//
+// A step holds the output on for its planned settling, its duration and a margin in which the analysis finds the edges of the steady part,
+// then off for a moment, which separates it from the next. Durations are in bench time (the generator's clock) and begin when what was set
+// is in effect: with a generator set by hand, when the operator has confirmed. With a level tolerance the voltage follows what the
+// reference shows (drivers/generator/level_control.hpp) within the planned settling (services/bench/level_settling.hpp). The output is off
+// whenever excite() has returned, and when the object goes; a guard sees to it when the program is killed. Fails: bad_argument (a level
+// above a limit, before anything is excited), device (generator, exciter), and as `attend` does. A requested stop is no failure. Belongs to
+// one thread.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "drivers/generator/generator.hpp"
+#include "drivers/generator/level_control.hpp"
+#include "idl/dyncal.h"
+#include "services/bench/bench_file.hpp"
+#include "services/bus/bus.hpp"
+#include "services/command/level_meter.hpp"
+#include "services/command/output_guard.hpp"
+#include "services/command/shot_counter.hpp"
+
+namespace dyncal::services {
+
+// What the run does while a step is excited.
+struct StepAttendance {
+  std::function<void(const PlannedStep&, ExcitationState)> announce;
+  std::function<void(const std::string& phase)> show;
+  std::function<void(const std::string& request)> ask; // the operator
+  std::function<Expected<void>()> attend;              // often; fails when the run cannot go on
+};
+
+class StepExcitation {
+public:
+  // Connects the generator and switches its output off.
+  [[nodiscard]] static Expected<std::unique_ptr<StepExcitation>> open(bus::Participant& participant, const BenchFile& bench,
+                                                                      const Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up,
+                                                                      StepAttendance attendance);
+
+  // Before the first step and after the last.
+  [[nodiscard]] Expected<void> begin();
+  void end();
+  [[nodiscard]] Expected<void> excite(const PlannedStep& step, const std::stop_token& stop);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  StepExcitation(bus::Participant& participant, const BenchFile& bench, std::string run, std::shared_ptr<bus::WakeUp> wake_up,
+                 StepAttendance attendance)
+      : participant_(participant), bench_(bench), run_(std::move(run)), wake_up_(std::move(wake_up)), attendance_(std::move(attendance)) {}
+
+  Expected<void> connect_generator();
+  Expected<void> check_levels(const Measurement& measurement) const;
+  Expected<void> hold_step(const PlannedStep& step, const std::stop_token& stop);
+  Expected<double> switch_on(const PlannedStep& step, double voltage_v, const std::stop_token& stop);
+  Expected<double> switch_on_to_level(const PlannedStep& step, const std::stop_token& stop);
+  Expected<std::optional<double>> measure_level(const PlannedStep& step, double changed_s, double deadline_s, const std::stop_token& stop);
+  Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
+  Expected<void> wait_for_effect(const std::stop_token& stop);
+  // False when it shall stop.
+  Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
+  [[nodiscard]] drivers::generator::LevelLimits limits() const;
+  [[nodiscard]] drivers::generator::LevelTarget target_of(const PlannedStep& step) const;
+
+  bus::Participant& participant_;
+  const BenchFile& bench_;
+  std::string run_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
+  StepAttendance attendance_;
+  std::optional<OutputGuard> guard_; // goes after the generator, which switches its output off
+  std::unique_ptr<drivers::generator::Generator> generator_;
+  std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
+  std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
+  std::optional<ShotCounter> shots_;              // series time stamping only
+};
+
+} // namespace dyncal::services

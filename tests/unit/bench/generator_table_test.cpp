@@ -1,0 +1,77 @@
+#include <gmock/gmock.h>
+
+#include "services/bench/bench_file.hpp"
+#include "services/bench/level_settling.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using ::testing::HasSubstr;
+
+Expected<BenchFile> bench_with(const std::string& generator, const std::string& excitation = "") {
+  return parse_bench_file(R"(bench = "acc-1"
+[excitation]
+frequencies_hz = ["10"]
+level = 2.0
+settling_s = 0.5
+duration_s = 2.0
+)" + excitation + "[generator]\n" +
+                              generator + R"(
+[sources.dau]
+driver = "smartup"
+sensor = "0xbccb0100"
+[sources.acs]
+driver = "socket"
+address = "127.0.0.1:2"
+[method]
+kind = "sample-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+)",
+                          "bench.toml");
+}
+
+TEST(GeneratorTable, HoldsToleranceAndLimits) {
+  const auto bench =
+      bench_with("driver = \"scpi\"\naddress = \"a:1\"\nlevel_tolerance_rel = 0.01\nmaximum_voltage_v = 2.5\nmaximum_level_m_s2 = 100\n");
+  ASSERT_TRUE(bench) << bench.error().message;
+  EXPECT_EQ(bench->generator.level_tolerance_rel, 0.01);
+  EXPECT_EQ(bench->generator.maximum_voltage_v, 2.5);
+  EXPECT_EQ(bench->generator.maximum_level_m_s2, 100.0);
+}
+
+TEST(GeneratorTable, LimitsMayBeAbsent) {
+  const auto bench = bench_with("driver = \"by-hand\"\nlevel_per_volt = 50.0\n");
+  ASSERT_TRUE(bench) << bench.error().message;
+  EXPECT_EQ(bench->generator.driver, "by-hand");
+  EXPECT_FALSE(bench->generator.level_tolerance_rel);
+  EXPECT_FALSE(bench->generator.maximum_voltage_v);
+}
+
+TEST(GeneratorTable, RefusesWhatCannotBe) {
+  const auto negative = bench_with("driver = \"scpi\"\naddress = \"a:1\"\nmaximum_voltage_v = -1\n");
+  ASSERT_FALSE(negative);
+  EXPECT_THAT(negative.error().message, HasSubstr("maximum_voltage_v' must be positive"));
+  const auto loop_by_hand = bench_with("driver = \"by-hand\"\nlevel_tolerance_rel = 0.01\n");
+  ASSERT_FALSE(loop_by_hand);
+  EXPECT_THAT(loop_by_hand.error().message, HasSubstr("needs driver = \"scpi\""));
+  EXPECT_FALSE(bench_with("driver = \"scpi\"\n"));
+  const std::string loop = "driver = \"scpi\"\naddress = \"a:1\"\nlevel_tolerance_rel = 0.01\n";
+  const auto from_data = bench_with(loop, "settling = \"from-data\"\n");
+  ASSERT_FALSE(from_data);
+  EXPECT_THAT(from_data.error().message, HasSubstr("cannot go with excitation.settling"));
+}
+
+TEST(LevelSettling, IsPlannedOnlyWhereTheLevelIsControlled) {
+  BenchFile bench = *bench_with("driver = \"scpi\"\naddress = \"a:1\"\n");
+  EXPECT_EQ(planned_settling_s(bench, 10.0, 1), 0.5);
+  bench.generator.level_tolerance_rel = 0.01;
+  const double one_measurement_s = 0.5 + level_transport_s + level_window_s(10.0) + 0.5;
+  EXPECT_NEAR(planned_settling_s(bench, 10.0, 1), 0.5 + 4.0 * one_measurement_s, 1e-12);
+  EXPECT_NEAR(planned_settling_s(bench, 10.0, 2), 0.5 + 2.0 * one_measurement_s, 1e-12);
+  EXPECT_GT(level_window_s(1.0), level_window_s(100.0));
+}
+
+} // namespace
+} // namespace dyncal::services
