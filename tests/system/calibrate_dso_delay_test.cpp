@@ -36,18 +36,19 @@ TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
   start_bench({});
   const auto file = folder_ / "dso-delay.json";
   const auto work = fresh_folder(std::string("calibrate-dso-delay-run-") + GetParam());
-  ProgramRun calibrate(
-      "dyncal",
-      {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--output", file}, work);
-  ASSERT_EQ(calibrate.wait(std::chrono::seconds(60)), 0) << calibrate.errors();
+  ProgramRun calibrate("dyncal",
+                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
+                        "25", "--output", file},
+                       work);
+  ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
   const auto json = read_json(file);
   EXPECT_NEAR(json["value_s"].get<double>(), 236e-9, 1e-9);
   EXPECT_GT(json["u_s"].get<double>(), 0.1e-9);
   EXPECT_LE(json["u_s"].get<double>(), 1e-9);
   EXPECT_NEAR(json["scatter_s"].get<double>(), 1e-9, 0.5e-9);
-  EXPECT_EQ(json["shots"], 50);
+  EXPECT_EQ(json["shots"], 25);
   const auto counts = json["histogram"]["counts"].get<std::vector<int>>();
-  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 50);
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 25);
   EXPECT_THAT(calibrate.output(), HasSubstr("dso_delay = { file = \"" + file.string() + "\" }"));
 }
 
@@ -58,7 +59,7 @@ TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
                        {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
                         "20", "--output", work / "delay.json"},
                        work);
-  ASSERT_EQ(calibrate.wait(std::chrono::seconds(100)), 0) << calibrate.errors();
+  ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
   const auto json = read_json(work / "delay.json");
   EXPECT_GT(json["failed_shots"], 0);
   EXPECT_EQ(json["shots"], 20);
