@@ -6,6 +6,7 @@
 #include "analysis/phasor.hpp"
 #include "analysis/ratio_scatter.hpp"
 #include "analysis/recorded_system.hpp"
+#include "analysis/stamped_apart.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -66,7 +67,9 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const auto acs =
       evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns, input.sync_acs, std::span(&input.reference, 1));
   if (!acs) return tl::unexpected(acs.error());
-  const auto dau = evaluate_system(input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau, input.dut);
+  const bool apart = !input.dut_stamps_ns.empty();
+  const auto dau = evaluate_system(input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
+                                   apart ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
   if (!dau) return tl::unexpected(dau.error());
   const RecordedSeries& reference = acs->others.front();
   if (const auto excited = require_excitation(reference); !excited) return tl::unexpected(excited.error());
@@ -81,6 +84,13 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};
   for (const RecordedSeries& dut : dau->others)
     result.points.push_back(evaluate_channel(input, dut, dau->pilot, link, common));
+  if (!apart) return result;
+  for (const ChannelSamples& dut : input.dut) {
+    auto point = evaluate_stamped_apart(dau->pilot.result, link, common, input.dut_stamps_ns, dut,
+                                        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
+    if (!point) return tl::unexpected(point.error());
+    result.points.push_back(std::move(*point));
+  }
   return result;
 }
 

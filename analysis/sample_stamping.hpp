@@ -39,6 +39,7 @@ struct SystematicUncertainty { // standard uncertainties that no residual shows
   double dau_jitter_s = 0.0;      // white stamp noise common to sync and DOS (tick included)
   double dau_tick_s = 0.0;        // quantum of the DAU's stamps, 0: none
   double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync, which its stamp does not show
+  double clock_offset_s = 0.0;    // of a sensor with stamps of its own: its clock against the DAU's
 };
 
 struct SampleStampingInput {
@@ -50,6 +51,9 @@ struct SampleStampingInput {
   std::span<const std::int64_t> dau_stamps_ns{};
   ChannelSamples sync_dau{};
   std::vector<ChannelSamples> dut{}; // one result each
+  // Empty: the sensor has the stamps of the DAU. Otherwise it is stamped beside the DAU that records sync, on the same time scale
+  // (stamped_apart.hpp), with `clock_offset_s` between the two.
+  std::span<const std::int64_t> dut_stamps_ns{};
   AdcResponse adc{};
   double reference_delay_s = 0.0; // tau_ref
   SystematicUncertainty systematic{};

@@ -81,7 +81,7 @@ void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport&
 
 } // namespace
 
-ClockReportBuilder::ClockReportBuilder(const Recipe& recipe) : bench_(recipe.bench), run_(recipe.run), source_(recipe.sync_dau.source) {
+ClockReportBuilder::ClockReportBuilder(const Recipe& recipe) : bench_(recipe.bench), run_(recipe.run), source_(recipe.sensor_source()) {
   if (recipe.temperature && recipe.temperature->source == source_) {
     temperature_channel_ = recipe.temperature->channel;
   }

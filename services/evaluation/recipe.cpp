@@ -69,7 +69,11 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
       {"reference", {&measurement.reference(), &recipe.reference}},
       {"sync_acs", {&measurement.sync_acs(), &recipe.sync_acs}},
       {"sync_dau", {&measurement.sync_dau(), &recipe.sync_dau}}};
+  const bool absolute = measurement.method() == METHOD_ABSOLUTE_TIME;
   for (const auto& [what, places] : roles) {
+    if (absolute && places.first->empty()) {
+      continue; // the steps are found in the reference itself
+    }
     const auto name = role(what, *places.first);
     if (!name) {
       return tl::unexpected(name.error());
@@ -90,11 +94,28 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     }
     recipe.temperature = *name;
   }
+  if (absolute && recipe.sync_acs.source.empty()) {
+    recipe.sync_acs = recipe.reference;
+  }
+  if (absolute) {
+    recipe.sync_dau = {};
+  }
+  if (absolute && recipe.dut.empty()) {
+    return tl::unexpected(refused("the recipe names no channel under calibration, which absolute time needs: give \"dut\""));
+  }
   if (recipe.reference.source != recipe.sync_acs.source) {
     return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, but they must share a clock"));
   }
   if (recipe.sync_dau.source == recipe.sync_acs.source) {
     return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; sample time stamping links two clocks"));
+  }
+  const bool beside = recipe.stamped_apart();
+  for (const ChannelName& name : recipe.dut) {
+    const bool of_dau = name.source == recipe.sync_dau.source;
+    if (recipe.method == METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
+      return tl::unexpected(
+          refused("the recipe's channels under calibration must be either all of the source of sync_dau or none of them"));
+    }
   }
   return {};
 }
@@ -117,15 +138,33 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
 
 } // namespace
 
-std::vector<std::string> Recipe::sources() const {
-  std::vector<std::string> names{reference.source, sync_dau.source};
+bool Recipe::stamped_apart() const {
+  return method == METHOD_ABSOLUTE_TIME || (method == METHOD_SAMPLE_TIMESTAMPING && !dut.empty() && dut.front().source != sync_dau.source);
+}
+
+std::vector<std::string> Recipe::dut_sources() const {
+  std::vector<std::string> names;
   for (const ChannelName& channel : dut) {
     if (std::find(names.begin(), names.end(), channel.source) == names.end()) {
       names.push_back(channel.source);
     }
   }
-  if (temperature && std::find(names.begin(), names.end(), temperature->source) == names.end()) {
-    names.push_back(temperature->source);
+  return names;
+}
+
+std::vector<std::string> Recipe::sources() const {
+  std::vector<std::string> names{reference.source};
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
+  };
+  add(sync_dau.source);
+  for (const ChannelName& channel : dut) {
+    add(channel.source);
+  }
+  if (temperature) {
+    add(temperature->source);
   }
   return names;
 }
@@ -139,8 +178,9 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   measurement.method(method_message(file.method.kind));
   measurement.planned_utc_ns(now_utc_ns);
   measurement.reference(file.method.reference.text());
-  measurement.sync_acs(file.method.sync_acs.text());
-  measurement.sync_dau(file.method.sync_dau.text());
+  const auto text_of = [](const ChannelName& name) { return name.source.empty() ? std::string() : name.text(); };
+  measurement.sync_acs(text_of(file.method.sync_acs));
+  measurement.sync_dau(text_of(file.method.sync_dau));
   for (const ChannelName& name : file.method.dut) {
     measurement.dut().push_back(name.text());
   }
@@ -169,10 +209,9 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
 }
 
 Expected<Recipe> parse_recipe(const Measurement& measurement) {
-  if (measurement.method() != METHOD_SAMPLE_TIMESTAMPING && measurement.method() != METHOD_SERIES_TIMESTAMPING) {
-    return tl::unexpected(
-        refused("this version evaluates method.kind = \"sample-timestamping\" and \"series-timestamping\" on live sources; "
-                "choose one of them, or update dyncal-analysis"));
+  if (measurement.method() == METHOD_ANALOGUE) {
+    return tl::unexpected(refused("this version evaluates method.kind = \"sample-timestamping\", \"series-timestamping\" and "
+                                  "\"absolute-time\" on live sources; choose one of them, or update dyncal-analysis"));
   }
   Recipe recipe;
   recipe.method = measurement.method();
@@ -197,7 +236,8 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
         {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
   }
   recipe.whole_record = measurement.whole_record();
-  recipe.settling_from_data = measurement.settling_from_data();
+  // Sensors with stamps of their own: the longest settling is always left out.
+  recipe.settling_from_data = measurement.settling_from_data() && !recipe.stamped_apart();
   recipe.monte_carlo_trials = measurement.monte_carlo_trials();
   if (recipe.whole_record && recipe.steps.size() != 1) {
     return tl::unexpected(

@@ -52,6 +52,12 @@ struct Recipe {
   double u_acs_rate_rel = 0.0;
   std::string sha256;
 
+  // The sensors have stamps of their own: everything is on UTC, or sync is recorded beside them.
+  [[nodiscard]] bool stamped_apart() const;
+  // Whose sample clock is reported on.
+  [[nodiscard]] const std::string& sensor_source() const { return stamped_apart() ? dut.front().source : sync_dau.source; }
+  // The sources of the channels under calibration, each once.
+  [[nodiscard]] std::vector<std::string> dut_sources() const;
   // The sources whose samples the evaluation needs, each once: the ACS first.
   [[nodiscard]] std::vector<std::string> sources() const;
 };

@@ -46,7 +46,7 @@ RunEvaluator::RunEvaluator(Recipe recipe) : recipe_(std::move(recipe)), clock_(r
     records_.emplace(source, std::make_unique<SourceRecord>(source));
   }
   acs_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_acs.source), recipe_.sync_acs.channel);
-  if (!by_series()) {
+  if (!by_series() && !by_absolute_time()) {
     dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source), recipe_.sync_dau.channel);
   }
 }
@@ -77,6 +77,37 @@ Expected<void> RunEvaluator::describe(const SourceDescription& description) {
   }
   source->describe(description);
   clock_.describe(description);
+  return check_clocks();
+}
+
+// Stamps of different sources are compared only where they are meant to be of one time scale.
+Expected<void> RunEvaluator::check_clocks() const {
+  if (!recipe_.stamped_apart()) {
+    return {};
+  }
+  const auto clock_of = [this](const std::string& name) -> std::optional<TimeBase> {
+    const SourceRecord& source = *records_.at(name);
+    return source.described() ? std::optional(source.description().time_base()) : std::nullopt;
+  };
+  const std::string& link = by_absolute_time() ? recipe_.reference.source : recipe_.sync_dau.source;
+  std::vector<std::string> names = recipe_.dut_sources();
+  names.push_back(link);
+  for (const std::string& name : names) {
+    const auto clock = clock_of(name);
+    const auto clock_of_link = clock_of(link);
+    if (by_absolute_time() && clock == TIME_BASE_LOCAL) {
+      return tl::unexpected(
+          Error{ErrorCode::no_source, fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
+                                                  "UTC; set it to UTC and say time_base = \"utc\", or use a sync signal",
+                                                  name)});
+    }
+    if (clock && clock_of_link && *clock != *clock_of_link) {
+      return tl::unexpected(
+          Error{ErrorCode::no_source, fmt::format("sources '{}' and '{}' must be stamped on one time scale, but one is in UTC "
+                                                  "and the other has a clock of its own",
+                                                  name, link)});
+    }
+  }
   return {};
 }
 
@@ -166,11 +197,32 @@ bool RunEvaluator::shots_are_there(std::size_t step) const {
   return complete || over_in(*records_.at(recipe_.sync_acs.source), step);
 }
 
+bool RunEvaluator::sensors_are_there(std::size_t step) const {
+  const auto stretch = search_of_sensors().stretch(step);
+  const std::vector<std::string> sources = recipe_.dut_sources();
+  return !stretch || std::all_of(sources.begin(), sources.end(), [&](const std::string& name) {
+    const SourceRecord& sensor = *records_.at(name);
+    return (!sensor.stamps_ns().empty() && sensor.stamps_ns().back() >= stretch->end_ns) || over_in(sensor, step);
+  });
+}
+
+bool RunEvaluator::ready_to_evaluate(std::size_t step) const {
+  if (acs_search_->step() <= step || (dau_search_ && dau_search_->step() <= step)) {
+    return false;
+  }
+  if (by_series()) {
+    return shots_are_there(step);
+  }
+  return !recipe_.stamped_apart() || sensors_are_there(step);
+}
+
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
-  while (next_step_ < steps_expected() && acs_search_->step() > next_step_ &&
-         (by_series() ? shots_are_there(next_step_) : dau_search_->step() > next_step_)) {
+  while (next_step_ < steps_expected() && ready_to_evaluate(next_step_)) {
     const RecipeStep& step = recipe_.steps[next_step_];
-    for (CalibrationResult& result : by_series() ? evaluate_triggered_step(step) : evaluate_stamped_step(step)) {
+    auto results = by_series()               ? evaluate_triggered_step(step)
+                   : recipe_.stamped_apart() ? evaluate_apart(step)
+                                             : evaluate_stamped_step(step);
+    for (CalibrationResult& result : results) {
       summary_.add(result);
       output.results.push_back(std::move(result));
     }
@@ -193,6 +245,33 @@ std::vector<CalibrationResult> RunEvaluator::evaluate_stamped_step(const RecipeS
     flags.emplace_back("excitation broken off");
   }
   return evaluate_step(recipe_, step, acs, *acs_stretch, dau, *dau_stretch, flags);
+}
+
+std::vector<CalibrationResult> RunEvaluator::evaluate_apart(const RecipeStep& step) {
+  const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
+  const SourceRecord* sync = by_absolute_time() ? nullptr : records_.at(recipe_.sync_dau.source).get();
+  std::vector<const SourceRecord*> sensors;
+  for (const std::string& name : recipe_.dut_sources()) {
+    sensors.push_back(records_.at(name).get());
+  }
+  const auto acs_stretch = acs_search_->stretch(next_step_);
+  const auto stretch = search_of_sensors().stretch(next_step_);
+  if (!acs_stretch || !stretch) {
+    return results_of_missing_step(recipe_, step, *sensors.front(), no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs));
+  }
+  std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
+  std::vector<const SourceRecord*> others = sensors;
+  if (sync != nullptr) {
+    others.insert(others.begin(), sync);
+  }
+  for (const SourceRecord* source : others) {
+    const std::vector<std::string> more = flags_of(recipe_, step, *source, *stretch);
+    flags.insert(flags.end(), more.begin(), more.end());
+  }
+  if (broken_off_.contains(next_step_)) {
+    flags.emplace_back("excitation broken off");
+  }
+  return evaluate_apart_step(recipe_, step, {acs, *acs_stretch, sync, *stretch}, sensors, flags);
 }
 
 std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const RecipeStep& step) {
@@ -262,6 +341,11 @@ void RunEvaluator::forget_what_is_evaluated() {
   forget(*records_.at(recipe_.sync_acs.source), *acs_search_);
   if (dau_search_) {
     forget(*records_.at(recipe_.sync_dau.source), *dau_search_);
+  }
+  if (recipe_.stamped_apart()) {
+    for (const std::string& name : recipe_.dut_sources()) {
+      forget(*records_.at(name), search_of_sensors());
+    }
   }
 }
 

@@ -16,6 +16,7 @@
 
 #include "idl/dyncal.h"
 #include "services/error.hpp"
+#include "services/evaluation/apart_step_evaluation.hpp"
 #include "services/evaluation/clock_report.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/series_step_evaluation.hpp"
@@ -67,8 +68,16 @@ private:
   void follow(StepSearch& search, const SourceRecord& source);
   void evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] bool by_series() const { return recipe_.method == METHOD_SERIES_TIMESTAMPING; }
+  [[nodiscard]] bool by_absolute_time() const { return recipe_.method == METHOD_ABSOLUTE_TIME; }
+  [[nodiscard]] bool ready_to_evaluate(std::size_t step) const;
   [[nodiscard]] bool shots_are_there(std::size_t step) const;
+  // Sensors with stamps of their own: whether the samples of the step's stretch have come.
+  [[nodiscard]] bool sensors_are_there(std::size_t step) const;
+  // Which search finds the sensors' stretches.
+  [[nodiscard]] const StepSearch& search_of_sensors() const { return by_absolute_time() ? *acs_search_ : *dau_search_; }
+  [[nodiscard]] Expected<void> check_clocks() const;
   [[nodiscard]] std::vector<CalibrationResult> evaluate_stamped_step(const RecipeStep& step);
+  [[nodiscard]] std::vector<CalibrationResult> evaluate_apart(const RecipeStep& step);
   [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);
   void add_sensor_clock(EvaluationOutput& output) const;
   void forget_what_is_evaluated();

@@ -82,6 +82,11 @@ void SourceRecord::append(const SampleBlock& block) {
   } else {
     flags_.insert(flags_.end(), block.flags().begin(), block.flags().end());
   }
+  if (block.stamp_uncertainty_ns().size() == samples) {
+    stamp_uncertainties_ns_.insert(stamp_uncertainties_ns_.end(), block.stamp_uncertainty_ns().begin(), block.stamp_uncertainty_ns().end());
+  } else {
+    stamp_uncertainties_ns_.resize(stamp_uncertainties_ns_.size() + samples, 0);
+  }
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
     const auto begin = block.values().begin() + static_cast<std::ptrdiff_t>(channel * samples);
     columns_[channel].insert(columns_[channel].end(), begin, begin + static_cast<std::ptrdiff_t>(samples));
@@ -124,8 +129,24 @@ void SourceRecord::forget(std::size_t samples) {
   const auto erase = [this](auto& column) { column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_)); };
   erase(stamps_ns_);
   erase(flags_);
+  erase(stamp_uncertainties_ns_);
   std::for_each(columns_.begin(), columns_.end(), erase);
   first_ = 0;
+}
+
+double SourceRecord::stamp_uncertainty_s(std::int64_t begin_ns, std::int64_t end_ns) const {
+  const auto stamps = stamps_ns();
+  const auto uncertainties = std::span(stamp_uncertainties_ns_).subspan(first_);
+  double sum_ns = 0.0;
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (stamps[i] >= begin_ns && stamps[i] <= end_ns && uncertainties[i] > 0) {
+      sum_ns += static_cast<double>(uncertainties[i]);
+      ++told;
+    }
+  }
+  const double mean_s = told > 0 ? sum_ns * 1e-9 / static_cast<double>(told) : 0.0;
+  return std::max(mean_s, description().stamp_uncertainty_s());
 }
 
 std::uint64_t SourceRecord::lost_between(std::int64_t begin_ns, std::int64_t end_ns) const {

@@ -45,6 +45,10 @@ public:
 
   void forget_before(std::int64_t stamp_ns);
 
+  // Standard uncertainty of the stamps between the two in the time base of the source: the mean of what they say themselves, and at least
+  // what the description says. 0: neither says anything. REQUIRES: described()
+  [[nodiscard]] double stamp_uncertainty_s(std::int64_t begin_ns, std::int64_t end_ns) const;
+
   // Samples known to be missing between the two stamps.
   [[nodiscard]] std::uint64_t lost_between(std::int64_t begin_ns, std::int64_t end_ns) const;
 
@@ -75,6 +79,7 @@ private:
   std::size_t first_ = 0;
   std::vector<std::int64_t> stamps_ns_;
   std::vector<std::uint8_t> flags_;
+  std::vector<std::uint32_t> stamp_uncertainties_ns_; // 0: the sample says nothing
   std::vector<std::vector<double>> columns_;
   std::deque<Gap> gaps_;
   std::optional<std::int64_t> newest_ns_;

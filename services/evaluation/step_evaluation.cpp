@@ -79,14 +79,14 @@ void check_by_drawing(const Recipe& recipe, const analysis::SampleStampingInput&
   }
 }
 
+} // namespace
+
 analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step) {
   if (recipe.adc_calibration.empty()) {
     return analysis::AdcResponse{};
   }
   return analysis::adc_response_at(recipe.adc_calibration, step.frequency.hz());
 }
-
-} // namespace
 
 std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const SourceRecord& dau) {
   if (!recipe.dut.empty() || !dau.described()) {

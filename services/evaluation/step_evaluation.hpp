@@ -24,6 +24,9 @@ namespace dyncal::services {
                                                            const StretchOfTime& acs_stretch, const SourceRecord& dau,
                                                            const StretchOfTime& dau_stretch, const std::vector<std::string>& flags);
 
+// Of the DAU's sync ADC at the step's frequency, by the recipe's calibration; without one: no correction.
+[[nodiscard]] analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step);
+
 // What is published for a step that has no samples to evaluate.
 [[nodiscard]] std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& dau,
                                                                      const std::string& problem);

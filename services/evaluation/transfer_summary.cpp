@@ -72,13 +72,27 @@ double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhaseP
   return std::hypot(recipe.systematic.acs_delay_s, by_series ? recipe.u_dso_delay_s : u_adc_delay_s(recipe, phases));
 }
 
-void add_group_delay(const Recipe& recipe, std::vector<PointOfMean>& points, TransferFunction& function) {
+// One clock against the other, and the latency of stamps: the same error of time at every frequency.
+double u_clock_offset_s(const std::map<std::pair<std::uint32_t, std::uint32_t>, CalibrationResult>& results) {
+  double largest_s = 0.0;
+  for (const auto& [key, result] : results) {
+    for (const BudgetContribution& line : result.budget()) {
+      if (line.name() == "offset between the clocks") {
+        largest_s = std::max(largest_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
+      }
+    }
+  }
+  return largest_s;
+}
+
+void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOfMean>& points, TransferFunction& function) {
   const std::vector<std::size_t> chosen = first_of_each_frequency(points);
   std::vector<analysis::PhasePoint> phases;
   for (const std::size_t i : chosen) {
     phases.push_back(points[i].phase);
   }
-  const auto delay = analysis::evaluate_group_delay(phases, {u_common_delay_s(recipe, phases), recipe.systematic.reference_phase_rad});
+  const auto delay = analysis::evaluate_group_delay(
+      phases, {std::hypot(u_common_delay_s(recipe, phases), u_clock_s), recipe.systematic.reference_phase_rad});
   function.group_delay_valid(delay.has_value());
   if (!delay) {
     function.group_delay_problem(delay.error().message);
@@ -135,8 +149,8 @@ std::vector<TransferFunction> TransferSummary::transfer_functions() const {
     function.bench(recipe_.bench);
     function.run(recipe_.run);
     function.channel(channel);
-    function.method(METHOD_SAMPLE_TIMESTAMPING);
-    add_group_delay(recipe_, points, function);
+    function.method(recipe_.method);
+    add_group_delay(recipe_, u_clock_offset_s(results_.at(channel)), points, function);
     for (PointOfMean& point : points) {
       function.points().push_back(std::move(point.message));
     }
