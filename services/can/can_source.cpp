@@ -122,9 +122,10 @@ Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher, const s
 Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_token& stop) {
   PublisherSink sink(publisher, !settings_.can->log.empty(), stop);
   const std::stop_callback on_stop(stop, [this] { frames_->stop(); });
+  const auto begin = Clock::now();
   const auto tell = [&] {
     publisher.report(to_counts(*stream_));
-    publisher.say(to_message(*stream_));
+    publisher.say(to_message(*stream_, Clock::now() - begin));
   };
   std::vector<BusEvent> events;
   bool ended = false;

@@ -72,6 +72,29 @@ protected:
   }
 };
 
+// On a kernel without CAN, and on one that has it but no interface of this name.
+TEST_F(FailureLine, DemoWithoutACanInterface) {
+  const std::string line =
+      line_of("dyncal", {"demo", "--preset", "can", "--can", "nocan0", "--output", folder / "demo", "--domain", std::to_string(domain)});
+  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"), HasSubstr("there is no interface 'nocan0'; 'ip link add")));
+}
+
+TEST_F(FailureLine, CanSourceWithoutItsInterface) {
+  write(folder / "sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n");
+  const std::string text =
+      replaced(bench_text, "[method]", "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
+  const std::string line = line_of("dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
+  EXPECT_THAT(line, HasSubstr("bench.toml:14: source 'can': "));
+  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"), HasSubstr("there is no interface 'nocan0'")));
+}
+
+TEST_F(FailureLine, DbcFileThatIsWrong) {
+  write(folder / "sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"m/s^2\" S\n");
+  const std::string text =
+      replaced(bench_text, "[method]", "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
+  EXPECT_THAT(line_of("dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)}), HasSubstr("sensor.dbc:2: "));
+}
+
 TEST_F(FailureLine, BenchFileThatDoesNotExist) {
   EXPECT_THAT(line_of("dyncal", {"run", "nowhere.toml"}), HasSubstr("nowhere.toml: cannot read"));
 }

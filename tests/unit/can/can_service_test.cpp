@@ -173,14 +173,20 @@ TEST_F(CanService, SaysWhatIsWrongWithTheLinkInOneSentence) {
     LinkState link = can0();
     change(link);
     EXPECT_TRUE(stream->take(LinkChange{link, true, ""}, sink));
-    return to_message(*stream);
+    return to_message(*stream, std::chrono::seconds(1));
   };
   EXPECT_EQ(said([](LinkState&) {}), "");
   EXPECT_THAT(said([](LinkState& link) { link.present = false; }), HasSubstr("'can0' is not there; waiting for it"));
   EXPECT_THAT(said([](LinkState& link) { link.up = false; }), HasSubstr("is down; 'ip link set can0 up'"));
   EXPECT_THAT(said([](LinkState& link) { link.bus = BusState::bus_off; }), HasSubstr("is bus-off: check bit rate"));
   EXPECT_THAT(said([](LinkState& link) { link.carrier = false; }), HasSubstr("has no bus"));
-  EXPECT_EQ(to_counts(*stream).causes.front(), (std::pair<std::string, std::uint64_t>("interruptions of the link", 5)));
+  EXPECT_EQ(said([](LinkState&) {}), "");
+  EXPECT_THAT(to_message(*stream, std::chrono::seconds(3)), HasSubstr("none of the sensor's messages has come (0x123); check the ids"));
+  CanFrame cut_short = sample(0);
+  cut_short.length = 1;
+  ASSERT_TRUE(stream->take(cut_short, sink)); // lacks its counter
+  EXPECT_EQ(stream->counts().rejected, 1U);
+  EXPECT_EQ(to_counts(*stream).causes.front(), (std::pair<std::string, std::uint64_t>("frames received", 1)));
 }
 
 TEST_F(CanService, NamesTheSourceAndWhatIsWrongBeforeAnythingIsPublished) {
@@ -194,6 +200,31 @@ TEST_F(CanService, NamesTheSourceAndWhatIsWrongBeforeAnythingIsPublished) {
               HasSubstr("source 'sensor': "));
   EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"g\" S\n"), HasSubstr("sensor.dbc:2: "));
   EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"g\" S\n"), HasSubstr("'counter'"));
+}
+
+TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) {
+  settings.can->sensor.counter.clear();
+  std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.001000) can0 123#01\n";
+  settings.can->log = folder / "drive.log";
+  settings.can->sensor.bit_rates.nominal_per_s = 500e3;
+  settings.can->sensor.channels = {{"x", "x"}};
+  EXPECT_TRUE(CanSource::prepare(settings));
+  std::ofstream(folder / "drive.log") << "(1.000000) can0 124#0102\n";
+  EXPECT_THAT(CanSource::prepare(settings).error().message, HasSubstr("drive.log has none of the sensor's messages"));
+  std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.000000) can0 123#012\n";
+  EXPECT_THAT(CanSource::prepare(settings).error().message, HasSubstr("drive.log:2"));
+  const auto stream = *drivers::can::SensorStream::create(settings.can->sensor, *drivers::can::read_dbc_file(folder / "sensor.dbc"));
+  struct Nowhere : drivers::can::SampleSink {
+    void describe(const drivers::SourceDescription&) override {}
+    void restart() override {}
+    void take(drivers::SampleBlock) override {}
+  } sink;
+  ASSERT_TRUE(stream->begin(can0(), sink));
+  CanFrame cut_short = sample(0);
+  cut_short.length = 1;
+  ASSERT_TRUE(stream->take(cut_short, sink));
+  EXPECT_THAT(to_message(*stream, std::chrono::seconds(1)),
+              HasSubstr("frames of the sensor are shorter than the DBC file says: 1 signals"));
 }
 
 // A recorded drive, through the program's own path: waits for the run, plays, and ends its stream.
