@@ -136,6 +136,19 @@ void BenchServer::hold_pace() {
   pace_bench_s_ = bench_.now_s();
 }
 
+double BenchServer::paced_time_s() {
+  if (bench_.settings().utc_origin_ns) {
+    const auto utc = std::chrono::system_clock::now().time_since_epoch() - std::chrono::nanoseconds(*bench_.settings().utc_origin_ns);
+    return std::chrono::duration<double>(utc).count() + settings_.utc_lead_s;
+  }
+  const double speed = settings_.speed > 0.0 ? settings_.speed : 1.0;
+  const double time_s = pace_bench_s_ + speed * std::chrono::duration<double>(Clock::now() - pace_host_).count();
+  if (time_s > bench_.now_s() + speed * largest_arrears_s) {
+    hold_pace();
+  }
+  return time_s;
+}
+
 double BenchServer::allowed_time_s() {
   const double now_s = bench_.now_s();
   if (!consumers_keep_up()) {
@@ -144,16 +157,11 @@ double BenchServer::allowed_time_s() {
   }
   const auto wait_s = generator_clients_.earliest_wait_s();
   double time_s = now_s;
-  if (settings_.speed <= 0.0 && wait_s && stream_.connected()) {
+  if (settings_.speed <= 0.0 && !bench_.settings().utc_origin_ns && wait_s && stream_.connected()) {
     hold_pace();
     time_s = now_s + longest_slice_s;
   } else {
-    const double speed = settings_.speed > 0.0 ? settings_.speed : 1.0;
-    time_s = pace_bench_s_ + speed * std::chrono::duration<double>(Clock::now() - pace_host_).count();
-    if (time_s > now_s + speed * largest_arrears_s) {
-      hold_pace();
-    }
-    time_s = std::min(time_s, now_s + longest_slice_s);
+    time_s = std::min(paced_time_s(), now_s + longest_slice_s);
   }
   if (settings_.duration_s > 0.0) {
     time_s = std::min(time_s, settings_.duration_s);
@@ -172,6 +180,9 @@ void BenchServer::advance_to(double time_s) {
   });
   if (triggered_) {
     triggered_->advance_to(time_s, bench_.excitation());
+  }
+  if (settings_.after_advance) {
+    settings_.after_advance(time_s);
   }
   while (bench_.now_s() >= next_description_s_) {
     for (const std::string& datagram : packer_.descriptions(bench_.unit().channels())) {

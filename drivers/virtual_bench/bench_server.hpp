@@ -8,6 +8,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "drivers/virtual_bench/datagram_path.hpp"
@@ -30,6 +31,10 @@ struct ServerSettings {
   std::uint32_t sensor_id = 0xbccb0100;
   bool with_ticks = false;
   std::optional<TriggeredSettings> triggered; // oscilloscope and time series sensor
+  // For a bench that keeps UTC: bench time is the host's UTC plus this lead, whatever was delayed, so that somebody who is told what
+  // happens (after_advance) can do it at its very instant. `speed` then has no meaning.
+  double utc_lead_s = 0.03;
+  std::function<void(double time_s)> after_advance; // bench time has come to `time_s`
 };
 
 class BenchServer {
@@ -52,6 +57,7 @@ private:
   void wait_for_events(const StopSignal& stop, std::chrono::milliseconds limit) const;
   // Bench time that may be reached now; the present one: wait.
   [[nodiscard]] double allowed_time_s();
+  [[nodiscard]] double paced_time_s();
   [[nodiscard]] bool consumers_keep_up();
   [[nodiscard]] bool datagrams_are_taken();
   void hold_pace();

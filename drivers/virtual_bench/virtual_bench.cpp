@@ -42,9 +42,12 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   acs.seed = settings.seed;
   acs.rate_hz = settings.acs_rate_hz;
   acs.origin_ns = std::llround(random.uniform(0.0, 1e15)); // counts from when it was switched on, up to 11 days ago
-  if (settings.acs_utc) {
+  if (settings.acs_utc || settings.utc_origin_ns) {
     acs.utc = true;
-    acs.origin_ns = start_utc_ns(settings.seed);
+    acs.origin_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
+  }
+  if (settings.utc_origin_ns) {
+    acs.largest_rate_error = 0.0;
   }
   acs.sync_is_first_output = settings.sync_is_first_output;
   acs.highest_level_m_s2 = settings.highest_level_m_s2;
@@ -58,7 +61,7 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
   SensorUnitSettings unit;
   unit.preset = settings.preset;
   unit.seed = settings.seed;
-  unit.start_ns = start_utc_ns(settings.seed);
+  unit.start_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
   unit.highest_level_m_s2 = settings.highest_level_m_s2;
   unit.thermal_cycle_s = settings.thermal_cycle_s;
   unit.sync_amplitude_v = VirtualBench::sync_amplitude_v;

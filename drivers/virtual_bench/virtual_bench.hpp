@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct BenchSettings {
   FaultProbabilities faults;
   bool acs_utc = false;              // the ACS stamps in UTC too
   bool sync_is_first_output = false; // see acs_instrument.hpp
+  // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS receiver do, instead of epochs of their own.
+  std::optional<std::int64_t> utc_origin_ns;
 };
 
 class VirtualBench {

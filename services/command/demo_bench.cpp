@@ -62,6 +62,68 @@ trigger_phase_correction = {correction}
 dso_delay = {{ file = "dso-delay.json" }}
 )";
 
+// The virtual sensor's frames reach the kernel within some 10 us of their end, and everything on the virtual bench keeps this host's clock.
+constexpr const char* can_source = R"([sources.can]
+driver = "can"
+interface = "{interface}"
+dbc = "sensor.dbc"
+counter = "counter"
+nominal_rate_hz = 1000.0
+bit_rate_per_s = {bit_rate}
+{data_bit_rate}latency_s = 10e-6
+u_latency_s = 20e-6
+u_utc_s = 0.1e-6
+
+[sources.acs]
+driver = "socket"
+address = "{acs}"
+)";
+
+constexpr const char* absolute_time_method = R"(
+[method]
+kind = "absolute-time"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+dut = ["can/acceleration_x", "can/acceleration_y", "can/acceleration_z"]
+)";
+
+constexpr const char* sync_beside_method = R"(
+[sources.dau]
+driver = "smartup"
+listen = "{dau}"
+sensor = "0xbccb0100"
+channels = {{ Data_11 = "sync" }}
+
+[method]
+kind = "sample-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+dut = ["can/acceleration_x", "can/acceleration_y", "can/acceleration_z"]
+
+[corrections]
+adc = {{ file = "adc.json", channel = "ADC1", phase_sign = "lag" }}
+)";
+
+std::string sources_of(const DemoPreset& preset, const DemoAddresses& addresses) {
+  const auto filled = [&](const std::string& text) {
+    return fmt::format(fmt::runtime(text), fmt::arg("dau", addresses.dau_listen), fmt::arg("acs", addresses.acs),
+                       fmt::arg("dso", addresses.oscilloscope), fmt::arg("tss", addresses.sensor),
+                       fmt::arg("interface", addresses.can_interface), fmt::arg("bit_rate", addresses.can_bus == "500k" ? 500000 : 1000000),
+                       fmt::arg("data_bit_rate", addresses.can_bus == "fd-5M" ? "data_bit_rate_per_s = 5000000\n" : ""),
+                       fmt::arg("correction", preset.trigger_phase_correction));
+  };
+  switch (preset.can) {
+  case DemoPreset::CanLink::absolute_time:
+    return filled(std::string(can_source) + absolute_time_method);
+  case DemoPreset::CanLink::sync_beside:
+    return filled(std::string(can_source) + sync_beside_method);
+  case DemoPreset::CanLink::none:
+    break;
+  }
+  return filled(preset.triggered ? triggered_sources : stamped_sources);
+}
+
 } // namespace
 
 const std::vector<DemoPreset>& demo_presets() {
@@ -86,16 +148,27 @@ const std::vector<DemoPreset>& demo_presets() {
        .levels_m_s2 = {2.75, 5.5, 23, 100, 100, 100},
        .repetitions = 1,
        .triggered = true},
+      {.name = "can",
+       .shows = "a sensor with CAN output on a busy bus, stamped in UTC as the analogue system is: absolute time",
+       .frequencies_hz = {"10", "20", "40", "80", "125"},
+       .levels_m_s2 = {2.75, 5.5, 23, 100, 100},
+       .repetitions = 1,
+       .duration_s = 2.0,
+       .can = DemoPreset::CanLink::absolute_time},
+      {.name = "can-sync",
+       .shows = "a sensor with CAN output; a unit beside it samples sync on the same time scale",
+       .frequencies_hz = {"10", "20", "40", "80", "125"},
+       .levels_m_s2 = {2.75, 5.5, 23, 100, 100},
+       .repetitions = 1,
+       .duration_s = 2.0,
+       .can = DemoPreset::CanLink::sync_beside},
   };
   return presets;
 }
 
 std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
                             const DemoUncertainty& uncertainty) {
-  const std::string sources =
-      fmt::format(fmt::runtime(preset.triggered ? triggered_sources : stamped_sources), fmt::arg("dau", addresses.dau_listen),
-                  fmt::arg("acs", addresses.acs), fmt::arg("dso", addresses.oscilloscope), fmt::arg("tss", addresses.sensor),
-                  fmt::arg("correction", preset.trigger_phase_correction));
+  const std::string sources = sources_of(preset, addresses);
   return fmt::format(R"(# Written by "dyncal demo"; a bench of your own looks the same.
 bench = "{bench}"
 

@@ -18,6 +18,10 @@ struct DemoPreset {
   double duration_s = 3.0;
   bool triggered = false;               // series time stamping with oscilloscope and time series sensor
   bool trigger_phase_correction = true; // of every shot
+  enum class CanLink { none, absolute_time, sync_beside };
+  CanLink can = CanLink::none; // a sensor with CAN output, and what links it to the ACS
+  // Of the virtual bench.
+  [[nodiscard]] std::string sensor() const { return can == CanLink::none ? name : "mpu9250-ptb"; }
 };
 
 [[nodiscard]] const std::vector<DemoPreset>& demo_presets();
@@ -28,6 +32,8 @@ struct DemoAddresses {
   std::string generator;
   std::string oscilloscope; // presets that are triggered
   std::string sensor;
+  std::string can_interface; // presets with CAN output
+  std::string can_bus;       // of the virtual bench: "500k", "1M", "fd-5M"
 };
 
 // What the virtual bench says of itself in its truth file's settings: the recipe must state the same.

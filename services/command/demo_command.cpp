@@ -70,7 +70,7 @@ Expected<Demo> prepare(const DemoCommand& command) {
   if (preset == presets.end()) {
     return tl::unexpected(
         Error{ErrorCode::bad_argument,
-              fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280, tss", command.preset)});
+              fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280, tss, can, can-sync", command.preset)});
   }
   demo.preset = *preset;
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
@@ -124,7 +124,7 @@ double bench_seconds(const DemoPreset& preset) {
 std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo, std::uint16_t dau_port) {
   const DemoPreset& preset = demo.preset;
   const std::vector<std::pair<std::string, std::string>> options{
-      {"--preset", preset.name},
+      {"--preset", preset.sensor()},
       {"--seed", std::to_string(command.seed)},
       {"--speed", command.speed},
       {"--dau", fmt::format("127.0.0.1:{}", dau_port)},
@@ -141,6 +141,9 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
       {"--loss", std::to_string(command.loss)},
       {"--duplicate", std::to_string(command.duplicates)}};
   std::vector<std::string> arguments;
+  if (preset.can != DemoPreset::CanLink::none) {
+    arguments = {"--can", command.can_interface, "--can-bus", command.can_bus, "--dbc-file", demo.folder / "sensor.dbc"};
+  }
   for (const auto& [name, value] : options) {
     arguments.push_back(name);
     arguments.push_back(value);
@@ -165,7 +168,9 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
                                 .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
                                 .generator = fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
                                 .oscilloscope = fmt::format("127.0.0.1:{}", ports->value("dso", 0)),
-                                .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0))};
+                                .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0)),
+                                .can_interface = command.can_interface,
+                                .can_bus = command.can_bus};
   // As "dyncal calibrate dso-delay" would have found it; the paper's value.
   std::ofstream(demo.folder / "dso-delay.json") << R"({"value_s": 236e-9, "u_s": 1e-9})" << '\n';
   std::ofstream bench_file(demo.folder / "bench.toml");
@@ -179,13 +184,25 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
 Expected<void> start_services(Demo& demo) {
   const std::string bench_file = demo.folder / "bench.toml";
   const std::string domain = std::to_string(demo.domain);
-  return start(demo, "dyncal-analysis", {"--dds", demo.dds["analysis"], "--domain", domain})
-      .and_then([&] {
-        return start(demo, demo.preset.triggered ? "dyncal-dso" : "dyncal-dau", {bench_file, "--dds", demo.dds["dau"], "--domain", domain});
-      })
-      .and_then([&] {
-        return start(demo, "dyncal-acs", {bench_file, "--dds", demo.dds["acs"], "--domain", domain});
-      });
+  std::vector<std::pair<std::string, std::string>> services{{"dyncal-analysis", "analysis"}, {"dyncal-acs", "acs"}};
+  if (demo.preset.triggered) {
+    services.emplace_back("dyncal-dso", "dau");
+  } else if (demo.preset.can != DemoPreset::CanLink::none) {
+    services.emplace_back("dyncal-can", "dau");
+  }
+  if (!demo.preset.triggered && demo.preset.can != DemoPreset::CanLink::absolute_time) {
+    services.emplace_back("dyncal-dau", "dau");
+  }
+  for (const auto& [program, role] : services) {
+    std::vector<std::string> arguments{"--dds", demo.dds[role], "--domain", domain};
+    if (role != "analysis") {
+      arguments.insert(arguments.begin(), bench_file);
+    }
+    if (auto started = start(demo, program, arguments); !started) {
+      return started;
+    }
+  }
+  return {};
 }
 
 // A service that has ended says why in its last line, which explains more than what the others make of its absence.

@@ -26,6 +26,8 @@ struct DemoCommand {
   bool trigger_phase_correction = true; // series time stamping
   double loss = 0.0;                    // of datagrams, 0..1
   double duplicates = 0.0;
+  std::string can_interface = "vcan0"; // presets with CAN output
+  std::string can_bus = "1M";
 };
 
 // Exit status: 0 when every result agrees with the bench's truth within four standard uncertainties.

@@ -28,7 +28,7 @@ void add_run(CLI::App& app, RunCommand& run) {
 
 void add_demo(CLI::App& app, DemoCommand& demo) {
   CLI::App* command = app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
-  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb, bma280 or tss")->capture_default_str();
+  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")->capture_default_str();
   command->add_option("--dds", demo.dds,
                       "fastdds, cyclonedds, or one for each: dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
   command->add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
@@ -43,6 +43,12 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
       ->check(CLI::PositiveNumber);
   command->add_option("--loss", demo.loss, "part of the unit's datagrams that is lost, 0 to 1")->check(CLI::Range(0.0, 1.0));
   command->add_option("--duplicate", demo.duplicates, "part of the unit's datagrams that comes twice, 0 to 1")->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option("--can", demo.can_interface, "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a virtual one")
+      ->capture_default_str();
+  command->add_option("--can-bus", demo.can_bus, "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
+      ->check(CLI::IsMember({"500k", "1M", "fd-5M"}))
+      ->capture_default_str();
 }
 
 void add_watch(CLI::App& app, WatchCommand& watch) {

@@ -22,6 +22,7 @@ struct Words {
   std::string dso = "127.0.0.1:0";
   std::string tss = "127.0.0.1:0";
   std::string sensor = "0xbccb0100";
+  std::string can_bus = "1M";
   std::vector<std::string> scope_faults;
   std::size_t scope_pieces = 0;
   bool free_running = false;
@@ -52,6 +53,11 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--ports-file", options.ports_file, "write the ports to this file as JSON once they are open");
   app.add_option("--truth", options.truth_file, "write what is true to this file");
   app.add_option("--adc-file", options.adc_file, "write the calibration of the sync ADC to this file");
+  app.add_option("--can", options.can_interface,
+                 "put a sensor with CAN output on this interface; all instruments then keep the UTC of this host, in real time");
+  app.add_option("--can-bus", words.can_bus, "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")->capture_default_str();
+  app.add_option("--can-load", options.can.background_load, "share of the bus's time that other devices take")->check(CLI::Range(0.0, 0.8));
+  app.add_option("--dbc-file", options.dbc_file, "write the DBC file of the sensor with CAN output to this file");
   app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")->delimiter(',');
   app.add_option("--levels", words.levels, "in m/s^2, one or one per frequency; the highest decides the ranges")->delimiter(',');
   app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")->check(CLI::Range(100, 1000000))->capture_default_str();
@@ -141,6 +147,21 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
   return {};
 }
 
+Expected<void> read_can(const Words& words, BenchOptions& options) {
+  const auto& kinds = can_bus_kinds();
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const CanBusKind& one) { return one.name == words.can_bus; });
+  if (kind == kinds.end()) {
+    return refuse(fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));
+  }
+  options.can.bus = *kind;
+  options.can.preset = options.bench.preset;
+  options.can.seed = options.bench.seed;
+  if (!options.can_interface.empty() && options.bench.preset.triggered) {
+    return refuse("--can: the sensor of preset tss records series and has no CAN output; choose another preset");
+  }
+  return {};
+}
+
 // After everything else: the sensor's range follows from the levels.
 Expected<void> read_triggered(const Words& words, BenchOptions& options) {
   if (!options.bench.preset.triggered) {
@@ -179,7 +200,8 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
   return read_addresses(words, options.server)
       .and_then([&] { return read_faults("--fault", words.faults, device::fault_names(), options.bench.faults); })
       .and_then([&] { return read_programme(words, options); })
-      .and_then([&] { return read_triggered(words, options); });
+      .and_then([&] { return read_triggered(words, options); })
+      .and_then([&] { return read_can(words, options); });
 }
 
 } // namespace

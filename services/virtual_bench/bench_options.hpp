@@ -10,6 +10,7 @@
 #include "drivers/virtual_bench/recording.hpp"
 #include "drivers/virtual_bench/virtual_bench.hpp"
 #include "services/error.hpp"
+#include "services/virtual_bench/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {
 
@@ -22,6 +23,9 @@ struct BenchOptions {
   std::filesystem::path ports_file;
   std::filesystem::path record_folder; // set: files instead of sockets
   bool free_running_sensor = false;    // of the time series sensor, whose other settings follow from the bench
+  std::string can_interface;           // of a sensor with CAN output; empty: none
+  CanSensorSettings can;               // its preset and seed are those of the bench
+  std::filesystem::path dbc_file;
   bool exit_with_parent = false;
 };
 

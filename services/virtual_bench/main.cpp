@@ -1,14 +1,19 @@
 // dyncal-virtual-bench: a calibration bench without hardware, for demonstrations and tests.
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fmt/core.h>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sys/prctl.h>
 #include <unistd.h>
 
 #include "drivers/virtual_bench/truth.hpp"
+#include "services/utc_clock.hpp"
 #include "services/virtual_bench/bench_options.hpp"
+#include "services/virtual_bench/can_line.hpp"
+#include "services/virtual_bench/can_sensor.hpp"
 
 namespace {
 
@@ -58,11 +63,50 @@ Expected<void> record(device::VirtualBench& bench, const BenchOptions& options) 
   });
 }
 
+// The sensor with CAN output and its line, which lives in UTC.
+struct CanPart {
+  CanPart(const BenchOptions& options, dyncal::drivers::can::FrameSender sender)
+      : origin_ns(*options.bench.utc_origin_ns), sensor(options.can), line(std::move(sender)) {}
+
+  void advance_to(double time_s, const device::VirtualBench& bench) {
+    sensor.advance_to(time_s, bench.excitation(), [this](const dyncal::services::virtual_bench::SentFrame& sent) {
+      line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9));
+    });
+  }
+
+  std::int64_t origin_ns;
+  dyncal::services::virtual_bench::CanSensor sensor;
+  dyncal::services::virtual_bench::CanLine line;
+};
+
+// Nothing when the bench has no sensor with CAN output.
+Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
+  if (options.can_interface.empty()) {
+    return nullptr;
+  }
+  auto sender = dyncal::drivers::can::FrameSender::open(options.can_interface);
+  if (!sender) {
+    return tl::unexpected(Error{ErrorCode::device, sender.error().message});
+  }
+  auto part = std::make_unique<CanPart>(options, std::move(*sender));
+  if (auto written = write_file(options.dbc_file, part->sensor.dbc()); !written) {
+    return tl::unexpected(written.error());
+  }
+  return part;
+}
+
 Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   device::ServerSettings settings = options.server;
   if (settings.triggered) {
     settings.triggered->sensor = device::series_sensor_of(options.bench.preset, options.bench.seed, bench.unit().range_m_s2());
     settings.triggered->sensor.free_running = options.free_running_sensor;
+  }
+  auto can = open_can(options);
+  if (!can) {
+    return tl::unexpected(can.error());
+  }
+  if (*can) {
+    settings.after_advance = [&](double time_s) { (*can)->advance_to(time_s, bench); };
   }
   device::BenchServer server(bench, settings);
   if (auto opened = server.open(); !opened) {
@@ -79,12 +123,20 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n", options.bench.preset.name, ports.dump(),
              options.server.dau.text());
   server.run(stop_signal());
+  if (*can) {
+    const auto& line = (*can)->line;
+    fmt::print(stderr, "dyncal-virtual-bench: {} frames on {}, {} of them late, {} refused\n", line.sent(), options.can_interface,
+               line.late(), line.refused());
+  }
   return {};
 }
 
-Expected<void> run(const BenchOptions& options) {
+Expected<void> run(BenchOptions options) {
   if (options.exit_with_parent) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
+  }
+  if (!options.can_interface.empty()) {
+    options.bench.utc_origin_ns = dyncal::services::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
   if (auto written = write_file(options.truth_file, device::truth_json(bench, options.programme.frequencies_hz)); !written) {

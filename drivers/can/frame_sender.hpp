@@ -1,0 +1,29 @@
+// Sends frames on a CAN interface: for virtual sensors and tests, never for a bus with a sensor under calibration.
+//
+// One raw socket that receives nothing. send() gives the frame to the kernel, which on a virtual interface stamps it at once. Fails at
+// open() when the kernel has no CAN or the interface is not there, is down or is no CAN interface; at send() when the kernel refuses the
+// frame (an FD frame on an interface with the MTU of classic CAN). Belongs to one thread.
+#pragma once
+
+#include <string>
+
+#include "drivers/can/can_frame.hpp"
+#include "drivers/can/file_descriptor.hpp"
+#include "drivers/error.hpp"
+
+namespace dyncal::drivers::can {
+
+class FrameSender {
+public:
+  [[nodiscard]] static Expected<FrameSender> open(const std::string& interface_name);
+
+  [[nodiscard]] Expected<void> send(const CanFrame& frame);
+
+private:
+  FrameSender(std::string interface_name, FileDescriptor socket) : interface_name_(std::move(interface_name)), socket_(std::move(socket)) {}
+
+  std::string interface_name_;
+  FileDescriptor socket_;
+};
+
+} // namespace dyncal::drivers::can

@@ -1,0 +1,52 @@
+// Puts the frames of a virtual bus on a CAN interface of this host at the instants at which they have ended on the bus.
+//
+// A virtual interface has no bits: what is written to it arrives, and is stamped, at once. So each frame is written when the host's clock
+// (CLOCK_REALTIME) shows the end of its end-of-frame field. The thread sleeps until shortly before and looks at the clock for the rest;
+// where it may, it runs with real-time priority. A frame that the host had no time for is sent late and counted. put() from one thread; the
+// line has a thread of its own until it is destroyed.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+#include "drivers/can/can_frame.hpp"
+#include "drivers/can/frame_sender.hpp"
+
+namespace dyncal::services::virtual_bench {
+
+class CanLine {
+public:
+  explicit CanLine(drivers::can::FrameSender sender);
+
+  // Frames in the order of their ends.
+  void put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns);
+
+  [[nodiscard]] std::uint64_t sent() const { return sent_; }
+  [[nodiscard]] std::uint64_t late() const { return late_; } // by more than 100 us
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+private:
+  struct Due {
+    drivers::can::CanFrame frame;
+    std::int64_t end_utc_ns;
+  };
+
+  void run(const std::stop_token& stop);
+  void send(const Due& due);
+
+  drivers::can::FrameSender sender_;
+  std::mutex mutex_;
+  std::condition_variable_any more_;
+  std::deque<Due> waiting_;
+  std::atomic<std::uint64_t> sent_{0};
+  std::atomic<std::uint64_t> late_{0};
+  std::atomic<std::uint64_t> refused_{0};
+  std::jthread thread_; // last: ends before what it uses
+};
+
+} // namespace dyncal::services::virtual_bench
