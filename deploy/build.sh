@@ -22,7 +22,7 @@ case $2 in
     ;;
   programs)
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
-    targets=(dyncal dyncal-dau dyncal-acs dyncal-dso dyncal-analysis dyncal-virtual-bench)
+    targets=(dyncal dyncal-dau dyncal-acs dyncal-can dyncal-dso dyncal-analysis dyncal-virtual-bench)
     ;;
   *)
     echo "build.sh: '$2' is neither with-tests nor programs" >&2

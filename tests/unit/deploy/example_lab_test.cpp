@@ -21,7 +21,7 @@ TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
       EXPECT_TRUE(ports.insert(source.listen).second) << source.listen << " is there twice";
     }
   }
-  EXPECT_EQ(benches, (std::set<std::string>{"acc-1", "acc-2", "tss-1"}));
+  EXPECT_EQ(benches, (std::set<std::string>{"acc-1", "acc-2", "can-1", "tss-1"}));
 }
 
 } // namespace
