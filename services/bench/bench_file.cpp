@@ -240,8 +240,9 @@ MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& s
   MethodSettings method;
   method.kind = method_of(table.one_of("kind", {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}, ""));
   method.reference = read_role(table, "reference", sources, table.required_text("reference"));
-  const bool absolute = method.kind == EvaluationMethod::absolute_time;
-  if (method.kind != EvaluationMethod::analogue && (!absolute || table.has("sync_acs"))) {
+  const bool analogue = method.kind == EvaluationMethod::analogue;
+  const bool without_sync = analogue || method.kind == EvaluationMethod::absolute_time;
+  if (!without_sync || table.has("sync_acs")) {
     method.sync_acs = read_role(table, "sync_acs", sources, table.required_text("sync_acs"));
   }
   const bool stamped = method.kind == EvaluationMethod::sample_timestamping;
@@ -253,11 +254,15 @@ MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& s
       table.refuse("sync_acs", "must be of the same source as the reference: the two share a clock");
     }
   }
-  if (absolute && table.texts("dut").empty()) {
-    table.refuse("dut", "is missing: the channels of the sensors, for example [\"can/acceleration_z\"]");
+  if (without_sync && table.texts("dut").empty()) {
+    table.refuse("dut", "is missing: the channels under calibration, for example [\"can/acceleration_z\"]");
   }
   for (const std::string& text : table.texts("dut")) {
     method.dut.push_back(read_role(table, "dut", sources, text));
+    if (analogue && method.dut.back().source != method.reference.source) {
+      table.refuse("dut", fmt::format("names \"{}\", but the analogue method compares channels of one system: those of source '{}'", text,
+                                      method.reference.source));
+    }
     // A sensor beside the DAU has stamps of its own; they must be of the DAU's time scale, which the analysis sees to.
     const auto beside = [&](const ChannelName& name) { return name.source != method.sync_dau.source; };
     if (stamped && beside(method.dut.back()) != beside(method.dut.front())) {

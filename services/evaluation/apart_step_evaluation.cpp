@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "analysis/analogue_comparison.hpp"
-#include "services/bench/digest.hpp"
 #include "services/evaluation/step_evaluation.hpp"
 
 namespace dyncal::services {
@@ -89,17 +88,6 @@ analysis::Expected<Evaluated> by_sync_beside(const Recipe& recipe, const RecipeS
   });
 }
 
-std::string digest_of(const std::vector<const StepSamples*>& parts) {
-  Digest digest;
-  for (const StepSamples* part : parts) {
-    digest.add(part->stamps_ns.data(), part->stamps_ns.size() * sizeof(std::int64_t));
-    for (const auto& column : part->columns) {
-      digest.add(column.data(), column.size() * sizeof(double));
-    }
-  }
-  return digest.hex();
-}
-
 void flag_unknown_clock(const SourceRecord& record, const StretchOfTime& stretch, std::vector<std::string>& flags) {
   if (record.stamp_uncertainty_s(stretch.begin_ns, stretch.end_ns) <= 0.0) {
     flags.push_back(record.source() + ": nothing is known of the uncertainty of its clock");
@@ -133,24 +121,13 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
                                     : by_sync_beside(recipe, step, samples, acs, sync, sensor, dut, names);
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    CalibrationResult result = result_head(recipe, step, names[i].text());
     if (!evaluated) {
-      result.problem(evaluated.error().message);
-      results.push_back(std::move(result));
+      results.push_back(result_head(recipe, step, names[i].text()));
+      results.back().problem(evaluated.error().message);
       continue;
     }
-    const analysis::TransferPoint& point = evaluated->points[i];
-    result.valid(true);
-    result.magnitude(point.magnitude);
-    result.u_magnitude(point.u_magnitude);
-    result.phase_rad(point.phase_rad);
-    result.u_phase_rad(point.u_phase_rad);
+    CalibrationResult result = point_result(recipe, step, names[i], evaluated->points[i], evaluated->common_fits);
     result.unit(ratio_unit(samples.acs, recipe.reference.channel, sensor, names[i].channel));
-    for (const analysis::SeriesFit& fit : evaluated->common_fits) {
-      result.fits().push_back(fit_message(fit));
-    }
-    result.fits().push_back(fit_message(point.dut));
-    add_budget(point.budget, result);
     result.samples().push_back(samples_message(samples.acs, acs, samples.acs_stretch));
     if (!absolute) {
       result.samples().push_back(samples_message(*samples.sync, sync, stretch));

@@ -69,9 +69,9 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
       {"reference", {&measurement.reference(), &recipe.reference}},
       {"sync_acs", {&measurement.sync_acs(), &recipe.sync_acs}},
       {"sync_dau", {&measurement.sync_dau(), &recipe.sync_dau}}};
-  const bool absolute = measurement.method() == METHOD_ABSOLUTE_TIME;
+  const bool without_sync = recipe.without_sync();
   for (const auto& [what, places] : roles) {
-    if (absolute && places.first->empty()) {
+    if (without_sync && places.first->empty()) {
       continue; // the steps are found in the reference itself
     }
     const auto name = role(what, *places.first);
@@ -94,20 +94,24 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     }
     recipe.temperature = *name;
   }
-  if (absolute && recipe.sync_acs.source.empty()) {
+  if (without_sync && recipe.sync_acs.source.empty()) {
     recipe.sync_acs = recipe.reference;
   }
-  if (absolute) {
+  if (without_sync) {
     recipe.sync_dau = {};
   }
-  if (absolute && recipe.dut.empty()) {
-    return tl::unexpected(refused("the recipe names no channel under calibration, which absolute time needs: give \"dut\""));
+  if (without_sync && recipe.dut.empty()) {
+    return tl::unexpected(refused("the recipe names no channel under calibration, which a method without sync needs: give \"dut\""));
   }
   if (recipe.reference.source != recipe.sync_acs.source) {
     return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, but they must share a clock"));
   }
   if (recipe.sync_dau.source == recipe.sync_acs.source) {
     return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; sample time stamping links two clocks"));
+  }
+  if (recipe.method == METHOD_ANALOGUE && recipe.dut_sources() != std::vector{recipe.reference.source}) {
+    return tl::unexpected(refused("the recipe's channels under calibration must be of the source of the reference: the analogue method "
+                                  "compares channels of one system"));
   }
   const bool beside = recipe.stamped_apart();
   for (const ChannelName& name : recipe.dut) {
@@ -209,10 +213,6 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
 }
 
 Expected<Recipe> parse_recipe(const Measurement& measurement) {
-  if (measurement.method() == METHOD_ANALOGUE) {
-    return tl::unexpected(refused("this version evaluates method.kind = \"sample-timestamping\", \"series-timestamping\" and "
-                                  "\"absolute-time\" on live sources; choose one of them, or update dyncal-analysis"));
-  }
   Recipe recipe;
   recipe.method = measurement.method();
   recipe.dso_delay_s = measurement.dso_delay_s();

@@ -52,6 +52,8 @@ struct Recipe {
   double u_acs_rate_rel = 0.0;
   std::string sha256;
 
+  // The steps are found in the reference itself, or in what the ACS has of sync; nothing else records sync.
+  [[nodiscard]] bool without_sync() const { return method == METHOD_ABSOLUTE_TIME || method == METHOD_ANALOGUE; }
   // The sensors have stamps of their own: everything is on UTC, or sync is recorded beside them.
   [[nodiscard]] bool stamped_apart() const;
   // Whose sample clock is reported on.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/evaluation/analogue_step_evaluation.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -46,7 +47,7 @@ RunEvaluator::RunEvaluator(Recipe recipe) : recipe_(std::move(recipe)), clock_(r
     records_.emplace(source, std::make_unique<SourceRecord>(source));
   }
   acs_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_acs.source), recipe_.sync_acs.channel);
-  if (!by_series() && !by_absolute_time()) {
+  if (!by_series() && !recipe_.without_sync()) {
     dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source), recipe_.sync_dau.channel);
   }
 }
@@ -219,15 +220,35 @@ bool RunEvaluator::ready_to_evaluate(std::size_t step) const {
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < steps_expected() && ready_to_evaluate(next_step_)) {
     const RecipeStep& step = recipe_.steps[next_step_];
-    auto results = by_series()               ? evaluate_triggered_step(step)
-                   : recipe_.stamped_apart() ? evaluate_apart(step)
-                                             : evaluate_stamped_step(step);
-    for (CalibrationResult& result : results) {
+    for (CalibrationResult& result : evaluate_by_method(step)) {
       summary_.add(result);
       output.results.push_back(std::move(result));
     }
     ++next_step_;
   }
+}
+
+std::vector<CalibrationResult> RunEvaluator::evaluate_by_method(const RecipeStep& step) {
+  if (by_series()) {
+    return evaluate_triggered_step(step);
+  }
+  if (recipe_.method == METHOD_ANALOGUE) {
+    return evaluate_analogue(step);
+  }
+  return recipe_.stamped_apart() ? evaluate_apart(step) : evaluate_stamped_step(step);
+}
+
+std::vector<CalibrationResult> RunEvaluator::evaluate_analogue(const RecipeStep& step) {
+  const SourceRecord& acs = *records_.at(recipe_.reference.source);
+  const auto stretch = acs_search_->stretch(next_step_);
+  if (!stretch) {
+    return results_of_missing_step(recipe_, step, acs, no_sine(step, recipe_.sync_acs));
+  }
+  std::vector<std::string> flags = flags_of(recipe_, step, acs, *stretch);
+  if (broken_off_.contains(next_step_)) {
+    flags.emplace_back("excitation broken off");
+  }
+  return evaluate_analogue_step(recipe_, step, acs, *stretch, std::move(flags));
 }
 
 std::vector<CalibrationResult> RunEvaluator::evaluate_stamped_step(const RecipeStep& step) {

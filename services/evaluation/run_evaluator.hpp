@@ -74,8 +74,10 @@ private:
   // Sensors with stamps of their own: whether the samples of the step's stretch have come.
   [[nodiscard]] bool sensors_are_there(std::size_t step) const;
   // Which search finds the sensors' stretches.
-  [[nodiscard]] const StepSearch& search_of_sensors() const { return by_absolute_time() ? *acs_search_ : *dau_search_; }
+  [[nodiscard]] const StepSearch& search_of_sensors() const { return recipe_.without_sync() ? *acs_search_ : *dau_search_; }
   [[nodiscard]] Expected<void> check_clocks() const;
+  [[nodiscard]] std::vector<CalibrationResult> evaluate_by_method(const RecipeStep& step);
+  [[nodiscard]] std::vector<CalibrationResult> evaluate_analogue(const RecipeStep& step);
   [[nodiscard]] std::vector<CalibrationResult> evaluate_stamped_step(const RecipeStep& step);
   [[nodiscard]] std::vector<CalibrationResult> evaluate_apart(const RecipeStep& step);
   [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -50,6 +51,13 @@ Settled settled_part(const RecipeStep& step, double frequency_search_rel, const 
     return {step.settling_s, {fmt::format("settles for {:.3g} s, {} s left out", longest_s, step.settling_s)}};
   }
   return {longest_s, {}};
+}
+
+StretchOfTime without_settling(StretchOfTime stretch, double settling_s, double duration_s) {
+  const auto ns = [](double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); };
+  stretch.begin_ns += ns(settling_s);
+  stretch.end_ns = std::min(stretch.end_ns, stretch.begin_ns + ns(duration_s) - 1);
+  return stretch;
 }
 
 } // namespace dyncal::services

@@ -31,4 +31,7 @@ struct Settled {
 [[nodiscard]] Settled settled_part(const RecipeStep& step, double frequency_search_rel, const SettlingColumns& acs,
                                    const SettlingColumns& sensor);
 
+// What is left of a stretch, `duration_s` at the most.
+[[nodiscard]] StretchOfTime without_settling(StretchOfTime stretch, double settling_s, double duration_s);
+
 } // namespace dyncal::services

@@ -1,29 +1,18 @@
 #include "services/evaluation/step_evaluation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
-#include "services/bench/digest.hpp"
 #include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/settled_part.hpp"
 #include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {
 namespace {
-
-std::string digest_of(const StepSamples& acs, const StepSamples& dau) {
-  Digest digest;
-  for (const StepSamples* series : {&acs, &dau}) {
-    digest.add(series->stamps_ns.data(), series->stamps_ns.size() * sizeof(std::int64_t));
-    for (const auto& column : series->columns) {
-      digest.add(column.data(), column.size() * sizeof(double));
-    }
-  }
-  return digest.hex();
-}
 
 // One source's samples of the step.
 struct StepPart {
@@ -45,28 +34,10 @@ void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& 
   }
   const Settled settled = settled_part(step, recipe.frequency_search_rel, {acs.samples, 1, {0}}, sensor);
   flags.insert(flags.end(), settled.flags.begin(), settled.flags.end());
-  const auto ns = [](double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); };
   for (StepPart* part : {&acs, &dau}) {
-    part->stretch.begin_ns += ns(settled.settling_s);
-    part->stretch.end_ns = std::min(part->stretch.end_ns, part->stretch.begin_ns + ns(step.duration_s) - 1);
+    part->stretch = without_settling(part->stretch, settled.settling_s, step.duration_s);
     part->cut_samples();
   }
-}
-
-CalibrationResult channel_result(const Recipe& recipe, const RecipeStep& step, const analysis::SampleStampingResult& evaluated,
-                                 std::size_t place, const ChannelName& name) {
-  const analysis::TransferPoint& point = evaluated.points[place];
-  CalibrationResult result = result_head(recipe, step, name.text());
-  result.valid(true);
-  result.magnitude(point.magnitude);
-  result.u_magnitude(point.u_magnitude);
-  result.phase_rad(point.phase_rad);
-  result.u_phase_rad(point.u_phase_rad);
-  for (const analysis::SeriesFit* fit : {&evaluated.reference, &evaluated.sync_acs, &evaluated.sync_dau, &point.dut}) {
-    result.fits().push_back(fit_message(*fit));
-  }
-  add_budget(point.budget, result);
-  return result;
 }
 
 void check_by_drawing(const Recipe& recipe, const analysis::SampleStampingInput& input, const analysis::SampleStampingResult& evaluated,
@@ -154,10 +125,11 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
     return results_of_missing_step(recipe, step, dau, evaluated.error().message);
   }
 
-  const std::string data_sha256 = digest_of(acs_part.samples, dau_part.samples);
+  const std::string data_sha256 = digest_of({&acs_part.samples, &dau_part.samples});
+  const std::array common_fits{evaluated->reference, evaluated->sync_acs, evaluated->sync_dau};
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < dut.size(); ++i) {
-    CalibrationResult result = channel_result(recipe, step, *evaluated, i, dut[i]);
+    CalibrationResult result = point_result(recipe, step, dut[i], evaluated->points[i], common_fits);
     result.unit(ratio_unit(acs, recipe.reference.channel, dau, dut[i].channel));
     result.samples().push_back(samples_message(acs, acs_part.samples, acs_part.stretch));
     result.samples().push_back(samples_message(dau, dau_part.samples, dau_part.stretch));

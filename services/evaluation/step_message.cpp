@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "services/bench/digest.hpp"
 #include "services/bench/unit.hpp"
 #include "services/version.hpp"
 
@@ -136,6 +137,33 @@ void add_budget(std::span<const analysis::Contribution> budget, CalibrationResul
     message.u_phase_rad(line.u_phase_rad);
     result.budget().push_back(message);
   }
+}
+
+CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step, const ChannelName& name, const analysis::TransferPoint& point,
+                               std::span<const analysis::SeriesFit> common_fits) {
+  CalibrationResult result = result_head(recipe, step, name.text());
+  result.valid(true);
+  result.magnitude(point.magnitude);
+  result.u_magnitude(point.u_magnitude);
+  result.phase_rad(point.phase_rad);
+  result.u_phase_rad(point.u_phase_rad);
+  for (const analysis::SeriesFit& fit : common_fits) {
+    result.fits().push_back(fit_message(fit));
+  }
+  result.fits().push_back(fit_message(point.dut));
+  add_budget(point.budget, result);
+  return result;
+}
+
+std::string digest_of(std::initializer_list<const StepSamples*> parts) {
+  Digest digest;
+  for (const StepSamples* part : parts) {
+    digest.add(part->stamps_ns.data(), part->stamps_ns.size() * sizeof(std::int64_t));
+    for (const auto& column : part->columns) {
+      digest.add(column.data(), column.size() * sizeof(double));
+    }
+  }
+  return digest.hex();
 }
 
 } // namespace dyncal::services

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,13 @@ struct StepSamples {
 [[nodiscard]] SineFit fit_message(const analysis::SeriesFit& series);
 [[nodiscard]] SourceSamples samples_message(const SourceRecord& record, const StepSamples& series, const StretchOfTime& stretch);
 void add_budget(std::span<const analysis::Contribution> budget, CalibrationResult& result);
+
+// The result of one channel: value, fits (those common to all channels first), budget. What it was made of is the caller's to add.
+[[nodiscard]] CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step, const ChannelName& name,
+                                             const analysis::TransferPoint& point, std::span<const analysis::SeriesFit> common_fits);
+
+// SHA-256 over stamps and values of all parts in their order.
+[[nodiscard]] std::string digest_of(std::initializer_list<const StepSamples*> parts);
 
 // Output per input, as D-SI knows it: "\one" when both are the same.
 [[nodiscard]] std::string ratio_unit(const SourceRecord& acs, const std::string& reference, const SourceRecord& dut,

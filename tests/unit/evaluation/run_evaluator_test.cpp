@@ -14,7 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement) {
-  RunEvaluator evaluator(*parse_recipe(measurement));
+  auto recipe = parse_recipe(measurement);
+  EXPECT_TRUE(recipe) << recipe.error().message;
+  RunEvaluator evaluator(std::move(*recipe));
   EXPECT_TRUE(evaluator.describe(run.acs_description()));
   EXPECT_TRUE(evaluator.describe(run.dau_description()));
   EvaluationOutput all;
@@ -64,6 +66,27 @@ TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
   EXPECT_EQ(output.transfer_functions.front().points().size(), 2U);
   ASSERT_EQ(output.clock_reports.size(), 1U);
   EXPECT_NEAR(output.clock_reports.front().mean_interval_s(), 997e-6, 1e-9);
+}
+
+TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
+  const tests::SyntheticRun run;
+  Measurement measurement = run.measurement();
+  measurement.method(METHOD_ANALOGUE);
+  measurement.sync_acs("");
+  measurement.sync_dau("");
+  measurement.dut() = {"acs/sync"};
+  const EvaluationOutput output = evaluate(run, measurement);
+  ASSERT_EQ(output.results.size(), 2U);
+  for (const CalibrationResult& result : output.results) {
+    ASSERT_TRUE(result.valid()) << result.problem();
+    EXPECT_NEAR(result.magnitude(), 0.1, 4.0 * result.u_magnitude()); // sync is a tenth of the reference
+    EXPECT_NEAR(result.phase_rad(), 0.0, 4.0 * result.u_phase_rad());
+    EXPECT_EQ(result.fits().size(), 2U);
+    EXPECT_EQ(result.samples().size(), 1U);
+    EXPECT_TRUE(result.flags().empty()) << result.flags().front();
+  }
+  EXPECT_EQ(output.transfer_functions.size(), 1U);
+  EXPECT_TRUE(output.clock_reports.empty());
 }
 
 TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
