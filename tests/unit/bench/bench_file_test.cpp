@@ -125,6 +125,15 @@ TEST(BenchFile, RefusesWholeRecordsOfSeveralSteps) {
   EXPECT_THAT(problem_of(replaced(one, "repetitions = 3", "window = \"whole-record\"")), HasSubstr("has no meaning when window"));
 }
 
+TEST(BenchFile, TheAnalogueMethodComparesChannelsOfOneSystem) {
+  const std::string text = replaced(complete, "sample-timestamping", "analogue");
+  EXPECT_THAT(problem_of(text), HasSubstr("compares channels of one system"));
+  const auto file = parse_bench_file(
+      replaced(replaced(text, "sync_acs = \"acs/sync\"\nsync_dau = \"dau/sync\"\n", ""), "dau/acceleration_z", "acs/sensor"), "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(file->method.kind, EvaluationMethod::analogue);
+}
+
 TEST(BenchFile, RefusesASearchThatIsTooWide) {
   EXPECT_THAT(problem_of(replaced(complete, "[uncertainty]", "frequency_search_rel = 0.5\n[uncertainty]")),
               HasSubstr("frequency_search_rel"));
