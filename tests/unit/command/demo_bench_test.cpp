@@ -14,25 +14,32 @@ TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
   const std::filesystem::path folder = testing::TempDir();
   std::ofstream(folder / "adc.json") << "{}";
   std::ofstream(folder / "dso-delay.json") << R"({"value_s": 236e-9, "u_s": 1e-9})";
+  std::ofstream(folder / "sensor.dbc") << "VERSION \"\"\n";
   const DemoAddresses addresses{.dau_listen = "127.0.0.1:7654",
                                 .acs = "127.0.0.1:5026",
                                 .generator = "127.0.0.1:5025",
                                 .oscilloscope = "127.0.0.1:5555",
-                                .sensor = "127.0.0.1:5027"};
+                                .sensor = "127.0.0.1:5027",
+                                .can_interface = "can0",
+                                .can_bus = "fd-5M"};
   for (const DemoPreset& preset : demo_presets()) {
     const auto file = parse_bench_file(demo_bench_file(preset, "demo-1", addresses, {1e-3, 2e-3, 3e-7}), folder / "bench.toml");
     ASSERT_TRUE(file) << preset.name << ": " << file.error().message;
     EXPECT_EQ(file->bench, "demo-1");
     EXPECT_EQ(file->excitation.frequencies_hz, preset.frequencies_hz);
     EXPECT_EQ(file->excitation.levels_m_s2, preset.levels_m_s2);
-    EXPECT_EQ(file->excitation.repetitions, preset.triggered ? 1 : 3);
+    EXPECT_EQ(file->excitation.repetitions, preset.repetitions);
     if (preset.triggered) {
       EXPECT_EQ(file->source("dso")->address, "127.0.0.1:5555");
       EXPECT_EQ(file->source("tss")->address, "127.0.0.1:5027");
       EXPECT_DOUBLE_EQ(file->corrections.dso_delay_s, 236e-9);
       EXPECT_DOUBLE_EQ(file->corrections.u_dso_delay_s, 1e-9);
-    } else {
+    } else if (preset.can == DemoPreset::CanLink::none) {
       EXPECT_EQ(file->source("dau")->listen, "127.0.0.1:7654");
+    } else {
+      ASSERT_TRUE(file->source("can")->can);
+      EXPECT_EQ(file->source("can")->can->interface_name, "can0");
+      EXPECT_EQ(file->source("dau") == nullptr, preset.can == DemoPreset::CanLink::absolute_time);
     }
     EXPECT_DOUBLE_EQ(file->uncertainty.reference_phase_rad, 2e-3);
   }
