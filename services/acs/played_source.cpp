@@ -170,7 +170,7 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher, cons
     }
     driver_ = std::move(*driver);
     if (auto described = describe(*driver_, settings_, stop); !described) {
-      return tl::unexpected(described.error());
+      return stop.stop_requested() ? Expected<void>() : tl::unexpected(described.error()); // a stop is no failure
     }
     publisher.start_session();
   }
