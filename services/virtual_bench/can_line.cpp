@@ -10,7 +10,7 @@
 namespace dyncal::services::virtual_bench {
 namespace {
 
-constexpr std::int64_t watched_ns = 80'000; // what a sleeping thread may need to wake up
+constexpr std::int64_t watched_ns = 60'000; // what a sleeping thread may need to wake up
 constexpr std::int64_t late_ns = 100'000;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
@@ -24,23 +24,27 @@ void sleep_until(std::int64_t utc_ns) {
 CanLine::CanLine(drivers::can::FrameSender sender)
     : sender_(std::move(sender)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns) {
+void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns, bool exact) {
   {
     const std::scoped_lock lock(mutex_);
-    waiting_.push_back({frame, end_utc_ns});
+    waiting_.push_back({frame, end_utc_ns, exact});
   }
   more_.notify_one();
 }
 
 void CanLine::send(const Due& due) {
-  if (utc_now_ns() < due.end_utc_ns - watched_ns) {
-    sleep_until(due.end_utc_ns - watched_ns);
+  const std::int64_t wake_up_ns = due.exact ? due.end_utc_ns - watched_ns : due.end_utc_ns;
+  if (utc_now_ns() < wake_up_ns) {
+    sleep_until(wake_up_ns);
   }
-  std::int64_t now_ns = utc_now_ns();
-  while (now_ns < due.end_utc_ns) {
-    now_ns = utc_now_ns();
+  if (due.exact) {
+    std::int64_t now_ns = utc_now_ns();
+    while (now_ns < due.end_utc_ns) {
+      now_ns = utc_now_ns();
+    }
+    ++exact_;
+    late_ += now_ns > due.end_utc_ns + late_ns ? 1 : 0;
   }
-  late_ += now_ns > due.end_utc_ns + late_ns ? 1 : 0;
   if (const auto done = sender_.send(due.frame)) {
     ++sent_;
   } else if (refused_++ == 0) {

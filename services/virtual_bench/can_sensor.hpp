@@ -48,7 +48,7 @@ public:
   [[nodiscard]] std::string dbc() const;
 
   static constexpr std::uint32_t id = 0x100;
-  static constexpr double nominal_rate_hz = 1000.0;
+  static constexpr double nominal_rate_hz = 500.0;
 
 private:
   [[nodiscard]] drivers::can::CanFrame measure(double time_s, const drivers::virtual_bench::Excitation& excitation);

@@ -70,7 +70,8 @@ struct CanPart {
 
   void advance_to(double time_s, const device::VirtualBench& bench) {
     sensor.advance_to(time_s, bench.excitation(), [this](const dyncal::services::virtual_bench::SentFrame& sent) {
-      line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9));
+      const bool exact = sent.frame.id == dyncal::services::virtual_bench::CanSensor::id;
+      line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9), exact);
     });
   }
 
@@ -125,8 +126,8 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   server.run(stop_signal());
   if (*can) {
     const auto& line = (*can)->line;
-    fmt::print(stderr, "dyncal-virtual-bench: {} frames on {}, {} of them late, {} refused\n", line.sent(), options.can_interface,
-               line.late(), line.refused());
+    fmt::print(stderr, "dyncal-virtual-bench: {} frames on {}, {} of the {} of the sensor late, {} refused\n", line.sent(),
+               options.can_interface, line.late(), line.exact(), line.refused());
   }
   return {};
 }

@@ -53,20 +53,22 @@ double mean_frame_s(const Bus& bus) {
 std::string can_source(const std::string& name, const Bus& bus, const std::string& more) {
   const std::string data_rate = bus.fd ? fmt::format("data_bit_rate_per_s = {:.0f}\n", bus.rates.data_per_s) : "";
   return fmt::format("[sources.{}]\ndriver = \"can\"\ninterface = \"vcan0\"\ndbc = \"sensor.dbc\"\ncounter = \"counter\"\n"
-                     "nominal_rate_hz = 1000.0\nbit_rate_per_s = {:.0f}\n{}latency_s = 10e-6\nu_latency_s = 20e-6\nu_utc_s = 1e-7\n{}\n",
+                     "nominal_rate_hz = 500.0\nbit_rate_per_s = {:.0f}\n{}latency_s = 10e-6\nu_latency_s = 20e-6\nu_utc_s = 1e-7\n{}\n",
                      name, bus.rates.nominal_per_s, data_rate, more);
 }
 
 // On a virtual interface the virtual sensor makes the bus's time itself. A machine that leaves it no time for that, so that most frames are
 // late, says nothing about what receives them. `said`: what the virtual bench says at its end.
 bool starved(const std::string& said) {
-  unsigned long long sent = 0;
+  unsigned long long all = 0;
   unsigned long long late = 0;
+  unsigned long long sent = 0;
   const std::size_t at = said.rfind("dyncal-virtual-bench: ");
   if (at == std::string::npos ||
-      std::sscanf(said.c_str() + at, "dyncal-virtual-bench: %llu frames on vcan0, %llu of them late", &sent, &late) != 2)
+      std::sscanf(said.c_str() + at, "dyncal-virtual-bench: %llu frames on vcan0, %llu of the %llu of the sensor late", &all, &late,
+                  &sent) != 3)
     return false;
-  std::printf("%llu frames, %llu of them late\n", sent, late);
+  std::printf("%llu frames, %llu of the %llu of the sensor late\n", all, late, sent);
   if (2 * late <= sent) return false;
   std::printf("skipped: this machine was too busy to keep the time of a bus: %llu of %llu frames were late\n", late, sent);
   return true;

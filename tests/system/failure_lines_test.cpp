@@ -84,7 +84,7 @@ TEST_F(FailureLine, CanSourceWithoutItsInterface) {
   const std::string text =
       replaced(bench_text, "[method]", "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
   const std::string line = line_of("dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
-  EXPECT_THAT(line, HasSubstr("bench.toml:14: source 'can': "));
+  EXPECT_THAT(line, HasSubstr("bench.toml:13: source 'can': "));
   EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"), HasSubstr("there is no interface 'nocan0'")));
 }
 
