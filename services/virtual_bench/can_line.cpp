@@ -1,5 +1,6 @@
 #include "services/virtual_bench/can_line.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 #include <fmt/core.h>
@@ -10,7 +11,10 @@
 namespace dyncal::services::virtual_bench {
 namespace {
 
-constexpr std::int64_t watched_ns = 60'000; // what a sleeping thread may need to wake up
+// What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more.
+constexpr std::int64_t shortest_watch_ns = 60'000;
+constexpr std::int64_t longest_watch_ns = 500'000;
+constexpr std::int64_t watch_margin_ns = 30'000;
 constexpr std::int64_t late_ns = 100'000;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
@@ -20,6 +24,11 @@ void sleep_until(std::int64_t utc_ns) {
 }
 
 } // namespace
+
+void go_before_programs(int priority) {
+  const sched_param wanted{.sched_priority = priority};
+  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_RR, &wanted)); // refused to ordinary users
+}
 
 CanLine::CanLine(drivers::can::FrameSender sender)
     : sender_(std::move(sender)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -32,18 +41,28 @@ void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns, 
   more_.notify_one();
 }
 
-void CanLine::send(const Due& due) {
-  const std::int64_t wake_up_ns = due.exact ? due.end_utc_ns - watched_ns : due.end_utc_ns;
-  if (utc_now_ns() < wake_up_ns) {
-    sleep_until(wake_up_ns);
+// The watch is as long as waking up took of late, and becomes shorter when it takes less.
+void CanLine::sleep_until_watch(std::int64_t end_utc_ns) {
+  const std::int64_t wake_up_ns = end_utc_ns - watch_ns_;
+  if (utc_now_ns() >= wake_up_ns) {
+    return;
   }
+  sleep_until(wake_up_ns);
+  const std::int64_t needed_ns = utc_now_ns() - wake_up_ns + watch_margin_ns;
+  watch_ns_ = std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), shortest_watch_ns, longest_watch_ns);
+}
+
+void CanLine::send(const Due& due) {
   if (due.exact) {
+    sleep_until_watch(due.end_utc_ns);
     std::int64_t now_ns = utc_now_ns();
     while (now_ns < due.end_utc_ns) {
       now_ns = utc_now_ns();
     }
     ++exact_;
     late_ += now_ns > due.end_utc_ns + late_ns ? 1 : 0;
+  } else if (utc_now_ns() < due.end_utc_ns) {
+    sleep_until(due.end_utc_ns);
   }
   if (const auto done = sender_.send(due.frame)) {
     ++sent_;
@@ -53,8 +72,7 @@ void CanLine::send(const Due& due) {
 }
 
 void CanLine::run(const std::stop_token& stop) {
-  const sched_param priority{.sched_priority = 10};
-  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority)); // refused to ordinary users
+  go_before_programs(10);
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex_);
     if (!more_.wait(lock, stop, [this] { return !waiting_.empty(); })) {

@@ -20,6 +20,9 @@
 
 namespace dyncal::services::virtual_bench {
 
+// The calling thread goes before those of ordinary programs (SCHED_RR), where the host lets it: instruments do not wait for programs.
+void go_before_programs(int priority);
+
 class CanLine {
 public:
   explicit CanLine(drivers::can::FrameSender sender);
@@ -41,6 +44,7 @@ private:
 
   void run(const std::stop_token& stop);
   void send(const Due& due);
+  void sleep_until_watch(std::int64_t end_utc_ns);
 
   drivers::can::FrameSender sender_;
   std::mutex mutex_;
@@ -50,7 +54,8 @@ private:
   std::atomic<std::uint64_t> exact_{0};
   std::atomic<std::uint64_t> late_{0};
   std::atomic<std::uint64_t> refused_{0};
-  std::jthread thread_; // last: ends before what it uses
+  std::int64_t watch_ns_ = 0; // before the end of a frame, when the thread wakes up; its own
+  std::jthread thread_;       // last: ends before what it uses
 };
 
 } // namespace dyncal::services::virtual_bench

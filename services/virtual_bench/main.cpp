@@ -107,6 +107,7 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     return tl::unexpected(can.error());
   }
   if (*can) {
+    dyncal::services::virtual_bench::go_before_programs(5); // below the line
     settings.after_advance = [&](double time_s) { (*can)->advance_to(time_s, bench); };
   }
   device::BenchServer server(bench, settings);
