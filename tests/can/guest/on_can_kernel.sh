@@ -1,30 +1,45 @@
 #!/usr/bin/env bash
 # Runs a command as root on a kernel that has CAN:
 #
-#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] COMMAND ARGUMENTS...
+#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] [-g] COMMAND ARGUMENTS...
 #
 # On this kernel, in a network namespace of its own, where it has vcan and we may; otherwise in a User-Mode-Linux guest that sees the
-# files of this machine read-only (DYNCAL_CAN_KERNEL, /usr/bin/linux.uml of Debian's package user-mode-linux).
+# files of this machine read-only: DYNCAL_CAN_KERNEL, else the one that build-guest.sh has built, else /usr/bin/linux.uml of Debian's
+# package user-mode-linux.
+# -g: only in the guest that build-guest.sh has built (USB adapters), and in simulated time: sleeping costs nothing, computing takes no
+# time, the clock starts at the same instant every time.
 # Exit status: the command's; 77 with a line "skipped: ..." where there is neither; 125 when the guest did not come to an end.
 set -uo pipefail
 
-shim= memory=512 limit=120 writable=
-while getopts s:m:t:w: option; do
+shim= memory=512 limit=120 writable= built_only=
+while getopts s:m:t:w:g option; do
   case $option in
     s) shim=$OPTARG ;;
     m) memory=$OPTARG ;;
     t) limit=$OPTARG ;;
     w) writable=$(realpath "$OPTARG") ;;
+    g) built_only=yes ;;
     *) exit 2 ;;
   esac
 done
 shift $((OPTIND - 1))
 
-if [[ $EUID -eq 0 ]] && unshare --net ip link add probe0 type vcan 2>/dev/null; then
+if [[ -z $built_only && $EUID -eq 0 ]] && unshare --net ip link add probe0 type vcan 2>/dev/null; then
   exec unshare --net bash -c 'ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; exec "$@"' - "$@"
 fi
 
-kernel=${DYNCAL_CAN_KERNEL:-/usr/bin/linux.uml}
+built=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/dyncal/linux-can
+[[ -x $built ]] || built=
+kernel=${DYNCAL_CAN_KERNEL:-${built:-/usr/bin/linux.uml}}
+clock=()
+if [[ -n $built_only ]]; then
+  # A kernel lists its options in its file; that of the package has no simulated time.
+  if [[ ! -x $kernel ]] || ! grep -q 'time-travel=inf-cpu' "$kernel"; then
+    echo "skipped: needs a guest kernel with USB adapters and simulated time; tests/can/build-guest.sh builds it"
+    exit 77
+  fi
+  clock=(time-travel=inf-cpu time-travel-start=1700000000000000000)
+fi
 for needed in "$kernel" /usr/bin/busybox; do
   if [[ ! -x $needed && ! -x ${needed/usr\//} ]]; then
     echo "skipped: this kernel has no vcan that this user may make, and $needed is not there (apt-get install user-mode-linux busybox-static)"
@@ -79,7 +94,7 @@ memory_folder=/dev/shm
 # Every system call of the guest is handed from one process of the host to another: several times faster when both have one processor.
 processor=$(taskset -cp $$ | sed 's/.*: //; s/[-,].*//')
 timeout --kill-after=5 "$limit" taskset -c "$processor" env -i HOME="$folder" PATH="$PATH" TMPDIR="$memory_folder" ${shim:+LD_PRELOAD="$shim"} \
-  "$kernel" "mem=${memory}M" quiet loglevel=1 root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$folder/init" \
+  "$kernel" "mem=${memory}M" quiet loglevel=1 "${clock[@]}" root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$folder/init" \
   con=null con0=null,fd:1 -- "$folder" </dev/null 2>&1 | grep --line-buffered -vE '^reboot: System halted|^$' | tr -d '\r'
 if [[ -s $folder/status ]]; then
   exit "$(cat "$folder/status")"
