@@ -164,7 +164,7 @@ Expected<MonteCarloResult> propagate_distributions(std::span<const InputQuantity
 
 namespace {
 
-// Inputs of eq. (4): A and B of the four fits, then relative magnitude and phase of every other row.
+// Inputs of the quotient: A and B of every fit, then relative magnitude and phase of every other row.
 struct DrawnChain {
   std::vector<InputQuantity> inputs;
   std::vector<InputCorrelation> correlations;
@@ -187,35 +187,42 @@ bool is_drawn_as_phasor(const Contribution& row) {
   return row.name.starts_with("noise of ") || row.name == "magnitude of noise (Rice)";
 }
 
+// Of the sensor, the reference and, if there are, sync in the ACS and in the DAU.
+std::complex<double> quotient(std::span<const double> drawn, std::size_t phasors) {
+  const auto phasor = [&](std::size_t i) { return std::complex<double>(drawn[2 * i], drawn[2 * i + 1]); };
+  const std::complex<double> h = phasor(0) / phasor(1);
+  return phasors == 2 ? h : h * unit_phasor(phasor(2)) / unit_phasor(phasor(3));
+}
+
 } // namespace
 
-Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingInput& input, const SampleStampingResult& result, std::size_t point,
-                                                   const MonteCarloSettings& settings) {
-  if (point >= result.points.size()) return failure(ErrorCode::invalid_argument, "there is no such channel in the result");
+Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point, std::span<const SeriesFit> link,
+                                            const MonteCarloSettings& settings) {
+  if (link.size() != 1 && link.size() != 3) return failure(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
   DrawnChain chain;
-  for (const SeriesFit* series : {&result.points[point].dut, &result.reference, &result.sync_acs, &result.sync_dau})
-    chain.add_fit(*series);
-  for (const Contribution& row : result.points[point].budget)
+  chain.add_fit(point.dut);
+  for (const SeriesFit& series : link)
+    chain.add_fit(series);
+  const std::size_t phasors = 1 + link.size();
+  std::vector<double> estimates;
+  for (const InputQuantity& input : chain.inputs)
+    estimates.push_back(input.value);
+  for (const Contribution& row : point.budget)
     if (!is_drawn_as_phasor(row)) chain.add_row(row);
   auto draws = Draws::prepare(chain.inputs, chain.correlations, settings.seed);
   if (!draws) return tl::unexpected(draws.error());
 
-  const std::complex<double> corrections = std::polar(1.0, -input.adc.phase_lag_rad - input.frequency.angular() * input.reference_delay_s);
-  const auto transfer = [&](std::span<const double> drawn) {
-    const auto phasor = [&](std::size_t i) { return std::complex<double>(drawn[2 * i], drawn[2 * i + 1]); };
-    std::complex<double> h = phasor(0) / phasor(1) * unit_phasor(phasor(2)) / unit_phasor(phasor(3)) * corrections;
-    for (std::size_t i = 8; i < drawn.size(); i += 2)
-      h *= (1.0 + drawn[i]) * std::polar(1.0, drawn[i + 1]);
-    return h;
-  };
+  const std::complex<double> corrections = point.h / quotient(estimates, phasors);
   Gathering magnitude(settings.probability), phase(settings.probability);
   for (std::size_t done = 0; done < std::max(settings.most_trials, batch); done += batch) {
     for (std::size_t i = 0; i < batch; ++i) {
-      const std::complex<double> h = transfer(draws->next());
-      if (!std::isfinite(h.real()) || !std::isfinite(h.imag())) return failure(ErrorCode::not_finite, "a drawn reference phasor was 0");
-      const double about = result.points[point].phase_rad;
+      const std::span<const double> drawn = draws->next();
+      std::complex<double> h = quotient(drawn, phasors) * corrections;
+      for (std::size_t row = 2 * phasors; row < drawn.size(); row += 2)
+        h *= (1.0 + drawn[row]) * std::polar(1.0, drawn[row + 1]);
+      if (!std::isfinite(h.real()) || !std::isfinite(h.imag())) return failure(ErrorCode::not_finite, "a drawn phasor was 0");
       magnitude.add(std::abs(h));
-      phase.add(about + wrap_phase(std::arg(h) - about));
+      phase.add(point.phase_rad + wrap_phase(std::arg(h) - point.phase_rad));
     }
     const bool magnitude_stable = magnitude.close_batch();
     if (phase.close_batch() && magnitude_stable) break;

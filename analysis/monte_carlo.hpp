@@ -17,7 +17,7 @@
 
 #include "analysis/coverage.hpp"
 #include "analysis/error.hpp"
-#include "analysis/sample_stamping.hpp"
+#include "analysis/transfer_point.hpp"
 #include "analysis/uncertainty.hpp"
 
 namespace dyncal::analysis {
@@ -48,9 +48,11 @@ struct MonteCarloTransfer {
   MonteCarloResult phase_rad;
 };
 
-// Paper eqs. (3), (4) on drawn phasors: the four fits with the covariances of their coefficients, every other row of the point's
-// budget as it stands there. Of `input` only the corrections are used: never resamples raw data.
-[[nodiscard]] Expected<MonteCarloTransfer> check_sample_stamping(const SampleStampingInput& input, const SampleStampingResult& result,
-                                                                 std::size_t point, const MonteCarloSettings& settings = {});
+// The transfer function of `point` from drawn phasors: those of the sensor and of `link`, which is the reference alone (paper eqs. (1),
+// (2)) or reference, sync in the ACS and sync in the DAU (eqs. (3), (4)), with the covariances of their coefficients; every other row of
+// the point's budget as it stands there. Corrections are constants: what the point has beside the quotient of its phasors. Never resamples
+// raw data. Fails also with invalid_argument (no reference, or only one sync).
+[[nodiscard]] Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point, std::span<const SeriesFit> link,
+                                                          const MonteCarloSettings& settings = {});
 
 } // namespace dyncal::analysis

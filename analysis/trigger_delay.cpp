@@ -121,8 +121,7 @@ Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& freq
     return failure(fits.error().code, "sync: " + fits.error().message);
   }
   const double zero_s = -fits->front().phase_rad() / (2.0 * std::numbers::pi * frequency.hz());
-  const double from_zero_s = *out - zero_s;
-  return ShotDelay{from_zero_s + zero_s, from_zero_s};
+  return ShotDelay{*out, *out - zero_s};
 }
 
 Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, double interval_s) {

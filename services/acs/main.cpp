@@ -1,18 +1,16 @@
 // dyncal-acs: publishes analogue calibration systems (their TCP streams) and recorded series of any source.
-#include <CLI/CLI.hpp>
-#include <atomic>
+#include <chrono>
 #include <cstdlib>
-#include <fmt/core.h>
-#include <optional>
-#include <spdlog/spdlog.h>
-#include <thread>
+#include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include "services/acs/played_source.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/program/program.hpp"
-#include "services/source/source_service.hpp"
-#include "services/version.hpp"
+#include "services/source/run_sources.hpp"
 
 namespace {
 
@@ -21,14 +19,10 @@ using dyncal::services::acs::PlayedSource;
 
 constexpr std::chrono::seconds silent_after{2};
 
-struct Part { // a source with the place where it publishes
-  PlayedSource source;
-  SourceOptions options;
-  std::shared_ptr<SourcePublisher> publisher;
-};
+using Sources = std::vector<RunnableSource<PlayedSource>>;
 
-Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, NetworkOptions& network, const std::stop_token& stop) {
-  std::vector<Part> parts;
+Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions& network, const std::stop_token& stop) {
+  Sources sources;
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
     if (!bench) {
@@ -48,61 +42,21 @@ Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, Netwo
       options.source = settings.name;
       options.kind = acs::kind_of(bench->method, settings.name);
       options.silent_after = settings.driver == SourceDriver::file ? std::chrono::seconds(0) : silent_after;
-      parts.push_back({std::move(*source), std::move(options), nullptr});
+      sources.push_back({std::move(*source), std::move(options)});
     }
   }
-  if (parts.empty()) {
+  if (sources.empty()) {
     return tl::unexpected(Error{ErrorCode::bad_argument, "no source with driver \"socket\" or \"file\" in the bench files given"});
   }
-  return parts;
-}
-
-// Every source in a thread of its own until all have ended or a stop is requested; the first failure, if there was one.
-Expected<void> run_all(std::vector<Part>& parts, std::stop_token stop) {
-  std::vector<Expected<void>> outcomes(parts.size());
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      threads.emplace_back([&, i] {
-        outcomes[i] = parts[i].source.run(*parts[i].publisher, stop);
-        if (!outcomes[i] && parts.size() > 1) { // the others go on; the sentence at the end would come late
-          spdlog::error("bench {}: {}", parts[i].options.bench, outcomes[i].error().message);
-        }
-      });
-    }
-  }
-  for (const Expected<void>& outcome : outcomes) {
-    if (!outcome) {
-      return outcome;
-    }
-  }
-  return {};
+  return sources;
 }
 
 Expected<void> run(const std::vector<std::string>& files, NetworkOptions network, const std::stop_token& stop) {
-  auto parts = prepare(files, network, stop);
-  if (!parts) {
-    return tl::unexpected(parts.error());
+  auto sources = prepare(files, network, stop);
+  if (!sources) {
+    return tl::unexpected(sources.error());
   }
-  auto participant = join_network(network, "dyncal-acs");
-  if (!participant) {
-    return tl::unexpected(participant.error());
-  }
-  SourceServiceOptions options;
-  options.software = software_version();
-  const auto service = SourceService::create(*participant, options);
-  for (Part& part : *parts) {
-    auto publisher = service->add(part.options);
-    if (!publisher) {
-      return tl::unexpected(publisher.error());
-    }
-    part.publisher = std::move(*publisher);
-    spdlog::info("bench {}, source {}", part.options.bench, part.options.source);
-  }
-  service->start();
-  auto done = run_all(*parts, stop);
-  service->stop();
-  return done;
+  return run_sources("dyncal-acs", *sources, network, stop);
 }
 
 } // namespace

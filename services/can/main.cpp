@@ -1,8 +1,6 @@
 // dyncal-can BENCH.toml...: publishes the sensors on CAN interfaces of this host.
 #include <cstdlib>
-#include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,21 +10,16 @@
 #include "services/bench/bench_file.hpp"
 #include "services/can/can_source.hpp"
 #include "services/program/program.hpp"
-#include "services/source/source_service.hpp"
-#include "services/version.hpp"
+#include "services/source/run_sources.hpp"
 
 namespace {
 
 using namespace dyncal::services;
 
-struct Part { // a source with the place where it publishes
-  can::CanSource source;
-  SourceOptions options;
-  std::shared_ptr<SourcePublisher> publisher;
-};
+using Sources = std::vector<RunnableSource<can::CanSource>>;
 
-Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, NetworkOptions& network) {
-  std::vector<Part> parts;
+Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions& network) {
+  Sources sources;
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
     if (!bench) return tl::unexpected(bench.error());
@@ -41,45 +34,17 @@ Expected<std::vector<Part>> prepare(const std::vector<std::string>& files, Netwo
       options.bench = bench->bench;
       options.source = settings.name;
       options.kind = SourceKind::can;
-      parts.push_back({std::move(*source), std::move(options), nullptr});
+      sources.push_back({std::move(*source), std::move(options)});
     }
   }
-  if (parts.empty()) return tl::unexpected(Error{ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given"});
-  return parts;
-}
-
-// Every source in a thread of its own; the first failure, if there was one.
-Expected<void> run_all(std::vector<Part>& parts, const std::stop_token& stop) {
-  std::vector<Expected<void>> outcomes(parts.size());
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      threads.emplace_back([&, i] {
-        outcomes[i] = parts[i].source.run(*parts[i].publisher, stop);
-        if (!outcomes[i]) spdlog::error("bench {}: {}", parts[i].options.bench, outcomes[i].error().message);
-      });
-  }
-  for (const Expected<void>& outcome : outcomes)
-    if (!outcome) return outcome;
-  return {};
+  if (sources.empty()) return tl::unexpected(Error{ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given"});
+  return sources;
 }
 
 Expected<void> run(const std::vector<std::string>& files, NetworkOptions network, const std::stop_token& stop) {
-  auto parts = prepare(files, network);
-  if (!parts) return tl::unexpected(parts.error());
-  auto participant = join_network(network, "dyncal-can");
-  if (!participant) return tl::unexpected(participant.error());
-  const auto service = SourceService::create(*participant, {.software = software_version()});
-  for (Part& part : *parts) {
-    auto publisher = service->add(part.options);
-    if (!publisher) return tl::unexpected(publisher.error());
-    part.publisher = std::move(*publisher);
-    spdlog::info("bench {}, source {}", part.options.bench, part.options.source);
-  }
-  service->start();
-  auto done = run_all(*parts, stop);
-  service->stop();
-  return done;
+  auto sources = prepare(files, network);
+  if (!sources) return tl::unexpected(sources.error());
+  return run_sources("dyncal-can", *sources, network, stop);
 }
 
 } // namespace

@@ -8,22 +8,28 @@ namespace {
 void add_dso_delay(CLI::App& calibrate, CalibrateDsoDelayCommand& delay) {
   CLI::App* command = calibrate.add_subcommand("dso-delay", "delay of an oscilloscope's trigger output");
   command->add_option("--oscilloscope", delay.oscilloscope, "HOST:PORT, or vxi11:HOST")->required();
-  command->add_option("--family", delay.family, "of the oscilloscope (default: by its identity)");
+  command->add_option("--family", delay.family, "command family of the oscilloscope (default: by its identity)");
   command->add_option("--generator", delay.generator, "HOST:PORT (default: set by hand)");
-  command->add_option("--by", delay.by, "rectangle or sine")->check(CLI::IsMember({"rectangle", "sine"}))->capture_default_str();
-  command->add_option("--frequency", delay.frequency_hz, "of the generator in Hz, decimal text")->capture_default_str();
-  command->add_option("--amplitude", delay.amplitude_v, "of the generator in V, zero to peak")
+  command->add_option("--by", delay.by, "sync signal: rectangle (from edge to edge) or sine (from the trigger point; its noise is told)")
+      ->check(CLI::IsMember({"rectangle", "sine"}))
+      ->capture_default_str();
+  command->add_option("--frequency", delay.frequency_hz, "frequency of the generator in Hz, decimal text")->capture_default_str();
+  command->add_option("--amplitude", delay.amplitude_v, "amplitude of the generator in V, zero to peak")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--sync-input", delay.sync_input, "of the oscilloscope, also triggers")
+  command->add_option("--sync-input", delay.sync_input, "input of the oscilloscope that sync is connected to; it triggers")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  command->add_option("--output-input", delay.output_input, "that the trigger output is connected to")
+  command->add_option("--output-input", delay.output_input, "input of the oscilloscope that its trigger output is connected to")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  command->add_option("--sync-range", delay.sync_range_v, "V peak to peak")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--output-range", delay.output_range_v, "V peak to peak")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--shots", delay.shots, "to take")->check(CLI::Range(3, 100000))->capture_default_str();
+  command->add_option("--sync-range", delay.sync_range_v, "range of that input in V peak to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--output-range", delay.output_range_v, "range of that input in V peak to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--shots", delay.shots, "shots to take")->check(CLI::Range(3, 100000))->capture_default_str();
   command->add_option("--output", delay.output, "file for the result as JSON")->capture_default_str();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/analogue_comparison.hpp"
+#include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/settled_part.hpp"
 #include "services/evaluation/step_evaluation.hpp"
 
@@ -58,9 +59,6 @@ std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, cons
   if (!evaluated) {
     return results_of_missing_step(recipe, step, acs, evaluated.error().message);
   }
-  if (recipe.monte_carlo_trials > 0) {
-    flags.emplace_back("no Monte Carlo check: there is none for the analogue method");
-  }
   const std::string data_sha256 = digest_of({&samples});
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < recipe.dut.size(); ++i) {
@@ -70,6 +68,7 @@ std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, cons
     result.lost(result.samples()[0].lost());
     result.flags() = flags;
     result.data_sha256(data_sha256);
+    add_monte_carlo_check(recipe, evaluated->points[i], {&evaluated->reference, 1}, result);
     results.push_back(std::move(result));
   }
   return results;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/analogue_comparison.hpp"
+#include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/step_evaluation.hpp"
 
 namespace dyncal::services {
@@ -111,14 +112,12 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
     flag_unknown_clock(samples.acs, stretch, flags);
   }
   flag_unknown_clock(sensor, stretch, flags);
-  if (recipe.monte_carlo_trials > 0) {
-    flags.emplace_back("no Monte Carlo check: there is none for sensors with stamps of their own");
-  }
   const bool anything = !dut.stamps_ns.empty();
   const auto evaluated = !anything  ? tl::unexpected(analysis::Error{analysis::ErrorCode::too_few_samples,
                                                                     sensor.source() + ": no sample with a trusted stamp lies in the step"})
                          : absolute ? by_absolute_time(recipe, step, samples, acs, sensor, dut, names)
                                     : by_sync_beside(recipe, step, samples, acs, sync, sensor, dut, names);
+  const std::string data_sha256 = digest_of({&acs, &sync, &dut});
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!evaluated) {
@@ -137,7 +136,8 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
       result.lost(result.lost() + part.lost());
     }
     result.flags() = flags;
-    result.data_sha256(digest_of({&acs, &sync, &dut}));
+    result.data_sha256(data_sha256);
+    add_monte_carlo_check(recipe, evaluated->points[i], evaluated->common_fits, result);
     results.push_back(std::move(result));
   }
   return results;

@@ -4,11 +4,15 @@
 
 namespace dyncal::services {
 
-Expected<MonteCarloCheck> monte_carlo_check(const analysis::SampleStampingInput& input, const analysis::SampleStampingResult& result,
-                                            std::size_t point, std::uint64_t trials) {
-  const auto drawn = analysis::check_sample_stamping(input, result, point, {.most_trials = trials});
+void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point, std::span<const analysis::SeriesFit> link,
+                           CalibrationResult& result) {
+  if (recipe.monte_carlo_trials == 0) {
+    return;
+  }
+  const auto drawn = analysis::check_transfer(point, link, {.most_trials = recipe.monte_carlo_trials});
   if (!drawn) {
-    return tl::unexpected(Error{ErrorCode::bad_argument, drawn.error().message});
+    result.flags().push_back("no Monte Carlo check: " + drawn.error().message);
+    return;
   }
   MonteCarloCheck check;
   check.trials(drawn->magnitude.trials);
@@ -19,7 +23,7 @@ Expected<MonteCarloCheck> monte_carlo_check(const analysis::SampleStampingInput&
   check.u_phase_rad(drawn->phase_rad.u);
   check.phase_low_rad(drawn->phase_rad.low);
   check.phase_high_rad(drawn->phase_rad.high);
-  return check;
+  result.monte_carlo().push_back(check);
 }
 
 } // namespace dyncal::services

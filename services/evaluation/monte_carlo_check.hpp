@@ -1,20 +1,19 @@
 // The Monte Carlo cross-check of one result (JCGM 101) as the contract publishes it: the uncertainty that the budget gives beside the one
 // that drawing from it gives. Both agree for a sound result; where they do not (|H| near 0, little excitation), the interval is the better
-// answer. Fails as analysis/monte_carlo.hpp does. Any thread.
+// answer. Where the check itself fails (analysis/monte_carlo.hpp), a flag says so. Any thread.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
+#include <span>
 
-#include "analysis/sample_stamping.hpp"
+#include "analysis/transfer_point.hpp"
 #include "idl/dyncal.h"
-#include "services/error.hpp"
+#include "services/evaluation/recipe.hpp"
 
 namespace dyncal::services {
 
-// Of the channel `point` of a step; the seed is fixed, so that the same samples give the same bits.
-[[nodiscard]] Expected<MonteCarloCheck> monte_carlo_check(const analysis::SampleStampingInput& input,
-                                                          const analysis::SampleStampingResult& result, std::size_t point,
-                                                          std::uint64_t trials);
+// Nothing when the recipe asks for no check. The seed is fixed, so that the same samples give the same bits. `link` as
+// analysis::check_transfer() takes it.
+void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point, std::span<const analysis::SeriesFit> link,
+                           CalibrationResult& result);
 
 } // namespace dyncal::services

@@ -236,8 +236,7 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
         {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
   }
   recipe.whole_record = measurement.whole_record();
-  // Sensors with stamps of their own: the longest settling is always left out.
-  recipe.settling_from_data = measurement.settling_from_data() && !recipe.stamped_apart();
+  recipe.settling_from_data = measurement.settling_from_data();
   recipe.monte_carlo_trials = measurement.monte_carlo_trials();
   if (recipe.whole_record && recipe.steps.size() != 1) {
     return tl::unexpected(
@@ -256,6 +255,10 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   if (recipe.method == METHOD_SERIES_TIMESTAMPING && (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
     return tl::unexpected(refused("series time stamping has neither settling = \"from-data\" nor monte_carlo_trials; "
                                   "leave them out of the bench file"));
+  }
+  if (recipe.stamped_apart() && recipe.settling_from_data) {
+    return tl::unexpected(refused("sensors with stamps of their own are evaluated without settling = \"from-data\"; leave it out of the "
+                                  "bench file and give the longest settling as settling_s"));
   }
   return recipe;
 }

@@ -40,16 +40,6 @@ void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& 
   }
 }
 
-void check_by_drawing(const Recipe& recipe, const analysis::SampleStampingInput& input, const analysis::SampleStampingResult& evaluated,
-                      std::size_t place, CalibrationResult& result) {
-  const auto check = monte_carlo_check(input, evaluated, place, recipe.monte_carlo_trials);
-  if (check) {
-    result.monte_carlo().push_back(*check);
-  } else {
-    result.flags().push_back("no Monte Carlo check: " + check.error().message);
-  }
-}
-
 } // namespace
 
 analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step) {
@@ -136,9 +126,7 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
     result.lost(result.samples()[0].lost() + result.samples()[1].lost());
     result.flags() = all_flags;
     result.data_sha256(data_sha256);
-    if (recipe.monte_carlo_trials > 0) {
-      check_by_drawing(recipe, input, *evaluated, i, result);
-    }
+    add_monte_carlo_check(recipe, evaluated->points[i], common_fits, result);
     results.push_back(std::move(result));
   }
   return results;

@@ -143,6 +143,43 @@ TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
   }
 }
 
+void expect_check_agrees(const CalibrationResult& result) {
+  ASSERT_EQ(result.monte_carlo().size(), 1U);
+  const MonteCarloCheck& check = result.monte_carlo().front();
+  EXPECT_NEAR(check.u_magnitude() / result.u_magnitude(), 1.0, 0.05);
+  EXPECT_NEAR(check.u_phase_rad() / result.u_phase_rad(), 1.0, 0.05);
+  EXPECT_LT(check.phase_low_rad(), result.phase_rad());
+  EXPECT_GT(check.phase_high_rad(), result.phase_rad());
+}
+
+TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
+  const tests::SyntheticRun run;
+  Measurement measurement = absolute(run);
+  measurement.dut() = {"can/acceleration_z"};
+  measurement.monte_carlo_trials(50'000);
+  RunEvaluator by_time(*parse_recipe(measurement));
+  ASSERT_TRUE(by_time.describe(in_utc(run.acs_description())));
+  ASSERT_TRUE(by_time.describe(can_description("can")));
+  for (const CalibrationResult& result : evaluate(by_time, {acs_in_utc(run), on_can(run, "can")}))
+    expect_check_agrees(result);
+
+  measurement = run.measurement();
+  measurement.dut() = {"can/acceleration_z"};
+  measurement.monte_carlo_trials(50'000);
+  RunEvaluator by_sync(*parse_recipe(measurement));
+  ASSERT_TRUE(by_sync.describe(run.acs_description()));
+  ASSERT_TRUE(by_sync.describe(in_utc(run.dau_description())));
+  ASSERT_TRUE(by_sync.describe(can_description("can")));
+  for (const CalibrationResult& result : evaluate(by_sync, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")}))
+    expect_check_agrees(result);
+}
+
+TEST(ApartStep, RefusesSettlingFromTheDataWithASentence) {
+  Measurement measurement = absolute({});
+  measurement.settling_from_data(true);
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("give the longest settling as settling_s"));
+}
+
 TEST(ApartStep, RefusesClocksThatCannotBeCompared) {
   const tests::SyntheticRun run;
   RunEvaluator by_time(*parse_recipe(absolute(run)));
