@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdio>
+
+#include "drivers/virtual_bench/scpi_text.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
 constexpr std::size_t most_errors = 20;
 constexpr std::size_t largest_block = 250'000;
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return out;
-}
 
 // SCPI's rule: four letters, three when the fourth is a vowel; a number at the end stays.
 std::string short_form(const std::string& mnemonic) {
@@ -42,15 +37,6 @@ std::string canonical(std::string_view header) {
     begin = end + 1;
   }
   return out;
-}
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 std::optional<std::size_t> parse_input(std::string_view text) {
@@ -185,7 +171,7 @@ bool OscilloscopeScpi::set_input(const std::string& header, std::string_view arg
   }
   ScopeInput& input = model_.setting.inputs[*place];
   const std::string what = header.substr(colon + 1);
-  const auto value = parse_number(argument);
+  const auto value = parse_parameter(argument);
   if (what == "DISP") {
     input.shown = upper(argument) == "ON" || argument == "1";
   } else if (what == "SCAL" && value && *value >= 1e-3 && *value <= 10.0) {
@@ -200,7 +186,7 @@ bool OscilloscopeScpi::set_input(const std::string& header, std::string_view arg
 
 void OscilloscopeScpi::set_number(const std::string& header, std::string_view argument) {
   ScopeSetting& set = model_.setting;
-  const auto parsed = parse_number(argument);
+  const auto parsed = parse_parameter(argument);
   const double value = parsed.value_or(0.0);
   const auto take = [&](double lowest, double highest, auto& target) {
     if (!parsed) {

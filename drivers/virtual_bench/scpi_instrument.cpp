@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdio>
+
+#include "drivers/virtual_bench/scpi_text.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -11,12 +12,6 @@ namespace {
 constexpr std::size_t most_errors = 20;
 constexpr double highest_frequency_hz = 5000.0;
 constexpr double highest_voltage_vpp = 20.0;
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return out;
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
@@ -44,15 +39,6 @@ std::string canonical(std::string_view header) {
     }
   }
   return text;
-}
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 std::string number_text(double value) {
@@ -120,7 +106,7 @@ ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::stri
     return {time_text(bench_.now_s()), {}};
   }
   if (header == "BENC:WAIT") {
-    if (const auto time_s = parse_number(argument)) {
+    if (const auto time_s = parse_parameter(argument)) {
       return {{}, *time_s};
     }
     complain("-104,\"Data type error\"");
@@ -168,7 +154,7 @@ void ScpiInstrument::set_function(std::string_view argument) {
 }
 
 void ScpiInstrument::set_frequency(std::string_view argument) {
-  const auto frequency_hz = parse_number(argument);
+  const auto frequency_hz = parse_parameter(argument);
   if (!frequency_hz) {
     complain("-104,\"Data type error\"");
   } else if (!(*frequency_hz > 0.0 && *frequency_hz <= highest_frequency_hz)) {
@@ -181,7 +167,7 @@ void ScpiInstrument::set_frequency(std::string_view argument) {
 }
 
 void ScpiInstrument::set_voltage(std::string_view argument) {
-  const auto voltage_vpp = parse_number(argument);
+  const auto voltage_vpp = parse_parameter(argument);
   if (!voltage_vpp) {
     complain("-104,\"Data type error\"");
   } else if (!(*voltage_vpp >= 0.0 && *voltage_vpp <= highest_voltage_vpp)) {

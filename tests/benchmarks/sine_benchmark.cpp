@@ -22,10 +22,12 @@
 #include "analysis/sine_fit.hpp"
 #include "analysis/sine_kernel.hpp"
 #include "analysis/sine_stream.hpp"
+#include "tests/benchmarks/only_reading.hpp"
 
 namespace {
 
 using namespace dyncal::analysis;
+using dyncal::benchmarks::sum_of;
 
 struct Data {
   std::vector<std::int64_t> stamps;
@@ -64,24 +66,6 @@ struct Data {
 #endif
   }
 };
-
-// Adds up all stamps and values, with independent sums so that the loads and not the additions limit.
-template <class Number>
-Number sum_of(const Number* data, std::size_t n) {
-  constexpr std::size_t width = 32;
-  Number sums[width] = {};
-  std::size_t i = 0;
-  for (; i + width <= n; i += width) {
-    for (std::size_t k = 0; k < width; ++k)
-      sums[k] += data[i + k];
-  }
-  for (; i < n; ++i)
-    sums[0] += data[i];
-  Number total = 0;
-  for (const Number one : sums)
-    total += one;
-  return total;
-}
 
 #if defined(__x86_64__)
 __attribute__((target_clones("avx512f", "avx2", "default")))

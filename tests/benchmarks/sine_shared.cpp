@@ -10,10 +10,12 @@
 
 #include "analysis/sine_fit.hpp"
 #include "analysis/sine_stream.hpp"
+#include "tests/benchmarks/only_reading.hpp"
 
 namespace {
 
 using namespace dyncal::analysis;
+using dyncal::benchmarks::sum_of;
 
 std::vector<std::span<const double>> channels_of(const double* values, std::int64_t samples, std::int64_t count) {
   std::vector<std::span<const double>> channels;
@@ -29,24 +31,6 @@ void put(const SineFit& fit, double* out) {
   out[3] = fit.rss;
 }
 
-// With independent sums, so that the loads and not the additions limit.
-template <class Number>
-Number sum_of(const Number* data, std::int64_t n) {
-  constexpr std::int64_t width = 32;
-  Number sums[width] = {};
-  std::int64_t i = 0;
-  for (; i + width <= n; i += width) {
-    for (std::int64_t k = 0; k < width; ++k)
-      sums[k] += data[i + k];
-  }
-  for (; i < n; ++i)
-    sums[0] += data[i];
-  Number total = 0;
-  for (const Number one : sums)
-    total += one;
-  return total;
-}
-
 } // namespace
 
 extern "C" {
@@ -57,9 +41,9 @@ __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 double
 dyncal_read(const std::int64_t* stamps, const double* values, std::int64_t samples, std::int64_t count) {
-  double total = static_cast<double>(sum_of(stamps, samples));
+  double total = static_cast<double>(sum_of(stamps, static_cast<std::size_t>(samples)));
   for (std::int64_t j = 0; j < count; ++j)
-    total += sum_of(values + j * samples, samples);
+    total += sum_of(values + j * samples, static_cast<std::size_t>(samples));
   return total;
 }
 

@@ -8,20 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/acs/collecting_sink.hpp"
-#include "tests/unit/acs/temporary_file.hpp"
+#include "tests/unit/acs/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-FileSettings settings_for(const TemporaryFile& file) {
-  FileSettings settings;
-  settings.path = file.path();
-  return settings;
-}
 
 CsvRows rows_of(const std::string& first_line, const std::string& lines) {
   return read_csv_rows(lines, CsvLayout::of(first_line).value());

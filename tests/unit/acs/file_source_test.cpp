@@ -4,32 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/acs/collecting_sink.hpp"
-#include "tests/unit/acs/temporary_file.hpp"
+#include "tests/unit/acs/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-FileSettings settings_for(const TemporaryFile& file) {
-  FileSettings settings;
-  settings.path = file.path();
-  return settings;
-}
-
-// The message of the error that describing or playing ends with.
-std::string problem_of(const FileSettings& settings) {
-  FileSource source(settings);
-  CollectingSink sink;
-  const auto described = source.describe();
-  if (!described) {
-    return described.error().message;
-  }
-  const auto played = source.run(sink);
-  return played ? "" : played.error().message;
-}
 
 TEST(FileSource, PlaysARegularSeriesWithAClock) {
   std::string text = "t_ns,reference,sync\n";

@@ -6,8 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/acs/collecting_sink.hpp"
-#include "tests/unit/acs/temporary_file.hpp"
+#include "tests/unit/acs/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
@@ -30,17 +29,10 @@ std::string npy(const std::string& fields, std::size_t rows, const std::string& 
   return "\x93NUMPY" + std::string("\x01\x00", 2) + octets(static_cast<std::uint16_t>(header.size())) + header + data;
 }
 
-std::string problem_of(const std::string& text, FileSettings settings = {}) {
+std::string problem_with(const std::string& text, FileSettings settings = {}) {
   const TemporaryFile file("wrong.npy", text);
   settings.path = file.path();
-  FileSource source(settings);
-  CollectingSink sink;
-  const auto described = source.describe();
-  if (!described) {
-    return described.error().message;
-  }
-  const auto played = source.run(sink);
-  return played ? "" : played.error().message;
+  return problem_of(settings);
 }
 
 TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
@@ -92,31 +84,31 @@ TEST(NpyReader, ShowsGapsOfTheSampleNumber) {
 TEST(NpyReader, TakesTheRateWhereThereIsNoTime) {
   FileSettings settings;
   settings.sample_rate = sample_rate_from_hz(1000.0);
-  EXPECT_EQ(problem_of(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0)), settings), "");
-  EXPECT_THAT(problem_of(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0))), HasSubstr("no field t_ns and no sample_rate_hz"));
+  EXPECT_EQ(problem_with(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0)), settings), "");
+  EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0))), HasSubstr("no field t_ns and no sample_rate_hz"));
 }
 
 TEST(NpyReader, SaysWhatIsWrong) {
   const std::string two = octets(std::int64_t{5}) + octets(1.0) + octets(std::int64_t{4}) + octets(1.0);
   const std::string fields = "[('t_ns', '<i8'), ('z', '<f8')]";
-  EXPECT_THAT(problem_of("t_ns,z\n0,1\n"), HasSubstr("wrong.npy: is not a NumPy file"));
-  EXPECT_THAT(problem_of(npy("'<f8'", 2, two)), HasSubstr("holds no structured array"));
-  EXPECT_THAT(problem_of(npy("[('t_ns', '>i8')]", 2, two)), HasSubstr("field 't_ns' of type '>i8'"));
-  EXPECT_THAT(problem_of(npy("[('t_ns', '<i8'), ('z', '<f8', (3,))]", 2, two)), HasSubstr("field 'z' that is not a plain number"));
-  EXPECT_THAT(problem_of(npy("[('t_ns', '<f8'), ('z', '<f8')]", 2, two)), HasSubstr("'t_ns' must hold integers"));
-  EXPECT_THAT(problem_of(npy(fields, 3, two)), HasSubstr("ends before its 3 rows do"));
-  EXPECT_THAT(problem_of(npy(fields, 2, two)), HasSubstr("row 1: t_ns 4 after 5"));
-  EXPECT_THAT(problem_of(npy(fields, 0, "")), HasSubstr("no samples"));
-  EXPECT_THAT(problem_of(npy(fields, 2, two).substr(0, 20)), HasSubstr("ends within its header"));
+  EXPECT_THAT(problem_with("t_ns,z\n0,1\n"), HasSubstr("wrong.npy: is not a NumPy file"));
+  EXPECT_THAT(problem_with(npy("'<f8'", 2, two)), HasSubstr("holds no structured array"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '>i8')]", 2, two)), HasSubstr("field 't_ns' of type '>i8'"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '<i8'), ('z', '<f8', (3,))]", 2, two)), HasSubstr("field 'z' that is not a plain number"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '<f8'), ('z', '<f8')]", 2, two)), HasSubstr("'t_ns' must hold integers"));
+  EXPECT_THAT(problem_with(npy(fields, 3, two)), HasSubstr("ends before its 3 rows do"));
+  EXPECT_THAT(problem_with(npy(fields, 2, two)), HasSubstr("row 1: t_ns 4 after 5"));
+  EXPECT_THAT(problem_with(npy(fields, 0, "")), HasSubstr("no samples"));
+  EXPECT_THAT(problem_with(npy(fields, 2, two).substr(0, 20)), HasSubstr("ends within its header"));
 }
 
 TEST(NpyReader, SurvivesHeadersCutAnywhere) {
   const std::string whole = npy("[('t_ns', '<i8'), ('z', '<f8')]", 1, octets(std::int64_t{5}) + octets(1.0));
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    EXPECT_NE(problem_of(whole.substr(0, length)), "") << length;
+    EXPECT_NE(problem_with(whole.substr(0, length)), "") << length;
     std::string spoiled = whole;
     spoiled[length] = '~';
-    (void)problem_of(spoiled);
+    (void)problem_with(spoiled);
   }
 }
 

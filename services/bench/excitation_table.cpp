@@ -1,0 +1,70 @@
+#include "services/bench/excitation_table.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "analysis/frequency.hpp"
+
+namespace dyncal::services {
+namespace {
+
+void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
+  const std::size_t frequencies = excitation.frequencies_hz.size();
+  if (excitation.levels_m_s2.size() == 1) {
+    excitation.levels_m_s2.resize(frequencies, excitation.levels_m_s2.front());
+  }
+  if (excitation.levels_m_s2.size() != frequencies) {
+    table.refuse("level", fmt::format("lists {} levels for {} frequencies", excitation.levels_m_s2.size(), frequencies));
+  }
+  if (std::any_of(excitation.levels_m_s2.begin(), excitation.levels_m_s2.end(), [](double level) { return level <= 0.0; })) {
+    table.refuse("level", "must be positive, in m/s^2");
+  }
+}
+
+void read_window(TomlTable& table, ExcitationSettings& excitation) {
+  excitation.whole_record = table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
+  if (!excitation.whole_record) {
+    return;
+  }
+  if (excitation.frequencies_hz.size() != 1 || excitation.repetitions != 1) {
+    table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: records of several steps must be searched");
+  }
+  for (const char* key : {"settling", "settling_s", "duration_s"}) {
+    if (table.has(key)) {
+      table.refuse(key, "has no meaning when window is \"whole-record\": every sample is evaluated");
+    }
+  }
+}
+
+} // namespace
+
+ExcitationSettings read_excitation(TomlTable table) {
+  ExcitationSettings excitation;
+  excitation.frequencies_hz = table.texts("frequencies_hz");
+  if (excitation.frequencies_hz.empty()) {
+    table.refuse("frequencies_hz", "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");
+  }
+  for (const std::string& text : excitation.frequencies_hz) {
+    if (const auto frequency = analysis::Frequency::parse(text); !frequency) {
+      table.refuse("frequencies_hz", fmt::format("holds \"{}\", which is not a positive number in Hz", text));
+    }
+  }
+  excitation.levels_m_s2 = table.numbers("level", "m/s^2");
+  spread_levels(table, excitation);
+  excitation.repetitions = table.whole_number("repetitions", 1, 1);
+  excitation.settling_s = table.number("settling_s", excitation.settling_s, "seconds");
+  excitation.duration_s = table.number("duration_s", excitation.duration_s, "seconds");
+  if (excitation.settling_s < 0.0) {
+    table.refuse("settling_s", "must not be negative");
+  }
+  if (excitation.duration_s <= 0.0) {
+    table.refuse("duration_s", "must be positive");
+  }
+  excitation.settling_from_data = table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
+  read_window(table, excitation);
+  table.finish();
+  return excitation;
+}
+
+} // namespace dyncal::services
