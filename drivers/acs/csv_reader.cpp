@@ -73,7 +73,7 @@ void CsvReader::read_ahead() {
 }
 
 Expected<bool> CsvReader::next_stretch() {
-  while (taken_ == rows_.rows) {
+  while (block_ == rows_.blocks.size()) {
     if (rows_.problem) {
       return malformed(first_line_ + rows_.problem->line, rows_.problem->sentence);
     }
@@ -81,14 +81,8 @@ Expected<bool> CsvReader::next_stretch() {
     if (ahead_.empty()) {
       return false;
     }
-    if (rows_.rows > 0 && layout_.has_time) {
-      last_stamp_ns_ = rows_.stamps_ns[rows_.rows - 1];
-    }
-    if (rows_.rows > 0 && layout_.has_number) {
-      last_sample_ = rows_.sample_numbers[rows_.rows - 1];
-    }
     first_line_ += rows_.lines;
-    taken_ = 0;
+    block_ = 0;
     rows_ = ahead_.front().get();
     ahead_.pop_front();
     read_ahead();
@@ -99,52 +93,71 @@ Expected<bool> CsvReader::next_stretch() {
   return true;
 }
 
-Expected<void> CsvReader::check_order() const {
-  if (rows_.rows > 0 && last_sample_ && rows_.sample_numbers[0] <= *last_sample_) {
-    return malformed(first_line_, not_rising(rows_.sample_numbers[0], *last_sample_));
+Expected<void> CsvReader::check_order() {
+  if (rows_.blocks.empty()) {
+    return {};
   }
-  if (rows_.rows > 0 && last_stamp_ns_ && rows_.stamps_ns[0] <= *last_stamp_ns_) {
-    return malformed(first_line_, not_rising(rows_.stamps_ns[0], *last_stamp_ns_));
+  const SampleBlock& first = rows_.blocks.front();
+  const SampleBlock& last = rows_.blocks.back();
+  if (layout_.has_number) {
+    if (last_sample_ && first.first_sample <= *last_sample_) {
+      return malformed(first_line_, not_rising(first.first_sample, *last_sample_));
+    }
+    last_sample_ = last.first_sample + last.samples - 1;
+  }
+  if (layout_.has_time) {
+    if (last_stamp_ns_ && first.stamps_ns.front() <= *last_stamp_ns_) {
+      return malformed(first_line_, not_rising(first.stamps_ns.front(), *last_stamp_ns_));
+    }
+    last_stamp_ns_ = last.stamps_ns.back();
   }
   return {};
 }
 
-std::size_t CsvReader::without_gap(std::size_t samples) const {
-  const std::size_t most = std::min(samples, rows_.rows - taken_);
-  if (!layout_.has_number) {
-    return most;
+SampleBlock CsvReader::next_piece(std::size_t samples) {
+  SampleBlock& whole = rows_.blocks[block_];
+  SampleBlock piece;
+  if (taken_ == 0 && whole.samples <= samples) {
+    piece = std::move(whole);
+    ++block_;
+    return piece;
   }
-  std::size_t n = 1;
-  while (n < most && rows_.sample_numbers[taken_ + n] == rows_.sample_numbers[taken_] + n) {
-    ++n;
+  piece.samples = std::min(samples, whole.samples - taken_);
+  piece.first_sample = whole.first_sample + taken_;
+  if (layout_.has_time) {
+    const auto first = whole.stamps_ns.begin() + static_cast<std::ptrdiff_t>(taken_);
+    piece.stamps_ns.assign(first, first + static_cast<std::ptrdiff_t>(piece.samples));
   }
-  return n;
+  for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
+    const auto first = whole.values.begin() + static_cast<std::ptrdiff_t>(channel * whole.samples + taken_);
+    piece.values.insert(piece.values.end(), first, first + static_cast<std::ptrdiff_t>(piece.samples));
+  }
+  taken_ += piece.samples;
+  if (taken_ == whole.samples) {
+    ++block_;
+    taken_ = 0;
+  }
+  return piece;
 }
 
 Expected<SampleBlock> CsvReader::read(std::size_t samples) {
-  SampleBlock block;
   const auto more = next_stretch();
   if (!more) {
     return tl::unexpected(more.error());
   }
   if (!*more) {
-    return block;
+    return SampleBlock{};
   }
-  block.first_sample = layout_.has_number ? rows_.sample_numbers[taken_] : next_sample_;
-  block.samples = without_gap(samples);
-  block.values.resize(block.samples * layout_.channels.size());
-  for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
-    std::copy_n(rows_.channel(channel) + taken_, block.samples, block.values.data() + channel * block.samples);
+  SampleBlock block = next_piece(samples);
+  if (!layout_.has_number) {
+    block.first_sample = next_sample_;
   }
+  next_sample_ = block.first_sample + block.samples;
   if (layout_.has_time) {
-    const auto first = rows_.stamps_ns.begin() + static_cast<std::ptrdiff_t>(taken_);
-    block.stamps_ns.assign(first, first + static_cast<std::ptrdiff_t>(block.samples));
     make_regular(block);
   } else {
     block.clock = settings_.sample_rate->clock(0);
   }
-  taken_ += block.samples;
-  next_sample_ = block.first_sample + block.samples;
   return block;
 }
 

@@ -28,9 +28,10 @@ private:
   CsvReader(const FileSettings& settings, MappedFile file) : settings_(settings), file_(std::move(file)), rest_(file_.text()) {}
   Expected<void> read_header();
   void read_ahead();
-  Expected<bool> next_stretch();                    // into rows_; false: the end
-  [[nodiscard]] Expected<void> check_order() const; // of the first row of rows_ after the last one before it
-  [[nodiscard]] std::size_t without_gap(std::size_t samples) const;
+  Expected<bool> next_stretch(); // into rows_; false: the end
+  // Of the first row of rows_ after the last one before it; notes what the next one must follow.
+  [[nodiscard]] Expected<void> check_order();
+  [[nodiscard]] SampleBlock next_piece(std::size_t samples); // of the block that is read now
   [[nodiscard]] tl::unexpected<Error> malformed(std::size_t line, const std::string& problem) const;
 
   FileSettings settings_;
@@ -40,7 +41,8 @@ private:
   SourceDescription description_;
   std::deque<std::future<CsvRows>> ahead_; // their threads read file_ and layout_: they end before these go
   CsvRows rows_;
-  std::size_t taken_ = 0;      // rows of rows_
+  std::size_t block_ = 0;      // of rows_: read now
+  std::size_t taken_ = 0;      // rows of that block
   std::size_t first_line_ = 2; // of rows_ in the file
   std::uint64_t next_sample_ = 0;
   std::optional<std::int64_t> last_stamp_ns_;

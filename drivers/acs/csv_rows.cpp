@@ -1,12 +1,11 @@
 #include "drivers/acs/csv_rows.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
+#include "drivers/acs/decimal.hpp"
 #include "drivers/acs/regular_stamps.hpp"
 
 namespace dyncal::drivers::acs {
@@ -34,50 +33,10 @@ bool is_whole(std::string_view text, Number& value) {
   return status == std::errc() && end == text.data() + text.size();
 }
 
-// Eight decimal digits at once, the sums of neighbours formed side by side in one word; false when they are not eight digits.
-bool eight_digits(const char* text, std::uint64_t& value) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, text, sizeof(word));
-  constexpr std::uint64_t zeros = 0x3030303030303030;
-  constexpr std::uint64_t high = 0xF0F0F0F0F0F0F0F0;
-  if ((word & high) != zeros || ((word + 0x0606060606060606) & high) != zeros) {
-    return false;
-  }
-  word = ((word - zeros) * (1 + (10U << 8U))) >> 8U;
-  word = ((word & 0x00FF00FF00FF00FF) * (1 + (100ULL << 16U))) >> 16U;
-  value = ((word & 0x0000FFFF0000FFFF) * (1 + (10000ULL << 32U))) >> 32U;
-  return true;
-}
-
-// As std::from_chars; stamps of 17 to 19 digits several times as fast.
-std::from_chars_result read_number(const char* at, const char* end, std::int64_t& value) {
-  if constexpr (std::endian::native == std::endian::little) {
-    std::uint64_t first = 0;
-    std::uint64_t second = 0;
-    if (end - at > 19 && eight_digits(at, first) && eight_digits(at + 8, second)) {
-      std::uint64_t number = first * 100'000'000 + second;
-      const char* c = at + 16;
-      for (; c != at + 19 && *c >= '0' && *c <= '9'; ++c) {
-        number = number * 10 + static_cast<std::uint64_t>(*c - '0');
-      }
-      if ((*c < '0' || *c > '9') && number <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
-        value = static_cast<std::int64_t>(number);
-        return {c, std::errc()};
-      }
-    }
-  }
-  return std::from_chars(at, end, value);
-}
-
-template <class Number>
-std::from_chars_result read_number(const char* at, const char* end, Number& value) {
-  return std::from_chars(at, end, value);
-}
-
 class RowReader {
 public:
   RowReader(std::string_view text, const CsvLayout& layout, CsvRows& rows)
-      : at_(text.data()), end_(text.data() + text.size()), layout_(layout), rows_(rows) {}
+      : at_(text.data()), end_(text.data() + text.size()), layout_(layout), columns_(layout.meanings.size()), rows_(rows) {}
 
   // Until the end or the first problem.
   void read() {
@@ -86,6 +45,7 @@ public:
         read_row();
       }
     }
+    close_block();
     if (!problem_.empty()) {
       rows_.problem = CsvRows::Problem{rows_.lines - 1, std::move(problem_)};
     }
@@ -107,46 +67,60 @@ private:
   }
 
   void read_row() {
-    const std::size_t columns = layout_.meanings.size();
-    double* channel = rows_.values.get() + rows_.rows;
-    for (std::size_t column = 0; column < columns; ++column) {
+    if (filled_ == CsvRows::block_rows) {
+      close_block();
+    }
+    if (filled_ == 0) {
+      open_block();
+    }
+    std::int64_t stamp_ns = 0;
+    std::uint64_t number = any_ ? last_number_ + 1 : 0;
+    double* channel = open_.values.data() + filled_;
+    for (std::size_t column = 0; column < columns_; ++column) {
+      bool read = false;
       switch (layout_.meanings[column]) {
       case CsvMeaning::channel:
-        read_field(*channel, column);
-        channel += rows_.capacity;
+        read = read_field(*channel, column);
+        channel += CsvRows::block_rows;
         break;
       case CsvMeaning::time:
-        read_field(rows_.stamps_ns[rows_.rows], column);
+        read = read_field(stamp_ns, column);
         break;
       case CsvMeaning::number:
-        read_field(rows_.sample_numbers[rows_.rows], column);
+        read = read_field(number, column);
         break;
       }
-      if (!problem_.empty()) {
+      if (!read) {
         return;
       }
-      const bool last = column + 1 == columns;
+      const bool last = column + 1 == columns_;
       if (last != at_line_end()) {
-        problem_ = last ? "more fields than the first line has columns (" + std::to_string(columns) + ")"
-                        : std::to_string(column + 1) + " fields, but the first line has " + std::to_string(columns) + " columns";
+        problem_ = last ? "more fields than the first line has columns (" + std::to_string(columns_) + ")"
+                        : std::to_string(column + 1) + " fields, but the first line has " + std::to_string(columns_) + " columns";
         return;
       }
       at_ += last ? 0 : 1;
     }
-    check_order();
-    rows_.rows += problem_.empty() ? 1 : 0;
-    at_ = std::find(at_, end_, '\n');
-    at_ += at_ == end_ ? 0 : 1;
+    if (rises(stamp_ns, number)) {
+      keep(stamp_ns, number);
+    }
+    at_ += at_ != end_ && *at_ == '\r' ? 1 : 0;
+    at_ += at_ != end_ ? 1 : 0;
   }
 
-  // Leaves at_ at the separator or the end of the line.
+  // Leaves at_ at the separator or the end of the line. False: problem_ says why.
   template <class Number>
-  void read_field(Number& value, std::size_t column) {
+  bool read_field(Number& value, std::size_t column) {
     const auto [next, status] = read_number(at_, end_, value);
     if (status == std::errc() && (next == end_ || *next == layout_.separator || *next == '\n')) {
       at_ = next;
-      return;
+      return true;
     }
+    return read_unusual_field(value, column);
+  }
+
+  template <class Number>
+  [[gnu::noinline]] bool read_unusual_field(Number& value, std::size_t column) {
     const char* const begin = at_;
     while (at_ != end_ && *at_ != layout_.separator && *at_ != '\n') {
       ++at_;
@@ -155,32 +129,85 @@ private:
     if constexpr (std::is_floating_point_v<Number>) {
       if (field.empty()) {
         value = std::numeric_limits<double>::quiet_NaN();
-        return;
+        return true;
       }
     }
     const std::string_view signless = field.starts_with('+') ? field.substr(1) : field;
-    if (!is_whole(signless, value)) {
-      problem_ = "'" + std::string(field.substr(0, longest_quote)) + "' in column " + layout_.columns[column] + " is not " +
-                 (std::is_integral_v<Number> ? "a whole number" : "a number");
+    if (is_whole(signless, value)) {
+      return true;
     }
+    problem_ = "'" + std::string(field.substr(0, longest_quote)) + "' in column " + layout_.columns[column] + " is not " +
+               (std::is_integral_v<Number> ? "a whole number" : "a number");
+    return false;
   }
 
-  void check_order() {
-    const std::size_t row = rows_.rows;
-    if (row == 0) {
-      return;
+  bool rises(std::int64_t stamp_ns, std::uint64_t number) {
+    if (any_ && layout_.has_number && number <= last_number_) {
+      problem_ = not_rising(number, last_number_);
+    } else if (any_ && layout_.has_time && stamp_ns <= last_stamp_ns_) {
+      problem_ = not_rising(stamp_ns, last_stamp_ns_);
     }
-    if (layout_.has_number && rows_.sample_numbers[row] <= rows_.sample_numbers[row - 1]) {
-      problem_ = not_rising(rows_.sample_numbers[row], rows_.sample_numbers[row - 1]);
-    } else if (layout_.has_time && rows_.stamps_ns[row] <= rows_.stamps_ns[row - 1]) {
-      problem_ = not_rising(rows_.stamps_ns[row], rows_.stamps_ns[row - 1]);
+    return problem_.empty();
+  }
+
+  // The values of the row lie in open_ already.
+  void keep(std::int64_t stamp_ns, std::uint64_t number) {
+    if (filled_ > 0 && number != last_number_ + 1) {
+      const std::size_t row = filled_;
+      close_block();
+      for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
+        open_.values[channel * CsvRows::block_rows] = open_.values[channel * CsvRows::block_rows + row];
+      }
     }
+    if (filled_ == 0) {
+      open_.first_sample = number;
+    }
+    if (layout_.has_time) {
+      open_.stamps_ns[filled_] = stamp_ns;
+    }
+    ++filled_;
+    any_ = true;
+    last_stamp_ns_ = stamp_ns;
+    last_number_ = number;
+  }
+
+  void open_block() {
+    open_.values.resize(CsvRows::block_rows * layout_.channels.size());
+    open_.stamps_ns.resize(layout_.has_time ? CsvRows::block_rows : 0);
+  }
+
+  // A full block is given away as it is; of another one a copy that is no larger than it must be.
+  void close_block() {
+    open_.samples = filled_;
+    if (filled_ == CsvRows::block_rows) {
+      rows_.blocks.push_back(std::move(open_));
+      open_ = {};
+    } else if (filled_ > 0) {
+      SampleBlock& block = rows_.blocks.emplace_back();
+      block.first_sample = open_.first_sample;
+      block.samples = filled_;
+      if (layout_.has_time) {
+        block.stamps_ns.assign(open_.stamps_ns.data(), open_.stamps_ns.data() + filled_);
+      }
+      block.values.reserve(filled_ * layout_.channels.size());
+      for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
+        const double* const values = open_.values.data() + channel * CsvRows::block_rows;
+        block.values.insert(block.values.end(), values, values + filled_);
+      }
+    }
+    filled_ = 0;
   }
 
   const char* at_;
   const char* const end_;
   const CsvLayout& layout_;
+  const std::size_t columns_;
   CsvRows& rows_;
+  SampleBlock open_;       // its columns have room for block_rows rows each
+  std::size_t filled_ = 0; // rows of open_
+  bool any_ = false;       // rows so far
+  std::int64_t last_stamp_ns_ = 0;
+  std::uint64_t last_number_ = 0;
   std::string problem_;
 };
 
@@ -218,10 +245,6 @@ tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) 
 
 CsvRows read_csv_rows(std::string_view lines, const CsvLayout& layout) {
   CsvRows rows;
-  rows.capacity = static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n')) + 1;
-  rows.stamps_ns.resize(layout.has_time ? rows.capacity : 0);
-  rows.sample_numbers.resize(layout.has_number ? rows.capacity : 0);
-  rows.values = std::make_unique_for_overwrite<double[]>(rows.capacity * layout.channels.size());
   RowReader(lines, layout, rows).read();
   return rows;
 }

@@ -1,15 +1,15 @@
 // Numbers out of a stretch of whole lines of a CSV file, without any state, so that stretches are read by several threads at once.
-// README.md has the format. Numbers by std::from_chars: integers stay integers, shortest decimals come back bit for bit.
+// README.md has the format. Integers stay integers, decimals are rounded exactly (decimal.hpp): shortest ones come back bit for bit.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "drivers/error.hpp"
+#include "drivers/sample_block.hpp"
 
 namespace dyncal::drivers::acs {
 
@@ -33,16 +33,13 @@ struct CsvRows {
     std::size_t line = 0; // of the stretch, from 0
     std::string sentence;
   };
+  static constexpr std::size_t block_rows = 4096;
 
-  std::size_t rows = 0;
+  // Of up to `block_rows` rows; a gap in the sample numbers ends one. Stamps as they are in the file, none without a time column. Without
+  // a column of sample numbers `first_sample` counts from the beginning of the stretch.
+  std::vector<SampleBlock> blocks;
   std::size_t lines = 0;
-  std::vector<std::int64_t> stamps_ns;       // empty without a time column
-  std::vector<std::uint64_t> sample_numbers; // empty without a column of them
-  std::unique_ptr<double[]> values;          // channel after channel, `capacity` rows each
-  std::size_t capacity = 0;
   std::optional<Problem> problem;
-
-  [[nodiscard]] const double* channel(std::size_t index) const { return values.get() + index * capacity; }
 };
 
 // Also checks that stamps and sample numbers rise within the stretch.

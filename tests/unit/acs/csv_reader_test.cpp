@@ -16,12 +16,33 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-CsvRows rows_of(const std::string& first_line, const std::string& lines) {
-  return read_csv_rows(lines, CsvLayout::of(first_line).value());
+// The blocks of a stretch put together.
+struct Table {
+  explicit Table(const CsvRows& from) : problem(from.problem) {
+    for (const SampleBlock& block : from.blocks) {
+      stamps_ns.insert(stamps_ns.end(), block.stamps_ns.begin(), block.stamps_ns.end());
+      channels.resize(block.values.size() / block.samples);
+      for (std::size_t channel = 0; channel < channels.size(); ++channel) {
+        const auto first = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+        channels[channel].insert(channels[channel].end(), first, first + static_cast<std::ptrdiff_t>(block.samples));
+      }
+      rows += block.samples;
+    }
+  }
+  [[nodiscard]] const std::vector<double>& channel(std::size_t index) const { return channels[index]; }
+
+  std::size_t rows = 0;
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<std::vector<double>> channels;
+  std::optional<CsvRows::Problem> problem;
+};
+
+Table rows_of(const std::string& first_line, const std::string& lines) {
+  return Table(read_csv_rows(lines, CsvLayout::of(first_line).value()));
 }
 
 TEST(CsvRows, HoldStampsAsIntegersAndValuesBitForBit) {
-  const CsvRows rows = rows_of("t_ns,y,z", "-9223372036854775808,0.9052721090471139,-1e-308\n1700000000123456789,0.1,1e22\n");
+  const Table rows = rows_of("t_ns,y,z", "-9223372036854775808,0.9052721090471139,-1e-308\n1700000000123456789,0.1,1e22\n");
   ASSERT_EQ(rows.rows, 2U);
   EXPECT_EQ(rows.stamps_ns[0], std::numeric_limits<std::int64_t>::min());
   EXPECT_EQ(rows.stamps_ns[1], 1700000000123456789);
@@ -42,7 +63,7 @@ TEST(CsvRows, HoldIntegersOfAnyLength) {
   for (const std::int64_t number : expected) {
     lines += std::to_string(number) + ",1\n";
   }
-  const CsvRows rows = rows_of("t_ns,y", lines);
+  const Table rows = rows_of("t_ns,y", lines);
   ASSERT_FALSE(rows.problem) << rows.problem->sentence;
   ASSERT_EQ(rows.rows, expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -59,7 +80,7 @@ TEST(CsvRows, AcceptEverySeparatorLineEndAndBlank) {
                                           {"a\tt_ns\tb\r", "1\t2\t3"},
                                           {"a,t_ns,b\r", "1,2,3\r\n"},
                                           {"a, t_ns ,b", " 1 , +2,+3 \n\n  \n"}}) {
-    const CsvRows rows = rows_of(first_line, lines);
+    const Table rows = rows_of(first_line, lines);
     ASSERT_FALSE(rows.problem) << rows.problem->sentence;
     ASSERT_EQ(rows.rows, 1U) << lines;
     EXPECT_EQ(rows.stamps_ns[0], 2);
@@ -69,7 +90,7 @@ TEST(CsvRows, AcceptEverySeparatorLineEndAndBlank) {
 }
 
 TEST(CsvRows, TakeEmptyFieldsAndNanAsNotMeasured) {
-  const CsvRows rows = rows_of("t_ns,y,z", "1,,2\n2,nan,\n3,4,\r\n");
+  const Table rows = rows_of("t_ns,y,z", "1,,2\n2,nan,\n3,4,\r\n");
   ASSERT_EQ(rows.rows, 3U);
   EXPECT_TRUE(std::isnan(rows.channel(0)[0]));
   EXPECT_TRUE(std::isnan(rows.channel(0)[1]));
@@ -79,12 +100,44 @@ TEST(CsvRows, TakeEmptyFieldsAndNanAsNotMeasured) {
 }
 
 TEST(CsvRows, KeepWhatIsBeforeTheFirstProblem) {
-  const CsvRows rows = rows_of("t_ns,y", "1,2\n\n2,3\n3,4 5\n4,5\n");
+  const Table rows = rows_of("t_ns,y", "1,2\n\n2,3\n3,4 5\n4,5\n");
   EXPECT_EQ(rows.rows, 2U);
   ASSERT_TRUE(rows.problem);
   EXPECT_EQ(rows.problem->line, 3U);
   EXPECT_THAT(rows.problem->sentence, HasSubstr("'4 5' in column y is not a number"));
   EXPECT_THAT(rows_of("t_ns,y", "9223372036854775808,2\n").problem->sentence, HasSubstr("is not a whole number"));
+}
+
+TEST(CsvRows, EndABlockAtAGapAndWhenItIsFull) {
+  std::string lines;
+  const auto add = [&](std::uint64_t number) {
+    lines +=
+        std::to_string(number) + ',' + std::to_string(10 * number) + ',' + std::to_string(number) + ".5," + std::to_string(number) + "\n";
+  };
+  constexpr std::uint64_t last = 5 + CsvRows::block_rows + 9;
+  for (std::uint64_t number = 5; number <= last; ++number) {
+    add(number);
+  }
+  add(last + 3);
+  add(last + 4);
+  add(last + 9);
+  const CsvRows rows = read_csv_rows(lines, CsvLayout::of("sample_number,t_ns,y,z").value());
+  ASSERT_FALSE(rows.problem);
+  ASSERT_EQ(rows.blocks.size(), 4U);
+  const std::size_t sizes[] = {CsvRows::block_rows, 10, 2, 1};
+  const std::uint64_t firsts[] = {5, 5 + CsvRows::block_rows, last + 3, last + 9};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const SampleBlock& block = rows.blocks[k];
+    EXPECT_EQ(block.first_sample, firsts[k]);
+    ASSERT_EQ(block.samples, sizes[k]);
+    ASSERT_EQ(block.stamps_ns.size(), block.samples);
+    ASSERT_EQ(block.values.size(), 2 * block.samples);
+    for (std::size_t i = 0; i < block.samples; ++i) {
+      ASSERT_EQ(block.stamps_ns[i], static_cast<std::int64_t>(10 * (firsts[k] + i)));
+      ASSERT_EQ(block.values[i], static_cast<double>(firsts[k] + i) + 0.5);
+      ASSERT_EQ(block.values[block.samples + i], static_cast<double>(firsts[k] + i));
+    }
+  }
 }
 
 class LargeCsv : public testing::Test {
