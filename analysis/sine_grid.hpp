@@ -17,7 +17,7 @@
 
 namespace dyncal::analysis::kernel {
 
-inline constexpr std::size_t grid_samples = 256;
+inline constexpr std::size_t grid_samples = 512;
 
 struct alignas(64) SampleGrid {
   std::int64_t offsets_ns[grid_samples];

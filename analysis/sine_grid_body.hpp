@@ -64,66 +64,139 @@ inline SineCosine turned_from_grid(Lanes scaled, Lanes s0, Lanes c0) {
   return {s0 + fused_less(s0, turn.cosine, c0 * turn.sine), c0 - fused(c0, turn.cosine, s0 * turn.sine)};
 }
 
+// Sine and cosine of a block's samples.
+template <Order order>
+class GridTurns {
+public:
+  GridTurns(const std::int64_t* stamps, const GridPlace& place, const SampleGrid& grid)
+      : from_(stamps + place.first), offsets_ns_(grid.offsets_ns + place.on_grid), sine_(grid.sine + place.on_grid),
+        cosine_(grid.cosine + place.on_grid), anchor_ns_(stamps[place.anchor()]), scale_(Lanes::all(grid.scaled_radians_per_ns)),
+        largest_(Lanes::all(0.0)), limit_ns_(order == Order::third ? grid.largest_of_third_order_ns : grid.largest_ns) {}
+
+  SineCosine at(std::size_t i) {
+    prefetch_ahead(from_ + i);
+    const Lanes d = time_difference(from_ + i, offsets_ns_ + i, anchor_ns_);
+    largest_ = larger_magnitude(largest_, d);
+    return turned_from_grid<order>(d * scale_, Lanes::load(sine_ + i), Lanes::load(cosine_ + i));
+  }
+  // Whether all samples were near enough for the order.
+  [[nodiscard]] bool right() const { return largest_.all_at_most(limit_ns_); }
+
+private:
+  const std::int64_t* from_;
+  const std::int64_t* offsets_ns_;
+  const double* sine_;
+  const double* cosine_;
+  std::int64_t anchor_ns_;
+  Lanes scale_;
+  Lanes largest_;
+  double limit_ns_;
+};
+
+struct GridDesign { // of one block
+  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
+
+  void add(const SineCosine& one) {
+    s = s + one.sine;
+    c = c + one.cosine;
+    ss = fused(one.sine, one.sine, ss);
+    sc = fused(one.sine, one.cosine, sc);
+  }
+  [[nodiscard]] GridDesignLanes sums(const GridPlace& place) const {
+    const Lanes rows = Lanes::all(static_cast<double>(place.n / lanes));
+    return {s, c, fused_less(Lanes::all(2.0), ss, rows), sc + sc};
+  }
+};
+
+// `count` channels at once: e and ee of all blocks so far, es and ec of this one. Without a start value for sine and cosine their
+// product with the basis is left out.
+template <std::size_t count, bool about_start>
+class GridResiduals {
+public:
+  GridResiduals(const double* const* values, const GridPlace& place, const Parameters* start, const GridResidualLanes* sums) {
+    for (std::size_t j = 0; j < count; ++j) {
+      from_[j] = values[j] + place.first;
+      start_[j] = start[j];
+      e_[j] = sums[j].e;
+      ee_[j] = sums[j].ee;
+      es_[j] = ec_[j] = Lanes::all(0.0);
+    }
+  }
+  void add(std::size_t i, std::size_t j, Lanes s, Lanes c) {
+    Lanes r = Lanes::load(from_[j] + i) - Lanes::all(start_[j].offset);
+    if constexpr (about_start) r = fused_less(Lanes::all(start_[j].sine), s, fused_less(Lanes::all(start_[j].cosine), c, r));
+    e_[j] = e_[j] + r;
+    es_[j] = fused(r, s, es_[j]);
+    ec_[j] = fused(r, c, ec_[j]);
+    ee_[j] = fused(r, r, ee_[j]);
+  }
+  void prefetch(std::size_t i, std::size_t j) const { prefetch_ahead(from_[j] + i); }
+  void store(GridResidualLanes* sums) const {
+    for (std::size_t j = 0; j < count; ++j)
+      sums[j] = {e_[j], es_[j], ec_[j], ee_[j]};
+  }
+
+private:
+  const double* from_[count];
+  Parameters start_[count];
+  Lanes e_[count], es_[count], ec_[count], ee_[count];
+};
+
+// Everything in one pass over the samples, for processors whose registers hold the sums of four channels beside the sine. False when not
+// all samples are near enough for the order; then nothing was added.
+template <Order order>
+inline bool grid_block_of_four(const std::int64_t* stamps, const GridPlace& place, const SampleGrid& grid, const double* const* values,
+                               const Parameters* start, GridDesignLanes& design_sums, GridResidualLanes* sums) {
+  GridTurns<order> turns(stamps, place, grid);
+  GridDesign design;
+  GridResiduals<4, false> residuals(values, place, start, sums);
+  for (std::size_t i = 0; i < place.n; i += lanes) {
+    const SineCosine one = turns.at(i);
+    design.add(one);
+    for (std::size_t j = 0; j < 4; ++j) {
+      residuals.prefetch(i, j);
+      residuals.add(i, j, one.sine, one.cosine);
+    }
+  }
+  if (!turns.right()) return false;
+  design_sums = design.sums(place);
+  residuals.store(sums);
+  return true;
+}
+
 // Sine and cosine of a block and their sums; false when not all samples are near enough for the order.
 template <Order order>
 inline bool grid_design(const std::int64_t* stamps, const GridPlace& place, const SampleGrid& grid, const double* const* values,
                         std::size_t channels, GridBasis& basis, GridDesignLanes& sums) {
   const double* channel_0 = values[0] + place.first;
   const double* channel_2 = values[channels > 2 ? 2 : 0] + place.first;
-  const std::int64_t* from = stamps + place.first;
-  const std::int64_t anchor_ns = stamps[place.anchor()];
-  const std::int64_t* offsets_ns = grid.offsets_ns + place.on_grid;
-  const double* grid_sine = grid.sine + place.on_grid;
-  const double* grid_cosine = grid.cosine + place.on_grid;
-  const Lanes scale = Lanes::all(grid.scaled_radians_per_ns);
-  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s, largest = s;
+  GridTurns<order> turns(stamps, place, grid);
+  GridDesign design;
   for (std::size_t i = 0; i < place.n; i += lanes) {
-    prefetch_ahead(from + i);
     prefetch_ahead(channel_0 + i);
     prefetch_ahead(channel_2 + i);
-    const Lanes d = time_difference(from + i, offsets_ns + i, anchor_ns);
-    largest = larger_magnitude(largest, d);
-    const SineCosine one = turned_from_grid<order>(d * scale, Lanes::load(grid_sine + i), Lanes::load(grid_cosine + i));
+    const SineCosine one = turns.at(i);
     one.sine.store(basis.sine + i);
     one.cosine.store(basis.cosine + i);
-    s = s + one.sine;
-    c = c + one.cosine;
-    ss = fused(one.sine, one.sine, ss);
-    sc = fused(one.sine, one.cosine, sc);
+    design.add(one);
   }
-  const Lanes rows = Lanes::all(static_cast<double>(place.n / lanes));
-  sums = {s, c, fused_less(Lanes::all(2.0), ss, rows), sc + sc};
-  return largest.all_at_most(order == Order::third ? grid.largest_of_third_order_ns : grid.largest_ns);
+  sums = design.sums(place);
+  return turns.right();
 }
 
-// `count` channels at once: e and ee of all blocks so far, es and ec of this one. Without a start value for sine and cosine their
-// product with the basis is left out.
 template <std::size_t count, bool about_start>
 inline void grid_residuals(const double* const* values, const GridPlace& place, const GridBasis& basis, const Parameters* start,
                            GridResidualLanes* sums) {
-  const double* from[count];
-  Lanes e[count], es[count], ec[count], ee[count];
-  for (std::size_t j = 0; j < count; ++j) {
-    from[j] = values[j] + place.first;
-    e[j] = sums[j].e;
-    ee[j] = sums[j].ee;
-    es[j] = ec[j] = Lanes::all(0.0);
-  }
+  GridResiduals<count, about_start> residuals(values, place, start, sums);
   for (std::size_t i = 0; i < place.n; i += lanes) {
     const Lanes s = Lanes::load(basis.sine + i);
     const Lanes c = Lanes::load(basis.cosine + i);
     for (std::size_t j = 0; j < count; ++j) {
-      if (j % 2 == 1) prefetch_ahead(from[j] + i);
-      Lanes r = Lanes::load(from[j] + i) - Lanes::all(start[j].offset);
-      if constexpr (about_start) r = fused_less(Lanes::all(start[j].sine), s, fused_less(Lanes::all(start[j].cosine), c, r));
-      e[j] = e[j] + r;
-      es[j] = fused(r, s, es[j]);
-      ec[j] = fused(r, c, ec[j]);
-      ee[j] = fused(r, r, ee[j]);
+      if (j % 2 == 1) residuals.prefetch(i, j);
+      residuals.add(i, j, s, c);
     }
   }
-  for (std::size_t j = 0; j < count; ++j)
-    sums[j] = {e[j], es[j], ec[j], ee[j]};
+  residuals.store(sums);
 }
 
 template <bool about_start>
@@ -198,18 +271,25 @@ std::size_t fit_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxi
   for (std::size_t b = 0; taken < n; ++b) {
     const GridPlace place(b, n);
     GridDesignLanes block;
-    if (third_order) third_order = grid_design<Order::third>(stamps, place, grid, values, channels, basis, block);
-    if (!third_order && !grid_design<Order::fifth>(stamps, place, grid, values, channels, basis, block)) break;
-    add_turned(anchors.sine[b], anchors.cosine[b], block.s, block.c, design.s, design.c);
-    add_turned(anchors.sine_twice[b], anchors.cosine_twice[b], block.sine_twice, block.cosine_twice, design.sine_twice,
-               design.cosine_twice);
     Parameters from[grid_call_channels];
     for (std::size_t j = 0; j < channels; ++j)
       from[j] = turned[j].of_block(b);
-    if (about_start)
-      all_grid_residuals<true>(values, channels, place, basis, from, own);
-    else
-      all_grid_residuals<false>(values, channels, place, basis, from, own);
+    bool summed = false;
+    if constexpr (Lanes::channels_at_once == 4) {
+      if (third_order && channels == 4 && !about_start)
+        third_order = summed = grid_block_of_four<Order::third>(stamps, place, grid, values, from, block, own);
+    }
+    if (!summed) {
+      if (third_order) third_order = grid_design<Order::third>(stamps, place, grid, values, channels, basis, block);
+      if (!third_order && !grid_design<Order::fifth>(stamps, place, grid, values, channels, basis, block)) break;
+      if (about_start)
+        all_grid_residuals<true>(values, channels, place, basis, from, own);
+      else
+        all_grid_residuals<false>(values, channels, place, basis, from, own);
+    }
+    add_turned(anchors.sine[b], anchors.cosine[b], block.s, block.c, design.s, design.c);
+    add_turned(anchors.sine_twice[b], anchors.cosine_twice[b], block.sine_twice, block.cosine_twice, design.sine_twice,
+               design.cosine_twice);
     for (std::size_t j = 0; j < channels; ++j)
       add_turned(anchors.sine[b], anchors.cosine[b], own[j].es, own[j].ec, es[j], ec[j]);
     taken += place.n;

@@ -59,7 +59,7 @@ inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* off
 }
 
 inline Lanes larger_magnitude(Lanes a, Lanes b) {
-  return {_mm512_max_pd(_mm512_abs_pd(a.v), _mm512_abs_pd(b.v))};
+  return {_mm512_max_pd(a.v, _mm512_abs_pd(b.v))};
 }
 
 inline void turn_quadrants(Lanes shifted, Lanes& sine, Lanes& cosine) {

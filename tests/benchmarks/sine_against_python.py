@@ -59,9 +59,6 @@ class Ours:
         self.library.dyncal_last_sample_ns.argtypes = [ctypes.c_double] + [ctypes.c_void_p] * 2 + [ctypes.c_int64] * 2
         self.library.dyncal_last_sample_ns.restype = ctypes.c_double
 
-    def read(self, t, y):
-        return self.library.dyncal_read(t.ctypes.data, y.ctypes.data, t.size, y.shape[0])
-
     def flush(self, *arrays):
         for one in arrays:
             self.library.dyncal_flush(one.ctypes.data, one.nbytes)
@@ -77,17 +74,32 @@ class Ours:
             worst = max(worst, min(times))
         return worst * 1e-3
 
+    # What calls the fit: made once for the same arrays, so that little of Python is in the time of one fit.
+
+    def read(self, t, y):
+        read, arguments = self.library.dyncal_read, (t.ctypes.data, y.ctypes.data, t.size, y.shape[0])
+        return lambda: read(*arguments)
+
     def three(self, f, t, y):
         out = np.empty((y.shape[0], 4))
-        if self.library.dyncal_fit(f, int(t[0]), t.ctypes.data, y.ctypes.data, t.size, y.shape[0], out.ctypes.data):
-            raise RuntimeError("the fit failed")
-        return out[:, :3]
+        fit, arguments = self.library.dyncal_fit, (f, int(t[0]), t.ctypes.data, y.ctypes.data, t.size, y.shape[0], out.ctypes.data)
+
+        def call():
+            if fit(*arguments):
+                raise RuntimeError("the fit failed")
+            return out[:, :3]
+        return call
 
     def four(self, f, t, y):
         out = np.empty(1 + 4 * y.shape[0])
-        if self.library.dyncal_fit_frequency(f, 1e-3, int(t[0]), t.ctypes.data, y.ctypes.data, t.size, y.shape[0], out.ctypes.data):
-            raise RuntimeError("the fit failed")
-        return out[0], out[1:].reshape(-1, 4)[:, :3]
+        fit = self.library.dyncal_fit_frequency
+        arguments = (f, 1e-3, int(t[0]), t.ctypes.data, y.ctypes.data, t.size, y.shape[0], out.ctypes.data)
+
+        def call():
+            if fit(*arguments):
+                raise RuntimeError("the fit failed")
+            return out[0], out[1:].reshape(-1, 4)[:, :3]
+        return call
 
 
 def design(f, t):
@@ -152,7 +164,7 @@ def compare(ours, samples, channels, noise):
     # The start of the iteration is 0.3 of a bin away: curve_fit would not arrive from further.
     near = f + 0.3 / ((t[-1] - t[0]) * 1e-9)
     rows = {}
-    rows["ours, three parameters"], p = best_of(lambda: ours.three(f, t, y))
+    rows["ours, three parameters"], p = best_of(ours.three(f, t, y))
     for name, work in (("numpy normal equations", normal_equations), ("numpy sums", normal_sums)):
         rows[name], (q, _) = best_of(lambda: work(f, t, y))
         assert np.abs(p - q).max() < 1e-8, name
@@ -160,12 +172,12 @@ def compare(ours, samples, channels, noise):
     assert np.abs(p - q).max() < 1e-8
     rows["scipy lstsq a channel"], q = best_of(lambda: scipy_each(f, t, y))
     assert np.abs(p - q).max() < 1e-8
-    rows["reading only"], _ = best_of(lambda: ours.read(t, y), seconds=0.5)
+    rows["reading only"], _ = best_of(ours.read(t, y), seconds=0.5)
     flush = lambda: ours.flush(t, y)
-    rows["reading only, not cached"], _ = best_of(lambda: ours.read(t, y), seconds=0.5, least=20, before=flush)
-    rows["ours, not cached"], _ = best_of(lambda: ours.three(f, t, y), seconds=0.5, least=20, before=flush)
-    rows["ours, four parameters"], (found, p4) = best_of(lambda: ours.four(near, t, y))
-    start = ours.three(near, t, y)
+    rows["reading only, not cached"], _ = best_of(ours.read(t, y), seconds=0.5, least=20, before=flush)
+    rows["ours, not cached"], _ = best_of(ours.three(f, t, y), seconds=0.5, least=20, before=flush)
+    rows["ours, four parameters"], (found, p4) = best_of(ours.four(near, t, y))
+    start = ours.three(near, t, y)()
     rows["scipy curve_fit"], q = best_of(lambda: curve_fit(near, t, y, start), seconds=0.5, least=2)
     assert abs(q[0][3] / (2 * np.pi) - found) < 5 * noise / samples**0.5, "curve_fit found another frequency"
     return {name: value / samples for name, value in rows.items()}
