@@ -1,10 +1,12 @@
 #include "services/command/shot_files.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <map>
-#include <regex>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -24,15 +26,29 @@ tl::unexpected<Error> bad_file(const std::filesystem::path& path, const std::str
   return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why)});
 }
 
+// "step-1-shot-1.csv", numbers of at most six digits.
+std::optional<StepAndShot> step_and_shot_of(std::string_view name) {
+  const auto text = [&](std::string_view expected) {
+    const bool there = name.starts_with(expected);
+    name.remove_prefix(there ? expected.size() : 0);
+    return there;
+  };
+  const auto number = [&](auto& value) {
+    const auto [end, status] = std::from_chars(name.data(), name.data() + std::min<std::size_t>(name.size(), 6), value);
+    name.remove_prefix(static_cast<std::size_t>(end - name.data()));
+    return status == std::errc{};
+  };
+  StepAndShot found;
+  const bool matches = text("step-") && number(found.first) && text("-shot-") && number(found.second) && text(".csv") && name.empty();
+  return matches ? std::optional(found) : std::nullopt;
+}
+
 Expected<std::map<StepAndShot, std::filesystem::path>> find_files(const std::filesystem::path& folder) {
-  static const std::regex form("step-([0-9]{1,6})-shot-([0-9]{1,6})\\.csv");
   std::map<StepAndShot, std::filesystem::path> files;
   std::error_code problem;
   for (std::filesystem::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
-    std::smatch match;
-    const std::string name = entry->path().filename().string();
-    if (std::regex_match(name, match, form)) {
-      files.emplace(StepAndShot{static_cast<std::uint32_t>(std::stoul(match[1])), std::stoul(match[2])}, entry->path());
+    if (const auto found = step_and_shot_of(entry->path().filename().string())) {
+      files.emplace(*found, entry->path());
     }
   }
   if (problem) {
