@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <numbers>
 #include <vector>
 
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/comparison.hpp"
+#include "services/command/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
 
@@ -18,14 +17,6 @@ namespace dyncal::services {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct ResultPoint {
-  std::string unit;
-  analysis::ComparedResult value;
-};
-
-// By channel and frequency.
-using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
 
 struct ComparedPoint {
   std::string first_channel;
@@ -35,30 +26,6 @@ struct ComparedPoint {
   analysis::ComparedResult second;
   analysis::ComplexComparison comparison;
 };
-
-Expected<ResultPoints> read_result(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{} cannot be read", path.string())});
-  }
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
-  ResultPoints points;
-  try {
-    for (const auto& point : json.at("transfer_function")) {
-      if (point.at("magnitude").is_null() || point.at("phase_rad").is_null()) {
-        continue;
-      }
-      points[{point.at("channel"), point.at("frequency_hz")}] = {
-          point.value("unit", ""), {point.at("magnitude"), point.at("u_magnitude"), point.at("phase_rad"), point.at("u_phase_rad")}};
-    }
-  } catch (const nlohmann::json::exception&) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{} is no result of dyncal: it has no 'transfer_function' with magnitude and phase, each "
-                                               "with its uncertainty",
-                                               path.string())});
-  }
-  return points;
-}
 
 Expected<std::vector<ComparedPoint>> compare(const CompareCommand& command, const ResultPoints& first, const ResultPoints& second) {
   std::vector<ComparedPoint> compared;
@@ -136,11 +103,11 @@ void print_table(const std::vector<ComparedPoint>& points) {
 } // namespace
 
 int run_compare(const CompareCommand& command) {
-  const auto first = read_result(command.first);
+  const auto first = read_result_file(command.first);
   if (!first) {
     return fail(first.error());
   }
-  const auto second = read_result(command.second);
+  const auto second = read_result_file(command.second);
   if (!second) {
     return fail(second.error());
   }

@@ -1,4 +1,6 @@
 // dyncal: the command for people.
+#include <array>
+#include <string>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +13,7 @@
 #include "services/command/intervals_command.hpp"
 #include "services/command/output_guard.hpp"
 #include "services/command/run_command.hpp"
+#include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
 
 namespace {
@@ -103,6 +106,25 @@ void add_compare(CLI::App& app, CompareCommand& compare) {
   command->add_flag("--json", compare.json, "print JSON");
 }
 
+void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
+  CLI::App* command = app.add_subcommand("triaxial", "response of a sensor's three axes and transverse sensitivity, from one result for "
+                                                     "each direction of excitation");
+  constexpr std::array axes{"x", "y", "z"};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    command->add_option(std::string("--") + axes[i], triaxial.results[i], std::string("result of the excitation along ") + axes[i]);
+    command->add_option(std::string("--motion-") + axes[i], triaxial.motions[i],
+                        std::string("result of a triaxial reference's other axes against its axis ") + axes[i]);
+  }
+  command->add_option("--channels", triaxial.channels, "channels of the sensor: x, y, z (default: by their names' ends)")->expected(3);
+  command->add_option("--motion-channels", triaxial.motion_channels, "channels of the reference: x, y, z (default: by their names' ends)")
+      ->expected(3);
+  command
+      ->add_option("--transverse-motion", triaxial.transverse_motion_rel,
+                   "bound of the exciter's motion across its axis, relative to that along it")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", triaxial.json, "print JSON");
+}
+
 // Not for people: services/command/output_guard.hpp starts it.
 void add_guard_output(CLI::App& app, std::string& generator) {
   CLI::App* command = app.add_subcommand("guard-output", "switch a generator's output off when standard input ends");
@@ -114,6 +136,7 @@ struct Commands {
   AnalyseCommand analyse;
   CalibrateCommands calibrate;
   CompareCommand compare;
+  TriaxialCommand triaxial;
   DemoCommand demo;
   FitCommand fit;
   std::string guarded_generator;
@@ -125,6 +148,9 @@ struct Commands {
 int execute(const CLI::App& app, const Commands& commands) {
   if (app.got_subcommand("compare")) {
     return run_compare(commands.compare);
+  }
+  if (app.got_subcommand("triaxial")) {
+    return run_triaxial(commands.triaxial);
   }
   if (app.got_subcommand("fit")) {
     return run_fit(commands.fit);
@@ -163,6 +189,7 @@ int main(int argc, char** argv) {
   add_watch(app, commands.watch);
   add_analyse(app, commands.analyse);
   add_compare(app, commands.compare);
+  add_triaxial(app, commands.triaxial);
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);
   add_calibrate(app, commands.calibrate);

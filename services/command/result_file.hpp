@@ -1,0 +1,25 @@
+// The transfer function in a result file of dyncal (the means over repetitions), for commands that go on from results. Points without a
+// value are left out. Fails: bad_file, when the file cannot be read or is no result. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "analysis/comparison.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+struct ResultPoint {
+  std::string unit;
+  analysis::ComparedResult value;
+};
+
+// By channel and frequency in Hz.
+using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
+
+[[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path);
+
+} // namespace dyncal::services
