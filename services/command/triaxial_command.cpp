@@ -68,13 +68,15 @@ Expected<Names> channels_of(const std::vector<std::string>& named, const std::ve
   if (named.size() == 3) {
     return Names{named[0], named[1], named[2]};
   }
-  std::set<std::string> names;
+  // A sensor may have other axes than those that answer in the reference's unit: a gyroscope's, a magnetometer's.
+  std::set<std::string> like_the_reference;
+  std::set<std::string> others;
   for (const Direction& direction : directions) {
     for (const auto& [place, point] : direction.*points) {
-      names.insert(place.first);
+      (point.unit == R"(\one)" ? like_the_reference : others).insert(place.first);
     }
   }
-  return find_channels(names, option);
+  return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
 }
 
 Expected<Measured> read(const TriaxialCommand& command) {
