@@ -112,6 +112,27 @@ TEST_F(AnalyseSeries, ShotsInFilesAreMetWithin1e10Radians) {
   EXPECT_EQ(point["flags"], nlohmann::json::array());
 }
 
+TEST_F(AnalyseSeries, TheDelayFileOfTheOscilloscopeIsTakenOutWithItsUncertainty) {
+  ASSERT_EQ(analyse(), 0) << errors_;
+  const auto before = read_json(folder_ / "result.json")["points"][0];
+  std::ofstream(folder_ / "dso-delay.json") << R"({"value_s": 736e-9, "u_s": 2e-9})";
+  std::ifstream bench(folder_ / "bench.toml");
+  std::string text{std::istreambuf_iterator<char>(bench), {}};
+  const std::string value = "{ value_s = 236e-9, u_s = 1e-9 }";
+  text.replace(text.find(value), value.size(), R"({ file = "dso-delay.json" })");
+  std::ofstream(folder_ / "bench.toml") << text;
+  ASSERT_EQ(analyse(), 0) << errors_;
+  const auto after = read_json(folder_ / "result.json")["points"][0];
+  EXPECT_NEAR(after["phase_rad"].get<double>() - before["phase_rad"].get<double>(), -w * 500e-9, 1e-12);
+  const auto u_of_delay = [](const nlohmann::json& point) {
+    for (const auto& row : point["budget"])
+      if (row["name"] == "trigger delay of the oscilloscope") return row["u_phase_rad"].get<double>();
+    return -1.0;
+  };
+  EXPECT_NEAR(u_of_delay(before), w * 1e-9, 1e-15);
+  EXPECT_NEAR(u_of_delay(after), w * 2e-9, 1e-15);
+}
+
 TEST_F(AnalyseSeries, AFileThatIsBrokenIsNamed) {
   std::ofstream(folder_ / "tss" / "step-1-shot-2.csv") << "# nominal_rate_hz = 1000\nz\n1.0\nx\n";
   EXPECT_EQ(analyse(), 1);
