@@ -139,7 +139,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const std::complex<double> link = unit_phasor(acs->pilot.phasor()) / reference.phasor() *
                                     std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
   const Budget common = common_budget(input, *acs, w, std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) * pilot->u_frequency_hz);
-  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
+  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, common.rows(), {}};
   for (const TriggerPhase& trigger : triggers) {
     result.trigger_phase_rad.push_back(std::arg(trigger.sync));
     result.u_trigger_phase_rad.push_back(trigger.u_rad);

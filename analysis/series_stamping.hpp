@@ -71,6 +71,7 @@ struct SeriesStampingResult {
   std::vector<double> trigger_phase_rad; // beta_j
   std::vector<double> u_trigger_phase_rad;
   NominalFrequency rate;
+  std::vector<Contribution> common_budget; // what all shots and channels share
   std::vector<SeriesChannelResult> channels;
 };
 

@@ -85,14 +85,15 @@ analysis::StartLatency start_latency(const analysis::SeriesStampingResult& resul
   return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz);
 }
 
-std::vector<analysis::Contribution> budget_of(const analysis::SeriesChannelResult& channel) {
+std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResult& result, const analysis::SeriesChannelResult& channel) {
   const analysis::Repetition& first = channel.shots.front();
-  const double common_magnitude = first.u_common_magnitude_rel;
-  const double common_phase = first.u_common_phase_rad;
   const auto rest = [](double u, double common) { return std::sqrt(std::max(0.0, u * u - common * common)); };
-  return {{"shots: noise and scatter of series and trigger", "normal", static_cast<double>(channel.shots.size() - 1),
-           rest(channel.mean.u_magnitude / channel.mean.magnitude, common_magnitude), rest(channel.mean.u_phase_rad, common_phase)},
-          {"common to all shots: reference, ACS, trigger delay, start", "normal", 0.0, common_magnitude, common_phase}};
+  std::vector<analysis::Contribution> rows{{"shots: noise and scatter of series and trigger", "normal",
+                                            static_cast<double>(channel.shots.size() - 1),
+                                            rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
+                                            rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
+  rows.insert(rows.end(), result.common_budget.begin(), result.common_budget.end());
+  return rows;
 }
 
 // What the evaluation needs of the shots; the spans are those of the records.
@@ -156,7 +157,7 @@ void add_numbers(const Recipe& recipe, const Judged& judged, const analysis::Ser
   result.series_start_scatter_s(judged.start.scatter_s);
   result.fits().push_back(fit_message(judged.result.reference));
   result.fits().push_back(fit_message(judged.result.sync_acs));
-  add_budget(budget_of(channel), result);
+  add_budget(budget_of(judged.result, channel), result);
 }
 
 // What a reader of the result should know of its shots.
