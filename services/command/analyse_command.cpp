@@ -227,7 +227,8 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (!recipe) {
     return tl::unexpected(recipe.error());
   }
-  RunEvaluator evaluator(std::move(*recipe));
+  // An evaluation takes longer than reading the samples of the next step: one of them a processor.
+  RunEvaluator evaluator(std::move(*recipe), std::max(1U, std::thread::hardware_concurrency()));
   auto inputs = open_inputs(*bench, evaluator);
   if (!inputs) {
     return tl::unexpected(inputs.error());

@@ -42,7 +42,8 @@ std::string no_sine(const RecipeStep& step, const ChannelName& sync) {
 
 } // namespace
 
-RunEvaluator::RunEvaluator(Recipe recipe) : recipe_(std::move(recipe)), clock_(recipe_), summary_(recipe_) {
+RunEvaluator::RunEvaluator(Recipe recipe, std::size_t evaluations_at_once)
+    : recipe_(std::move(recipe)), clock_(recipe_), summary_(recipe_), evaluations_(evaluations_at_once) {
   for (const std::string& source : recipe_.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source));
   }
@@ -217,47 +218,62 @@ bool RunEvaluator::ready_to_evaluate(std::size_t step) const {
   return !recipe_.stamped_apart() || sensors_are_there(step);
 }
 
+void RunEvaluator::take_results(std::vector<CalibrationResult> results, EvaluationOutput& output) {
+  for (CalibrationResult& result : results) {
+    summary_.add(result);
+    output.results.push_back(std::move(result));
+  }
+}
+
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < steps_expected() && ready_to_evaluate(next_step_)) {
-    const RecipeStep& step = recipe_.steps[next_step_];
-    for (CalibrationResult& result : evaluate_by_method(step)) {
-      summary_.add(result);
-      output.results.push_back(std::move(result));
-    }
+    evaluations_.begin(evaluation_by_method(recipe_.steps[next_step_]));
     ++next_step_;
   }
+  take_results(evaluations_.take_finished(), output);
 }
 
-std::vector<CalibrationResult> RunEvaluator::evaluate_by_method(const RecipeStep& step) {
-  if (by_series()) {
-    return evaluate_triggered_step(step);
+EvaluationQueue::Evaluation RunEvaluator::evaluation_by_method(const RecipeStep& step) {
+  if (by_series()) { // a step depends on the one before
+    return [results = evaluate_triggered_step(step)] { return results; };
   }
   if (recipe_.method == METHOD_ANALOGUE) {
-    return evaluate_analogue(step);
+    return analogue_evaluation(step);
   }
-  return recipe_.stamped_apart() ? evaluate_apart(step) : evaluate_stamped_step(step);
+  return recipe_.stamped_apart() ? apart_evaluation(step) : stamped_evaluation(step);
 }
 
-std::vector<CalibrationResult> RunEvaluator::evaluate_analogue(const RecipeStep& step) {
+std::shared_ptr<const SourceRecord> RunEvaluator::samples_of(const std::string& source, const StretchOfTime& stretch) const {
+  const SourceRecord& whole = *records_.at(source);
+  if (evaluations_.in_background()) {
+    return std::make_shared<const SourceRecord>(whole.part(stretch.begin_ns, stretch.end_ns));
+  }
+  return {std::shared_ptr<const SourceRecord>(), &whole};
+}
+
+EvaluationQueue::Evaluation RunEvaluator::analogue_evaluation(const RecipeStep& step) const {
   const SourceRecord& acs = *records_.at(recipe_.reference.source);
   const auto stretch = acs_search_->stretch(next_step_);
   if (!stretch) {
-    return results_of_missing_step(recipe_, step, acs, no_sine(step, recipe_.sync_acs));
+    return [results = results_of_missing_step(recipe_, step, acs, no_sine(step, recipe_.sync_acs))] { return results; };
   }
   std::vector<std::string> flags = flags_of(recipe_, step, acs, *stretch);
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  return evaluate_analogue_step(recipe_, step, acs, *stretch, std::move(flags));
+  return [this, &step, samples = samples_of(acs.source(), *stretch), stretch, flags] {
+    return evaluate_analogue_step(recipe_, step, *samples, *stretch, flags);
+  };
 }
 
-std::vector<CalibrationResult> RunEvaluator::evaluate_stamped_step(const RecipeStep& step) {
+EvaluationQueue::Evaluation RunEvaluator::stamped_evaluation(const RecipeStep& step) const {
   const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
   const SourceRecord& dau = *records_.at(recipe_.sync_dau.source);
   const auto acs_stretch = acs_search_->stretch(next_step_);
   const auto dau_stretch = dau_search_->stretch(next_step_);
   if (!acs_stretch || !dau_stretch) {
-    return results_of_missing_step(recipe_, step, dau, no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs));
+    const std::string problem = no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs);
+    return [results = results_of_missing_step(recipe_, step, dau, problem)] { return results; };
   }
   std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
   const std::vector<std::string> dau_flags = flags_of(recipe_, step, dau, *dau_stretch);
@@ -265,34 +281,41 @@ std::vector<CalibrationResult> RunEvaluator::evaluate_stamped_step(const RecipeS
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  return evaluate_step(recipe_, step, acs, *acs_stretch, dau, *dau_stretch, flags);
+  return
+      [this, &step, acs_samples = samples_of(acs.source(), *acs_stretch), dau_samples = samples_of(dau.source(), *dau_stretch), acs_stretch,
+       dau_stretch, flags] { return evaluate_step(recipe_, step, *acs_samples, *acs_stretch, *dau_samples, *dau_stretch, flags); };
 }
 
-std::vector<CalibrationResult> RunEvaluator::evaluate_apart(const RecipeStep& step) {
-  const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
-  const SourceRecord* sync = by_absolute_time() ? nullptr : records_.at(recipe_.sync_dau.source).get();
-  std::vector<const SourceRecord*> sensors;
-  for (const std::string& name : recipe_.dut_sources()) {
-    sensors.push_back(records_.at(name).get());
-  }
+EvaluationQueue::Evaluation RunEvaluator::apart_evaluation(const RecipeStep& step) const {
+  const std::vector<std::string> sensors = recipe_.dut_sources();
   const auto acs_stretch = acs_search_->stretch(next_step_);
   const auto stretch = search_of_sensors().stretch(next_step_);
   if (!acs_stretch || !stretch) {
-    return results_of_missing_step(recipe_, step, *sensors.front(), no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs));
+    const std::string problem = no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs);
+    return [results = results_of_missing_step(recipe_, step, *records_.at(sensors.front()), problem)] { return results; };
   }
-  std::vector<std::string> flags = flags_of(recipe_, step, acs, *acs_stretch);
-  std::vector<const SourceRecord*> others = sensors;
-  if (sync != nullptr) {
-    others.insert(others.begin(), sync);
+  std::vector<std::string> flags = flags_of(recipe_, step, *records_.at(recipe_.sync_acs.source), *acs_stretch);
+  std::vector<std::string> others = sensors;
+  if (!by_absolute_time()) {
+    others.insert(others.begin(), recipe_.sync_dau.source);
   }
-  for (const SourceRecord* source : others) {
-    const std::vector<std::string> more = flags_of(recipe_, step, *source, *stretch);
+  std::vector<std::shared_ptr<const SourceRecord>> samples;
+  for (const std::string& source : others) {
+    samples.push_back(samples_of(source, *stretch));
+    const std::vector<std::string> more = flags_of(recipe_, step, *records_.at(source), *stretch);
     flags.insert(flags.end(), more.begin(), more.end());
   }
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  return evaluate_apart_step(recipe_, step, {acs, *acs_stretch, sync, *stretch}, sensors, flags);
+  return [this, &step, acs = samples_of(recipe_.sync_acs.source, *acs_stretch), acs_stretch, samples, stretch, flags] {
+    const SourceRecord* const sync = by_absolute_time() ? nullptr : samples.front().get();
+    std::vector<const SourceRecord*> of_sensors;
+    for (std::size_t i = sync == nullptr ? 0 : 1; i < samples.size(); ++i) {
+      of_sensors.push_back(samples[i].get());
+    }
+    return evaluate_apart_step(recipe_, step, {*acs, *acs_stretch, sync, *stretch}, of_sensors, flags);
+  };
 }
 
 std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const RecipeStep& step) {
@@ -394,6 +417,7 @@ void RunEvaluator::finish_now() {
 
 void RunEvaluator::finish(EvaluationOutput& output) {
   finished_ = true;
+  take_results(evaluations_.take_all(), output);
   output.transfer_functions = summary_.transfer_functions();
   if (by_series()) {
     add_sensor_clock(output);

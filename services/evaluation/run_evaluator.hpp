@@ -18,6 +18,7 @@
 #include "services/error.hpp"
 #include "services/evaluation/apart_step_evaluation.hpp"
 #include "services/evaluation/clock_report.hpp"
+#include "services/evaluation/evaluation_queue.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/series_step_evaluation.hpp"
 #include "services/evaluation/shot_record.hpp"
@@ -35,7 +36,9 @@ struct EvaluationOutput {
 
 class RunEvaluator {
 public:
-  explicit RunEvaluator(Recipe recipe);
+  // `evaluations_at_once` > 0: so many steps are evaluated in threads of their own, from copies of their samples, while this one goes on
+  // to take samples; 0: in this one. The results are the same.
+  explicit RunEvaluator(Recipe recipe, std::size_t evaluations_at_once = 0);
   ~RunEvaluator();
   RunEvaluator(const RunEvaluator&) = delete;
   RunEvaluator& operator=(const RunEvaluator&) = delete;
@@ -76,11 +79,15 @@ private:
   // Which search finds the sensors' stretches.
   [[nodiscard]] const StepSearch& search_of_sensors() const { return recipe_.without_sync() ? *acs_search_ : *dau_search_; }
   [[nodiscard]] Expected<void> check_clocks() const;
-  [[nodiscard]] std::vector<CalibrationResult> evaluate_by_method(const RecipeStep& step);
-  [[nodiscard]] std::vector<CalibrationResult> evaluate_analogue(const RecipeStep& step);
-  [[nodiscard]] std::vector<CalibrationResult> evaluate_stamped_step(const RecipeStep& step);
-  [[nodiscard]] std::vector<CalibrationResult> evaluate_apart(const RecipeStep& step);
+  void take_results(std::vector<CalibrationResult> results, EvaluationOutput& output);
+  // The next step by its method. What is evaluated in another thread looks at nothing that changes.
+  [[nodiscard]] EvaluationQueue::Evaluation evaluation_by_method(const RecipeStep& step);
+  [[nodiscard]] EvaluationQueue::Evaluation analogue_evaluation(const RecipeStep& step) const;
+  [[nodiscard]] EvaluationQueue::Evaluation stamped_evaluation(const RecipeStep& step) const;
+  [[nodiscard]] EvaluationQueue::Evaluation apart_evaluation(const RecipeStep& step) const;
   [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);
+  // The source's record, or a copy of that part of it when it is evaluated in another thread.
+  [[nodiscard]] std::shared_ptr<const SourceRecord> samples_of(const std::string& source, const StretchOfTime& stretch) const;
   void add_sensor_clock(EvaluationOutput& output) const;
   void forget_what_is_evaluated();
   void finish(EvaluationOutput& output);
@@ -102,6 +109,7 @@ private:
   bool excitation_aborted_ = false;
   bool finish_now_ = false;
   bool finished_ = false;
+  EvaluationQueue evaluations_; // the last member, for it waits for those that look at the others
 };
 
 } // namespace dyncal::services

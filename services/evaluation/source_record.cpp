@@ -1,6 +1,7 @@
 #include "services/evaluation/source_record.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace dyncal::services {
 namespace {
@@ -118,6 +119,28 @@ void SourceRecord::forget_before(std::int64_t stamp_ns) {
   while (!gaps_.empty() && gaps_.front().after_ns < stamp_ns) {
     gaps_.pop_front();
   }
+}
+
+SourceRecord SourceRecord::part(std::int64_t begin_ns, std::int64_t end_ns) const {
+  SourceRecord part(source_, capacity_);
+  part.description_ = description_;
+  part.gaps_ = gaps_;
+  part.columns_.resize(columns_.size());
+  const auto inside = [&](std::int64_t stamp) { return stamp >= begin_ns && stamp <= end_ns; };
+  // Stamps of a faulty clock may step back: all that lies between the first one inside and the last one is taken.
+  const auto stamps = stamps_ns();
+  const auto first = std::find_if(stamps.begin(), stamps.end(), inside);
+  const auto behind = std::find_if(stamps.rbegin(), std::make_reverse_iterator(first), inside).base();
+  const auto begin = static_cast<std::ptrdiff_t>(first_) + (first - stamps.begin());
+  const auto end = begin + (behind - first);
+  const auto take = [&](const auto& from, auto& to) { to.assign(from.begin() + begin, from.begin() + end); };
+  take(stamps_ns_, part.stamps_ns_);
+  take(flags_, part.flags_);
+  take(stamp_uncertainties_ns_, part.stamp_uncertainties_ns_);
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    take(columns_[channel], part.columns_[channel]);
+  }
+  return part;
 }
 
 void SourceRecord::forget(std::size_t samples) {

@@ -45,6 +45,9 @@ public:
 
   void forget_before(std::int64_t stamp_ns);
 
+  // A record of its own that says the same of the time between the two stamps, both included, while this one goes on.
+  [[nodiscard]] SourceRecord part(std::int64_t begin_ns, std::int64_t end_ns) const;
+
   // Standard uncertainty of the stamps between the two in the time base of the source: the mean of what they say themselves, and at least
   // what the description says. 0: neither says anything. REQUIRES: described()
   [[nodiscard]] double stamp_uncertainty_s(std::int64_t begin_ns, std::int64_t end_ns) const;

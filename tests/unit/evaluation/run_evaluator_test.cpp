@@ -13,10 +13,10 @@ namespace {
 
 using testing::HasSubstr;
 
-EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement) {
+EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement, std::size_t evaluations_at_once = 0) {
   auto recipe = parse_recipe(measurement);
   EXPECT_TRUE(recipe) << recipe.error().message;
-  RunEvaluator evaluator(std::move(*recipe));
+  RunEvaluator evaluator(std::move(*recipe), evaluations_at_once);
   EXPECT_TRUE(evaluator.describe(run.acs_description()));
   EXPECT_TRUE(evaluator.describe(run.dau_description()));
   EvaluationOutput all;
@@ -150,6 +150,21 @@ TEST(RunEvaluator, GivesTheSameBitsHoweverTheStreamsWereCut) {
     EXPECT_EQ(coarse.results[i].phase_rad(), fine.results[i].phase_rad());
     EXPECT_EQ(coarse.results[i].u_phase_rad(), fine.results[i].u_phase_rad());
     EXPECT_EQ(coarse.results[i].data_sha256(), fine.results[i].data_sha256());
+  }
+}
+
+TEST(RunEvaluator, GivesTheSameResultsFromThreadsOfTheirOwn) {
+  tests::SyntheticRun run;
+  run.lost_block = 22;
+  const EvaluationOutput here = evaluate(run, run.measurement());
+  for (const std::size_t at_once : {1U, 3U}) {
+    const EvaluationOutput elsewhere = evaluate(run, run.measurement(), at_once);
+    ASSERT_EQ(elsewhere.results.size(), here.results.size());
+    for (std::size_t i = 0; i < here.results.size(); ++i) {
+      EXPECT_TRUE(elsewhere.results[i] == here.results[i]) << "result " << i;
+    }
+    EXPECT_TRUE(elsewhere.transfer_functions == here.transfer_functions);
+    EXPECT_TRUE(elsewhere.clock_reports == here.clock_reports);
   }
 }
 

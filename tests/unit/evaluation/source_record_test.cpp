@@ -56,6 +56,29 @@ TEST(SourceRecord, ForgetsFromTheFrontOnly) {
   EXPECT_EQ(record.column(0).size(), record.stamps_ns().size());
 }
 
+TEST(SourceRecord, GivesAwayAPartThatSaysTheSameOfItsTime) {
+  SourceRecord record("dau");
+  tests::SyntheticRun run;
+  run.lost_block = 3;
+  record.describe(run.dau_description());
+  for (const SampleBlock& block : run.dau_blocks()) {
+    record.add(block);
+  }
+  record.forget_before(record.stamps_ns()[20]);
+  const auto stamps = record.stamps_ns();
+  const SourceRecord part = record.part(stamps[100] - 1, stamps[900] + 1);
+  ASSERT_EQ(part.stamps_ns().size(), 801U);
+  EXPECT_EQ(part.flags().size(), 801U);
+  EXPECT_TRUE(std::equal(part.stamps_ns().begin(), part.stamps_ns().end(), stamps.begin() + 100));
+  for (std::size_t channel = 0; channel < run.dau_description().channels().size(); ++channel) {
+    EXPECT_TRUE(std::equal(part.column(channel).begin(), part.column(channel).end(), record.column(channel).begin() + 100));
+  }
+  EXPECT_EQ(part.lost_between(stamps[100], stamps[900]), record.lost_between(stamps[100], stamps[900]));
+  EXPECT_EQ(part.stamp_uncertainty_s(stamps[100], stamps[900]), record.stamp_uncertainty_s(stamps[100], stamps[900]));
+  EXPECT_EQ(part.source(), "dau");
+  EXPECT_TRUE(record.part(stamps.back() + 1, stamps.back() + 2).stamps_ns().empty());
+}
+
 TEST(SourceRecord, DropsWhatWasBufferedWhenTheSourceStartsAnew) {
   SourceRecord record("acs");
   const auto blocks = tests::SyntheticRun{}.acs_blocks();

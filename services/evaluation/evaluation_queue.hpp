@@ -1,0 +1,41 @@
+// Evaluations of steps, one after the other in the caller's thread, or some at once in threads of their own; results come in the order in
+// which the evaluations were begun, so that nothing depends on which of the two it was.
+// Bounded: who begins one more than there may be at once waits for the oldest. The destructor waits for those under way.
+// Belongs to one thread; what an evaluation looks at must not change until its results were taken.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <future>
+#include <vector>
+
+#include "idl/dyncal.h"
+
+namespace dyncal::services {
+
+class EvaluationQueue {
+public:
+  using Evaluation = std::function<std::vector<CalibrationResult>()>;
+
+  // `at_once` 0: in the caller's thread.
+  explicit EvaluationQueue(std::size_t at_once) : at_once_(at_once) {}
+
+  [[nodiscard]] bool in_background() const { return at_once_ > 0; }
+
+  void begin(Evaluation evaluation);
+  // Of all evaluations before the first one that is still under way.
+  [[nodiscard]] std::vector<CalibrationResult> take_finished();
+  // Of all; waits for them.
+  [[nodiscard]] std::vector<CalibrationResult> take_all();
+
+private:
+  void finish_oldest();
+  void keep(std::vector<CalibrationResult> results);
+
+  std::size_t at_once_;
+  std::deque<std::future<std::vector<CalibrationResult>>> under_way_;
+  std::vector<CalibrationResult> finished_;
+};
+
+} // namespace dyncal::services
