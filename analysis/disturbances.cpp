@@ -1,8 +1,10 @@
 #include "analysis/disturbances.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
 
 #include "analysis/sine_fit_extended.hpp"
@@ -34,29 +36,56 @@ std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, do
   return result;
 }
 
-// A frequency's sine and cosine at all stamps, phases about the first one.
-class Line {
+// Sine and cosine of a frequency for some samples at a time, so that they stay in the cache.
+class SineBlock {
 public:
-  Line(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns)
-      : sine_(stamps_ns.size()), cosine_(stamps_ns.size()) {
-    fill_sine_cosine(frequency, stamps_ns.front(), stamps_ns, sine_.data(), cosine_.data());
-    const double angle = 2.0 * std::numbers::pi * frequency.reduced_turns(stamps_ns.front() - reference_ns);
-    turn_ = {std::cos(angle), std::sin(angle)};
+  static constexpr std::size_t most_samples = 512;
+
+  // About `origin_ns`. REQUIRES: at most `most_samples`.
+  void fill(const Frequency& frequency, std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns) {
+    samples_ = stamps_ns.size();
+    fill_sine_cosine(frequency, origin_ns, stamps_ns, sine_.data(), cosine_.data());
   }
 
-  // The values less the line and the offset; sine and cosine about the reference instant.
-  [[nodiscard]] std::vector<double> removed_from(std::span<const double> values, double sine, double cosine, double offset) const {
-    const std::complex<double> p = std::complex<double>(sine, cosine) * turn_;
-    std::vector<double> result(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      result[i] = values[i] - offset - p.real() * sine_[i] - p.imag() * cosine_[i];
-    return result;
+  // Leaves in `to` the values less offset and line; they may be the same.
+  void remove(std::complex<double> phasor, double offset, const double* values, double* to) const {
+    for (std::size_t i = 0; i < samples_; ++i)
+      to[i] = values[i] - offset - phasor.real() * sine_[i] - phasor.imag() * cosine_[i];
   }
 
 private:
-  std::vector<double> sine_, cosine_;
-  std::complex<double> turn_;
+  std::array<double, most_samples> sine_, cosine_;
+  std::size_t samples_ = 0;
 };
+
+// The phasor about another instant.
+std::complex<double> turned(const Frequency& frequency, std::complex<double> phasor, std::int64_t by_ns) {
+  const double angle = 2.0 * std::numbers::pi * frequency.reduced_turns(by_ns);
+  return phasor * std::complex<double>(std::cos(angle), std::sin(angle));
+}
+
+// Calls with the first index of every stretch of samples that a SineBlock holds, and their number.
+template <class Visit>
+void for_each_block(std::size_t samples, Visit visit) {
+  for (std::size_t i = 0; i < samples; i += SineBlock::most_samples)
+    visit(i, std::min(SineBlock::most_samples, samples - i));
+}
+
+// The channels without the sine that was fitted and the offset, one after the other.
+std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                                       std::span<const std::span<const double>> channels, const std::vector<SineFit>& fits) {
+  auto residuals = std::make_unique_for_overwrite<double[]>(channels.size() * stamps_ns.size());
+  std::vector<std::complex<double>> phasors;
+  for (const SineFit& fit : fits)
+    phasors.push_back(turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - reference_ns));
+  SineBlock block;
+  for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
+    block.fill(frequency, stamps_ns.front(), stamps_ns.subspan(first, n));
+    for (std::size_t j = 0; j < channels.size(); ++j)
+      block.remove(phasors[j], fits[j].offset, channels[j].data() + first, residuals.get() + j * stamps_ns.size() + first);
+  });
+  return residuals;
+}
 
 struct Disturbances { // of one channel
   ExtendedBasis basis;
@@ -70,13 +99,10 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
   const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
   const std::vector<Candidate> tried = candidates(frequency, rate_hz, duration_s);
   if (tried.empty()) return found;
-  std::vector<std::vector<double>> residuals;
+  const std::unique_ptr<double[]> residuals = residuals_of(frequency, reference_ns, stamps_ns, channels, fits);
   std::vector<std::span<const double>> residual_channels;
-  const Line fundamental(frequency, reference_ns, stamps_ns);
   for (std::size_t j = 0; j < channels.size(); ++j)
-    residuals.push_back(fundamental.removed_from(channels[j], fits[j].sine, fits[j].cosine, fits[j].offset));
-  for (const std::vector<double>& residual : residuals)
-    residual_channels.push_back(residual);
+    residual_channels.emplace_back(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
 
   for (const Candidate& candidate : tried) {
     const auto lines = fit_sine(candidate.frequency, reference_ns, stamps_ns, residual_channels);
@@ -97,8 +123,13 @@ void take_out(UndisturbedFit& result, const Frequency& frequency, const Extended
               std::span<const std::int64_t> stamps_ns, std::span<const double> values) {
   result.fit = fit.fundamental;
   result.values.assign(values.begin(), values.end());
+  SineBlock block;
   const auto take = [&](const Frequency& line, const FurtherPhasor& phasor) {
-    result.values = Line(line, reference_ns, stamps_ns).removed_from(result.values, phasor.sine, phasor.cosine, 0.0);
+    const std::complex<double> about_first = turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - reference_ns);
+    for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
+      block.fill(line, stamps_ns.front(), stamps_ns.subspan(first, n));
+      block.remove(about_first, 0.0, result.values.data() + first, result.values.data() + first);
+    });
     result.removed_hz.push_back(line.hz());
   };
   for (std::size_t k = 0; k < fit.harmonics.size(); ++k)

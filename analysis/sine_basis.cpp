@@ -46,7 +46,8 @@ bool SineBasis::fill(std::size_t first, std::size_t n, double* columns) const {
   SlopeSums slope;
   bool increasing = first == 0 || stamps[0] > stamps[-1];
   for (std::size_t line = 0; line < frequencies_.size(); ++line) {
-    increasing &= kernel.design_with_slope(stamps, n, record_->axis(frequencies_[line]), block, sums, slope);
+    const TimeAxis axis = record_->axis(frequencies_[line]);
+    increasing &= needs_u() ? kernel.design_with_slope(stamps, n, axis, block, sums, slope) : kernel.design(stamps, n, axis, block, sums);
     std::copy_n(block.sine, n, column(sine_column(line)));
     std::copy_n(block.cosine, n, column(sine_column(line) + 1));
   }

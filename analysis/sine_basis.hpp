@@ -31,6 +31,7 @@ public:
 
 private:
   SineBasis(const Record& record, const ExtendedBasis& basis, std::vector<Frequency> frequencies);
+  [[nodiscard]] bool needs_u() const { return drift_order_ > 0 || drifting_phasor_; }
   const Record* record_;
   std::vector<Frequency> frequencies_;
   std::size_t drift_order_;
