@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "analysis/sine_values.hpp"
@@ -39,8 +40,8 @@ double median(std::vector<double> values) {
 }
 
 struct Design { // of one frame: sine and cosine of every sample, and their sums about the mean
-  std::vector<double> sine;
-  std::vector<double> cosine;
+  std::unique_ptr<double[]> sine;
+  std::unique_ptr<double[]> cosine;
   double mean_sine = 0.0;
   double mean_cosine = 0.0;
 };
@@ -52,27 +53,53 @@ ExcitationWindowFinder::ExcitationWindowFinder(const Frequency& frequency, const
 
 void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) {
   assert(stamps_ns.size() == sync.size());
-  for (std::size_t i = 0; i < stamps_ns.size() && !ended_; ++i) {
-    if (!std::isfinite(sync[i]) || (origin_ns_ && stamps_ns[i] <= last_stamp_ns_)) {
-      ++ignored_samples_;
-      continue;
+  for (std::size_t i = 0; i < stamps_ns.size() && !ended_;) {
+    const std::size_t run = samples_of_open_frame(stamps_ns.subspan(i), sync.subspan(i));
+    if (run > 0) {
+      const auto first = static_cast<std::ptrdiff_t>(i);
+      const auto behind = static_cast<std::ptrdiff_t>(i + run);
+      stamps_ns_.insert(stamps_ns_.end(), stamps_ns.begin() + first, stamps_ns.begin() + behind);
+      values_.insert(values_.end(), sync.begin() + first, sync.begin() + behind);
+      last_stamp_ns_ = stamps_ns_.back();
+      i += run;
+    } else {
+      begin_frame_or_ignore(stamps_ns[i], sync[i]);
+      ++i;
     }
-    const bool of_open_frame = origin_ns_ && stamps_ns[i] < (open_index_ + 1) * frame_ns_; // later than the one before, as it is
-    const std::int64_t index = of_open_frame ? open_index_ : floor_divide(stamps_ns[i], frame_ns_);
-    if (!origin_ns_) {
-      origin_ns_ = index * frame_ns_;
-      first_stamp_ns_ = stamps_ns[i];
-      open_index_ = index;
-    }
-    last_stamp_ns_ = stamps_ns[i];
-    if (index != open_index_) {
-      close_frame();
-      open_index_ = index;
-      if (ended_) return;
-    }
-    stamps_ns_.push_back(stamps_ns[i]);
-    values_.push_back(sync[i]);
   }
+}
+
+// How many of them, one after the other, belong to the frame that is open.
+std::size_t ExcitationWindowFinder::samples_of_open_frame(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) const {
+  if (!origin_ns_) return 0;
+  const std::int64_t end_ns = (open_index_ + 1) * frame_ns_;
+  std::int64_t last_ns = last_stamp_ns_;
+  std::size_t run = 0;
+  for (; run < stamps_ns.size() && stamps_ns[run] > last_ns && stamps_ns[run] < end_ns && std::isfinite(sync[run]); ++run)
+    last_ns = stamps_ns[run];
+  return run;
+}
+
+// A sample that does not belong to the open frame.
+void ExcitationWindowFinder::begin_frame_or_ignore(std::int64_t stamp_ns, double sync) {
+  if (!std::isfinite(sync) || (origin_ns_ && stamp_ns <= last_stamp_ns_)) {
+    ++ignored_samples_;
+    return;
+  }
+  const std::int64_t index = floor_divide(stamp_ns, frame_ns_);
+  if (!origin_ns_) {
+    origin_ns_ = index * frame_ns_;
+    first_stamp_ns_ = stamp_ns;
+    open_index_ = index;
+  }
+  last_stamp_ns_ = stamp_ns;
+  if (index != open_index_) {
+    close_frame();
+    open_index_ = index;
+    if (ended_) return;
+  }
+  stamps_ns_.push_back(stamp_ns);
+  values_.push_back(sync);
 }
 
 void ExcitationWindowFinder::finish() {
@@ -102,9 +129,9 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   const std::int64_t centre_ns = open_index_ * frame_ns_ + frame_ns_ / 2;
   const double count = static_cast<double>(n);
   Design design;
-  design.sine.resize(n);
-  design.cosine.resize(n);
-  fill_sine_cosine(frequency_, centre_ns, stamps_ns_, design.sine.data(), design.cosine.data());
+  design.sine = std::make_unique_for_overwrite<double[]>(n);
+  design.cosine = std::make_unique_for_overwrite<double[]>(n);
+  fill_sine_cosine(frequency_, centre_ns, stamps_ns_, design.sine.get(), design.cosine.get());
   double value_sum = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     design.mean_sine += design.sine[i];

@@ -77,6 +77,8 @@ private:
     bool usable = false;
   };
 
+  [[nodiscard]] std::size_t samples_of_open_frame(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) const;
+  void begin_frame_or_ignore(std::int64_t stamp_ns, double sync);
   void close_frame();
   [[nodiscard]] Frame approximate() const;
   void take(const Frame& frame);

@@ -65,21 +65,38 @@ Expected<void> RunEvaluator::describe(const SourceDescription& description) {
   if (source == nullptr) {
     return {};
   }
-  std::vector<ChannelName> needed{recipe_.reference, recipe_.sync_acs, recipe_.sync_dau};
-  needed.insert(needed.end(), recipe_.dut.begin(), recipe_.dut.end());
-  if (recipe_.temperature) {
-    needed.push_back(*recipe_.temperature);
-  }
   const std::vector<std::string> names = channel_names(description);
-  for (const ChannelName& channel : needed) {
+  for (const ChannelName& channel : channels_needed()) {
     if (channel.source == source->source() && std::find(names.begin(), names.end(), channel.channel) == names.end()) {
       return tl::unexpected(Error{ErrorCode::no_source, fmt::format("source '{}' has no channel '{}'; it has: {}", channel.source,
                                                                     channel.channel, fmt::join(names, ", "))});
     }
   }
   source->describe(description);
+  if (!recipe_.dut.empty()) { // else all channels are under calibration
+    keep_only_what_is_needed(*source);
+  }
   clock_.describe(description);
   return check_clocks();
+}
+
+std::vector<ChannelName> RunEvaluator::channels_needed() const {
+  std::vector<ChannelName> needed{recipe_.reference, recipe_.sync_acs, recipe_.sync_dau};
+  needed.insert(needed.end(), recipe_.dut.begin(), recipe_.dut.end());
+  if (recipe_.temperature) {
+    needed.push_back(*recipe_.temperature);
+  }
+  return needed;
+}
+
+void RunEvaluator::keep_only_what_is_needed(SourceRecord& source) const {
+  std::set<std::size_t> channels;
+  for (const ChannelName& name : channels_needed()) {
+    if (const auto channel = source.channel(name.channel); channel && name.source == source.source()) {
+      channels.insert(*channel);
+    }
+  }
+  source.keep_only(std::move(channels));
 }
 
 // Stamps of different sources are compared only where they are meant to be of one time scale.

@@ -79,6 +79,8 @@ private:
   // Which search finds the sensors' stretches.
   [[nodiscard]] const StepSearch& search_of_sensors() const { return recipe_.without_sync() ? *acs_search_ : *dau_search_; }
   [[nodiscard]] Expected<void> check_clocks() const;
+  [[nodiscard]] std::vector<ChannelName> channels_needed() const;
+  void keep_only_what_is_needed(SourceRecord& source) const;
   void take_results(std::vector<CalibrationResult> results, EvaluationOutput& output);
   // The next step by its method. What is evaluated in another thread looks at nothing that changes.
   [[nodiscard]] EvaluationQueue::Evaluation evaluation_by_method(const RecipeStep& step);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace dyncal::services {
 namespace {
@@ -17,6 +18,17 @@ drivers::RegularClock regular_clock(const SampleBlock& block) {
 
 void SourceRecord::describe(const SourceDescription& description) {
   description_ = description;
+}
+
+void SourceRecord::keep_only(std::set<std::size_t> channels) {
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (!channels.contains(channel)) {
+      columns_[channel] = {};
+    } else if (!keeps(channel)) {
+      columns_[channel].assign(stamps_ns_.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  kept_channels_ = std::move(channels);
 }
 
 std::optional<std::size_t> SourceRecord::channel(const std::string& name) const {
@@ -89,6 +101,9 @@ void SourceRecord::append(const SampleBlock& block) {
     stamp_uncertainties_ns_.resize(stamp_uncertainties_ns_.size() + samples, 0);
   }
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (!keeps(channel)) {
+      continue;
+    }
     const auto begin = block.values().begin() + static_cast<std::ptrdiff_t>(channel * samples);
     columns_[channel].insert(columns_[channel].end(), begin, begin + static_cast<std::ptrdiff_t>(samples));
   }
@@ -108,7 +123,7 @@ void SourceRecord::restart() {
 }
 
 std::span<const double> SourceRecord::column(std::size_t channel) const {
-  return channel < columns_.size() ? std::span(columns_[channel]).subspan(first_) : std::span<const double>{};
+  return channel < columns_.size() && keeps(channel) ? std::span(columns_[channel]).subspan(first_) : std::span<const double>{};
 }
 
 void SourceRecord::forget_before(std::int64_t stamp_ns) {
@@ -124,6 +139,7 @@ void SourceRecord::forget_before(std::int64_t stamp_ns) {
 SourceRecord SourceRecord::part(std::int64_t begin_ns, std::int64_t end_ns) const {
   SourceRecord part(source_, capacity_);
   part.description_ = description_;
+  part.kept_channels_ = kept_channels_;
   part.gaps_ = gaps_;
   part.columns_.resize(columns_.size());
   const auto inside = [&](std::int64_t stamp) { return stamp >= begin_ns && stamp <= end_ns; };
@@ -138,7 +154,9 @@ SourceRecord SourceRecord::part(std::int64_t begin_ns, std::int64_t end_ns) cons
   take(flags_, part.flags_);
   take(stamp_uncertainties_ns_, part.stamp_uncertainties_ns_);
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
-    take(columns_[channel], part.columns_[channel]);
+    if (keeps(channel)) {
+      take(columns_[channel], part.columns_[channel]);
+    }
   }
   return part;
 }
@@ -153,7 +171,11 @@ void SourceRecord::forget(std::size_t samples) {
   erase(stamps_ns_);
   erase(flags_);
   erase(stamp_uncertainties_ns_);
-  std::for_each(columns_.begin(), columns_.end(), erase);
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (keeps(channel)) {
+      erase(columns_[channel]);
+    }
+  }
   first_ = 0;
 }
 

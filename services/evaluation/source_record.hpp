@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,12 +34,15 @@ public:
   [[nodiscard]] const SourceDescription& description() const { return *description_; } // REQUIRES: described()
   [[nodiscard]] std::optional<std::size_t> channel(const std::string& name) const;
 
+  // Only these channels are kept from now on, for nothing else is asked for; what was not kept so far counts as not measured.
+  void keep_only(std::set<std::size_t> channels);
+
   // Appends the block's samples; false when it cannot be used (sizes contradict each other, other number of channels): it is counted.
   bool add(const SampleBlock& block);
 
   [[nodiscard]] std::span<const std::int64_t> stamps_ns() const { return std::span(stamps_ns_).subspan(first_); }
   [[nodiscard]] std::span<const std::uint8_t> flags() const { return std::span(flags_).subspan(first_); }
-  // Empty when the samples so far have no such column.
+  // Empty when the samples so far have no such column, or it is not kept.
   [[nodiscard]] std::span<const double> column(std::size_t channel) const;
   // Samples ever dropped from the front or by a restart: index i of stamps_ns() is the (forgotten() + i)-th sample received.
   [[nodiscard]] std::uint64_t forgotten() const { return forgotten_; }
@@ -70,6 +74,7 @@ private:
     std::uint64_t samples;
   };
 
+  [[nodiscard]] bool keeps(std::size_t channel) const { return !kept_channels_ || kept_channels_->contains(channel); }
   [[nodiscard]] bool usable(const SampleBlock& block) const;
   void append(const SampleBlock& block);
   void restart();
@@ -78,6 +83,7 @@ private:
   std::string source_;
   std::size_t capacity_;
   std::optional<SourceDescription> description_;
+  std::optional<std::set<std::size_t>> kept_channels_; // all when there is no set
   bus::SampleContinuity continuity_;
   std::size_t first_ = 0;
   std::vector<std::int64_t> stamps_ns_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace dyncal::services {
 namespace {
@@ -64,17 +63,19 @@ void StepSearch::feed() {
   const auto stamps = record_.stamps_ns();
   const auto flags = record_.flags();
   const auto sync = record_.column(*channel);
-  const std::uint64_t begin = std::max(fed_, record_.forgotten());
-  std::vector<std::int64_t> good_stamps;
-  std::vector<double> good_sync;
-  for (std::uint64_t i = begin - record_.forgotten(); i < stamps.size(); ++i) {
-    if (flags[i] == 0 && stamps[i] >= search_from_ns_) {
-      good_stamps.push_back(stamps[i]);
-      good_sync.push_back(sync[i]);
+  const auto good = [&](std::size_t i) { return flags[i] == 0 && stamps[i] >= search_from_ns_; };
+  auto i = static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten());
+  while (i < stamps.size()) {
+    const std::size_t begin = i;
+    while (i < stamps.size() && good(i)) {
+      ++i;
+    }
+    finder_->push(stamps.subspan(begin, i - begin), sync.subspan(begin, i - begin));
+    while (i < stamps.size() && !good(i)) {
+      ++i;
     }
   }
   fed_ = record_.forgotten() + stamps.size();
-  finder_->push(good_stamps, good_sync);
   if (record_.ended()) {
     finder_->finish();
   }

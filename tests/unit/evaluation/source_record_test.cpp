@@ -1,5 +1,7 @@
 #include "services/evaluation/source_record.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "synthetic_run.hpp"
@@ -77,6 +79,28 @@ TEST(SourceRecord, GivesAwayAPartThatSaysTheSameOfItsTime) {
   EXPECT_EQ(part.stamp_uncertainty_s(stamps[100], stamps[900]), record.stamp_uncertainty_s(stamps[100], stamps[900]));
   EXPECT_EQ(part.source(), "dau");
   EXPECT_TRUE(record.part(stamps.back() + 1, stamps.back() + 2).stamps_ns().empty());
+}
+
+TEST(SourceRecord, KeepsOnlyTheChannelsThatAreAskedFor) {
+  const tests::SyntheticRun run;
+  SourceRecord all("dau");
+  SourceRecord one("dau");
+  one.keep_only({1});
+  for (const SampleBlock& block : run.dau_blocks()) {
+    all.add(block);
+    one.add(block);
+  }
+  const std::int64_t since_ns = all.stamps_ns()[all.stamps_ns().size() / 2];
+  all.forget_before(since_ns);
+  one.forget_before(since_ns);
+  EXPECT_TRUE(one.column(0).empty());
+  ASSERT_EQ(one.column(1).size(), all.column(1).size());
+  EXPECT_TRUE(std::equal(one.column(1).begin(), one.column(1).end(), all.column(1).begin()));
+  EXPECT_EQ(one.part(since_ns, all.stamps_ns().back()).column(1).size(), all.column(1).size());
+  one.keep_only({0});
+  EXPECT_TRUE(one.column(1).empty());
+  ASSERT_EQ(one.column(0).size(), all.column(0).size());
+  EXPECT_TRUE(std::isnan(one.column(0).front()));
 }
 
 TEST(SourceRecord, DropsWhatWasBufferedWhenTheSourceStartsAnew) {
