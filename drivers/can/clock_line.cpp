@@ -5,6 +5,16 @@
 
 namespace dyncal::drivers::can {
 
+namespace {
+
+// The smallest of n delays lies above the least possible one by something like 1/n of their spread, and is as uncertain as that. A line
+// through one of g groups of the points lies g times as far above, and (g - 1) times as far above the line through all. The mean over the
+// groups is known to some half of itself only, which the factor of 2 covers.
+constexpr std::size_t groups = 4;
+constexpr double coverage = 2.0;
+
+} // namespace
+
 void ClockLine::restart() {
   chunks_.clear();
   ready_ = false;
@@ -47,7 +57,7 @@ bool ClockLine::add(std::int64_t free_ns, std::int64_t host_ns) {
       if (point.free_s - chunks_.back().begin_s >= options_.refresh_s) {
         draw();
         chunks_.push_back({point.free_s, 0.0, 0, {}});
-        while (point.free_s - chunks_.front().begin_s > options_.window_s)
+        while (chunks_.size() > options_.settle_points && point.free_s - chunks_.front().begin_s > options_.window_s)
           chunks_.pop_front();
       }
       Chunk& chunk = chunks_.back();
@@ -90,16 +100,28 @@ ClockLine::Line ClockLine::line_below(std::size_t first_chunk, std::size_t strid
   return {at_zero, slope};
 }
 
+bool ClockLine::settled() const {
+  if (chunks_.size() < groups || newest_free_s_ - chunks_.front().begin_s < options_.settle_s) return false;
+  std::size_t points = 0;
+  for (const Chunk& chunk : chunks_)
+    points += chunk.points;
+  return points >= options_.settle_points;
+}
+
 void ClockLine::draw() {
-  if (newest_free_s_ - chunks_.front().begin_s < options_.settle_s) return;
+  if (!ready_ && !settled()) return;
   line_ = line_below(0, 1);
   rate_ = line_.slope;
   ready_ = true;
-  if (chunks_.size() < 4) return;
-  const Line even = line_below(0, 2);
-  const Line odd = line_below(1, 2);
-  const auto apart = [&](double at_s) { return std::abs(even.at_zero_s - odd.at_zero_s + (even.slope - odd.slope) * at_s); };
-  u_s_ = std::max(apart(newest_free_s_), apart(chunks_.front().begin_s)) / 2.0;
+  double apart_at_end_s = 0.0;
+  double apart_at_begin_s = 0.0;
+  for (std::size_t group = 0; group < groups; ++group) {
+    const Line of_group = line_below(group, groups);
+    const auto apart = [&](double at_s) { return std::abs(of_group.at_zero_s - line_.at_zero_s + (of_group.slope - line_.slope) * at_s); };
+    apart_at_end_s += apart(newest_free_s_);
+    apart_at_begin_s += apart(chunks_.front().begin_s);
+  }
+  u_s_ = coverage * std::max(apart_at_end_s, apart_at_begin_s) / (groups * (groups - 1.0));
 }
 
 std::int64_t ClockLine::to_host(std::int64_t free_ns) const {

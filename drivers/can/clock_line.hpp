@@ -5,7 +5,8 @@
 // points (Moon, Skelly, Towsley 1999): it follows the smallest delays and no mean of them. What remains is the smallest delay itself, which
 // no reading can tell from the offset; the user of the line has to know it.
 //
-// Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered before `settle_s` of points. A point
+// Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered before `settle_s` and
+// `settle_points`; at low rates older points are kept for it. A point
 // that lies more than `step_s` below the line, or in the free clock before its predecessor, means that one of the clocks was set: the
 // estimate begins anew. A point far above is a late frame and changes nothing; but when all points of `step_points` in a row are that far
 // above, the host clock was set forward. Times are int64 ns; only their differences become double. Belongs to one thread.
@@ -22,6 +23,7 @@ struct ClockLineOptions {
   double window_s = 60.0;
   double refresh_s = 0.25;
   double settle_s = 1.0;
+  std::size_t settle_points = 32;
   double step_s = 5e-3;
   std::size_t step_points = 200;
   double largest_rate = 500e-6; // of a clock that is no worse than its quartz, and of a nominal rate that is meant
@@ -39,7 +41,8 @@ public:
   // REQUIRES: ready()
   [[nodiscard]] std::int64_t to_host(std::int64_t free_ns) const;
   [[nodiscard]] double rate() const { return rate_; }
-  // Standard uncertainty of the line at its end, from two lines through every other chunk of the points.
+  // Standard uncertainty of the line at its worse end, from the distance to it of four lines through every fourth chunk of the points. The
+  // least delay of all is not in it.
   [[nodiscard]] double u_s() const { return u_s_; }
   // How far the last point lay above the line.
   [[nodiscard]] double last_delay_s() const { return last_delay_s_; }
@@ -64,6 +67,7 @@ private:
   static void append(std::vector<Point>& hull, Point point);
   [[nodiscard]] bool stepped(const Point& point);
   void draw();
+  [[nodiscard]] bool settled() const;
   [[nodiscard]] Line line_below(std::size_t first_chunk, std::size_t stride) const;
 
   ClockLineOptions options_;

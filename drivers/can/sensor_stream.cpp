@@ -112,21 +112,27 @@ Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
     counts_.dropped_frames += lost->frames;
     frames_dropped_since_ += lost->frames;
   } else if (const auto* change = std::get_if<LinkChange>(&event)) {
-    take_change(*change);
+    take_change(*change, sink);
   } else if (const auto* fault = std::get_if<BusFault>(&event)) {
     take_fault(*fault);
   }
   return {};
 }
 
-void SensorStream::take_change(const LinkChange& change) {
+void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
   link_ = change.link;
   if (!change.interrupted) return;
   ++counts_.interruptions;
   interrupted_ = true;
   joiner_.give_up_open();
   sync_.reset();
+  give_up_bus_time(sink);
   timer_->restart(); // drivers seed the adapter's clock anew when the link comes up
+}
+
+// The clock that would have told the time of what waits for it is gone; the next one knows nothing of it.
+void SensorStream::give_up_bus_time(SampleSink& sink) {
+  if (!for_bus_time_.empty()) resolve(sink, true);
 }
 
 void SensorStream::take_fault(const BusFault& fault) {
@@ -152,7 +158,10 @@ Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink)
                                      link_.name + ": time source 'hardware-stamp' is asked for, but the adapter stamps no frames; leave "
                                                   "'time_source' out or name 'kernel-stamp'"});
   last_kernel_ns_ = frame.kernel_ns;
-  if (!timer_->add(frame)) ++counts_.clock_restarts;
+  if (!timer_->add(frame)) {
+    ++counts_.clock_restarts;
+    give_up_bus_time(sink);
+  }
   if (!time_source_known_) choose_time_source(frame, sink);
   if (is_sync) {
     sync_ = frame;

@@ -88,7 +88,7 @@ private:
   SensorStream(SensorSettings settings, DbcFile dbc);
 
   Expected<void> take_frame(const CanFrame& frame, SampleSink& sink);
-  void take_change(const LinkChange& change);
+  void take_change(const LinkChange& change, SampleSink& sink);
   void take_fault(const BusFault& fault);
   void choose_time_source(const CanFrame& first, SampleSink& sink);
   void complete(JoinedSample joined, SampleSink& sink);
@@ -96,6 +96,7 @@ private:
   void number_by_arrival(const CanFrame& head, Waiting& sample);
   void decode(const JoinedSample& joined, std::vector<double>& values);
   void resolve(SampleSink& sink, bool at_any_rate);
+  void give_up_bus_time(SampleSink& sink);
   void give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
   [[nodiscard]] std::int64_t free_ns(std::int64_t key) const;
   [[nodiscard]] bool follows_sensor_clock() const;

@@ -11,6 +11,7 @@
 #include <linux/can/error.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include "tests/can/kernel_can.hpp"
@@ -84,8 +85,8 @@ GsUsbAdapter::~GsUsbAdapter() {
 }
 
 void GsUsbAdapter::plug_in() {
-  plugged_in_ns_ = now_ns();
-  channels_ = {};
+  plugged_in_ns_ = now_ns() / 1'000'000 * 1'000'000; // its clock steps with the bench's milliseconds
+  plugged_in_ = true;
   UsbFirmware& firmware = *this;
   device_ = std::make_unique<UsbipDevice>(firmware);
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -98,6 +99,8 @@ void GsUsbAdapter::unplug() {
   thread_ = {};
   device_.reset();
   const std::scoped_lock lock(mutex_);
+  plugged_in_ = false;
+  to_bus_.clear();
   to_host_.clear();
   channels_ = {};
 }
@@ -141,6 +144,7 @@ BitRates GsUsbAdapter::rates(std::size_t channel) const {
 void GsUsbAdapter::put(const drivers::can::CanFrame& frame, std::int64_t start_ns) {
   {
     const std::scoped_lock lock(mutex_);
+    if (!plugged_in_) return;
     OnBus next;
     next.said.frame = frame;
     next.start_ns = start_ns;
@@ -191,6 +195,7 @@ void GsUsbAdapter::overrun(std::size_t frames) {
 }
 
 void GsUsbAdapter::run(const std::stop_token& stop) {
+  ::prctl(PR_SET_TIMERSLACK, 1UL); // ns: an adapter does not wait for others to wake up with it
   for (bool attached = true; attached && !stop.stop_requested();) {
     std::int64_t due_ns = 0;
     {
@@ -286,7 +291,7 @@ void GsUsbAdapter::tell_host(gs_usb::HostFrame said, std::int64_t stamped_ns, st
   std::int64_t due_ns = end_ns + std::llround(latency_s(random_) * 1e9);
   if (!to_host_.empty()) due_ns = std::max(due_ns, to_host_.back().due_ns);
   said.stamp_us = clock_us(stamped_ns);
-  to_host_.push_back({gs_usb::pack(said, settings_.stamps), due_ns});
+  to_host_.push_back({gs_usb::pack(said, settings_.stamps), due_ns, said.channel});
 }
 
 void GsUsbAdapter::bulk_out(std::span<const std::uint8_t> sent) {
@@ -344,6 +349,7 @@ std::optional<std::vector<std::uint8_t>> GsUsbAdapter::vendor_request(const Cont
     channel->started = gs_usb::get_32(sent, 0) == gs_usb::mode_start;
     channel->bus_off = false;
     channel->receive_errors = 0;
+    std::erase_if(to_host_, [&](const ToHost& other) { return other.channel == request.value; }); // nothing of before comes after
     return said;
   }
   return std::nullopt;

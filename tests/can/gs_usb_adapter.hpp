@@ -55,7 +55,7 @@ public:
   void unplug();
   void plug_in();
 
-  // Another device's frame begins at `start_ns`, or when the bus is idle then.
+  // Another device's frame begins at `start_ns`, or when the bus is idle then. Nobody hears it while the adapter is out.
   void put(const drivers::can::CanFrame& frame, std::int64_t start_ns);
   // An error frame of the controller, at once (linux/can/error.h).
   void say_error(std::size_t channel, std::uint32_t classes, const std::array<std::uint8_t, 8>& data);
@@ -84,6 +84,7 @@ private:
   struct ToHost {
     std::vector<std::uint8_t> transfer;
     std::int64_t due_ns = 0;
+    std::uint8_t channel = 0;
   };
 
   std::optional<std::vector<std::uint8_t>> control(const ControlRequest& request, std::span<const std::uint8_t> sent) override;
@@ -110,6 +111,7 @@ private:
   std::deque<ToHost> to_host_;
   std::int64_t bus_idle_ns_ = 0;
   std::int64_t plugged_in_ns_ = 0;
+  bool plugged_in_ = false;
   std::size_t overrun_ = 0;
   bool tell_of_overrun_ = false;
   std::mt19937 random_;

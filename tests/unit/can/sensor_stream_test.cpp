@@ -209,6 +209,34 @@ TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
   EXPECT_EQ(collected.descriptions.back().tick_s, 1e-6);
 }
 
+TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
+  SensorSettings settings = one_message();
+  settings.time_source = TimeSource::hardware_stamp;
+  settings.hardware_stamp_point = StampPoint::end_of_frame;
+  const auto stream = stream_of(settings);
+  Collected collected;
+  ASSERT_TRUE(stream->begin(link(), collected));
+  const auto send = [&](int k, std::int64_t hardware_ahead_ns) {
+    CanFrame frame = on_time(k);
+    frame.hardware_ns = frame.kernel_ns + hardware_ahead_ns;
+    ASSERT_TRUE(stream->take(frame, collected));
+  };
+  for (int k = 0; k < 500; ++k) // too short for a line
+    send(k, 3'000'000);
+  ASSERT_TRUE(stream->take(LinkChange{link(), true, "interface 'can0' is up"}, collected));
+  for (int k = 500; k < 3000; ++k)
+    send(k, 0);
+  stream->finish(collected);
+  const auto stamps = collected.stamps_ns();
+  ASSERT_EQ(stamps.size(), 3000U);
+  for (int k = 0; k < 3000; ++k)
+    ASSERT_NEAR(static_cast<double>(stamps[static_cast<std::size_t>(k)] - epoch_ns), k * 1e6, 10.0) << k;
+  EXPECT_EQ(collected.blocks.front().flags.front(), stamp_no_uncertainty);
+  EXPECT_EQ(collected.blocks.back().flags.back(), 0);
+  EXPECT_EQ(stream->counts().not_trusted, 500U);
+  EXPECT_EQ(stream->counts().lost, 0U);
+}
+
 TEST(SensorStream, TakesTheEndOfTheSyncForTheTimeOfASynchronousSample) {
   SensorSettings settings = one_message();
   settings.counter.clear();
