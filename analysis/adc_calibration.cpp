@@ -45,9 +45,10 @@ Expected<std::vector<AdcCalibrationPoint>> of_one_amplitude(std::span<const AdcC
                                                       number(point.test_amplitude_vpp) + " Vpp), choose one");
     }
   }
-  if (wanted_vpp && !(std::abs(std::log2(chosen / *wanted_vpp)) <= 1.0))
+  if (wanted_vpp && !(std::abs(std::log2(chosen / *wanted_vpp)) <= 1.0)) {
     return failure(ErrorCode::out_of_calibration, "the ADC was not calibrated near " + number(*wanted_vpp) +
                                                       " Vpp, the nearest test amplitude is " + number(chosen) + " Vpp");
+  }
   std::vector<AdcCalibrationPoint> result;
   std::copy_if(points.begin(), points.end(), std::back_inserter(result),
                [&](const AdcCalibrationPoint& point) { return same(point.test_amplitude_vpp, chosen); });
@@ -177,6 +178,7 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
 std::vector<AdcCalibrationPoint> points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
   const std::vector<Group> groups = gather(sorted);
   std::vector<AdcCalibrationPoint> points;
+  points.reserve(groups.size());
   std::vector<double> f, freedom, gain_squares, phase_squares, gains, lags;
   for (const Group& group : groups)
     points.push_back(group.mean);
@@ -214,9 +216,10 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   if (!points) return tl::unexpected(points.error());
   const double lowest = points->front().frequency_hz;
   const double highest = points->back().frequency_hz;
-  if (!(frequency_hz >= lowest * (1.0 - 1e-9) && frequency_hz <= highest * (1.0 + 1e-9)))
+  if (!(frequency_hz >= lowest * (1.0 - 1e-9) && frequency_hz <= highest * (1.0 + 1e-9))) {
     return failure(ErrorCode::out_of_calibration, number(frequency_hz) + " Hz is outside the range in which the ADC was calibrated, " +
                                                       number(lowest) + " Hz to " + number(highest) + " Hz");
+  }
   if (points->size() == 1) {
     const AdcCalibrationPoint& only = points->front();
     return AdcResponse{only.gain, only.phase_lag_rad, only.u_gain, only.u_phase_lag_rad};
@@ -225,9 +228,10 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   const FrontEnd model = approximate(*points);
   std::vector<double> f, gains, lags, u_gains, u_lags;
   for (const AdcCalibrationPoint& point : *points) {
-    if (!f.empty() && same(point.frequency_hz, f.back()))
+    if (!f.empty() && same(point.frequency_hz, f.back())) {
       return failure(ErrorCode::invalid_argument,
                      "the ADC calibration has " + number(point.frequency_hz) + " Hz twice, make one point of repeated measurements first");
+    }
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));
     lags.push_back(point.phase_lag_rad - model.lag_at(point.frequency_hz));

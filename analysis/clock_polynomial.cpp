@@ -82,9 +82,10 @@ Expected<ClockPolynomial> fit_clock_polynomial(std::span<const BlockPhase> block
       result.covariance.push_back(scale_s * scale_s * solution->covariance_of(k, l));
   }
   result.step_phases_rad.assign(solution->parameters.begin() + order, solution->parameters.end());
-  for (const BlockPhase& block : blocks)
+  for (const BlockPhase& block : blocks) {
     result.residuals_s.push_back((block.phase_rad - result.step_phases_rad[block.step]) / block.angular_frequency -
                                  result.time_error_s(block.time_ns));
+  }
   result.chi_squared = solution->rss;
   result.degrees_of_freedom = solution->degrees_of_freedom;
   return result;

@@ -8,9 +8,10 @@ namespace dyncal::analysis {
 
 Expected<double> normalised_error(double x, double u_x, double y, double u_y, double covariance) {
   const double variance = u_x * u_x + u_y * u_y - 2.0 * covariance;
-  if (!(u_x >= 0.0) || !(u_y >= 0.0) || !(variance > 0.0) || !std::isfinite(x - y))
+  if (!(u_x >= 0.0) || !(u_y >= 0.0) || !(variance > 0.0) || !std::isfinite(x - y)) {
     return tl::unexpected(
         Error{ErrorCode::invalid_argument, "two results are compared by uncertainties that are positive, with a covariance below them"});
+  }
   return (x - y) / (2.0 * std::sqrt(variance));
 }
 

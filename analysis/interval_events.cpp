@@ -68,10 +68,11 @@ bool UsualInterval::is_core(std::int64_t interval_ns, double times) const {
 
 void IntervalEventCollector::add(const SampleInterval& interval, const UsualInterval& usual) {
   if (usual.known() && usual.is_core(interval.length_ns, kept_scales)) return;
-  if (kept_.size() < most_kept_)
+  if (kept_.size() < most_kept_) {
     kept_.push_back(interval);
-  else if (!usual.is_core(interval.length_ns, unusual_scales))
+  } else if (!usual.is_core(interval.length_ns, unusual_scales)) {
     ++not_kept_;
+  }
 }
 
 IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t most_events) const {
@@ -83,9 +84,10 @@ IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::i
     if (verdict.kind.empty()) continue;
     ++result.event_count;
     result.unusual_lengths_ns.push_back(interval.length_ns);
-    if (result.events.size() < most_events)
+    if (result.events.size() < most_events) {
       result.events.push_back({verdict.kind, interval.sample, static_cast<double>(interval.begin_ns - first_stamp_ns) * 1e-9,
                                static_cast<double>(interval.length_ns) - usual.median_ns, verdict.missing});
+    }
     if (verdict.kind == "pair") {
       pairs.push_back(interval);
       result.unusual_lengths_ns.push_back(kept_[++i].length_ns); // its other half

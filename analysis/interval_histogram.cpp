@@ -17,9 +17,10 @@ constexpr std::array kernel{1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0};
 
 std::vector<double> convolve(const std::vector<double>& values) {
   std::vector<double> result(values.size(), 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t k = 0; k < kernel.size(); ++k)
       if (i + k >= 1 && i + k - 1 < values.size()) result[i] += kernel[k] * values[i + k - 1];
+  }
   return result;
 }
 

@@ -30,9 +30,10 @@ public:
     const auto n = static_cast<Eigen::Index>(inputs.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
     for (const InputCorrelation& correlation : correlations) {
-      for (const std::size_t i : {correlation.first, correlation.second})
+      for (const std::size_t i : {correlation.first, correlation.second}) {
         if (inputs[i].distribution != Distribution::normal)
           return failure(ErrorCode::invalid_argument, inputs[i].name + ": only normal inputs can be drawn with a correlation");
+      }
       const auto i = static_cast<Eigen::Index>(correlation.first), j = static_cast<Eigen::Index>(correlation.second);
       matrix(i, j) = matrix(j, i) = correlation.coefficient;
     }
@@ -93,7 +94,7 @@ Summary summarise(std::vector<double> trials, double probability) {
     result.u += (value - result.mean) * (value - result.mean) / (n - 1.0);
   result.u = std::sqrt(result.u);
   std::sort(trials.begin(), trials.end());
-  const auto covered = static_cast<std::size_t>(probability * n + 0.5);
+  const auto covered = static_cast<std::size_t>(std::lround(probability * n));
   const std::size_t below = (trials.size() - covered) / 2;
   result.low = trials[below];
   result.high = trials[std::min(below + covered, trials.size() - 1)];

@@ -72,6 +72,7 @@ std::optional<RatioScatter> ratio_scatter(const Frequency& frequency, std::span<
     mean_magnitude += magnitudes[k] / blocks;
   }
   std::vector<double> phases;
+  phases.reserve(ratios.size());
   for (const std::complex<double>& ratio : ratios)
     phases.push_back(std::arg(ratio * std::conj(mean_ratio)));
   return RatioScatter{scatter_of_mean(magnitudes) / mean_magnitude, scatter_of_mean(phases), blocks - 1.0};

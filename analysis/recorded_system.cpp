@@ -77,9 +77,10 @@ Expected<std::vector<RecordedSeries>> evaluate_series(const Frequency& frequency
   auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, channels);
   if (!fits) return of_series(who, fits.error());
   std::vector<RecordedSeries> series;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i < all.size(); ++i) {
     series.push_back(
         {{all[i].name, frequency, u_frequency_hz, middle_ns(stamps_ns), (*fits)[i].fit}, std::move((*fits)[i].values), all[i], stamps_ns});
+  }
   return series;
 }
 

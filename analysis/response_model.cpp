@@ -66,7 +66,7 @@ LogResponse<T> log_response(const Layout& layout, const T* x, double frequency_h
 Expected<Eigen::MatrixXd> whitening(std::span<const ResponsePoint> points, const CommonResponseUncertainty& common) {
   const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
       const ResponsePoint& a = points[static_cast<std::size_t>(i)];
       const ResponsePoint& b = points[static_cast<std::size_t>(j)];
@@ -75,6 +75,7 @@ Expected<Eigen::MatrixXd> whitening(std::span<const ResponsePoint> points, const
       covariance(n + i, n + j) =
           common.phase_rad * common.phase_rad + w2 * common.delay_s * common.delay_s + (i == j ? a.u_phase_rad * a.u_phase_rad : 0.0);
     }
+  }
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) return failure(ErrorCode::invalid_argument, "the uncertainties of a response must be positive");
   return Eigen::MatrixXd(factor.matrixL().solve(Eigen::MatrixXd::Identity(2 * n, 2 * n)));
@@ -192,9 +193,10 @@ std::complex<double> response_at(const ResponseParameters& parameters, double fr
 
 Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const ResponsePoint> points, const CommonResponseUncertainty& common,
                                       Loss loss) {
-  for (const ResponsePoint& point : points)
+  for (const ResponsePoint& point : points) {
     if (!(std::abs(point.h) > 0.0) || !(point.u_magnitude_rel > 0.0) || !(point.u_phase_rad > 0.0))
       return failure(ErrorCode::invalid_argument, "every point of a response needs a magnitude and positive uncertainties");
+  }
   if (loss != Loss::none && (common.gain_rel > 0.0 || common.delay_s > 0.0 || common.phase_rad > 0.0))
     return failure(ErrorCode::invalid_argument, "a robust fit takes points that are independent, without common uncertainties");
   const auto start = start_of(points);

@@ -99,9 +99,10 @@ void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t>
     if (first_sample > *state.next_sample) state.lost += first_sample - *state.next_sample;
     state.have_last = false;
   }
-  for (std::size_t i = 0; i < stamps_ns.size(); ++i)
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
     state.take_sample(first_sample + i, stamps_ns[i], flags.empty() || flags[i] == 0,
                       temperature_degc.empty() ? std::nan("") : temperature_degc[i]);
+  }
   state.next_sample = first_sample + stamps_ns.size();
 }
 
@@ -155,9 +156,10 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
   const double tick_ns = state.settings.tick_s * 1e9;
   const IntervalHistogram histogram = interval_histogram(distribution, tick_ns, result.mad_sd_s * 1e9);
   result.lattice_statistic = lattice_statistic(distribution, tick_ns);
-  if (tick_ns > 0.0)
+  if (tick_ns > 0.0) {
     for (const double mode : interval_modes_ns(histogram))
       result.modes_s.push_back(seconds(mode));
+  }
   result.histogram = histogram.bins;
   describe_events(result, state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.most_events), sums);
 

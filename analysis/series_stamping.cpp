@@ -28,9 +28,10 @@ std::optional<Error> problem_with(const SeriesStampingInput& input) {
     if (!(shot.dso_interval_s > 0.0))
       return of_shot(j, "oscilloscope", {ErrorCode::invalid_argument, "its sample interval must be positive"});
     if (shot.series.size() != input.channels.size()) return of_shot(j, "series", {ErrorCode::invalid_argument, "a channel is missing"});
-    for (const auto& samples : shot.series)
+    for (const auto& samples : shot.series) {
       if (samples.size() != input.shots.front().series.front().size())
         return of_shot(j, "series", {ErrorCode::invalid_argument, "all series of a step must have the same length"});
+    }
   }
   return std::nullopt;
 }
@@ -148,9 +149,10 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
     const auto fits = fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
     if (!fits) return tl::unexpected(of_channel(input.channels[c], fits.error()));
     SeriesChannelResult channel{input.channels[c], {}, {}};
-    for (std::size_t j = 0; j < fits->size(); ++j)
+    for (std::size_t j = 0; j < fits->size(); ++j) {
       channel.shots.push_back(
           shot_result((*fits)[j].fit, triggers[j], input.correct_trigger_phase, link, w * input.start_scatter_s, common));
+    }
     const auto mean = mean_of_repetitions(channel.shots);
     if (!mean) return tl::unexpected(mean.error());
     channel.mean = *mean;

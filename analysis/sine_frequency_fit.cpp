@@ -76,7 +76,7 @@ void move_on(const Record& record, Estimate& estimate) {
 Expected<void> iterate(const Record& record, Selection selection, double allowed, Estimate& estimate) {
   while (estimate.passes < most_passes) {
     double error = 0.0;
-    if (const auto done = pass(record, selection, estimate, error); !done) return done;
+    if (auto done = pass(record, selection, estimate, error); !done) return done;
     if (error < allowed) return {};
     move_on(record, estimate);
     if (!(estimate.frequency.hz() > 0.0)) break;

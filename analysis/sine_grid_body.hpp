@@ -5,6 +5,8 @@
 // the lanes of its sums are then turned to the common origin by the anchor's phase, which is reduced exactly. Of the design, the
 // lanes keep sums of cos 2x = 1 - 2 s^2 and of sin 2x = 2 s c, which turn by the doubled phase.
 
+// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own, without linkage
+
 namespace {
 
 // Of the polynomials by which sine and cosine follow from the grid's.
@@ -103,7 +105,8 @@ struct GridDesign { // of one block
     sc = fused(one.sine, one.cosine, sc);
   }
   [[nodiscard]] GridDesignLanes sums(const GridPlace& place) const {
-    const Lanes rows = Lanes::all(static_cast<double>(place.n / lanes));
+    const std::size_t rows_of_lanes = place.n / lanes;
+    const Lanes rows = Lanes::all(static_cast<double>(rows_of_lanes));
     return {s, c, fused_less(Lanes::all(2.0), ss, rows), sc + sc};
   }
 };
@@ -282,10 +285,11 @@ std::size_t fit_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxi
     if (!summed) {
       if (third_order) third_order = grid_design<Order::third>(stamps, place, grid, values, channels, basis, block);
       if (!third_order && !grid_design<Order::fifth>(stamps, place, grid, values, channels, basis, block)) break;
-      if (about_start)
+      if (about_start) {
         all_grid_residuals<true>(values, channels, place, basis, from, own);
-      else
+      } else {
         all_grid_residuals<false>(values, channels, place, basis, from, own);
+      }
     }
     add_turned(anchors.sine[b], anchors.cosine[b], block.s, block.c, design.s, design.c);
     add_turned(anchors.sine_twice[b], anchors.cosine_twice[b], block.sine_twice, block.cosine_twice, design.sine_twice,
@@ -302,3 +306,5 @@ std::size_t fit_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxi
 }
 
 } // namespace
+
+// NOLINTEND(misc-definitions-in-headers)

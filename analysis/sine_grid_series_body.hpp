@@ -2,6 +2,8 @@
 //
 // v is the time from the block's anchor, u that from the origin, in units of the axis. Turning to the origin is as there.
 
+// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own, without linkage
+
 namespace {
 
 struct alignas(64) GridSeriesBasis {
@@ -105,7 +107,8 @@ inline bool grid_series_design(const std::int64_t* stamps, const GridPlace& plac
     vvsc = fused(v_sine, v_cosine, vvsc);
   }
   const Lanes two = Lanes::all(2.0);
-  const Lanes rows = Lanes::all(static_cast<double>(place.n / lanes));
+  const std::size_t rows_of_lanes = place.n / lanes;
+  const Lanes rows = Lanes::all(static_cast<double>(rows_of_lanes));
   sums[0] = {rows, s, c, fused_less(two, ss, rows), sc + sc};
   sums[1] = {v1, vs, vc, fused_less(two, vss, v1), vsc + vsc};
   sums[2] = {v2, vvs, vvc, fused_less(two, vvss, v2), vvsc + vvsc};
@@ -196,3 +199,5 @@ std::size_t series_on_grid(const std::int64_t* stamps, std::size_t n, const Time
 }
 
 } // namespace
+
+// NOLINTEND(misc-definitions-in-headers)

@@ -84,7 +84,9 @@ inline Lanes fused_minus(const Lanes& x, const Lanes& y, const Lanes& z) {
 }
 
 inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
-  return each([&](int i) { return Double2{static_cast<double>(stamps[2 * i] - origin), static_cast<double>(stamps[2 * i + 1] - origin)}; });
+  return each([&](std::ptrdiff_t i) {
+    return Double2{static_cast<double>(stamps[2 * i] - origin), static_cast<double>(stamps[2 * i + 1] - origin)};
+  });
 }
 
 inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {

@@ -6,6 +6,8 @@
 // fused_minus(a,b,c) = a b - c, time_difference(stamps, origin), turn_quadrants(k, s, c), total(), and StepCheck with see(stamps, next) and
 // increasing().
 
+// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own, without linkage
+
 namespace {
 
 using namespace dyncal::analysis::kernel;
@@ -318,3 +320,5 @@ void residual_moments(const double* values, std::size_t n, const BlockBasis& bas
 }
 
 } // namespace
+
+// NOLINTEND(misc-definitions-in-headers)

@@ -68,9 +68,10 @@ class Excerpt {
 public:
   Excerpt(const Record& record, Selection selection) : values_(record.channels().size()) {
     const auto copy = [&](auto from, auto& to) {
-      for (std::size_t i = 0; i < record.size(); i += selection.step)
+      for (std::size_t i = 0; i < record.size(); i += selection.step) {
         to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i),
                   from.begin() + static_cast<std::ptrdiff_t>(std::min(i + selection.length, record.size())));
+      }
     };
     copy(record.stamps(), stamps_);
     for (std::size_t j = 0; j < values_.size(); ++j) {

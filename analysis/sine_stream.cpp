@@ -44,7 +44,7 @@ Expected<void> SineStream::State::check(std::span<const std::int64_t> stamps, st
 }
 
 Expected<void> SineStream::State::push(std::span<const std::int64_t> stamps, std::span<const std::span<const double>> channels) {
-  if (const auto checked = check(stamps, channels); !checked) return checked;
+  if (auto checked = check(stamps, channels); !checked) return checked;
   if (samples() == 0 && !stamps.empty()) {
     first_ns_ = stamps[0];
     for (std::size_t j = 0; j < start_.size(); ++j)

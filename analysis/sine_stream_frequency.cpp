@@ -38,7 +38,7 @@ double SineStream::State::search(std::span<const Segment> segments, double half_
   const double step_bins = few ? 0.4 : 0.25;
   const int half = static_cast<int>(std::ceil(half_range / (step_bins * bin)));
   const double step = half_range / half;
-  std::vector<double> merit(static_cast<std::size_t>(2 * half + 1), 0.0);
+  std::vector<double> merit(2 * static_cast<std::size_t>(half) + 1, 0.0);
   if (few) {
     ShiftedSums sums;
     for (int i = -half; i <= half; ++i)

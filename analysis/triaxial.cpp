@@ -20,11 +20,12 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
   if (excitations.size() < 3) return failure(ErrorCode::too_few_samples, "a 3x3 response needs excitations in three directions");
   const auto n = static_cast<Eigen::Index>(excitations.size());
   Eigen::Matrix<std::complex<double>, 3, Eigen::Dynamic> motion(3, n), answer(3, n);
-  for (Eigen::Index k = 0; k < n; ++k)
+  for (Eigen::Index k = 0; k < n; ++k) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       motion(i, k) = excitations[static_cast<std::size_t>(k)].reference[static_cast<std::size_t>(i)];
       answer(i, k) = excitations[static_cast<std::size_t>(k)].sensor[static_cast<std::size_t>(i)];
     }
+  }
   if (!motion.allFinite() || !answer.allFinite()) return failure(ErrorCode::not_finite, "a phasor of the three axes is no number");
 
   const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition(motion, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -37,7 +38,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
       decomposition.matrixV() * singular.cwiseInverse().asDiagonal() * decomposition.matrixU().adjoint(); // n x 3
   const Eigen::Matrix3cd h = answer * inverse;
 
-  for (Eigen::Index i = 0; i < 3; ++i)
+  for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
       double variance = 0.0;
       for (Eigen::Index k = 0; k < n; ++k) {
@@ -50,6 +51,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
       result.h[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = h(i, j);
       result.u[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = std::sqrt(variance);
     }
+  }
   return result;
 }
 
