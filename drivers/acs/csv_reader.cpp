@@ -66,8 +66,9 @@ Expected<void> CsvReader::read_header() {
 }
 
 void CsvReader::read_ahead() {
-  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
-  while (ahead_.size() < threads && !rest_.empty()) {
+  // Twice as many as can run at once: there is always one to go on with while a finished one waits to be taken.
+  const std::size_t stretches = 2 * std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  while (ahead_.size() < stretches && !rest_.empty()) {
     ahead_.push_back(std::async(std::launch::async, [this, lines = next_lines(rest_)] { return read_csv_rows(lines, layout_); }));
   }
 }

@@ -1,7 +1,7 @@
 // Reads the samples of a CSV file, a stretch at a time; README.md has the format, every error names file and line.
 //
-// The file is mapped into memory; the next stretches of it are read by threads of their own while the current one is taken, as many as
-// the processor has, 2 MB of text each. Samples and errors come in the order of the file whatever thread meets them first.
+// The file is mapped into memory; the next stretches of it are read by threads of their own while the current one is taken, two for each
+// processor, 2 MB of text each. Samples and errors come in the order of the file whatever thread meets them first.
 #pragma once
 
 #include <deque>
