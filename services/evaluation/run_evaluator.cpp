@@ -1,14 +1,13 @@
 #include "services/evaluation/run_evaluator.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "services/evaluation/analogue_step_evaluation.hpp"
-#include "services/version.hpp"
+#include "services/evaluation/series_clock.hpp"
+#include "services/evaluation/time_scales.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -77,7 +76,10 @@ Expected<void> RunEvaluator::describe(const SourceDescription& description) {
     keep_only_what_is_needed(*source);
   }
   clock_.describe(description);
-  return check_clocks();
+  return check_time_scales(recipe_, [this](const std::string& name) {
+    const SourceRecord& other = *records_.at(name);
+    return other.described() ? std::optional(other.description().time_base()) : std::nullopt;
+  });
 }
 
 std::vector<ChannelName> RunEvaluator::channels_needed() const {
@@ -97,37 +99,6 @@ void RunEvaluator::keep_only_what_is_needed(SourceRecord& source) const {
     }
   }
   source.keep_only(std::move(channels));
-}
-
-// Stamps of different sources are compared only where they are meant to be of one time scale.
-Expected<void> RunEvaluator::check_clocks() const {
-  if (!recipe_.stamped_apart()) {
-    return {};
-  }
-  const auto clock_of = [this](const std::string& name) -> std::optional<TimeBase> {
-    const SourceRecord& source = *records_.at(name);
-    return source.described() ? std::optional(source.description().time_base()) : std::nullopt;
-  };
-  const std::string& link = by_absolute_time() ? recipe_.reference.source : recipe_.sync_dau.source;
-  std::vector<std::string> names = recipe_.dut_sources();
-  names.push_back(link);
-  for (const std::string& name : names) {
-    const auto clock = clock_of(name);
-    const auto clock_of_link = clock_of(link);
-    if (by_absolute_time() && clock == TIME_BASE_LOCAL) {
-      return tl::unexpected(
-          Error{ErrorCode::no_source, fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
-                                                  "UTC; set it to UTC and say time_base = \"utc\", or use a sync signal",
-                                                  name)});
-    }
-    if (clock && clock_of_link && *clock != *clock_of_link) {
-      return tl::unexpected(
-          Error{ErrorCode::no_source, fmt::format("sources '{}' and '{}' must be stamped on one time scale, but one is in UTC "
-                                                  "and the other has a clock of its own",
-                                                  name, link)});
-    }
-  }
-  return {};
 }
 
 std::vector<std::string> RunEvaluator::undescribed() const {
@@ -356,39 +327,6 @@ std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const Recip
   return std::move(evaluated.results);
 }
 
-// Mean over the steps, weighted by their uncertainties; where they scatter by more than these say, by what the scatter says. The clock of
-// the ACS, in which all of them were measured, is common to them.
-void RunEvaluator::add_sensor_clock(EvaluationOutput& output) const {
-  if (rates_.empty()) {
-    return;
-  }
-  double weights = 0.0;
-  double sum = 0.0;
-  const auto weight_of = [](const analysis::NominalFrequency& rate) { return 1.0 / (rate.u_real_rate_hz * rate.u_real_rate_hz); };
-  for (const analysis::NominalFrequency& rate : rates_) {
-    weights += weight_of(rate);
-    sum += weight_of(rate) * rate.real_rate_hz;
-  }
-  const double mean_hz = sum / weights;
-  double chi_square = 0.0;
-  for (const analysis::NominalFrequency& rate : rates_) {
-    chi_square += weight_of(rate) * std::pow(rate.real_rate_hz - mean_hz, 2);
-  }
-  const double birge = rates_.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates_.size() - 1)) : 1.0;
-  const double u_rel = std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe_.u_acs_rate_rel);
-  const SourceRecord& sensor = *records_.at(recipe_.dut.front().source);
-  SampleClockReport report;
-  report.bench(recipe_.bench);
-  report.run(recipe_.run);
-  report.source(sensor.source());
-  report.nominal_rate_hz(rates_.front().real_rate_hz / rates_.front().lambda);
-  report.mean_rate_hz(mean_hz);
-  report.mean_interval_s(1.0 / mean_hz);
-  report.u_mean_interval_s(u_rel / mean_hz);
-  report.software(software_version());
-  output.clock_reports.push_back(std::move(report));
-}
-
 void RunEvaluator::forget_what_is_evaluated() {
   const auto forget = [&](SourceRecord& source, const StepSearch& search) {
     std::int64_t needed = search.needed_from_ns();
@@ -436,10 +374,10 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   finished_ = true;
   take_results(evaluations_.take_all(), output);
   output.transfer_functions = summary_.transfer_functions();
-  if (by_series()) {
-    add_sensor_clock(output);
-  } else {
+  if (!by_series()) {
     output.clock_reports = clock_.reports();
+  } else if (!rates_.empty()) {
+    output.clock_reports.push_back(series_clock_report(recipe_, recipe_.dut.front().source, rates_));
   }
 }
 

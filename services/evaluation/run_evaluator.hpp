@@ -78,7 +78,6 @@ private:
   [[nodiscard]] bool sensors_are_there(std::size_t step) const;
   // Which search finds the sensors' stretches.
   [[nodiscard]] const StepSearch& search_of_sensors() const { return recipe_.without_sync() ? *acs_search_ : *dau_search_; }
-  [[nodiscard]] Expected<void> check_clocks() const;
   [[nodiscard]] std::vector<ChannelName> channels_needed() const;
   void keep_only_what_is_needed(SourceRecord& source) const;
   void take_results(std::vector<CalibrationResult> results, EvaluationOutput& output);
@@ -90,7 +89,6 @@ private:
   [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);
   // The source's record, or a copy of that part of it when it is evaluated in another thread.
   [[nodiscard]] std::shared_ptr<const SourceRecord> samples_of(const std::string& source, const StretchOfTime& stretch) const;
-  void add_sensor_clock(EvaluationOutput& output) const;
   void forget_what_is_evaluated();
   void finish(EvaluationOutput& output);
 

@@ -95,10 +95,12 @@ void SourceRecord::append(const SampleBlock& block) {
   } else {
     flags_.insert(flags_.end(), block.flags().begin(), block.flags().end());
   }
-  if (block.stamp_uncertainty_ns().size() == samples) {
+  const bool told = block.stamp_uncertainty_ns().size() == samples;
+  if (told) {
+    stamp_uncertainties_ns_.resize(stamps_ns_.size() - samples, 0);
     stamp_uncertainties_ns_.insert(stamp_uncertainties_ns_.end(), block.stamp_uncertainty_ns().begin(), block.stamp_uncertainty_ns().end());
-  } else {
-    stamp_uncertainties_ns_.resize(stamp_uncertainties_ns_.size() + samples, 0);
+  } else if (!stamp_uncertainties_ns_.empty()) {
+    stamp_uncertainties_ns_.resize(stamps_ns_.size(), 0);
   }
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
     if (!keeps(channel)) {
@@ -152,7 +154,9 @@ SourceRecord SourceRecord::part(std::int64_t begin_ns, std::int64_t end_ns) cons
   const auto take = [&](const auto& from, auto& to) { to.assign(from.begin() + begin, from.begin() + end); };
   take(stamps_ns_, part.stamps_ns_);
   take(flags_, part.flags_);
-  take(stamp_uncertainties_ns_, part.stamp_uncertainties_ns_);
+  if (!stamp_uncertainties_ns_.empty()) {
+    take(stamp_uncertainties_ns_, part.stamp_uncertainties_ns_);
+  }
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
     if (keeps(channel)) {
       take(columns_[channel], part.columns_[channel]);
@@ -170,7 +174,9 @@ void SourceRecord::forget(std::size_t samples) {
   const auto erase = [this](auto& column) { column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_)); };
   erase(stamps_ns_);
   erase(flags_);
-  erase(stamp_uncertainties_ns_);
+  if (!stamp_uncertainties_ns_.empty()) {
+    erase(stamp_uncertainties_ns_);
+  }
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
     if (keeps(channel)) {
       erase(columns_[channel]);
@@ -181,10 +187,11 @@ void SourceRecord::forget(std::size_t samples) {
 
 double SourceRecord::stamp_uncertainty_s(std::int64_t begin_ns, std::int64_t end_ns) const {
   const auto stamps = stamps_ns();
-  const auto uncertainties = std::span(stamp_uncertainties_ns_).subspan(first_);
+  const bool any = !stamp_uncertainties_ns_.empty();
+  const auto uncertainties = std::span(stamp_uncertainties_ns_).subspan(any ? first_ : 0);
   double sum_ns = 0.0;
   std::size_t told = 0;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
+  for (std::size_t i = 0; any && i < stamps.size(); ++i) {
     if (stamps[i] >= begin_ns && stamps[i] <= end_ns && uncertainties[i] > 0) {
       sum_ns += static_cast<double>(uncertainties[i]);
       ++told;

@@ -88,7 +88,7 @@ private:
   std::size_t first_ = 0;
   std::vector<std::int64_t> stamps_ns_;
   std::vector<std::uint8_t> flags_;
-  std::vector<std::uint32_t> stamp_uncertainties_ns_; // 0: the sample says nothing
+  std::vector<std::uint32_t> stamp_uncertainties_ns_; // 0: the sample says nothing; empty while none says anything
   std::vector<std::vector<double>> columns_;
   std::deque<Gap> gaps_;
   std::optional<std::int64_t> newest_ns_;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -17,57 +15,7 @@ namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-struct IndexRun { // of samples that follow one another
-  std::size_t begin;
-  std::size_t end;
-};
-
-template <class Number>
-void copy_runs(std::span<const Number> from, const std::vector<IndexRun>& runs, std::size_t count, std::vector<Number>& to) {
-  to.reserve(count);
-  for (const IndexRun& run : runs) {
-    const auto part = from.subspan(run.begin, run.end - run.begin);
-    to.insert(to.end(), part.begin(), part.end());
-  }
-}
-
 } // namespace
-
-StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels) {
-  StepSamples series;
-  series.columns.resize(channels.size());
-  std::vector<std::span<const double>> columns;
-  for (const std::size_t channel : channels) {
-    columns.push_back(record.column(channel));
-  }
-  const auto stamps = record.stamps_ns();
-  const auto flags = record.flags();
-  std::vector<IndexRun> runs; // copied as a whole, for they are long
-  std::optional<std::int64_t> last_ns;
-  std::size_t used = 0;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (stamps[i] < stretch.begin_ns || stamps[i] > stretch.end_ns) {
-      continue;
-    }
-    const bool increasing = !last_ns || stamps[i] > *last_ns;
-    const bool measured = std::all_of(columns.begin(), columns.end(), [&](const auto& column) { return std::isfinite(column[i]); });
-    if (flags[i] != 0 || !increasing || !measured) {
-      ++series.not_trusted;
-      continue;
-    }
-    if (runs.empty() || runs.back().end != i) {
-      runs.push_back({i, i});
-    }
-    runs.back().end = i + 1;
-    last_ns = stamps[i];
-    ++used;
-  }
-  copy_runs(stamps, runs, used, series.stamps_ns);
-  for (std::size_t channel = 0; channel < columns.size(); ++channel) {
-    copy_runs(columns[channel], runs, used, series.columns[channel]);
-  }
-  return series;
-}
 
 SourceSamples samples_message(const SourceRecord& record, const StepSamples& series, const StretchOfTime& stretch) {
   SourceSamples samples;

@@ -1,4 +1,4 @@
-// The pieces that results of every method are made of: samples cut out of a record, and the parts of a CalibrationResult message.
+// The parts of a CalibrationResult message that results of every method are made of.
 // Plain functions, any thread.
 #pragma once
 
@@ -12,22 +12,9 @@
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"
+#include "services/evaluation/step_samples.hpp"
 
 namespace dyncal::services {
-
-struct StretchOfTime { // in a source's own clock, both ends included
-  std::int64_t begin_ns = 0;
-  std::int64_t end_ns = 0;
-};
-
-// One source's part of a step: the stamps and the columns asked for, cleaned, each sample once.
-struct StepSamples {
-  std::vector<std::int64_t> stamps_ns;
-  std::vector<std::vector<double>> columns;
-  std::uint64_t not_trusted = 0;
-};
-
-[[nodiscard]] StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels);
 
 // Everything but the numbers: not valid, magnitude and phase NaN.
 [[nodiscard]] CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step, const std::string& channel);
