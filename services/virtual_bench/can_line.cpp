@@ -11,10 +11,10 @@
 namespace dyncal::services::virtual_bench {
 namespace {
 
-// What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more.
-constexpr std::int64_t shortest_watch_ns = 60'000;
+// What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more, in simulated time nothing.
+constexpr std::int64_t shortest_watch_ns = 5'000;
+constexpr std::int64_t first_watch_ns = 60'000;
 constexpr std::int64_t longest_watch_ns = 500'000;
-constexpr std::int64_t watch_margin_ns = 30'000;
 constexpr std::int64_t late_ns = 100'000;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
@@ -31,7 +31,7 @@ void go_before_programs(int priority) {
 }
 
 CanLine::CanLine(drivers::can::FrameSender sender)
-    : sender_(std::move(sender)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : sender_(std::move(sender)), watch_ns_(first_watch_ns), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns, bool exact) {
   {
@@ -48,7 +48,7 @@ void CanLine::sleep_until_watch(std::int64_t end_utc_ns) {
     return;
   }
   sleep_until(wake_up_ns);
-  const std::int64_t needed_ns = utc_now_ns() - wake_up_ns + watch_margin_ns;
+  const std::int64_t needed_ns = (utc_now_ns() - wake_up_ns) * 3 / 2;
   watch_ns_ = std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), shortest_watch_ns, longest_watch_ns);
 }
 

@@ -54,8 +54,8 @@ private:
   std::atomic<std::uint64_t> exact_{0};
   std::atomic<std::uint64_t> late_{0};
   std::atomic<std::uint64_t> refused_{0};
-  std::int64_t watch_ns_ = 0; // before the end of a frame, when the thread wakes up; its own
-  std::jthread thread_;       // last: ends before what it uses
+  std::int64_t watch_ns_; // before the end of a frame, when the thread wakes up; its own
+  std::jthread thread_;   // last: ends before what it uses
 };
 
 } // namespace dyncal::services::virtual_bench
