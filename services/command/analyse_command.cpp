@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
-#include <limits>
-#include <malloc.h>
 #include <mutex>
 #include <thread>
 
@@ -12,6 +10,7 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/command/run_command.hpp"
+#include "services/command/sample_memory.hpp"
 #include "services/command/shot_files.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/source/messages.hpp"
@@ -204,14 +203,6 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
   return {};
 }
 
-// Columns of a million samples come and go with every step: pages fresh from the system would cost as much as the arithmetic on them.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  ::mallopt(M_MMAP_MAX, 0);
-  ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
-}
-
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
@@ -243,7 +234,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
 } // namespace
 
 int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
-  keep_freed_memory();
+  keep_memory_for_samples();
   const auto outcome = analyse(command, stop);
   if (!outcome) {
     return fail(outcome.error());
