@@ -51,8 +51,8 @@ std::optional<SampleGrid> sample_grid(std::span<const std::int64_t> stamps, cons
   std::copy_n(basis.cosine, grid_samples, grid.cosine);
   const double radians_per_ns = frequency.angular() * 1e-9;
   grid.scaled_radians_per_ns = radians_per_ns / std::numbers::sqrt2;
-  const double half_interval_ns = static_cast<double>(interval_ns / 2 - 1); // so that stamps within the limit increase
-  grid.largest_ns = std::min(fifth_order_rad / radians_per_ns, half_interval_ns);
+  const std::int64_t half_interval_ns = interval_ns / 2 - 1; // so that stamps within the limit increase
+  grid.largest_ns = std::min(fifth_order_rad / radians_per_ns, static_cast<double>(half_interval_ns));
   grid.largest_of_third_order_ns = std::min(third_order_rad / radians_per_ns, grid.largest_ns);
   return grid;
 }
