@@ -15,7 +15,7 @@ void copy_as(const char* from, std::size_t row_bytes, std::size_t rows, Number* 
   for (std::size_t i = 0; i < rows; ++i, from += row_bytes) {
     Stored value;
     std::memcpy(&value, from, sizeof(value));
-    to[i] = static_cast<Number>(value);
+    to[i] = static_cast<Number>(value); // NOLINT(bugprone-signed-char-misuse): int8 is a number here
   }
 }
 

@@ -72,7 +72,7 @@ Expected<SourceDescription> SocketAcs::describe() {
 Expected<void> SocketAcs::connect_again() {
   connection_.reset();
   while (!stop_.wait_for(retry_interval)) {
-    const auto connected = connect(settings_.connect_limit);
+    auto connected = connect(settings_.connect_limit);
     if (connected || connected.error().code == ErrorCode::malformed) {
       return connected;
     }

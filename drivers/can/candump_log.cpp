@@ -71,9 +71,10 @@ Expected<std::vector<BusEvent>> read_candump_log(const std::filesystem::path& pa
     const std::size_t second = first == std::string_view::npos ? first : rest.find(' ', first + 1);
     const auto stamp = second == std::string_view::npos ? std::nullopt : read_stamp(rest.substr(0, first));
     auto frame = stamp ? read_frame(rest.substr(second + 1, rest.find(' ', second + 1) - second - 1)) : std::nullopt;
-    if (!frame)
+    if (!frame) {
       return tl::make_unexpected(Error{ErrorCode::malformed, path.string() + ":" + std::to_string(number) +
                                                                  ": not a line of candump -l ('(seconds) interface id#data')"});
+    }
     if (!interface_name.empty() && rest.substr(first + 1, second - first - 1) != interface_name) continue;
     frame->kernel_ns = *stamp;
     events.emplace_back(*frame);

@@ -40,11 +40,12 @@ void DbcParser::attribute_definition() {
   }
   if (name == format_attribute) {
     format_names_.clear();
-    if (scanner_.name() == "ENUM")
+    if (scanner_.name() == "ENUM") {
       while (const auto value = scanner_.string()) {
         format_names_.push_back(*value);
         if (!scanner_.character(',')) break;
       }
+    }
   } else if (!name) {
     warn(line, "passed over an attribute definition without a name");
   }
@@ -83,9 +84,9 @@ void DbcParser::attribute() {
     scanner_.go_back(before);
   }
   auto value = attribute_value();
-  if (!name || !value)
+  if (!name || !value) {
     warn(line, "passed over an attribute that has no " + std::string(name ? "value" : "name"));
-  else if (!attribute.object.empty()) {
+  } else if (!attribute.object.empty()) {
     attribute.value = std::move(value->first);
     attribute.is_text = value->second;
     attributes_.push_back(std::move(attribute));
@@ -97,10 +98,11 @@ std::optional<FrameFormat> DbcParser::frame_format(const Attribute& attribute) c
   if (attribute.is_text) return format_of_name(attribute.value);
   int number = -1;
   std::from_chars(attribute.value.data(), attribute.value.data() + attribute.value.size(), number);
-  if (!format_names_.empty())
+  if (!format_names_.empty()) {
     return number >= 0 && static_cast<std::size_t>(number) < format_names_.size()
                ? format_of_name(format_names_[static_cast<std::size_t>(number)])
                : std::nullopt;
+  }
   const auto* const found =
       std::find_if(standard_formats.begin(), standard_formats.end(), [number](const auto& entry) { return entry.first == number; });
   return found == standard_formats.end() ? std::nullopt : std::optional(found->second);

@@ -67,27 +67,27 @@ Expected<DbcFile> DbcParser::parse() {
 
 void DbcParser::statement(const std::string& keyword) {
   const std::size_t line = scanner_.line();
-  if (keyword == "BO_")
+  if (keyword == "BO_") {
     message();
-  else if (keyword == "SG_")
+  } else if (keyword == "SG_") {
     signal();
-  else if (keyword == "NS_")
+  } else if (keyword == "NS_") {
     new_symbols();
-  else if (keyword == "BU_")
+  } else if (keyword == "BU_") {
     nodes();
-  else if (keyword == "VERSION" || keyword == "BS_") {
+  } else if (keyword == "VERSION" || keyword == "BS_") {
     if (scanner_.same_line() && !scanner_.string()) scanner_.skip_line();
-  } else if (keyword == "SIG_VALTYPE_")
+  } else if (keyword == "SIG_VALTYPE_") {
     value_type();
-  else if (keyword == "SG_MUL_VAL_")
+  } else if (keyword == "SG_MUL_VAL_") {
     extended_multiplexing();
-  else if (keyword == "BA_DEF_")
+  } else if (keyword == "BA_DEF_") {
     attribute_definition();
-  else if (keyword == "BA_DEF_DEF_")
+  } else if (keyword == "BA_DEF_DEF_") {
     attribute_default();
-  else if (keyword == "BA_")
+  } else if (keyword == "BA_") {
     attribute();
-  else {
+  } else {
     if (!is_passed_over(keyword)) warn(line, "passed over the unknown statement '" + keyword.substr(0, 40) + "'");
     scanner_.skip_statement();
   }
@@ -213,7 +213,7 @@ void DbcParser::layout(DbcSignal& signal) {
                                 scanner_.next_text());
     return;
   }
-  constexpr std::uint64_t farthest = 1785 * 8;
+  constexpr std::uint64_t farthest = 1785U * 8U;
   if (*start >= farthest || *length > farthest) {
     refuse(signal.line, "signal '" + signal.name + "' lies outside of any message");
     return;
@@ -301,9 +301,10 @@ void DbcParser::extended_multiplexing() {
   const auto index = message ? signal_index(*message, *name) : std::nullopt;
   const auto switch_index = message ? signal_index(*message, *switch_name) : std::nullopt;
   if (!index || !switch_index) {
-    if (*id != unused_signals_id)
+    if (*id != unused_signals_id) {
       refuse(line,
              "SG_MUL_VAL_ names '" + *name + "' and '" + *switch_name + "', which message " + std::to_string(*id) + " does not have both");
+    }
     return;
   }
   multiplexing.switch_signal = *switch_index;
@@ -361,9 +362,10 @@ void DbcParser::refuse_circles(const Draft& draft) {
 void DbcParser::warn_about_repeated_ids() {
   for (std::size_t i = 0; i < drafts_.size(); ++i) {
     const std::size_t first = draft_of_id_[drafts_[i].file_id];
-    if (first != i)
+    if (first != i) {
       warn(drafts_[i].message.line, "message '" + drafts_[i].message.name + "' has the id of '" + drafts_[first].message.name +
                                         "'; frames are taken for the latter");
+    }
   }
 }
 
