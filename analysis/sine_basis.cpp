@@ -41,6 +41,7 @@ bool SineBasis::fill(std::size_t first, std::size_t n, double* columns) const {
   const SineKernel& kernel = best_kernel();
   const std::int64_t* stamps = record_->stamps().data() + first;
   const auto column = [columns](std::size_t k) { return columns + k * block_samples; };
+  const std::size_t padded = (n + lanes - 1) / lanes * lanes;
   BlockBasis block;
   DesignSums sums;
   SlopeSums slope;
@@ -48,17 +49,18 @@ bool SineBasis::fill(std::size_t first, std::size_t n, double* columns) const {
   for (std::size_t line = 0; line < frequencies_.size(); ++line) {
     const TimeAxis axis = record_->axis(frequencies_[line]);
     increasing &= needs_u() ? kernel.design_with_slope(stamps, n, axis, block, sums, slope) : kernel.design(stamps, n, axis, block, sums);
-    std::copy_n(block.sine, n, column(sine_column(line)));
-    std::copy_n(block.cosine, n, column(sine_column(line) + 1));
+    std::copy_n(block.sine, padded, column(sine_column(line)));
+    std::copy_n(block.cosine, padded, column(sine_column(line) + 1));
   }
   std::fill_n(column(2), n, 1.0);
+  std::fill_n(column(2) + n, padded - n, 0.0);
   for (std::size_t k = 0; k < drift_order_; ++k) {
     const double* lower = column(k == 0 ? 2 : 2 + k);
-    std::transform(lower, lower + n, block.u, column(3 + k), [](double power, double u) { return power * u; });
+    std::transform(lower, lower + padded, block.u, column(3 + k), [](double power, double u) { return power * u; });
   }
   if (drifting_phasor_) {
     for (std::size_t k = 0; k < 2; ++k) {
-      std::transform(column(k), column(k) + n, block.u, column(phasor_drift_column() + k), [](double x, double u) { return x * u; });
+      std::transform(column(k), column(k) + padded, block.u, column(phasor_drift_column() + k), [](double x, double u) { return x * u; });
     }
   }
   return increasing;

@@ -26,7 +26,8 @@ public:
   [[nodiscard]] std::size_t drift_column() const { return 3; }
   [[nodiscard]] std::size_t phasor_drift_column() const { return columns_ - 2; } // REQUIRES: drifting_phasor
 
-  // Rows first .. first + n of the record, column by column with `block_samples` rows each. False: stamps do not increase.
+  // Rows first .. first + n of the record, column by column with `block_samples` rows each, zeros behind them up to a multiple of eight.
+  // False: stamps do not increase.
   [[nodiscard]] bool fill(std::size_t first, std::size_t n, double* columns) const;
 
 private:

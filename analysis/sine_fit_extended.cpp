@@ -1,6 +1,7 @@
 #include "analysis/sine_fit_extended.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -20,8 +21,6 @@ constexpr int refinements = 2; // on the residuals; the first solution has the d
 constexpr int most_reweightings = 200;
 constexpr double settled = 1e-12; // change of the parameters against their size
 
-using DesignBlock = Eigen::Matrix<double, static_cast<int>(block_samples), Eigen::Dynamic>;
-
 // Normal equations of one channel for the change of its coefficients.
 struct System {
   Eigen::MatrixXd normal;
@@ -29,9 +28,12 @@ struct System {
   double ee = 0.0; // unweighted
 };
 
+// Sums by the kernels, not by Eigen's products: those are cut into pieces by the sizes of the processor's caches, and so are their last
+// bits.
 class Fitter {
 public:
-  Fitter(const Record& record, SineBasis basis) : record_(record), basis_(std::move(basis)), design_(block_samples, basis_.columns()) {}
+  Fitter(const Record& record, SineBasis basis)
+      : record_(record), basis_(std::move(basis)), design_(basis_.columns() * block_samples), products_(basis_.columns()) {}
 
   [[nodiscard]] SineBasis& basis() { return basis_; }
 
@@ -40,33 +42,52 @@ public:
                         std::vector<double>* residuals, bool with_matrix) {
     const auto columns = static_cast<Eigen::Index>(basis_.columns());
     System system{Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns), 0.0};
-    Eigen::VectorXd e(block_samples);
+    std::array<double, block_samples> e;
     for (std::size_t i = 0; i < values.size(); i += block_samples) {
       const std::size_t n = std::min(block_samples, values.size() - i);
       if (!basis_.fill(i, n, design_.data())) return tl::unexpected(record_.not_increasing());
-      const auto rows = static_cast<Eigen::Index>(n);
-      const auto d = design_.topRows(rows);
-      e.head(rows) = Eigen::Map<const Eigen::VectorXd>(values.data() + i, rows);
-      e.head(rows).noalias() -= d * coefficients;
-      system.ee += e.head(rows).squaredNorm();
+      double squares = 0.0;
+      kernel_.model_residuals(values.data() + i, n, design_.data(), basis_.columns(), coefficients.data(), e.data(), squares);
+      system.ee += squares;
       if (residuals) std::copy_n(e.data(), n, residuals->data() + i);
-      if (weights.empty()) {
-        system.right.noalias() += d.transpose() * e.head(rows);
-        if (with_matrix) system.normal.noalias() += d.transpose() * d;
-      } else {
-        const Eigen::Map<const Eigen::VectorXd> w(weights.data() + i, rows);
-        system.right.noalias() += d.transpose() * e.head(rows).cwiseProduct(w);
-        if (with_matrix) system.normal.noalias() += d.transpose() * w.asDiagonal() * d;
-      }
+      add_products(weights.empty() ? design_ : weighted(weights.subspan(i, n)), n, e.data(), with_matrix, system);
     }
+    for (Eigen::Index row = 0; row < columns; ++row)
+      for (Eigen::Index column = 0; column < row; ++column)
+        system.normal(row, column) = system.normal(column, row);
     if (!std::isfinite(system.ee)) return tl::unexpected(record_.not_finite());
     return system;
   }
 
 private:
+  // The columns times the weights of their rows.
+  const std::vector<double>& weighted(std::span<const double> weights) {
+    weighted_ = design_;
+    for (std::size_t k = 0; k < basis_.columns(); ++k) {
+      double* const column = weighted_.data() + k * block_samples;
+      std::transform(weights.begin(), weights.end(), column, column, [](double w, double x) { return w * x; });
+    }
+    return weighted_;
+  }
+
+  // The upper triangle of the matrix only.
+  void add_products(const std::vector<double>& left, std::size_t n, const double* e, bool with_matrix, System& system) {
+    const std::size_t columns = basis_.columns();
+    kernel_.model_products(e, n, left.data(), columns, products_.data());
+    for (std::size_t k = 0; k < columns; ++k)
+      system.right[static_cast<Eigen::Index>(k)] += products_[k];
+    for (std::size_t row = 0; with_matrix && row < columns; ++row) {
+      kernel_.model_products(left.data() + row * block_samples, n, design_.data() + row * block_samples, columns - row, products_.data());
+      for (std::size_t k = row; k < columns; ++k)
+        system.normal(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k)) += products_[k - row];
+    }
+  }
+
+  const SineKernel& kernel_ = best_kernel();
   const Record& record_;
   SineBasis basis_;
-  DesignBlock design_;
+  std::vector<double> design_, weighted_;
+  std::vector<double> products_;
 };
 
 // Solves with columns scaled to unit length; tells how well they can be told apart.

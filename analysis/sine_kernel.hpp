@@ -93,6 +93,12 @@ struct SineKernel {
                                ResidualSlopeSums& slope);
   bool (*design_moments)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments);
   void (*residual_moments)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualMoments& moments);
+  // Models of `count` columns, `block_samples` apart; columns are zero past the last row up to a multiple of eight, and so are the
+  // residuals that are left: y - sum of coefficient times column, and the sum of their squares.
+  void (*model_residuals)(const double* values, std::size_t n, const double* columns, std::size_t count, const double* coefficients,
+                          double* residuals, double& squares);
+  // Of one column with each of `count` others.
+  void (*model_products)(const double* one, std::size_t n, const double* columns, std::size_t count, double* products);
 };
 
 extern const SineKernel baseline_kernel;

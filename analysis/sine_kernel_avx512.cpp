@@ -89,7 +89,9 @@ struct StepCheck {
 
 #include "analysis/sine_grid_series_body.hpp"
 
+#include "analysis/sine_model_body.hpp"
+
 namespace dyncal::analysis::kernel {
-const SineKernel avx512_kernel{"avx512",          fit_on_grid, series_on_grid,       fit_block,      design,
-                               design_with_slope, residuals,   residuals_with_slope, design_moments, residual_moments};
+const SineKernel avx512_kernel{"avx512",  fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
+                               residuals, residuals_with_slope, design_moments, residual_moments, model_residuals, model_products};
 }

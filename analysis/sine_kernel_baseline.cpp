@@ -128,7 +128,9 @@ struct StepCheck {
 
 #include "analysis/sine_grid_series_body.hpp"
 
+#include "analysis/sine_model_body.hpp"
+
 namespace dyncal::analysis::kernel {
-const SineKernel baseline_kernel{"baseline",        fit_on_grid, series_on_grid,       fit_block,      design,
-                                 design_with_slope, residuals,   residuals_with_slope, design_moments, residual_moments};
+const SineKernel baseline_kernel{"baseline", fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
+                                 residuals,  residuals_with_slope, design_moments, residual_moments, model_residuals, model_products};
 }
