@@ -1,6 +1,7 @@
 #include "services/virtual_bench/can_line.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 
 #include <fmt/core.h>
@@ -15,6 +16,7 @@ namespace {
 constexpr std::int64_t shortest_watch_ns = 5'000;
 constexpr std::int64_t first_watch_ns = 60'000;
 constexpr std::int64_t longest_watch_ns = 500'000;
+constexpr std::int64_t attend_before_ns = 20'000'000;
 constexpr std::int64_t late_ns = 100'000;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
@@ -80,6 +82,12 @@ void CanLine::run(const std::stop_token& stop) {
     }
     const Due due = waiting_.front();
     waiting_.pop_front();
+    // A sleep that hears of a stop, as long as there is time for one.
+    const std::chrono::nanoseconds attend(due.end_utc_ns - attend_before_ns);
+    more_.wait_until(lock, stop, std::chrono::system_clock::time_point(attend), [] { return false; });
+    if (stop.stop_requested()) {
+      return;
+    }
     lock.unlock();
     send(due);
   }
