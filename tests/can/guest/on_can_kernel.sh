@@ -1,24 +1,25 @@
 #!/usr/bin/env bash
 # Runs a command as root on a kernel that has CAN:
 #
-#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] [-g] COMMAND ARGUMENTS...
+#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] [-g|-i] COMMAND ARGUMENTS...
 #
 # On this kernel, in a network namespace of its own, where it has vcan and we may; otherwise in a User-Mode-Linux guest that sees the
 # files of this machine read-only: DYNCAL_CAN_KERNEL, else the one that build-guest.sh has built, else /usr/bin/linux.uml of Debian's
 # package user-mode-linux.
 # -g: only in the guest that build-guest.sh has built (USB adapters), and in simulated time: sleeping costs nothing, computing takes no
-# time, the clock starts at the same instant every time.
+# time, the clock starts at the same instant every time. -i: in simulated time if the guest has it.
 # Exit status: the command's; 77 with a line "skipped: ..." where there is neither; 125 when the guest did not come to an end.
 set -uo pipefail
 
-shim= memory=512 limit=120 writable= built_only=
-while getopts s:m:t:w:g option; do
+shim= memory=512 limit=120 writable= built_only= simulated=
+while getopts s:m:t:w:gi option; do
   case $option in
     s) shim=$OPTARG ;;
     m) memory=$OPTARG ;;
     t) limit=$OPTARG ;;
     w) writable=$(realpath "$OPTARG") ;;
-    g) built_only=yes ;;
+    g) built_only=yes simulated=yes ;;
+    i) simulated=yes ;;
     *) exit 2 ;;
   esac
 done
@@ -31,14 +32,13 @@ fi
 built=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/dyncal/linux-can
 [[ -x $built ]] || built=
 kernel=${DYNCAL_CAN_KERNEL:-${built:-/usr/bin/linux.uml}}
+# A kernel lists its options in its file; that of the package has no simulated time.
 clock=()
-if [[ -n $built_only ]]; then
-  # A kernel lists its options in its file; that of the package has no simulated time.
-  if [[ ! -x $kernel ]] || ! grep -q 'time-travel=inf-cpu' "$kernel"; then
-    echo "skipped: needs a guest kernel with USB adapters and simulated time; tests/can/build-guest.sh builds it"
-    exit 77
-  fi
+if [[ -n $simulated && -x $kernel ]] && grep -q 'time-travel=inf-cpu' "$kernel"; then
   clock=(time-travel=inf-cpu time-travel-start=1700000000000000000)
+elif [[ -n $built_only ]]; then
+  echo "skipped: needs a guest kernel with USB adapters and simulated time; tests/can/build-guest.sh builds it"
+  exit 77
 fi
 for needed in "$kernel" /usr/bin/busybox; do
   if [[ ! -x $needed && ! -x ${needed/usr\//} ]]; then
