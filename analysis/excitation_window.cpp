@@ -159,23 +159,25 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   const double cosine = (ss * yc - sc * ys) / determinant;
 
   const auto slices = static_cast<std::size_t>(std::max(10.0, std::ceil(static_cast<double>(frame_ns_) * 1e-9 / slice_s)));
-  std::vector<double> slice_power(slices, 0.0);
-  std::vector<double> slice_count(slices, 0.0);
   const double slices_a_ns = static_cast<double>(slices) / static_cast<double>(frame_ns_);
+  const auto slice_of = [&](std::int64_t stamp_ns) {
+    const double place = static_cast<double>(stamp_ns - open_index_ * frame_ns_) * slices_a_ns;
+    return std::min(slices - 1, static_cast<std::size_t>(place));
+  };
   double power = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double residual =
-        values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
-    power += residual * residual;
-    frame.largest_residual = std::max(frame.largest_residual, std::abs(residual));
-    const double place = static_cast<double>(stamps_ns_[i] - open_index_ * frame_ns_) * slices_a_ns;
-    const auto slice = std::min(slices - 1, static_cast<std::size_t>(place));
-    slice_power[slice] += residual * residual;
-    slice_count[slice] += 1.0;
-  }
   double before = 0.0;
-  for (std::size_t k = 0; k < slices; ++k) {
-    const double rms = slice_count[k] > 0.0 ? std::sqrt(slice_power[k] / slice_count[k]) : 0.0;
+  std::size_t i = 0;
+  for (std::size_t slice = 0; slice < slices; ++slice) { // stamps rise: the samples of a slice follow one another
+    const std::size_t first = i;
+    double slice_power = 0.0;
+    for (; i < n && slice_of(stamps_ns_[i]) == slice; ++i) {
+      const double residual =
+          values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
+      power += residual * residual;
+      slice_power += residual * residual;
+      frame.largest_residual = std::max(frame.largest_residual, std::abs(residual));
+    }
+    const double rms = i > first ? std::sqrt(slice_power / static_cast<double>(i - first)) : 0.0;
     frame.largest_neighbours_rms = std::max(frame.largest_neighbours_rms, std::min(before, rms));
     before = rms;
   }

@@ -20,8 +20,9 @@
 namespace dyncal::services {
 namespace {
 
-constexpr std::size_t blocks_ahead = 64; // of at most 4096 samples
-constexpr std::uint64_t session = 1;     // a file is one session; nothing depends on its number
+constexpr std::size_t blocks_ahead = 64;    // of at most 4096 samples
+constexpr std::size_t most_evaluations = 4; // at once, one a processor: a step takes longer than reading the next; each holds its samples
+constexpr std::uint64_t session = 1;        // a file is one session; nothing depends on its number
 
 // A file of the bench, read in a thread of its own that waits when it is `blocks_ahead` in front. The thread ends with the file, with a
 // failure, or when the object goes.
@@ -218,8 +219,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (!recipe) {
     return tl::unexpected(recipe.error());
   }
-  // An evaluation takes longer than reading the samples of the next step: one of them a processor.
-  RunEvaluator evaluator(std::move(*recipe), std::max(1U, std::thread::hardware_concurrency()));
+  RunEvaluator evaluator(std::move(*recipe), std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_evaluations));
   auto inputs = open_inputs(*bench, evaluator);
   if (!inputs) {
     return tl::unexpected(inputs.error());

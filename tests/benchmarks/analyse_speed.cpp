@@ -1,6 +1,6 @@
 // How fast `dyncal analyse` evaluates recorded files, beside the time that only looking at every octet of them takes (the lines of a CSV
 // file counted in one thread): all in one run, on the same files, which lie in the page cache; the quickest of some runs counts.
-//   analyse_speed [--program P] [--folder F] [--step-s 20] [--runs 5] [--disturbed]
+//   analyse_speed [--program P] [--folder F] [--only KIND] [--step-s 20] [--runs 5] [--disturbed]
 // A step lasts 20 s in the full form: 9.5 million samples. With --disturbed harmonics and hum are found and taken out as well.
 // Exit status 1 when a run does not give every result.
 #include <algorithm>
@@ -37,6 +37,7 @@ constexpr int repetitions = 3;
 struct Options {
   std::string program = DYNCAL;
   std::filesystem::path folder = std::filesystem::temp_directory_path();
+  std::string only;
   double step_s = 20.0;
   int runs = 5;
   bool disturbed = false;
@@ -244,6 +245,7 @@ int main(int argc, char** argv) {
   CLI::App app("Measures dyncal analyse on recorded files.");
   app.add_option("--program", options.program, "dyncal");
   app.add_option("--folder", options.folder, "where the files are made; 2.5 GB in the full form");
+  app.add_option("--only", options.only, "one kind of files alone")->check(CLI::IsMember({"narrow csv", "wide csv", "npy"}));
   app.add_option("--step-s", options.step_s, "how long a step lasts, in seconds")->check(CLI::Range(2.5, 1000.0));
   app.add_option("--runs", options.runs, "of which the quickest counts")->check(CLI::Range(1, 1000));
   app.add_flag("--disturbed", options.disturbed, "with harmonics and hum");
@@ -251,9 +253,12 @@ int main(int argc, char** argv) {
   try {
     fmt::print("{:12} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "files", "MB", "1e6 rows", "reading/s", "analyse/s", "CPU/s",
                "MB/s", "1e6 rows/s", "/ reading");
-    measure(options, Bench(options, "narrow csv", 2, "csv", true));
-    measure(options, Bench(options, "wide csv", 12, "csv", false));
-    measure(options, Bench(options, "npy", 2, "npy", true));
+    const auto measure_kind = [&](const char* name, std::size_t channels, const char* ending, bool with_dau) {
+      if (options.only.empty() || options.only == name) measure(options, Bench(options, name, channels, ending, with_dau));
+    };
+    measure_kind("narrow csv", 2, "csv", true);
+    measure_kind("wide csv", 12, "csv", false);
+    measure_kind("npy", 2, "npy", true);
   } catch (const std::exception& problem) {
     fmt::print(stderr, "analyse_speed: {}\n", problem.what());
     return 1;
