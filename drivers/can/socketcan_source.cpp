@@ -1,5 +1,6 @@
 #include "drivers/can/socketcan_source.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::size_t batch = 64;
 constexpr std::size_t control_bytes = 256;
+constexpr int most_errors = 4; // of an interface that goes, in one read: down, and gone
 
 std::string system_text(int error) {
   return std::generic_category().message(error);
@@ -149,10 +151,16 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events, std::ch
   const bool some = ::poll(waited.data(), socket_.open() ? 3 : 2, static_cast<int>(limit.count())) > 0;
   if (some && waited[0].revents != 0) return ReadState::stopped;
   // Frames before announcements: what came before a change stands before it.
-  if (some && socket_.open() && waited[2].revents != 0) receive(events);
-  if (some && waited[1].revents != 0) {
+  const std::size_t first = events.size();
+  const bool went_down = some && socket_.open() && waited[2].revents != 0 && receive(events);
+  if (went_down || (some && waited[1].revents != 0)) {
     const auto changes = monitor_->update();
     if (!changes) return tl::make_unexpected(changes.error());
+    // Down and up again since the last read: which of the frames came before it nobody can tell, and an adapter's clock has jumped.
+    const bool back = std::any_of(changes->begin(), changes->end(), [](const auto& announced) { return announced.state.up; });
+    if (went_down && back && events.size() > first)
+      events.insert(events.begin() + static_cast<std::ptrdiff_t>(first),
+                    LinkChange{link_, true, "interface '" + link_.name + "' was down while frames waited to be read"});
     for (const LinkMonitor::Change& announced : *changes)
       follow_link(announced, events);
   }
@@ -160,14 +168,26 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events, std::ch
   return ReadState::more;
 }
 
-void SocketCanSource::receive(std::vector<BusEvent>& events) {
-  buffers_->prepare();
-  const int got = ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
-  for (int i = 0; i < got; ++i)
-    take(static_cast<std::size_t>(i), events);
-  // ENETDOWN comes once when the interface goes down, and the socket lives on; ENODEV when it has gone. Both are announced by the monitor
-  // too, which knows the order; a socket whose interface has gone is dropped here already, so that it does not wake us again and again.
-  if (got < 0 && (errno == ENODEV || errno == ENXIO)) socket_.reset();
+// ENETDOWN comes once when the interface goes down, before the frames that are still to be read, and the socket lives on; ENODEV when it
+// has gone. Both are announced by the monitor too; a socket whose interface has gone is dropped here already, so that it does not wake us
+// again and again, but not before it has been read out.
+bool SocketCanSource::receive(std::vector<BusEvent>& events) {
+  bool went_down = false;
+  bool gone = false;
+  for (int errors = 0; errors < most_errors;) {
+    buffers_->prepare();
+    const int got = ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
+    for (int i = 0; i < got; ++i)
+      take(static_cast<std::size_t>(i), events);
+    const bool down = got < 0 && errno == ENETDOWN;
+    const bool no_device = got < 0 && (errno == ENODEV || errno == ENXIO);
+    went_down = went_down || down || no_device;
+    gone = gone || no_device;
+    errors += down || no_device ? 1 : 0;
+    if (!down && !no_device && (!went_down || got < static_cast<int>(batch))) break;
+  }
+  if (gone) socket_.reset();
+  return went_down;
 }
 
 void SocketCanSource::take(std::size_t message, std::vector<BusEvent>& events) {

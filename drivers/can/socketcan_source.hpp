@@ -7,8 +7,9 @@
 // The source goes on through: interface down and up (the socket stays bound), interface gone (it is opened again as soon as one of the
 // name is there), interface renamed (followed), bus-off (the kernel's or the adapter's own restart is waited for; with
 // `restart_after_bus_off` the controller is restarted after that time, by IFLA_CAN_RESTART or, where the driver has none, by down and up).
-// Each of these is a LinkChange with `interrupted`, nothing is filled.
-// Fails at open() when the kernel has no CAN, the interface is not there, is no CAN interface or is down, or the user may not.
+// Each of these is a LinkChange with `interrupted`, nothing is filled. Frames that waited to be read while the interface was down and up
+// again stand between two of them: which side they belong to cannot be told. Fails at open() when the kernel has no CAN, the interface is
+// not there, is no CAN interface or is down, or the user may not.
 #pragma once
 
 #include <array>
@@ -49,7 +50,8 @@ private:
   [[nodiscard]] Expected<void> check_link(const LinkState& link) const;
   [[nodiscard]] Expected<void> open_socket();
   [[nodiscard]] Expected<void> set_options(int socket) const;
-  void receive(std::vector<BusEvent>& events);
+  // True: the interface has gone down since the last call.
+  [[nodiscard]] bool receive(std::vector<BusEvent>& events);
   void take(std::size_t message, std::vector<BusEvent>& events);
   void follow_link(const LinkMonitor::Change& announced, std::vector<BusEvent>& events);
   void note_fault(const BusFault& fault);
