@@ -51,16 +51,16 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
   const double low = quantile(all, 0.02);
   const double high = quantile(all, 0.98);
   const double height = high - low;
+  const auto no_edge = [] { return failure(ErrorCode::no_excitation, "the trace shows no rising edge"); };
   // The last sample below 20 % before the first one above 80 %.
   const auto above = std::find_if(volts.begin(), volts.end(), [&](double v) { return v > low + 0.8 * height; });
+  if (!(height > 0.0) || above == volts.end()) return no_edge();
   const auto place_above = static_cast<std::size_t>(above - volts.begin());
   std::size_t begin = place_above;
   while (begin > 0 && volts[begin] > low + 0.2 * height) {
     --begin;
   }
-  if (!(height > 0.0) || above == volts.end() || begin == 0) {
-    return failure(ErrorCode::no_excitation, "the trace shows no rising edge");
-  }
+  if (begin == 0) return no_edge();
   const auto low_again = std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
   if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
     return failure(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of them belongs to the trigger is unknown");
@@ -85,9 +85,7 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
     sum_tv += t * volts[i];
   }
   const double slope = (n * sum_tv - sum_t * sum_v) / (n * sum_tt - sum_t * sum_t);
-  if (!(slope > 0.0) || !std::isfinite(slope)) {
-    return failure(ErrorCode::no_excitation, "the trace shows no rising edge");
-  }
+  if (!(slope > 0.0) || !std::isfinite(slope)) return no_edge();
   const double half = low + 0.5 * height;
   const double from_begin = (half - (sum_v - slope * sum_t) / n) / slope;
   return first_s + (static_cast<double>(begin) + from_begin) * interval_s;

@@ -128,7 +128,8 @@ Range Range::padded(double fraction) const {
 }
 
 Axis make_axis(const Range& range, int ticks) {
-  Axis axis{range.scale(), range.low(), range.high(), {}, {}};
+  const Range shown = range.high() > range.low() ? range : range.padded(0.0); // ticks need a step
+  Axis axis{shown.scale(), shown.low(), shown.high(), {}, {}};
   if (axis.scale == Scale::linear) {
     add_linear_ticks(axis, ticks);
   } else {

@@ -50,7 +50,7 @@ private:
   double high_ = 0;
 };
 
-// The axis over exactly this range, with about `ticks` labels. The range must not be empty: see Range::padded.
+// The axis over exactly this range, with about `ticks` labels; a range of one value or none is padded first.
 [[nodiscard]] Axis make_axis(const Range& range, int ticks);
 
 // "10⁻⁴"

@@ -49,6 +49,7 @@ Panel histogram_panel(const StampDeviationData& data) {
     bins[std::llround(point.deviation_s / bin_s)] += 1;
   Range counts;
   counts.include(0);
+  counts.include(1); // an empty histogram, too
   for (const auto& [bin, count] : bins) {
     const double centre_ns = 1e9 * bin_s * static_cast<double>(bin);
     panel.bars.push_back({centre_ns - 0.5e9 * bin_s, centre_ns + 0.5e9 * bin_s, count});

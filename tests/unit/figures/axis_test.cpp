@@ -43,6 +43,13 @@ TEST(LinearAxis, TakesOutACommonPowerOfTenWhenNumbersAreVerySmallOrLarge) {
   EXPECT_EQ(make_axis(range(Scale::linear, 0, 4e6), 4).factor, "×10⁶");
 }
 
+TEST(LinearAxis, GivesARangeOfOneValueSomeWidth) {
+  Range range;
+  range.include(0.0);
+  EXPECT_GE(make_axis(range, 5).ticks.size(), 2U);
+  EXPECT_LT(make_axis(range, 5).low, make_axis(range, 5).high);
+}
+
 TEST(LogarithmicAxis, LabelsOneTwoAndFiveOfAShortRange) {
   const auto axis = make_axis(range(Scale::logarithmic, 9, 270), 10);
   EXPECT_THAT(labels(axis), ElementsAre("10", "20", "50", "100", "200"));
