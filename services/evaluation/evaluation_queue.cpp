@@ -6,14 +6,18 @@
 
 namespace dyncal::services {
 
+void EvaluationQueue::make_room() {
+  while (!under_way_.empty() && under_way_.size() >= at_once_) {
+    finish_oldest();
+  }
+}
+
 void EvaluationQueue::begin(Evaluation evaluation) {
   if (!in_background()) {
     keep(evaluation());
     return;
   }
-  while (under_way_.size() >= at_once_) {
-    finish_oldest();
-  }
+  make_room();
   under_way_.push_back(std::async(std::launch::async, std::move(evaluation)));
 }
 

@@ -23,6 +23,8 @@ public:
 
   [[nodiscard]] bool in_background() const { return at_once_ > 0; }
 
+  // Waits until one more may begin: before its samples are copied, so that no more of them are held than are evaluated.
+  void make_room();
   void begin(Evaluation evaluation);
   // Of all evaluations before the first one that is still under way.
   [[nodiscard]] std::vector<CalibrationResult> take_finished();

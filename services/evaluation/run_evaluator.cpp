@@ -215,6 +215,7 @@ void RunEvaluator::take_results(std::vector<CalibrationResult> results, Evaluati
 
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < steps_expected() && ready_to_evaluate(next_step_)) {
+    evaluations_.make_room();
     evaluations_.begin(evaluation_by_method(recipe_.steps[next_step_]));
     ++next_step_;
   }
