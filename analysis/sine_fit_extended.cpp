@@ -17,7 +17,7 @@ namespace {
 using namespace kernel;
 
 constexpr double smallest_rcond = 1e-10;
-constexpr int refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
+constexpr int most_refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
 constexpr int most_reweightings = 200;
 constexpr double settled = 1e-12; // change of the parameters against their size
 
@@ -139,12 +139,13 @@ Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequen
   if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
   result.inverse = inverse.matrix();
   result.coefficients += result.inverse * first->right;
-  for (int i = 0; i < refinements; ++i) {
+  for (int i = 0; i < most_refinements; ++i) {
     const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
     if (!again) return tl::unexpected(again.error());
     const Eigen::VectorXd step = result.inverse * again->right;
     result.coefficients += step;
     result.rss = std::max(0.0, again->ee - step.dot(again->right));
+    if (step.norm() < settled * result.coefficients.norm()) break; // what this one lacks is far below rounding
   }
   result.variance = result.rss / (static_cast<double>(values.size()) - static_cast<double>(columns));
   return result;
