@@ -129,6 +129,42 @@ TEST(SocketCan, GoesOnAfterTheInterfaceWasDownAndUp) {
   EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
 }
 
+TEST(SocketCan, PutsFramesThatWaitedAcrossADownAndUpBetweenTwoInterruptions) {
+  const VirtualCan link("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  for (std::uint8_t i = 0; i < 3; ++i)
+    ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  ip("set vcan0 down");
+  ip("set vcan0 up");
+  for (std::uint8_t i = 3; i < 100; ++i)
+    ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  const auto events = read_until(source, change("is up"));
+  ASSERT_TRUE(change("is up")(events));
+  const auto* before = std::get_if<LinkChange>(&events.front());
+  ASSERT_NE(before, nullptr);
+  EXPECT_TRUE(before->interrupted);
+  EXPECT_THAT(before->what, HasSubstr("'vcan0' was down while frames waited"));
+  for (std::size_t i = 0; i < 100; ++i) {
+    const auto* frame = std::get_if<CanFrame>(&events.at(1 + i));
+    ASSERT_NE(frame, nullptr) << i;
+    EXPECT_EQ(frame->data[0], i);
+  }
+}
+
+TEST(SocketCan, ReadsOutWhatCameBeforeTheInterfaceWent) {
+  auto link = std::make_unique<VirtualCan>("vcan0");
+  SocketCanSource source = source_on("vcan0");
+  ASSERT_TRUE(source.open(sensor_only));
+  for (std::uint8_t i = 0; i < 100; ++i)
+    ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  link.reset();
+  const auto events = read_until(source, change("has gone"));
+  ASSERT_TRUE(change("has gone")(events));
+  EXPECT_EQ(frames_of(events).size(), 100U);
+  EXPECT_TRUE(std::holds_alternative<CanFrame>(events.front()));
+}
+
 TEST(SocketCan, OpensAnInterfaceAgainThatWasUnpluggedAndComesBack) {
   auto link = std::make_unique<VirtualCan>("vcan0");
   SocketCanSource source = source_on("vcan0");
