@@ -250,10 +250,11 @@ void decode(Bytes bytes, Datagram& datagram) {
       datagram.broken = Rejection::truncated;
       return;
     }
-    if (is_data)
+    if (is_data) {
       decode_data(message, left_before - reader.left(), datagram);
-    else
+    } else {
       decode_description(message, datagram);
+    }
   }
 }
 

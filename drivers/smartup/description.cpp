@@ -34,10 +34,11 @@ std::string identifier(const std::string& text) {
   std::string name;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) != 0 && byte < 0x80)
+    if (std::isalnum(byte) != 0 && byte < 0x80) {
       name += static_cast<char>(std::tolower(byte));
-    else if (!name.empty() && name.back() != '_')
+    } else if (!name.empty() && name.back() != '_') {
       name += '_';
+    }
   }
   while (!name.empty() && name.back() == '_')
     name.pop_back();
@@ -133,7 +134,7 @@ bool DescriptionAssembly::complete() const {
 
 std::string DescriptionAssembly::declared_name(std::size_t channel) const {
   const Place place = place_of(declared_[channel].hierarchy);
-  const std::string group = identifier(place.group);
+  std::string group = identifier(place.group);
   if (group.empty() || !place.index) return group;
   std::uint32_t indices = 0;
   int members = 0;

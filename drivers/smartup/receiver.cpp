@@ -188,10 +188,11 @@ private:
       last_dropped_ = *dropped;
       reception_.set_dropped_by_kernel(dropped_);
     }
-    if (batch.cut_off(i))
+    if (batch.cut_off(i)) {
       reception_.add_too_long();
-    else
+    } else {
       reception_.take(batch.datagram(i), batch.sender(i), now);
+    }
   }
 
   const int descriptor_;

@@ -81,10 +81,11 @@ void Reception::take_data(std::size_t datagram_bytes, Unit& unit, Sender sender,
 void Reception::take_rejected() {
   for (const RejectedMessage& rejected : datagram_.rejected) {
     const auto known = rejected.sensor ? sensors_.find(*rejected.sensor) : sensors_.end();
-    if (known == sensors_.end())
+    if (known == sensors_.end()) {
       ++counts_.rejected[static_cast<std::size_t>(rejected.cause)];
-    else
+    } else {
       known->second->sensor.reject(rejected);
+    }
   }
   if (datagram_.broken) ++counts_.rejected[static_cast<std::size_t>(*datagram_.broken)];
 }

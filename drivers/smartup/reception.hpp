@@ -25,7 +25,7 @@ struct Sender {
   std::uint32_t address = 0;
   std::uint16_t port = 0;
 
-  friend auto operator<=>(const Sender&, const Sender&) = default;
+  friend auto operator<=>(const Sender&, const Sender&) = default; // NOLINT(modernize-use-nullptr): clang-tidy 14 errs here
   [[nodiscard]] std::string text() const;
 };
 

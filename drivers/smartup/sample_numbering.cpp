@@ -39,12 +39,13 @@ Place SampleNumbering::place(std::uint32_t number, std::int64_t stamp_ns) {
   const std::uint32_t ahead = number - last_number_;
   if (ahead == 1) return accept(Arrival::next, number, stamp_ns, last_sample_ + 1, 0);
   Arrival arrival = Arrival::after_gap;
-  if (ahead == 0 || ahead > UINT32_MAX / 2)
+  if (ahead == 0 || ahead > UINT32_MAX / 2) {
     arrival = look_back(number, stamp_ns);
-  else if (ahead > kLargestGap)
+  } else if (ahead > kLargestGap) {
     arrival = Arrival::restart;
-  else if (ahead > kPlainGap && stamp_ns < last_stamp_ns_ - kClearlyEarlier_ns)
+  } else if (ahead > kPlainGap && stamp_ns < last_stamp_ns_ - kClearlyEarlier_ns) {
     arrival = unless_it_continues(number);
+  }
 
   if (arrival == Arrival::after_gap) return accept(arrival, number, stamp_ns, last_sample_ + ahead, ahead - 1);
   if (arrival == Arrival::restart) {

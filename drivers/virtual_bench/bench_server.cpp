@@ -20,7 +20,7 @@ constexpr double largest_arrears_s = 0.5; // host time that is made up for after
 constexpr double frame_s = 0.05;
 constexpr double largest_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
-constexpr std::size_t largest_receive_queue = 64 * 1024;       // of the 208 KiB that hosts allow at least
+constexpr std::size_t largest_receive_queue = 64U * 1024U;     // of the 208 KiB that hosts allow at least
 constexpr std::chrono::microseconds queue_look_interval{2000}; // a look costs about 30 us
 constexpr milliseconds idle_wait{4};
 constexpr milliseconds blocked_wait{20};
