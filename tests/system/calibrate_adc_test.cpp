@@ -70,9 +70,11 @@ TEST(CalibrateAdc, FindsTheResponseOfTheAdcAndARunWithItMeetsTheTruth) {
   ProgramRun& run = bench.start({"run", corrected, "--json", folder / "result.json"});
   ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
   std::map<std::pair<std::string, double>, nlohmann::json> measured;
-  for (const auto& point : read_json(folder / "result.json")["transfer_function"])
+  const nlohmann::json result = read_json(folder / "result.json");
+  for (const auto& point : result["transfer_function"])
     measured[{point["channel"], point["frequency_hz"]}] = point;
-  for (const auto& point : bench.truth()["transfer_function"]) {
+  const nlohmann::json truth = bench.truth();
+  for (const auto& point : truth["transfer_function"]) {
     const auto& found = measured[{"dau/" + point["channel"].get<std::string>(), point["frequency_hz"]}];
     ASSERT_FALSE(found.is_null()) << point;
     const double phase = std::remainder(found["phase_rad"].get<double>() - point["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
