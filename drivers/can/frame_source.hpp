@@ -35,7 +35,8 @@ struct LinkState {
   double sample_point = 0.0;
   bool fd = false;
   bool listen_only = false;
-  std::string kind; // of the driver's link: "can", "vcan", "vxcan" ...
+  std::string kind;       // of the driver's link: "can", "vcan", "vxcan" ...
+  std::string device_bus; // on which its controller is: "usb", "pci", "spi" ...; "" where it has none or the kernel does not say
 
   friend bool operator==(const LinkState&, const LinkState&) = default;
 };

@@ -7,15 +7,18 @@ namespace dyncal::drivers::can {
 
 namespace {
 
-// Of the smallest delay between the end of a frame and its stamp, where nobody has measured it: interrupt and scheduling of the kernel for
-// stamps that are taken as they are; the little that is left of it under a line that follows the earliest of many; and one step of an
-// adapter.
+// Of the smallest delay between the end of a frame and the kernel's stamp, where nobody has measured it: interrupt and scheduling of the
+// kernel for stamps that are taken as they are; the little that is left of it under a line that follows the earliest of many; and from
+// an adapter on USB or on a serial line something between 0 and 300 us, whatever stamps it takes itself, as its clock is known through
+// the kernel's stamps alone.
 constexpr double u_kernel_latency_s = 60e-6;
 constexpr double u_hardware_latency_s = 20e-6;
+constexpr double longest_usb_latency_s = 300e-6;
 
 } // namespace
 
-FrameTimer::FrameTimer(const SensorSettings& settings) : settings_(settings) {}
+FrameTimer::FrameTimer(const SensorSettings& settings, const LinkState& link)
+    : settings_(settings), remote_adapter_(link.device_bus == "usb" || (link.device_bus.empty() && link.kind == "can")) {}
 
 std::int64_t FrameTimer::duration_ns(const CanFrame& frame) const {
   if (!settings_.correct_frame_duration) return 0;
@@ -68,7 +71,10 @@ double FrameTimer::u_common_s() const {
   const bool unknown_point = uses_hardware() && settings_.hardware_stamp_point == StampPoint::unknown;
   const double u_instant_s = (unknown_point ? longest_s_ : bit_s) / std::sqrt(12.0);
   const double u_tick_s = uses_hardware() ? settings_.hardware_tick_s / std::sqrt(12.0) : 0.0;
-  const double u_latency_s = settings_.u_latency_s.value_or(uses_hardware() ? u_hardware_latency_s : u_kernel_latency_s);
+  const double u_default_s = remote_adapter_   ? longest_usb_latency_s / std::sqrt(3.0)
+                             : uses_hardware() ? u_hardware_latency_s
+                                               : u_kernel_latency_s;
+  const double u_latency_s = settings_.u_latency_s.value_or(u_default_s);
   return std::sqrt(u_instant_s * u_instant_s + u_tick_s * u_tick_s + u_latency_s * u_latency_s);
 }
 

@@ -12,6 +12,7 @@
 
 #include "drivers/can/can_frame.hpp"
 #include "drivers/can/clock_line.hpp"
+#include "drivers/can/frame_source.hpp"
 #include "drivers/can/sensor_settings.hpp"
 
 namespace dyncal::drivers::can {
@@ -19,7 +20,7 @@ namespace dyncal::drivers::can {
 class FrameTimer {
 public:
   // REQUIRES: settings.bit_rates.nominal_per_s > 0 when the frame duration is corrected.
-  explicit FrameTimer(const SensorSettings& settings);
+  FrameTimer(const SensorSettings& settings, const LinkState& link);
 
   // Every frame, in the order received. False when a clock was set: what was said before is no longer comparable.
   bool add(const CanFrame& frame);
@@ -43,6 +44,7 @@ private:
   [[nodiscard]] std::int64_t hardware_start_ns(const CanFrame& frame) const;
 
   SensorSettings settings_;
+  bool remote_adapter_; // behind USB or a serial line
   std::optional<bool> uses_hardware_;
   ClockLine hardware_line_;
   double longest_s_ = 0.0; // of the frames seen

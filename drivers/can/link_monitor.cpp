@@ -211,6 +211,8 @@ void LinkMonitor::take_message(const void* message) {
       state.name = read_text(value, size);
     else if (type == IFLA_MTU)
       state.fd = read_as<std::uint32_t>(value, size) >= 72; // CANFD_MTU
+    else if (type == IFLA_PARENT_DEV_BUS_NAME)
+      state.device_bus = read_text(value, size);
     else if (type == IFLA_LINKINFO)
       each_attribute(value, size, [&](int inner, const std::uint8_t* data, std::size_t bytes_left) {
         if (inner == IFLA_INFO_KIND)

@@ -57,7 +57,7 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
         Error{ErrorCode::invalid_setting, "interface '" + link.name +
                                               "' does not say its bit rate, which the duration of a frame follows from; give it with "
                                               "'bit_rate_per_s'"});
-  timer_.emplace(settings_);
+  timer_.emplace(settings_, link);
   u_utc_s_ = settings_.time_base == TimeBase::local ? 0.0 : settings_.u_utc_s.value_or(system_clock_quality().u_s);
   // Without a counter only the first frame tells whether the adapter stamps; until then the kernel's stamps are what there is.
   if (settings_.time_source)

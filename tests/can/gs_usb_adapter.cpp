@@ -148,15 +148,15 @@ void GsUsbAdapter::put(const drivers::can::CanFrame& frame, std::int64_t start_n
     OnBus next;
     next.said.frame = frame;
     next.start_ns = start_ns;
-    queue(std::move(next));
+    queue(next);
   }
   wake_up();
 }
 
-void GsUsbAdapter::queue(OnBus next) {
+void GsUsbAdapter::queue(const OnBus& next) {
   const auto behind = std::upper_bound(to_bus_.begin(), to_bus_.end(), next.start_ns,
                                        [](std::int64_t start_ns, const OnBus& other) { return start_ns < other.start_ns; });
-  to_bus_.insert(behind, std::move(next));
+  to_bus_.insert(behind, next);
 }
 
 void GsUsbAdapter::say_error(std::size_t channel, std::uint32_t classes, const std::array<std::uint8_t, 8>& data) {
@@ -219,7 +219,7 @@ void GsUsbAdapter::run(const std::stop_token& stop) {
 std::int64_t GsUsbAdapter::do_what_is_due() {
   const std::int64_t at_ns = now_ns();
   while (!to_bus_.empty() && std::max(to_bus_.front().start_ns, bus_idle_ns_) <= at_ns) {
-    const OnBus next = std::move(to_bus_.front());
+    const OnBus next = to_bus_.front();
     to_bus_.pop_front();
     transmit(next);
   }
@@ -301,7 +301,7 @@ void GsUsbAdapter::bulk_out(std::span<const std::uint8_t> sent) {
   next.said = *said;
   next.sender = said->channel;
   next.start_ns = now_ns();
-  queue(std::move(next));
+  queue(next);
 }
 
 std::optional<std::vector<std::uint8_t>> GsUsbAdapter::control(const ControlRequest& request, std::span<const std::uint8_t> sent) {

@@ -95,7 +95,7 @@ private:
   void wake_up() const;
   // These with the lock held.
   std::int64_t do_what_is_due();
-  void queue(OnBus next);
+  void queue(const OnBus& next);
   void transmit(const OnBus& sent);
   void mishear(std::size_t channel, std::int64_t end_ns);
   void tell_host(gs_usb::HostFrame said, std::int64_t stamped_ns, std::int64_t end_ns);

@@ -36,6 +36,18 @@ TEST_F(HardwareStamps, AreChosenByThemselvesAndMarkTheStartOfFrameWithinTheirUnc
   expect_true_stamps();
 }
 
+TEST_F(HardwareStamps, CoverTheLatencyOfUsbWhereNobodyHasMeasuredIt) {
+  plug_in(drifting(50.0), "bitrate 1000000");
+  sensor.latency_s = 0.0;
+  sensor.u_latency_s.reset();
+  open();
+  EXPECT_EQ(stream->link().device_bus, "usb");
+  send(3'000);
+  finish();
+  expect_true_stamps(0, 2.0);
+  EXPECT_GT(largest_error_ns, 100e3); // the latency, which nothing in the data shows
+}
+
 TEST_F(HardwareStamps, LeadToTheRateOfTheAdaptersClockAndTheLeastLatency) {
   for (const double ppm : {-80.0, 50.0}) {
     plug_in(drifting(ppm), "bitrate 1000000");

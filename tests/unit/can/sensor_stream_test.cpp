@@ -237,6 +237,27 @@ TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
   EXPECT_EQ(stream->counts().lost, 0U);
 }
 
+TEST(SensorStream, TrustsTheLeastDelayOfAnAdapterOnUsbLessThanThatOfAControllerOnTheHost) {
+  const auto u_stamp_s = [](const std::string& kind, const std::string& device_bus, std::optional<double> u_latency_s) {
+    SensorSettings settings = one_message();
+    settings.time_base = TimeBase::local;
+    settings.bus_is_shared = false;
+    settings.u_latency_s = u_latency_s;
+    const auto stream = stream_of(settings);
+    LinkState state = link();
+    state.kind = kind;
+    state.device_bus = device_bus;
+    Collected collected;
+    EXPECT_TRUE(stream->begin(state, collected));
+    return stream->u_stamp_s();
+  };
+  EXPECT_NEAR(u_stamp_s("can", "pci", std::nullopt), 60e-6, 1e-6);
+  EXPECT_NEAR(u_stamp_s("vcan", "", std::nullopt), 60e-6, 1e-6);
+  EXPECT_NEAR(u_stamp_s("can", "usb", std::nullopt), 300e-6 / std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(u_stamp_s("can", "", std::nullopt), 300e-6 / std::sqrt(3.0), 1e-6); // a serial line
+  EXPECT_NEAR(u_stamp_s("can", "usb", 5e-6), 5e-6, 1e-6);
+}
+
 TEST(SensorStream, TakesTheEndOfTheSyncForTheTimeOfASynchronousSample) {
   SensorSettings settings = one_message();
   settings.counter.clear();
