@@ -5,8 +5,8 @@
 #   build-guest.sh FOLDER     # -> FOLDER/linux-can; DYNCAL_CAN_KERNEL=FOLDER/linux-can names it to the tests
 #
 # Beyond Debian's package user-mode-linux it has gs_usb over USB/IP (adapters with hardware stamps), isotp and simulated time
-# (time-travel=inf-cpu). Needs: linux-source-6.1 gcc make flex bison bc xz-utils; about 2 GB while it builds and some minutes (3 on two
-# processors). A kernel of 7 MB remains; one that was built from the same source package with the same configuration is kept.
+# (time-travel=inf-cpu). Needs: linux-source-6.1 gcc make flex bison bc xz-utils; about 2 GB while it builds and 3 to 5 min on two
+# processors. A kernel of 7 MB remains; one that was built from the same source package with the same configuration is kept.
 set -euo pipefail
 
 if [[ $# -gt 1 ]]; then
