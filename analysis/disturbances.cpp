@@ -76,6 +76,7 @@ std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t 
                                        std::span<const std::span<const double>> channels, const std::vector<SineFit>& fits) {
   auto residuals = std::make_unique_for_overwrite<double[]>(channels.size() * stamps_ns.size());
   std::vector<std::complex<double>> phasors;
+  phasors.reserve(fits.size());
   for (const SineFit& fit : fits)
     phasors.push_back(turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - reference_ns));
   SineBlock block;
@@ -110,10 +111,11 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
     for (std::size_t j = 0; j < channels.size(); ++j) {
       const SineFit& line = (*lines)[j];
       if (!(line.amplitude() > significant * line.u_amplitude())) continue;
-      if (candidate.harmonic > 0)
+      if (candidate.harmonic > 0) {
         found[j].basis.highest_harmonic = candidate.harmonic;
-      else
+      } else {
         found[j].basis.lines.push_back(candidate.frequency);
+      }
     }
   }
   return found;

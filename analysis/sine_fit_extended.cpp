@@ -52,9 +52,10 @@ public:
       if (residuals) std::copy_n(e.data(), n, residuals->data() + i);
       add_products(weights.empty() ? design_ : weighted(weights.subspan(i, n)), n, e.data(), with_matrix, system);
     }
-    for (Eigen::Index row = 0; row < columns; ++row)
+    for (Eigen::Index row = 0; row < columns; ++row) {
       for (Eigen::Index column = 0; column < row; ++column)
         system.normal(row, column) = system.normal(column, row);
+    }
     if (!std::isfinite(system.ee)) return tl::unexpected(record_.not_finite());
     return system;
   }

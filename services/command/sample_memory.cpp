@@ -1,9 +1,9 @@
 #include "services/command/sample_memory.hpp"
 
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <malloc.h>
+#include <memory>
 #include <sys/mman.h>
 
 namespace dyncal::services {
@@ -17,11 +17,12 @@ void keep_memory_for_samples() {
   constexpr std::size_t size = std::size_t{512} << 20U;
   constexpr std::size_t large_page = std::size_t{2} << 20U;
   void* const room = std::malloc(size);
-  if (room != nullptr) {
-    const auto begin = (reinterpret_cast<std::uintptr_t>(room) + large_page - 1) / large_page * large_page;
-    ::madvise(reinterpret_cast<void*>(begin), size - large_page, MADV_HUGEPAGE);
-    std::free(room);
+  void* begin = room;
+  std::size_t rest = size;
+  if (room != nullptr && std::align(large_page, size - large_page, begin, rest) != nullptr) {
+    ::madvise(begin, size - large_page, MADV_HUGEPAGE);
   }
+  std::free(room);
 #endif
 }
 

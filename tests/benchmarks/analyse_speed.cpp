@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -240,7 +241,7 @@ void measure(const Options& options, const Bench& bench) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Options options;
   CLI::App app("Measures dyncal analyse on recorded files.");
   app.add_option("--program", options.program, "dyncal");
@@ -250,18 +251,16 @@ int main(int argc, char** argv) {
   app.add_option("--runs", options.runs, "of which the quickest counts")->check(CLI::Range(1, 1000));
   app.add_flag("--disturbed", options.disturbed, "with harmonics and hum");
   CLI11_PARSE(app, argc, argv);
-  try {
-    fmt::print("{:12} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "files", "MB", "1e6 rows", "reading/s", "analyse/s", "CPU/s",
-               "MB/s", "1e6 rows/s", "/ reading");
-    const auto measure_kind = [&](const char* name, std::size_t channels, const char* ending, bool with_dau) {
-      if (options.only.empty() || options.only == name) measure(options, Bench(options, name, channels, ending, with_dau));
-    };
-    measure_kind("narrow csv", 2, "csv", true);
-    measure_kind("wide csv", 12, "csv", false);
-    measure_kind("npy", 2, "npy", true);
-  } catch (const std::exception& problem) {
-    fmt::print(stderr, "analyse_speed: {}\n", problem.what());
-    return 1;
-  }
+  fmt::print("{:12} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "files", "MB", "1e6 rows", "reading/s", "analyse/s", "CPU/s",
+             "MB/s", "1e6 rows/s", "/ reading");
+  const auto measure_kind = [&](const char* name, std::size_t channels, const char* ending, bool with_dau) {
+    if (options.only.empty() || options.only == name) measure(options, Bench(options, name, channels, ending, with_dau));
+  };
+  measure_kind("narrow csv", 2, "csv", true);
+  measure_kind("wide csv", 12, "csv", false);
+  measure_kind("npy", 2, "npy", true);
   return 0;
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "analyse_speed: %s\n", problem.what());
+  return 1;
 }
