@@ -64,7 +64,7 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
     time_source_ = *settings_.time_source;
   else if (!layout_.keys.empty() && layout_.key_tick_s > 0.0)
     time_source_ = layout_.key_is_time ? TimeSource::payload_time : TimeSource::counter;
-  sink.describe(description());
+  describe(sink);
   return {};
 }
 
@@ -99,11 +99,26 @@ SourceDescription SensorStream::description() const {
   return description;
 }
 
+void SensorStream::describe(SampleSink& sink) {
+  described_u_s_ = u_stamp_s();
+  sink.describe(description());
+}
+
+// A host that has just been started becomes synchronised while the service runs, and may lose it again: every sample carries what held for
+// it, the description the best so far.
+void SensorStream::refresh_utc(SampleSink& sink) {
+  constexpr std::int64_t interval_ns = 1'000'000'000;
+  if (settings_.time_base == TimeBase::local || settings_.u_utc_s || std::abs(last_kernel_ns_ - utc_asked_ns_) < interval_ns) return;
+  utc_asked_ns_ = last_kernel_ns_;
+  u_utc_s_ = system_clock_quality().u_s;
+  if (u_stamp_s() < described_u_s_ / 2.0) describe(sink);
+}
+
 void SensorStream::choose_time_source(const CanFrame& first, SampleSink& sink) {
   time_source_known_ = true;
   const bool by_stamp = time_source_ == TimeSource::kernel_stamp && !settings_.time_source;
   if (by_stamp && first.hardware_ns != 0) time_source_ = TimeSource::hardware_stamp;
-  sink.describe(description());
+  describe(sink);
 }
 
 Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
@@ -320,6 +335,7 @@ void SensorStream::give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t f
 
 void SensorStream::flush(SampleSink& sink) {
   if (block_.samples == 0) return;
+  refresh_utc(sink);
   const std::size_t channels = layout_.channels.size();
   block_.values.resize(rows_.size());
   for (std::size_t sample = 0; sample < block_.samples; ++sample)

@@ -90,6 +90,8 @@ private:
   Expected<void> take_frame(const CanFrame& frame, SampleSink& sink);
   void take_change(const LinkChange& change, SampleSink& sink);
   void take_fault(const BusFault& fault);
+  void describe(SampleSink& sink);
+  void refresh_utc(SampleSink& sink);
   void choose_time_source(const CanFrame& first, SampleSink& sink);
   void complete(JoinedSample joined, SampleSink& sink);
   [[nodiscard]] bool number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample, SampleSink& sink);
@@ -110,6 +112,8 @@ private:
   TimeSource time_source_ = TimeSource::kernel_stamp;
   bool time_source_known_ = false;
   double u_utc_s_ = 0.0;
+  std::int64_t utc_asked_ns_ = 0;
+  double described_u_s_ = 0.0;
 
   SampleJoiner joiner_{1};
   std::optional<WrappingCounter> counter_;

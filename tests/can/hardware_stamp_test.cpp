@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/timex.h>
 
 #include "drivers/can/clock_line.hpp"
 #include "tests/can/played_sensor.hpp"
@@ -46,6 +47,30 @@ TEST_F(HardwareStamps, CoverTheLatencyOfUsbWhereNobodyHasMeasuredIt) {
   finish();
   expect_true_stamps(0, 2.0);
   EXPECT_GT(largest_error_ns, 100e3); // the latency, which nothing in the data shows
+}
+
+TEST_F(HardwareStamps, BecomeCertainInUtcWhenTheHostsClockIsSynchronised) {
+  plug_in(drifting(50.0), "bitrate 1000000");
+  sensor.time_base = TimeBase::utc;
+  sensor.counter = "counter";
+  sensor.time_source = TimeSource::hardware_stamp;
+  sensor.nominal_rate_hz = rate_hz;
+  open();
+  EXPECT_GT(samples.description.stamp_uncertainty_s, 9.0);
+  send(3'000);
+  timex synchronised{};
+  synchronised.modes = ADJ_STATUS | ADJ_MAXERROR;
+  synchronised.maxerror = 100; // us; the kernel lets it grow by 500 us a second
+  ASSERT_GE(::adjtimex(&synchronised), 0);
+  send(3'000);
+  finish();
+  EXPECT_GT(samples.all.front().u_ns, 4e9);
+  EXPECT_LT(samples.all.back().u_ns, 2e6);
+  EXPECT_LT(samples.description.stamp_uncertainty_s, 2e-3);
+  timex as_before{};
+  as_before.modes = ADJ_STATUS;
+  as_before.status = STA_UNSYNC;
+  ASSERT_GE(::adjtimex(&as_before), 0);
 }
 
 TEST_F(HardwareStamps, LeadToTheRateOfTheAdaptersClockAndTheLeastLatency) {
