@@ -161,10 +161,11 @@ void CanCalibration::expect_truth(const Points& points, const std::string& sourc
     const double u_magnitude = value["u_magnitude"];
     worst_in_u = std::max({worst_in_u, std::abs(phase_error_rad) / u_phase_rad, std::abs(magnitude_error) / u_magnitude});
     compared += 2;
-    if (truth["channel"] == "acceleration_z")
+    if (truth["channel"] == "acceleration_z") {
       std::printf("%s, %s, %s Hz: magnitude %+.5f (u %.5f), phase %+.3f mrad (u %.3f), that is %+.1f us\n", bus_.name.c_str(),
                   source.c_str(), frequency_hz.c_str(), magnitude_error, u_magnitude, phase_error_rad * 1e3, u_phase_rad * 1e3,
                   phase_error_rad / (2 * std::numbers::pi * truth["frequency_hz"].get<double>()) * 1e6);
+    }
   }
   EXPECT_EQ(compared, 18);
   EXPECT_LT(worst_in_u, most_in_u) << source;

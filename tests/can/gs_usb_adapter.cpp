@@ -110,9 +110,10 @@ void GsUsbAdapter::find_interfaces() {
   do {
     glob_t found{};
     names_.clear();
-    if (::glob(interfaces_glob, 0, nullptr, &found) == 0)
+    if (::glob(interfaces_glob, 0, nullptr, &found) == 0) {
       for (std::size_t i = 0; i < found.gl_pathc; ++i)
         names_.push_back(std::string(found.gl_pathv[i]).substr(std::string(found.gl_pathv[i]).rfind('/') + 1));
+    }
     ::globfree(&found);
     if (names_.size() == channels) return;
     const timespec pause{0, 10'000'000}; // between two looks at the condition

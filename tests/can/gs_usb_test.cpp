@@ -18,7 +18,6 @@ using ::testing::HasSubstr;
 using tests::frames_of;
 using tests::GsUsbAdapter;
 using tests::GsUsbSettings;
-using tests::ip;
 using tests::read_until;
 using tests::Sender;
 

@@ -1,6 +1,6 @@
 // From a USB adapter with a clock of its own to time-stamped samples, against the instants at which the frames began: drift, latency,
-// interruptions, wrap of the adapter's clock. In simulated time; of the long run numbers, values,
-// losses and the adapter's stamps are the same to the last bit every time.
+// interruptions, wrap of the adapter's clock. In simulated time; of the long run numbers, values, losses and the adapter's stamps are the
+// same to the last bit every time.
 #include <cinttypes>
 #include <cmath>
 
@@ -19,7 +19,6 @@ using tests::drifting;
 using tests::GsUsbSettings;
 using tests::ip;
 using tests::now_ns;
-using tests::second_ns;
 
 constexpr double limit_in_u = 4.0;
 

@@ -50,9 +50,10 @@ struct Samples : drivers::can::SampleSink {
   void describe(const drivers::SourceDescription& said) override { description = said; }
   void restart() override { ADD_FAILURE() << "the sensor did not restart"; }
   void take(drivers::SampleBlock block) override {
-    for (std::size_t i = 0; i < block.samples; ++i)
+    for (std::size_t i = 0; i < block.samples; ++i) {
       all.push_back({block.first_sample + i, static_cast<std::size_t>(std::llround(block.values[block.samples + i])), block.stamps_ns[i],
                      static_cast<double>(block.stamp_uncertainty_ns[i]), block.flags[i]});
+    }
   }
   // Numbers that are missing between the samples.
   [[nodiscard]] std::uint64_t missing() const { return all.empty() ? 0 : all.back().number - all.front().number + 1 - all.size(); }

@@ -91,12 +91,13 @@ bool UsbipDevice::serve() {
   std::array<std::uint8_t, sizeof(Header)> bytes{};
   if (!read_all(socket_.get(), bytes)) return false;
   const auto header = std::bit_cast<Header>(bytes);
-  if (ntohl(header.command) == command_unlink)
+  if (ntohl(header.command) == command_unlink) {
     unlink(header);
-  else if (ntohl(header.command) == command_submit)
+  } else if (ntohl(header.command) == command_submit) {
     submit(header);
-  else
+  } else {
     return false;
+  }
   return true;
 }
 
@@ -118,12 +119,13 @@ void UsbipDevice::submit(const Header& header) {
   const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(header.setup[at] | header.setup[at + 1] << 8U); };
   const ControlRequest request{header.setup[0], header.setup[1], word(2), word(4), word(6)};
   const auto said = firmware_.control(request, sent);
-  if (!said)
+  if (!said) {
     answer(header.sequence, -EPIPE, {}, 0);
-  else if (request.to_host())
+  } else if (request.to_host()) {
     answer(header.sequence, 0, std::span(*said).first(std::min<std::size_t>(said->size(), request.length)), said->size());
-  else
+  } else {
     answer(header.sequence, 0, {}, length);
+  }
 }
 
 void UsbipDevice::unlink(const Header& header) {

@@ -91,8 +91,10 @@ chmod +x "$folder/init"
 # The guest's console is our output; its memory is a file that is gone when it ends.
 memory_folder=/dev/shm
 [[ -w $memory_folder ]] || memory_folder=$folder
-# Every system call of the guest is handed from one process of the host to another: several times faster when both have one processor.
-processor=$(taskset -cp $$ | sed 's/.*: //; s/[-,].*//')
+# Every system call of the guest is handed from one process of the host to another: several times faster when both have one processor. Not the
+# same for every guest.
+mapfile -t processors < <(taskset -cp $$ | sed 's/.*: //' | tr ',' '\n' | while IFS=- read -r first last; do seq "$first" "${last:-$first}"; done)
+processor=${processors[$(($$ % ${#processors[@]}))]}
 timeout --kill-after=5 "$limit" taskset -c "$processor" env -i HOME="$folder" PATH="$PATH" TMPDIR="$memory_folder" ${shim:+LD_PRELOAD="$shim"} \
   "$kernel" "mem=${memory}M" quiet loglevel=1 "${clock[@]}" root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$folder/init" \
   con=null con0=null,fd:1 -- "$folder" </dev/null 2>&1 | grep --line-buffered -vE '^reboot: System halted|^$' | tr -d '\r'
