@@ -141,6 +141,7 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
     return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
   }
+  record->fetch_beginning();
   const auto grid = sample_grid(record->stamps(), frequency);
   auto start = pilot(*record, frequency, grid.has_value());
   if (!start) return tl::unexpected(start.error());

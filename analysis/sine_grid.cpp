@@ -36,7 +36,8 @@ std::optional<SampleGrid> sample_grid(std::span<const std::int64_t> stamps, cons
   const std::int64_t interval_ns = span_ns / intervals;
   if (interval_ns < 3 || span_ns > longest_span_ns) return std::nullopt;
 
-  SampleGrid grid;
+  std::optional<SampleGrid> made(std::in_place);
+  SampleGrid& grid = *made;
   // k span / intervals, rounded, without overflow.
   const std::int64_t rest_ns = span_ns % intervals;
   for (std::size_t k = 0; k < grid_samples; ++k) {
@@ -54,7 +55,7 @@ std::optional<SampleGrid> sample_grid(std::span<const std::int64_t> stamps, cons
   const std::int64_t half_interval_ns = interval_ns / 2 - 1; // so that stamps within the limit increase
   grid.largest_ns = std::min(fifth_order_rad / radians_per_ns, static_cast<double>(half_interval_ns));
   grid.largest_of_third_order_ns = std::min(third_order_rad / radians_per_ns, grid.largest_ns);
-  return grid;
+  return made;
 }
 
 } // namespace dyncal::analysis::kernel

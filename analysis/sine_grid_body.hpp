@@ -42,8 +42,7 @@ struct GridPlace {
 // under way there than towards the first level.
 template <class Number>
 inline void prefetch_ahead(const Number* at) {
-  constexpr std::size_t samples_ahead = 1024;
-  __builtin_prefetch(at + samples_ahead, 0, 2);
+  __builtin_prefetch(at + fetched_ahead_samples, 0, 2);
 }
 
 // sin x and 1 - cos x of a small angle x = sqrt(2) scaled: what is x^2 / 2 need not be multiplied out.

@@ -65,6 +65,9 @@ struct ResidualMoments {
   double us[moment_count], uc[moment_count]; // sum e u^m s, e u^m c
 };
 
+// How far before they are summed samples are asked for.
+inline constexpr std::size_t fetched_ahead_samples = 1024;
+
 // Sums over blocks of samples near the instants of a grid, one call up to `grid_call_samples`.
 inline constexpr std::size_t grid_call_samples = lanes * grid_samples;
 inline constexpr std::size_t grid_call_channels = 4;

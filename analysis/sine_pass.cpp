@@ -169,6 +169,16 @@ Expected<void> Record::carries(const Frequency& frequency) const {
                                                      " Hz is above half the sample rate of " + std::to_string(rate_hz) + " Hz");
 }
 
+void Record::fetch_beginning() const {
+  constexpr std::size_t samples_of_a_line = 8;
+  const std::size_t samples = std::min(fetched_ahead_samples, size()); // from where on the kernels fetch for themselves
+  for (std::size_t i = 0; i < samples; i += samples_of_a_line) {
+    __builtin_prefetch(stamps_.data() + i, 0, 2);
+    for (const std::span<const double>& channel : channels_)
+      __builtin_prefetch(channel.data() + i, 0, 2);
+  }
+}
+
 TimeAxis Record::axis(const Frequency& frequency) const {
   return {frequency.turns_per_ns_high(), frequency.turns_per_ns_low(), origin_ns_, 1.0 / half_span_ns()};
 }

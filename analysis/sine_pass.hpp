@@ -33,6 +33,8 @@ public:
 
   // More than half a turn per sample interval cannot be told from its alias, unless the intervals are so uneven that it has none.
   [[nodiscard]] Expected<void> carries(const Frequency& frequency) const;
+  // Asks for the first samples, on their way while a fit is prepared.
+  void fetch_beginning() const;
   [[nodiscard]] TimeAxis axis(const Frequency& frequency) const;
 
   // The errors of which only a pass tells that they are there; these find the place.
