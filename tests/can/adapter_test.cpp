@@ -11,37 +11,17 @@ namespace dyncal::drivers::can {
 namespace {
 
 using ::testing::HasSubstr;
+using tests::frames;
 using tests::frames_of;
 using tests::ip;
+using tests::on;
 using tests::read_until;
+using tests::says;
 using tests::Sender;
 using tests::SerialAdapter;
+using tests::told;
 
 const std::vector<FrameFilter> sensor_only = {{0x123, 0x7FF, false}};
-
-SocketCanSettings on(const std::string& interface_name) {
-  SocketCanSettings settings;
-  settings.interface_name = interface_name;
-  return settings;
-}
-
-auto frames(std::size_t wanted) {
-  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
-}
-
-// Every change and fault so far, in words.
-std::string told(const std::vector<BusEvent>& events) {
-  std::string all;
-  for (const BusEvent& event : events) {
-    if (const auto* change = std::get_if<LinkChange>(&event)) all += change->what + "; ";
-    if (const auto* fault = std::get_if<BusFault>(&event)) all += fault->cause + "; ";
-  }
-  return all;
-}
-
-auto says(const std::string& words) {
-  return [words](const std::vector<BusEvent>& events) { return told(events).find(words) != std::string::npos; };
-}
 
 TEST(SerialCan, ReceivesFramesAndKnowsTheBitRate) {
   SerialAdapter adapter;

@@ -1,7 +1,5 @@
 #include "services/virtual_bench/can_line.hpp"
 
-#include <ctime>
-
 #include <gtest/gtest.h>
 
 #include "drivers/can/socketcan_source.hpp"
@@ -13,16 +11,13 @@ namespace {
 using drivers::can::FrameSender;
 using drivers::can::SocketCanSource;
 using tests::CanFrame;
+using tests::frames;
 using tests::frames_of;
+using tests::now_ns;
+using tests::on;
 using tests::read_until;
 
 constexpr std::int64_t millisecond_ns = 1'000'000;
-
-std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 class Line : public testing::Test {
 protected:
@@ -34,12 +29,6 @@ protected:
     line.emplace(std::move(*sender));
   }
 
-  static drivers::can::SocketCanSettings settings() {
-    drivers::can::SocketCanSettings made;
-    made.interface_name = "vcan0";
-    return made;
-  }
-
   static CanFrame numbered(int number) {
     CanFrame frame;
     frame.id = 0x100;
@@ -48,12 +37,10 @@ protected:
     return frame;
   }
 
-  std::vector<CanFrame> receive(std::size_t wanted) {
-    return frames_of(read_until(source, [wanted](const auto& events) { return frames_of(events).size() >= wanted; }));
-  }
+  std::vector<CanFrame> receive(std::size_t wanted) { return frames_of(read_until(source, frames(wanted))); }
 
   const tests::VirtualCan link{"vcan0"};
-  SocketCanSource source{settings()};
+  SocketCanSource source{on("vcan0")};
   std::optional<CanLine> line;
 };
 

@@ -12,6 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using tests::frames_of;
 using tests::ip;
+using tests::on;
 using tests::read_until;
 using tests::VirtualCan;
 
@@ -26,9 +27,7 @@ CanFrame frame(std::uint32_t id, std::uint8_t length) {
 
 TEST(FrameSender, SendsFramesOfEveryFormatAsTheyAre) {
   const VirtualCan link("vcan0");
-  SocketCanSettings settings;
-  settings.interface_name = "vcan0";
-  SocketCanSource source(settings);
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open({{0x123, 0x7FF, false}, {0x1ABCDEF, 0x1FFFFFFF, true}}));
   auto sender = FrameSender::open("vcan0");
   ASSERT_TRUE(sender) << sender.error().message;

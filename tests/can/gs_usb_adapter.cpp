@@ -27,14 +27,7 @@ using drivers::can::StampPoint;
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr const char* interfaces_glob = "/sys/devices/platform/vhci_hcd.0/usb*/*-*/*:1.0/net/can*";
-
-std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * second_ns + now.tv_nsec;
-}
 
 // USB descriptors of a full candleLight FD device: one interface with a bulk endpoint in each direction.
 std::optional<std::vector<std::uint8_t>> descriptor(std::uint16_t value) {

@@ -1,6 +1,5 @@
 // A USB adapter with hardware stamps and CAN FD, by the kernel's own driver (gs_usb): what it tells, and what is told of its faults.
 #include <cmath>
-#include <ctime>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,26 +14,19 @@ namespace dyncal::drivers::can {
 namespace {
 
 using ::testing::HasSubstr;
+using tests::frames;
 using tests::frames_of;
 using tests::GsUsbAdapter;
 using tests::GsUsbSettings;
+using tests::now_ns;
+using tests::on;
 using tests::read_until;
+using tests::says;
 using tests::Sender;
+using tests::told;
 
 const std::vector<FrameFilter> sensor_only = {{0x123, 0x7FF, false}};
 constexpr std::int64_t millisecond_ns = 1'000'000;
-
-std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-SocketCanSettings on(const std::string& interface_name) {
-  SocketCanSettings settings;
-  settings.interface_name = interface_name;
-  return settings;
-}
 
 CanFrame sensor_frame(std::uint8_t length = 8, bool fd = false) {
   CanFrame frame;
@@ -44,24 +36,6 @@ CanFrame sensor_frame(std::uint8_t length = 8, bool fd = false) {
   for (std::size_t i = 0; i < length; ++i)
     frame.data[i] = static_cast<std::uint8_t>(17 * i);
   return frame;
-}
-
-auto frames(std::size_t wanted) {
-  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
-}
-
-// Every change and fault so far, in words.
-std::string told(const std::vector<BusEvent>& events) {
-  std::string all;
-  for (const BusEvent& event : events) {
-    if (const auto* change = std::get_if<LinkChange>(&event)) all += change->what + "; ";
-    if (const auto* fault = std::get_if<BusFault>(&event)) all += fault->cause + "; ";
-  }
-  return all;
-}
-
-auto says(const std::string& words) {
-  return [words](const std::vector<BusEvent>& events) { return told(events).find(words) != std::string::npos; };
 }
 
 std::string failure(const SocketCanSettings& settings) {

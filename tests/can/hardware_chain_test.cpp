@@ -24,9 +24,7 @@ constexpr double limit_in_u = 4.0;
 class Tap {
 public:
   Tap(const drivers::can::BitRates& rates, GsUsbAdapter& adapter) {
-    drivers::can::SocketCanSettings settings;
-    settings.interface_name = "vcan0";
-    source_.emplace(settings);
+    source_.emplace(on("vcan0"));
     const auto opened = source_->open({{0, 0, false}});
     EXPECT_TRUE(opened) << opened.error().message;
     thread_ = std::jthread([this, rates, &adapter](const std::stop_token& stop) {

@@ -1,9 +1,11 @@
-// What tests on a real CAN kernel need: links made and removed with iproute2, and a socket to send frames with.
+// What tests on a real CAN kernel need: links made and removed with iproute2, a socket to send frames with, and what a source hears of
+// them.
 #pragma once
 
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -15,9 +17,17 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/socketcan_source.hpp"
 
 namespace dyncal::tests {
+
+inline constexpr std::int64_t second_ns = 1'000'000'000;
+
+inline std::int64_t now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return std::int64_t{now.tv_sec} * second_ns + now.tv_nsec;
+}
 
 inline void ip(const std::string& arguments) {
   if (std::system(("ip link " + arguments).c_str()) != 0) throw std::runtime_error("ip link " + arguments);
@@ -73,6 +83,12 @@ using drivers::can::BusEvent;
 using drivers::can::CanFrame;
 using drivers::can::FrameSource;
 
+inline drivers::can::SocketCanSettings on(const std::string& interface_name) {
+  drivers::can::SocketCanSettings settings;
+  settings.interface_name = interface_name;
+  return settings;
+}
+
 // Reads until `enough` or ten seconds have passed; what was read.
 inline std::vector<BusEvent> read_until(FrameSource& source, const std::function<bool(const std::vector<BusEvent>&)>& enough) {
   std::vector<BusEvent> events;
@@ -87,6 +103,25 @@ inline std::vector<CanFrame> frames_of(const std::vector<BusEvent>& events) {
   for (const BusEvent& event : events)
     if (const auto* frame = std::get_if<CanFrame>(&event)) frames.push_back(*frame);
   return frames;
+}
+
+// For read_until().
+inline auto frames(std::size_t wanted) {
+  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
+}
+
+// Every change and fault so far, in words.
+inline std::string told(const std::vector<BusEvent>& events) {
+  std::string all;
+  for (const BusEvent& event : events) {
+    if (const auto* change = std::get_if<drivers::can::LinkChange>(&event)) all += change->what + "; ";
+    if (const auto* fault = std::get_if<drivers::can::BusFault>(&event)) all += fault->cause + "; ";
+  }
+  return all;
+}
+
+inline auto says(const std::string& words) {
+  return [words](const std::vector<BusEvent>& events) { return told(events).find(words) != std::string::npos; };
 }
 
 } // namespace dyncal::tests

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,14 +17,6 @@
 #include "tests/can/kernel_can.hpp"
 
 namespace dyncal::tests {
-
-inline constexpr std::int64_t second_ns = 1'000'000'000;
-
-inline std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * second_ns + now.tv_nsec;
-}
 
 // Not at an instant that depends on how often somebody has looked at the clock, which costs simulated time.
 inline std::int64_t whole_ms(std::int64_t at_ns) {
@@ -92,9 +83,7 @@ protected:
   }
 
   void open() {
-    drivers::can::SocketCanSettings socket;
-    socket.interface_name = adapter->name(0);
-    source.emplace(socket);
+    source.emplace(on(adapter->name(0)));
     auto made = drivers::can::SensorStream::create(sensor, *drivers::can::parse_dbc(sensor_dbc, "sensor.dbc"));
     ASSERT_TRUE(made) << made.error().message;
     stream = std::move(*made);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <ctime>
 #include <thread>
 
 #include "tests/can/kernel_can.hpp"
@@ -13,38 +12,17 @@ namespace dyncal::drivers::can {
 namespace {
 
 using ::testing::HasSubstr;
+using tests::frames;
 using tests::frames_of;
 using tests::ip;
+using tests::now_ns;
+using tests::on;
 using tests::read_until;
+using tests::says;
 using tests::Sender;
 using tests::VirtualCan;
 
 const std::vector<FrameFilter> sensor_only = {{0x123, 0x7FF, false}};
-
-SocketCanSource source_on(const std::string& interface_name) {
-  SocketCanSettings settings;
-  settings.interface_name = interface_name;
-  return SocketCanSource(settings);
-}
-
-std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-auto frames(std::size_t wanted) {
-  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
-}
-
-auto change(const std::string& words) {
-  return [words](const std::vector<BusEvent>& events) {
-    for (const BusEvent& event : events)
-      if (const auto* found = std::get_if<LinkChange>(&event); found != nullptr && found->what.find(words) != std::string::npos)
-        return true;
-    return false;
-  };
-}
 
 std::string failure(SocketCanSource source) {
   const auto link = source.open(sensor_only);
@@ -52,16 +30,16 @@ std::string failure(SocketCanSource source) {
 }
 
 TEST(SocketCan, SaysInOneLineWhyAnInterfaceCannotBeUsed) {
-  EXPECT_THAT(failure(source_on("can7")), HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
+  EXPECT_THAT(failure(SocketCanSource(on("can7"))), HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
   const VirtualCan link("vcan0");
   ip("set vcan0 down");
-  EXPECT_THAT(failure(source_on("vcan0")), HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
-  EXPECT_THAT(failure(source_on("lo")), HasSubstr("interface 'lo' is no CAN interface"));
+  EXPECT_THAT(failure(SocketCanSource(on("vcan0"))), HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
+  EXPECT_THAT(failure(SocketCanSource(on("lo"))), HasSubstr("interface 'lo' is no CAN interface"));
 }
 
 TEST(SocketCan, ReceivesClassicAndFdFramesWithTheKernelsStamp) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open({{0x123, 0x7FF, false}, {0x1ABCDEF, 0x1FFFFFFF, true}}));
   Sender sender("vcan0");
   const std::int64_t before_ns = now_ns();
@@ -88,7 +66,7 @@ TEST(SocketCan, ReceivesClassicAndFdFramesWithTheKernelsStamp) {
 
 TEST(SocketCan, LetsOnlyTheFramesOfItsFiltersThrough) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   Sender sender("vcan0");
   sender.send(0x124, {1});
@@ -102,7 +80,7 @@ TEST(SocketCan, LetsOnlyTheFramesOfItsFiltersThrough) {
 
 TEST(SocketCan, TellsWhatErrorFramesSay) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   Sender sender("vcan0");
   sender.send(CAN_ERR_FLAG | 0x004 | 0x200, {0, 0x20, 0, 0, 0, 0, 130, 10}); // transmit passive, with counters
@@ -119,19 +97,19 @@ TEST(SocketCan, TellsWhatErrorFramesSay) {
 
 TEST(SocketCan, GoesOnAfterTheInterfaceWasDownAndUp) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   ip("set vcan0 down");
-  EXPECT_TRUE(change("is down")(read_until(source, change("is down"))));
+  EXPECT_TRUE(says("is down")(read_until(source, says("is down"))));
   ip("set vcan0 up");
-  EXPECT_TRUE(change("is up")(read_until(source, change("is up"))));
+  EXPECT_TRUE(says("is up")(read_until(source, says("is up"))));
   Sender("vcan0").send(0x123, {9});
   EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
 }
 
 TEST(SocketCan, PutsFramesThatWaitedAcrossADownAndUpBetweenTwoInterruptions) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   for (std::uint8_t i = 0; i < 3; ++i)
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
@@ -139,8 +117,8 @@ TEST(SocketCan, PutsFramesThatWaitedAcrossADownAndUpBetweenTwoInterruptions) {
   ip("set vcan0 up");
   for (std::uint8_t i = 3; i < 100; ++i)
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
-  const auto events = read_until(source, change("is up"));
-  ASSERT_TRUE(change("is up")(events));
+  const auto events = read_until(source, says("is up"));
+  ASSERT_TRUE(says("is up")(events));
   const auto* before = std::get_if<LinkChange>(&events.front());
   ASSERT_NE(before, nullptr);
   EXPECT_TRUE(before->interrupted);
@@ -154,39 +132,39 @@ TEST(SocketCan, PutsFramesThatWaitedAcrossADownAndUpBetweenTwoInterruptions) {
 
 TEST(SocketCan, ReadsOutWhatCameBeforeTheInterfaceWent) {
   auto link = std::make_unique<VirtualCan>("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   for (std::uint8_t i = 0; i < 100; ++i)
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
   link.reset();
-  const auto events = read_until(source, change("has gone"));
-  ASSERT_TRUE(change("has gone")(events));
+  const auto events = read_until(source, says("has gone"));
+  ASSERT_TRUE(says("has gone")(events));
   EXPECT_EQ(frames_of(events).size(), 100U);
   EXPECT_TRUE(std::holds_alternative<CanFrame>(events.front()));
 }
 
 TEST(SocketCan, OpensAnInterfaceAgainThatWasUnpluggedAndComesBack) {
   auto link = std::make_unique<VirtualCan>("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   link.reset();
-  const auto gone = read_until(source, change("has gone"));
-  ASSERT_TRUE(change("has gone")(gone));
+  const auto gone = read_until(source, says("has gone"));
+  ASSERT_TRUE(says("has gone")(gone));
   EXPECT_TRUE(std::get<LinkChange>(gone.back()).interrupted);
   link = std::make_unique<VirtualCan>("vcan0");
-  EXPECT_TRUE(change("is up")(read_until(source, change("is up"))));
+  EXPECT_TRUE(says("is up")(read_until(source, says("is up"))));
   Sender("vcan0").send(0x123, {9});
   EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
 }
 
 TEST(SocketCan, FollowsAnInterfaceThatIsRenamed) {
   VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   ip("set vcan0 down");
   ip("set vcan0 name shaker0");
   ip("set shaker0 up");
-  EXPECT_TRUE(change("'shaker0' is up")(read_until(source, change("'shaker0' is up"))));
+  EXPECT_TRUE(says("'shaker0' is up")(read_until(source, says("'shaker0' is up"))));
   Sender("shaker0").send(0x123, {9});
   EXPECT_EQ(frames_of(read_until(source, frames(1))).size(), 1U);
   ip("del shaker0");
@@ -226,7 +204,7 @@ TEST(SocketCan, CountsEveryFrameThatOverloadLost) {
 
 TEST(SocketCan, StopsFromAnotherThreadWhileItWaits) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   std::jthread stopper([&] { source.stop(); });
   std::vector<BusEvent> events;
@@ -236,7 +214,7 @@ TEST(SocketCan, StopsFromAnotherThreadWhileItWaits) {
 
 TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
   const VirtualCan link("vcan0");
-  SocketCanSource source = source_on("vcan0");
+  SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   constexpr int seconds = 60;
   constexpr int rate_hz = 8000;

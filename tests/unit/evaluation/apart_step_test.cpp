@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "monte_carlo_agreement.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "synthetic_run.hpp"
 
@@ -143,15 +144,6 @@ TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
   }
 }
 
-void expect_check_agrees(const CalibrationResult& result) {
-  ASSERT_EQ(result.monte_carlo().size(), 1U);
-  const MonteCarloCheck& check = result.monte_carlo().front();
-  EXPECT_NEAR(check.u_magnitude() / result.u_magnitude(), 1.0, 0.05);
-  EXPECT_NEAR(check.u_phase_rad() / result.u_phase_rad(), 1.0, 0.05);
-  EXPECT_LT(check.phase_low_rad(), result.phase_rad());
-  EXPECT_GT(check.phase_high_rad(), result.phase_rad());
-}
-
 TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   const tests::SyntheticRun run;
   Measurement measurement = absolute(run);
@@ -160,8 +152,7 @@ TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   RunEvaluator by_time(*parse_recipe(measurement));
   ASSERT_TRUE(by_time.describe(in_utc(run.acs_description())));
   ASSERT_TRUE(by_time.describe(can_description("can")));
-  for (const CalibrationResult& result : evaluate(by_time, {acs_in_utc(run), on_can(run, "can")}))
-    expect_check_agrees(result);
+  tests::expect_drawing_agrees(evaluate(by_time, {acs_in_utc(run), on_can(run, "can")}), 2);
 
   measurement = run.measurement();
   measurement.dut() = {"can/acceleration_z"};
@@ -170,8 +161,7 @@ TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   ASSERT_TRUE(by_sync.describe(run.acs_description()));
   ASSERT_TRUE(by_sync.describe(in_utc(run.dau_description())));
   ASSERT_TRUE(by_sync.describe(can_description("can")));
-  for (const CalibrationResult& result : evaluate(by_sync, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")}))
-    expect_check_agrees(result);
+  tests::expect_drawing_agrees(evaluate(by_sync, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")}), 2);
 }
 
 TEST(ApartStep, RefusesSettlingFromTheDataWithASentence) {

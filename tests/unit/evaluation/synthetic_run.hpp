@@ -21,8 +21,8 @@ struct SyntheticRun {
   double on_s = 1.5;
   double off_s = 0.5;
   double settling_time_constant_s = 0.0; // the amplitude comes up from nine tenths; 0: at once
-  std::size_t block_samples = 50; // of the DAU; ten times as many of the ACS
-  std::size_t lost_block = 0;     // number of a DAU block that does not arrive; 0: none
+  std::size_t block_samples = 50;        // of the DAU; ten times as many of the ACS
+  std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
 
   [[nodiscard]] Measurement measurement() const;
   [[nodiscard]] SourceDescription acs_description() const;
