@@ -22,7 +22,7 @@
 #include <fmt/core.h>
 
 #include "drivers/acs/mapped_file.hpp"
-#include "tests/unit/dau/child_process.hpp"
+#include "tests/unit/services/dau/child_process.hpp"
 
 namespace {
 

@@ -17,10 +17,10 @@
 #include "drivers/smartup/sensor_id.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/topics.hpp"
-#include "tests/unit/dau/bench_text.hpp"
-#include "tests/unit/dau/child_process.hpp"
-#include "tests/unit/smartup/datagram_writer.hpp"
-#include "tests/unit/smartup/udp_sender.hpp"
+#include "tests/unit/services/dau/bench_text.hpp"
+#include "tests/unit/services/dau/child_process.hpp"
+#include "tests/unit/drivers/smartup/datagram_writer.hpp"
+#include "tests/unit/drivers/smartup/udp_sender.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <string>
 
-#include "tests/unit/smartup/datagram_writer.hpp"
-#include "tests/unit/smartup/wire_vectors.hpp"
+#include "tests/unit/drivers/smartup/datagram_writer.hpp"
+#include "tests/unit/drivers/smartup/wire_vectors.hpp"
 
 namespace {
 

@@ -1,0 +1,30 @@
+// Plays a file through FileSource and says how that ended, for tests.
+#pragma once
+
+#include <string>
+
+#include "drivers/acs/file_source.hpp"
+#include "tests/unit/drivers/acs/collecting_sink.hpp"
+#include "tests/unit/drivers/acs/temporary_file.hpp"
+
+namespace dyncal::drivers::acs {
+
+inline FileSettings settings_for(const TemporaryFile& file) {
+  FileSettings settings;
+  settings.path = file.path();
+  return settings;
+}
+
+// The message of the error that describing or playing ends with; empty when there was none.
+inline std::string problem_of(const FileSettings& settings) {
+  FileSource source(settings);
+  CollectingSink sink;
+  const auto described = source.describe();
+  if (!described) {
+    return described.error().message;
+  }
+  const auto played = source.run(sink);
+  return played ? "" : played.error().message;
+}
+
+} // namespace dyncal::drivers::acs

@@ -1,0 +1,153 @@
+#include "drivers/generator/scpi_generator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mutex>
+#include <vector>
+
+#include "tests/unit/drivers/scripted_instrument.hpp"
+
+namespace dyncal::drivers::generator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Answers as a DG4000 does; `errors` are what it says to the next error queries, "0,No error" when they are used up.
+class FakeGenerator {
+public:
+  explicit FakeGenerator(std::vector<std::string> errors = {}, std::string identity = "Rigol Technologies,DG4162,DG4E1,00.01.14")
+      : errors_(std::move(errors)), identity_(std::move(identity)),
+        instrument_([this](int, ScriptedInstrument::Client& client) { serve(client); }) {}
+
+  [[nodiscard]] std::string address() const { return instrument_.address(); }
+  [[nodiscard]] std::vector<std::string> commands() {
+    const std::lock_guard lock(mutex_);
+    return commands_;
+  }
+
+private:
+  void serve(ScriptedInstrument::Client& client) {
+    for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      const std::lock_guard lock(mutex_);
+      if (line == "*IDN?") {
+        client.say(identity_ + "\r\n");
+      } else if (line == ":SYSTem:ERRor?") {
+        client.say((answered_ < errors_.size() ? errors_[answered_] : "0,\"No error\"") + "\n");
+        ++answered_;
+      } else if (line == ":BENCh:TIME?") {
+        client.say("12.5\n");
+      } else if (line.starts_with(":BENCh:WAIT?")) {
+        client.say(line.substr(13) + "\n");
+      } else {
+        commands_.push_back(line);
+      }
+    }
+  }
+
+  std::mutex mutex_;
+  std::vector<std::string> errors_;
+  std::size_t answered_ = 0;
+  std::string identity_;
+  std::vector<std::string> commands_;
+  ScriptedInstrument instrument_;
+};
+
+TEST(ScpiGenerator, SetsTheInstrumentUpAndSwitchesItsOutputOffAtTheEnd) {
+  FakeGenerator instrument;
+  {
+    auto generator = ScpiGenerator::connect(instrument.address());
+    ASSERT_TRUE(generator) << generator.error().message;
+    EXPECT_EQ((*generator)->identity(), "Rigol Technologies,DG4162,DG4E1,00.01.14");
+    EXPECT_TRUE((*generator)->set_frequency("199.87"));
+    EXPECT_TRUE((*generator)->set_amplitude_v(0.25));
+    EXPECT_TRUE((*generator)->set_output(true));
+  }
+  EXPECT_THAT(instrument.commands(),
+              ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP",
+                          ":SOURce1:FREQuency 199.87", ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
+}
+
+TEST(ScpiGenerator, PassesTheInstrumentsErrorOnWordForWord) {
+  FakeGenerator instrument({"0,\"No error\"", "+0,\"No error\"", "0,\"No error\"", "0,\"No error\"", "-222,\"Data out of range\""});
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  const auto refused = (*generator)->set_frequency("1e12");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::refused);
+  EXPECT_THAT(refused.error().message, HasSubstr(":SOURce1:FREQuency 1e12: -222,\"Data out of range\""));
+}
+
+TEST(ScpiGenerator, TakesTheHostsClockWhereTheInstrumentHasNone) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  const auto begin_s = (*generator)->clock_now_s();
+  ASSERT_TRUE(begin_s);
+  EXPECT_LT(*begin_s, 5.0);
+  const auto end_s = (*generator)->wait_until_s(*begin_s + 0.05, {});
+  ASSERT_TRUE(end_s);
+  EXPECT_GE(*end_s, *begin_s + 0.05);
+}
+
+TEST(ScpiGenerator, TakesTheClockOfAVirtualBench) {
+  FakeGenerator instrument({}, "dyncal virtual bench,bma280,1,1");
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_EQ((*generator)->clock_now_s().value(), 12.5);
+  EXPECT_EQ((*generator)->wait_until_s(1000.25, {}).value(), 1000.25);
+}
+
+TEST(ScpiGenerator, EndsItsWaitWhenAskedToStop) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  std::stop_source stop;
+  stop.request_stop();
+  const auto end_s = (*generator)->wait_until_s(1e6, stop.get_token());
+  ASSERT_TRUE(end_s);
+  EXPECT_LT(*end_s, 5.0);
+}
+
+TEST(ScpiGenerator, SaysThatNobodyListens) {
+  std::string address;
+  {
+    const ScriptedInstrument gone([](int, ScriptedInstrument::Client&) {});
+    address = gone.address();
+  }
+  const auto generator = ScpiGenerator::connect(address);
+  ASSERT_FALSE(generator);
+  EXPECT_EQ(generator.error().code, ErrorCode::refused);
+  EXPECT_THAT(generator.error().message, HasSubstr(address));
+}
+
+TEST(ScpiGenerator, SaysThatTheInstrumentDoesNotAnswer) {
+  const ScriptedInstrument mute([](int, ScriptedInstrument::Client& client) {
+    while (!client.hear().empty()) {
+    }
+  });
+  const auto generator = ScpiGenerator::connect(mute.address());
+  ASSERT_FALSE(generator);
+  EXPECT_EQ(generator.error().code, ErrorCode::timeout);
+  EXPECT_THAT(generator.error().message, HasSubstr("*IDN?"));
+}
+
+TEST(ScpiGenerator, RefusesAnAddressOrAmplitudeThatCannotBe) {
+  EXPECT_EQ(ScpiGenerator::connect("nowhere").error().code, ErrorCode::malformed);
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator);
+  EXPECT_EQ((*generator)->set_amplitude_v(-1.0).error().code, ErrorCode::invalid_setting);
+}
+
+TEST(Address, IsHostAndPort) {
+  EXPECT_EQ(parse_address("lab-3:5025").value().host, "lab-3");
+  EXPECT_EQ(parse_address("[::1]:80").value().host, "::1");
+  EXPECT_EQ(parse_address("[::1]:80").value().port, 80);
+  for (const char* wrong : {"", "host", ":5025", "host:", "host:70000", "host:5x"}) {
+    EXPECT_FALSE(parse_address(wrong)) << wrong;
+  }
+}
+
+} // namespace
+} // namespace dyncal::drivers::generator

@@ -1,0 +1,150 @@
+#include "services/acs/played_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <thread>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/topics.hpp"
+#include "services/source/source_service.hpp"
+#include "tests/unit/drivers/acs/temporary_file.hpp"
+
+namespace dyncal::services::acs {
+namespace {
+
+using drivers::acs::TemporaryFile;
+using testing::HasSubstr;
+
+constexpr int test_domain = 71;
+
+SourceSettings file_settings(const std::filesystem::path& path) {
+  SourceSettings settings;
+  settings.name = "acs";
+  settings.driver = SourceDriver::file;
+  settings.path = path;
+  return settings;
+}
+
+TEST(KindOf, FollowsFromTheRolesOfASource) {
+  MethodSettings method;
+  method.reference = {"laser", "reference"};
+  method.sync_acs = {"laser", "sync"};
+  method.sync_dau = {"unit", "sync"};
+  method.dut = {{"unit", "z"}, {"other", "z"}};
+  EXPECT_EQ(kind_of(method, "laser"), SourceKind::acs);
+  EXPECT_EQ(kind_of(method, "unit"), SourceKind::dau);
+  EXPECT_EQ(kind_of(method, "other"), SourceKind::dau);
+  EXPECT_EQ(kind_of(method, "spare"), SourceKind::acs);
+}
+
+TEST(PlayedSource, SaysWhatIsWrongWithItsSettings) {
+  const auto missing = PlayedSource::prepare(file_settings("/nowhere/acs.csv"), {});
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, ErrorCode::bad_file);
+  EXPECT_THAT(missing.error().message, HasSubstr("source 'acs': /nowhere/acs.csv"));
+
+  const TemporaryFile file("played_rate.csv", "a\n1\n");
+  SourceSettings rate = file_settings(file.path());
+  rate.sample_rate_hz = -5.0;
+  const auto impossible = PlayedSource::prepare(rate, {});
+  ASSERT_FALSE(impossible);
+  EXPECT_THAT(impossible.error().message, HasSubstr("sample_rate_hz = -5"));
+}
+
+TEST(PlayedSource, StopsTryingToReachAnInstrumentWhenAskedTo) {
+  SourceSettings settings;
+  settings.name = "acs";
+  settings.driver = SourceDriver::socket;
+  settings.address = "127.0.0.1:1";
+  std::stop_source stop;
+  stop.request_stop();
+  const auto prepared = PlayedSource::prepare(settings, stop.get_token());
+  ASSERT_FALSE(prepared);
+  EXPECT_EQ(prepared.error().code, ErrorCode::interrupted);
+}
+
+// A service with one file source on a domain of its own, and what a reader gets of it.
+class PlayedFile : public testing::Test {
+protected:
+  void SetUp() override {
+    std::string text = "t_ns,reference,sync\n";
+    for (int i = 0; i < 5000; ++i) {
+      text += std::to_string(i * 50'000) + "," + std::to_string(i) + ",0\n";
+    }
+    file_.emplace("played.csv", text);
+    bus::ParticipantOptions options;
+    options.vendor = bus::vendors_in_this_build().front();
+    options.domain = test_domain;
+    participant_.emplace(bus::Participant::create(options).value());
+    service_ = SourceService::create(*participant_, {.software = "test"});
+    publisher_ =
+        service_->add({.bench = "bench", .source = "acs", .kind = SourceKind::acs, .silent_after = std::chrono::seconds(0)}).value();
+    reader_.emplace(participant_->reader<dyncal::SampleBlock>(bus::topics::acs_samples, bus::Profile::samples, "bench", wake_up_).value());
+    runs_.emplace(participant_->writer<dyncal::Measurement>(bus::topics::measurement, bus::Profile::state, "bench").value());
+    service_->start();
+    source_.emplace(PlayedSource::prepare(file_settings(file_->path()), {}).value());
+    thread_ = std::jthread([this](const std::stop_token& stop) { EXPECT_TRUE(source_->run(*publisher_, stop)); });
+  }
+  void TearDown() override {
+    thread_ = {};
+    service_->stop();
+  }
+
+  void set_state(const std::string& run, dyncal::MeasurementState state) {
+    dyncal::Measurement measurement;
+    measurement.bench("bench");
+    measurement.run(run);
+    measurement.state(state);
+    runs_->write(measurement);
+  }
+
+  // Blocks up to the end of the stream, or those that came within ten seconds.
+  std::vector<dyncal::SampleBlock> play() {
+    std::vector<dyncal::SampleBlock> blocks;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    bool ended = false;
+    while (!ended && std::chrono::steady_clock::now() < deadline) {
+      reader_->take([&](const dyncal::SampleBlock& block, const bus::SampleInfo&) {
+        blocks.push_back(block);
+        ended = ended || block.end_of_stream();
+      });
+      if (!ended) {
+        wake_up_->wait_until(deadline);
+      }
+    }
+    return blocks;
+  }
+
+  std::optional<TemporaryFile> file_;
+  std::optional<bus::Participant> participant_;
+  std::unique_ptr<SourceService> service_;
+  std::shared_ptr<SourcePublisher> publisher_;
+  std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
+  std::optional<bus::Reader<dyncal::SampleBlock>> reader_;
+  std::optional<bus::Writer<dyncal::Measurement>> runs_;
+  std::optional<PlayedSource> source_;
+  std::jthread thread_;
+};
+
+TEST_F(PlayedFile, IsPlayedOnceForEveryRunInASessionOfItsOwn) {
+  std::uint64_t first_session = 0;
+  for (const char* run : {"run-1", "run-2"}) {
+    set_state(run, dyncal::MEASUREMENT_RUNNING);
+    const auto blocks = play();
+    ASSERT_FALSE(blocks.empty());
+    EXPECT_TRUE(blocks.back().end_of_stream());
+    std::uint64_t next = 0;
+    for (const auto& block : blocks) {
+      EXPECT_EQ(block.session(), blocks.front().session());
+      EXPECT_EQ(block.first_sample(), next);
+      next += block.sample_count();
+    }
+    EXPECT_EQ(next, 5000U);
+    EXPECT_NE(blocks.front().session(), first_session);
+    first_session = blocks.front().session();
+    set_state(run, dyncal::MEASUREMENT_DONE);
+  }
+}
+
+} // namespace
+} // namespace dyncal::services::acs

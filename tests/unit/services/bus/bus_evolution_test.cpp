@@ -1,0 +1,163 @@
+// Programs of different versions, and programs that do not keep to the contract, on one bus.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/bus/topics.hpp"
+#include "services/bus/type_support_of.hpp"
+#include "tests/unit/services/bus/bus_pair.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+// Command as a later version could have it: two members more.
+struct NewerCommand : Command {
+  double at_utc_s = 0.0;
+  std::string reason;
+
+  static std::size_t getCdrSerializedSize(const NewerCommand& sample) {
+    return Command::getCdrSerializedSize(sample) + 8 + sizeof(double) + 4 + sample.reason.size() + 1;
+  }
+  void serialize(eprosima::fastcdr::Cdr& cdr) const {
+    Command::serialize(cdr);
+    cdr << at_utc_s << reason;
+  }
+  void deserialize(eprosima::fastcdr::Cdr& cdr) {
+    Command::deserialize(cdr);
+    cdr >> at_utc_s >> reason;
+  }
+};
+
+// Its bytes end in the middle of a member.
+struct BrokenCommand : Command {
+  void serialize(eprosima::fastcdr::Cdr& cdr) const { cdr << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000}; }
+};
+
+// Its key is longer than the contract allows.
+struct LongKeyCommand : Command {
+  static std::size_t getCdrSerializedSize(const LongKeyCommand& sample) { return Command::getCdrSerializedSize(sample) + 200; }
+  void serialize(eprosima::fastcdr::Cdr& cdr) const {
+    cdr << std::string(150, 'k') << std::uint32_t{0} << std::string("b") << std::string("r") << std::uint32_t{0} << std::string("s");
+  }
+  void serializeKey(eprosima::fastcdr::Cdr& cdr) const { cdr << std::string(150, 'k'); }
+};
+
+} // namespace
+
+template <>
+const TypeSupport& type_support<NewerCommand>() {
+  static const TypeSupport support = make_type_support<NewerCommand>("dyncal::Command", KeyLayout{{64}, 0});
+  return support;
+}
+template <>
+const TypeSupport& type_support<BrokenCommand>() {
+  static const TypeSupport support = make_type_support<BrokenCommand>("dyncal::Command", KeyLayout{{64}, 0});
+  return support;
+}
+template <>
+const TypeSupport& type_support<LongKeyCommand>() {
+  static const TypeSupport support = make_type_support<LongKeyCommand>("dyncal::Command", KeyLayout{{200}, 0});
+  return support;
+}
+
+namespace {
+
+class BusEvolution : public BusPair {
+protected:
+  template <class T>
+  static T filled() {
+    T command;
+    command.target("dau");
+    command.step(7);
+    command.sender("test");
+    return command;
+  }
+
+  // Takes until the sample sent last, whose target is "last", has come; returns what came before it.
+  template <class T>
+  std::vector<T> take_until_last(Reader<T>& reader) {
+    std::vector<T> samples;
+    bool last = false;
+    EXPECT_TRUE(wait_for([&] {
+      reader.take([&](const T& sample, const SampleInfo&) {
+        if (sample.target() == "last")
+          last = true;
+        else
+          samples.push_back(sample);
+      });
+      return last;
+    }));
+    return samples;
+  }
+
+  // Two writers have no order between them: the malformed message may come after the good one.
+  [[nodiscard]] bool comes_to_be_counted(Reader<Command>& reader) {
+    return wait_for([&] {
+      reader.take([](const Command&, const SampleInfo&) {});
+      return reading_.malformed_messages() >= 1;
+    });
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(AllVendors, BusEvolution, testing::ValuesIn(vendor_pairs()), pair_name);
+
+TEST_P(BusEvolution, LetsAnOlderProgramReadANewerOne) {
+  auto writer = this->writer<NewerCommand>(topics::command, Profile::state);
+  auto reader = this->reader<Command>(topics::command, Profile::state);
+  auto command = filled<NewerCommand>();
+  command.at_utc_s = 1.5;
+  command.reason = "because";
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  command.target("last");
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
+}
+
+TEST_P(BusEvolution, LetsANewerProgramReadAnOlderOneWithZerosForWhatItLacks) {
+  auto writer = this->writer<Command>(topics::command, Profile::state);
+  auto reader = this->reader<NewerCommand>(topics::command, Profile::state);
+  auto command = filled<Command>();
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  command.target("last");
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  const auto samples = take_until_last(reader);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].sender(), "test");
+  EXPECT_EQ(samples[0].at_utc_s, 0.0);
+  EXPECT_EQ(samples[0].reason, "");
+}
+
+TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
+  auto broken_writer = this->writer<BrokenCommand>(topics::command, Profile::state);
+  auto reader = this->reader<Command>(topics::command, Profile::state);
+  ASSERT_EQ(broken_writer.write(filled<BrokenCommand>()), WriteOutcome::written);
+  Participant third = join(GetParam().writer);
+  auto writer = third.writer<Command>(topics::command, Profile::state, bench_).value();
+  ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 2; }));
+  broken_writer.wait_for_acknowledgments(std::chrono::seconds(1));
+  auto command = filled<Command>();
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  command.target("last");
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
+  EXPECT_TRUE(comes_to_be_counted(reader));
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
+}
+
+TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {
+  auto long_writer = this->writer<LongKeyCommand>(topics::command, Profile::state);
+  auto reader = this->reader<Command>(topics::command, Profile::state);
+  ASSERT_EQ(long_writer.write(filled<LongKeyCommand>()), WriteOutcome::written);
+  Participant third = join(GetParam().writer);
+  auto writer = third.writer<Command>(topics::command, Profile::state, bench_).value();
+  ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 2; }));
+  long_writer.wait_for_acknowledgments(std::chrono::seconds(1));
+  auto command = filled<Command>();
+  command.target("last");
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  EXPECT_TRUE(take_until_last(reader).empty());
+  EXPECT_TRUE(comes_to_be_counted(reader));
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
+}
+
+} // namespace
+} // namespace dyncal::bus

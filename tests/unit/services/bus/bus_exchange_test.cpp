@@ -1,0 +1,286 @@
+#include <gtest/gtest.h>
+#include <map>
+#include <thread>
+
+#include "services/bus/qos_profiles.hpp"
+#include "services/bus/topics.hpp"
+#include "tests/unit/services/bus/bus_pair.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+class BusExchange : public BusPair {
+protected:
+  SampleBlock block(std::uint64_t number, const std::string& source = "dau", std::size_t values = 16) const {
+    SampleBlock block;
+    block.bench(bench_);
+    block.source(source);
+    block.session(1);
+    block.block(number);
+    block.values().assign(values, static_cast<double>(number));
+    return block;
+  }
+
+  static Command command(const std::string& target, std::uint32_t step) {
+    Command command;
+    command.target(target);
+    command.step(step);
+    return command;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(AllVendors, BusExchange, testing::ValuesIn(vendor_pairs()), pair_name);
+
+TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
+  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  constexpr std::uint64_t blocks = 500;
+  constexpr std::size_t values = 5000; // 40 kB
+  std::vector<std::uint64_t> numbers;
+  const auto take = [&] {
+    reader.take([&](const SampleBlock& block, const SampleInfo& info) {
+      ASSERT_TRUE(info.valid);
+      EXPECT_EQ(block, this->block(block.block(), "dau", values));
+      EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000) << info.source_utc_ns;
+      numbers.push_back(block.block());
+    });
+    return numbers.size() >= blocks;
+  };
+  for (std::uint64_t i = 0; i < blocks; ++i) {
+    ASSERT_EQ(writer.write(block(i, "dau", values)), WriteOutcome::written);
+    take();
+  }
+  ASSERT_TRUE(wait_for(take)) << numbers.size();
+  for (std::uint64_t i = 0; i < blocks; ++i)
+    EXPECT_EQ(numbers[i], i);
+  EXPECT_TRUE(writer.wait_for_acknowledgments(5s));
+}
+
+TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
+  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  const std::uint64_t blocks = late_joiner_blocks + 200;
+  for (std::uint64_t i = 0; i < blocks; ++i)
+    ASSERT_EQ(writer.write(block(i)), WriteOutcome::written);
+  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  std::vector<std::uint64_t> numbers;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take([&](const SampleBlock& block, const SampleInfo&) { numbers.push_back(block.block()); });
+    return !numbers.empty() && numbers.back() == blocks - 1;
+  })) << numbers.size();
+  ASSERT_EQ(numbers.size(), static_cast<std::size_t>(late_joiner_blocks));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    EXPECT_EQ(numbers[i], 200 + i);
+}
+
+TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
+  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  ASSERT_TRUE(wait_for_match(writer, reader));
+  // 8 kB each, so that neither the depth at either end nor a buffer of bytes between them takes them all.
+  std::uint64_t written = 0;
+  WriteOutcome outcome = WriteOutcome::written;
+  for (; written < 20'000; ++written) {
+    outcome = writer.write(block(written, "dau", 1000), 300ms);
+    if (outcome != WriteOutcome::written) break;
+  }
+  EXPECT_EQ(outcome, WriteOutcome::timed_out);
+  EXPECT_LE(written, static_cast<std::uint64_t>(late_joiner_blocks + untaken_blocks + 200));
+  std::uint64_t next = 0;
+  const auto take = [&] {
+    reader.take([&](const SampleBlock& block, const SampleInfo&) {
+      EXPECT_EQ(block.block(), next);
+      next = block.block() + 1;
+    });
+    return next >= written;
+  };
+  ASSERT_TRUE(wait_for(take)) << next << " of " << written;
+  ASSERT_EQ(writer.write(block(written, "dau", 1000)), WriteOutcome::written);
+  ++written;
+  ASSERT_TRUE(wait_for(take)) << next << " of " << written;
+}
+
+TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
+  auto writer = this->writer<SourceStatus>(topics::source_status, Profile::state);
+  SourceStatus status;
+  status.bench(bench_);
+  for (std::uint64_t update = 1; update <= 10; ++update)
+    for (const char* source : {"dau", "acs", "can"}) {
+      status.source(source);
+      status.received(update);
+      ASSERT_EQ(writer.write(status), WriteOutcome::written);
+    }
+  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
+  std::map<std::string, std::vector<std::uint64_t>> seen;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take([&](const SourceStatus& sample, const SampleInfo&) { seen[sample.source().to_string()].push_back(sample.received()); });
+    return seen.size() == 3;
+  }));
+  for (const auto& [source, updates] : seen)
+    EXPECT_EQ(updates, std::vector<std::uint64_t>{10}) << source;
+}
+
+TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
+  auto writer = this->writer<CalibrationResult>(topics::calibration_result, Profile::results);
+  constexpr std::uint32_t steps = 2000;
+  CalibrationResult result;
+  result.bench(bench_);
+  result.run("run-1");
+  result.channel("dau/acceleration_z");
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    result.step(step);
+    result.frequency_hz(step * 0.5);
+    ASSERT_EQ(writer.write(result), WriteOutcome::written);
+  }
+  auto reader = this->reader<CalibrationResult>(topics::calibration_result, Profile::results);
+  std::map<std::uint32_t, double> frequencies;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take([&](const CalibrationResult& sample, const SampleInfo&) { frequencies[sample.step()] = sample.frequency_hz(); });
+    return frequencies.size() == steps;
+  })) << frequencies.size();
+  EXPECT_EQ(frequencies.at(1999), 999.5);
+}
+
+TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
+  auto writer = this->writer<Command>(topics::command, Profile::command);
+  ASSERT_EQ(writer.write(command("dau", 1)), WriteOutcome::written);
+  auto reader = this->reader<Command>(topics::command, Profile::command);
+  ASSERT_TRUE(wait_for_match(writer, reader));
+  std::vector<std::uint32_t> steps;
+  const auto take = [&] {
+    reader.take([&](const Command& sample, const SampleInfo&) { steps.push_back(sample.step()); });
+    return !steps.empty();
+  };
+  // One side may match before the other: commands are repeated until they are answered.
+  for (std::uint32_t step = 2; step < 200; ++step) {
+    ASSERT_EQ(writer.write(command("dau", step)), WriteOutcome::written);
+    if (wait_for(take, 100ms)) break;
+  }
+  ASSERT_FALSE(steps.empty());
+  EXPECT_NE(steps.front(), 1U);
+}
+
+TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
+  auto writer = this->writer<SampleBlock>(topics::acs_samples, Profile::samples);
+  auto reader = this->reader<SampleBlock>(topics::acs_samples, Profile::samples);
+  const std::string shortest = "a";
+  const std::string longest(64, 'z');
+  for (std::uint64_t i = 0; i < 20; ++i)
+    for (const std::string& source : {shortest, longest})
+      ASSERT_EQ(writer.write(block(i, source)), WriteOutcome::written);
+  std::map<std::string, std::uint64_t> next;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take([&](const SampleBlock& block, const SampleInfo&) { EXPECT_EQ(block.block(), next[block.source().to_string()]++); });
+    return next[shortest] == 20 && next[longest] == 20;
+  }));
+  EXPECT_EQ(next.size(), 2U);
+}
+
+TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
+  auto writer = this->writer<SourceStatus>(topics::source_status, Profile::state);
+  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
+  SourceStatus status;
+  status.bench(bench_);
+  status.message("still here");
+  for (const char* source : {"first", "second", "third"}) {
+    status.source(source);
+    ASSERT_EQ(writer.write(status), WriteOutcome::written);
+  }
+  std::size_t alive = 0;
+  std::vector<std::string> ended;
+  const auto take = [&] {
+    reader.take([&](const SourceStatus& sample, const SampleInfo& info) {
+      if (info.valid) {
+        ++alive;
+        return;
+      }
+      EXPECT_EQ(sample.bench().to_string(), bench_);
+      EXPECT_EQ(sample.message(), "");
+      ended.push_back(sample.source().to_string());
+    });
+    return alive == 3;
+  };
+  ASSERT_TRUE(wait_for(take));
+  status.source("second");
+  EXPECT_TRUE(writer.unregister(status));
+  ASSERT_TRUE(wait_for([&] {
+    take();
+    return !ended.empty();
+  }));
+  EXPECT_EQ(ended, std::vector<std::string>{"second"});
+  // It may begin again.
+  ASSERT_EQ(writer.write(status), WriteOutcome::written);
+  EXPECT_TRUE(wait_for([&] {
+    take();
+    return alive == 4;
+  }));
+}
+
+TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
+  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
+  auto writer = std::make_unique<Writer<SourceStatus>>(this->writer<SourceStatus>(topics::source_status, Profile::state));
+  SourceStatus status;
+  status.bench(bench_);
+  status.source("dau");
+  ASSERT_EQ(writer->write(status), WriteOutcome::written);
+  std::size_t valid = 0;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take([&](const SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
+    return valid == 1;
+  }));
+  writer.reset();
+  ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 0; }));
+}
+
+TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
+  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  ASSERT_EQ(writer.write(block(0)), WriteOutcome::written);
+  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  for (std::uint64_t expected = 0; expected < 3; ++expected) {
+    if (expected > 0) {
+      ASSERT_EQ(writer.write(block(expected)), WriteOutcome::written);
+    }
+    bool got = false;
+    const auto deadline = Clock::now() + patience;
+    while (!got) {
+      ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
+      reader.take([&](const SampleBlock& block, const SampleInfo&) { got = block.block() == expected; });
+    }
+  }
+}
+
+TEST_P(BusExchange, KeepsPartitionsApartAndReadsAllWithAStar) {
+  auto mine = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-a").value();
+  auto other = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-b").value();
+  auto one = reading_.reader<Command>(topics::command, Profile::state, bench_ + "-a", bell_).value();
+  auto all = reading_.reader<Command>(topics::command, Profile::state, bench_ + "*", bell_).value();
+  ASSERT_EQ(mine.write(command("dau", 1)), WriteOutcome::written);
+  ASSERT_EQ(other.write(command("acs", 2)), WriteOutcome::written);
+  std::vector<std::string> of_one;
+  std::vector<std::string> of_all;
+  ASSERT_TRUE(wait_for([&] {
+    one.take([&](const Command& sample, const SampleInfo&) { of_one.push_back(sample.target().to_string()); });
+    all.take([&](const Command& sample, const SampleInfo&) { of_all.push_back(sample.target().to_string()); });
+    return of_one.size() == 1 && of_all.size() == 2;
+  }));
+  EXPECT_EQ(of_one, std::vector<std::string>{"dau"});
+}
+
+TEST_P(BusExchange, LetsParticipantsGoBeforeTheirWritersAndReaders) {
+  std::unique_ptr<Writer<SampleBlock>> writer;
+  std::unique_ptr<Reader<SampleBlock>> reader;
+  {
+    Participant participant = join(GetParam().writer);
+    writer = std::make_unique<Writer<SampleBlock>>(participant.writer<SampleBlock>("DauSamples", Profile::samples, bench_).value());
+  }
+  {
+    Participant participant = join(GetParam().reader);
+    reader = std::make_unique<Reader<SampleBlock>>(participant.reader<SampleBlock>("DauSamples", Profile::samples, bench_, bell_).value());
+  }
+  ASSERT_EQ(writer->write(block(0)), WriteOutcome::written);
+  EXPECT_TRUE(wait_for([&] { return reader->take([](const SampleBlock&, const SampleInfo&) {}) == 1; }));
+}
+
+} // namespace
+} // namespace dyncal::bus

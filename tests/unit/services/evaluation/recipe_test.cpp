@@ -1,0 +1,56 @@
+#include "services/evaluation/recipe.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/evaluation/synthetic_run.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Recipe, ComesOutOfTheMessageAsItWentIn) {
+  const auto recipe = parse_recipe(tests::SyntheticRun{}.measurement());
+  ASSERT_TRUE(recipe) << recipe.error().message;
+  EXPECT_EQ(recipe->reference.text(), "acs/reference");
+  EXPECT_EQ(recipe->sources(), (std::vector<std::string>{"acs", "dau"}));
+  ASSERT_EQ(recipe->steps.size(), 2U);
+  EXPECT_EQ(recipe->steps[1].frequency_text_hz, "80");
+  EXPECT_DOUBLE_EQ(recipe->steps[1].duration_s, 0.8);
+}
+
+TEST(Recipe, RefusesRolesThatAreNoChannels) {
+  Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_dau("dau");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dau is \"dau\""));
+}
+
+TEST(Recipe, RefusesReferenceAndSyncOfDifferentClocks) {
+  Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_acs("other/sync");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("must share a clock"));
+}
+
+TEST(Recipe, RefusesARunWithoutSteps) {
+  Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.steps().clear();
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("no excitation steps"));
+}
+
+TEST(Recipe, PlansAllFrequenciesOfARepetitionBeforeTheNext) {
+  BenchFile file;
+  file.bench = "acc-1";
+  file.excitation.frequencies_hz = {"10", "20"};
+  file.excitation.levels_m_s2 = {1.0, 2.0};
+  file.excitation.repetitions = 2;
+  const Measurement measurement = plan_measurement(file, "r", 5, {});
+  ASSERT_EQ(measurement.steps().size(), 4U);
+  EXPECT_EQ(measurement.steps()[2].frequency_hz(), "10");
+  EXPECT_EQ(measurement.steps()[2].repetition(), 2U);
+  EXPECT_EQ(measurement.steps()[3].step(), 4U);
+  EXPECT_DOUBLE_EQ(measurement.steps()[3].level_m_s2(), 2.0);
+}
+
+} // namespace
+} // namespace dyncal::services

@@ -1,0 +1,231 @@
+#include "services/evaluation/run_evaluator.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
+#include "tests/unit/services/evaluation/synthetic_run.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using testing::HasSubstr;
+
+EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement, std::size_t evaluations_at_once = 0) {
+  auto recipe = parse_recipe(measurement);
+  EXPECT_TRUE(recipe) << recipe.error().message;
+  RunEvaluator evaluator(std::move(*recipe), evaluations_at_once);
+  EXPECT_TRUE(evaluator.describe(run.acs_description()));
+  EXPECT_TRUE(evaluator.describe(run.dau_description()));
+  EvaluationOutput all;
+  const auto collect = [&] {
+    EvaluationOutput output = evaluator.take_output();
+    all.results.insert(all.results.end(), output.results.begin(), output.results.end());
+    if (!output.transfer_functions.empty()) {
+      all.transfer_functions = output.transfer_functions;
+      all.clock_reports = output.clock_reports;
+    }
+  };
+  const auto acs = run.acs_blocks();
+  const auto dau = run.dau_blocks();
+  for (std::size_t i = 0; i < std::max(acs.size(), dau.size()); ++i) {
+    if (i < acs.size()) {
+      evaluator.add(acs[i]);
+    }
+    if (i < dau.size()) {
+      evaluator.add(dau[i]);
+    }
+    collect();
+  }
+  EXPECT_TRUE(evaluator.finished());
+  return all;
+}
+
+EvaluationOutput evaluate(const tests::SyntheticRun& run) {
+  return evaluate(run, run.measurement());
+}
+
+// Sync as the sensor, against the reference beside it.
+Measurement analogue(Measurement measurement) {
+  measurement.method(METHOD_ANALOGUE);
+  measurement.sync_acs("");
+  measurement.sync_dau("");
+  measurement.dut() = {"acs/sync"};
+  return measurement;
+}
+
+TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
+  const tests::SyntheticRun run;
+  const EvaluationOutput output = evaluate(run);
+  ASSERT_EQ(output.results.size(), 2U);
+  for (const CalibrationResult& result : output.results) {
+    ASSERT_TRUE(result.valid()) << result.problem();
+    EXPECT_EQ(result.channel().to_string(), "dau/acceleration_z");
+    EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
+    EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s, 4.0 * result.u_phase_rad());
+    EXPECT_LT(result.u_magnitude(), 1e-3);
+    EXPECT_LT(result.u_phase_rad(), 1e-3);
+    EXPECT_EQ(result.unit(), R"(\one)");
+    EXPECT_EQ(result.lost(), 0U);
+    EXPECT_TRUE(result.flags().empty());
+  }
+  ASSERT_EQ(output.transfer_functions.size(), 1U);
+  EXPECT_EQ(output.transfer_functions.front().points().size(), 2U);
+  ASSERT_EQ(output.clock_reports.size(), 1U);
+  EXPECT_NEAR(output.clock_reports.front().mean_interval_s(), 997e-6, 1e-9);
+}
+
+TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
+  const tests::SyntheticRun run;
+  const EvaluationOutput output = evaluate(run, analogue(run.measurement()));
+  ASSERT_EQ(output.results.size(), 2U);
+  for (const CalibrationResult& result : output.results) {
+    ASSERT_TRUE(result.valid()) << result.problem();
+    EXPECT_NEAR(result.magnitude(), 0.1, 4.0 * result.u_magnitude()); // sync is a tenth of the reference
+    EXPECT_NEAR(result.phase_rad(), 0.0, 4.0 * result.u_phase_rad());
+    EXPECT_EQ(result.fits().size(), 2U);
+    EXPECT_EQ(result.samples().size(), 1U);
+    EXPECT_TRUE(result.flags().empty()) << result.flags().front();
+  }
+  EXPECT_EQ(output.transfer_functions.size(), 1U);
+  EXPECT_TRUE(output.clock_reports.empty());
+}
+
+TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
+  tests::SyntheticRun run;
+  run.settling_time_constant_s = 0.05;
+  Measurement measurement = run.measurement();
+  measurement.settling_from_data(true);
+  for (PlannedStep& step : measurement.steps()) {
+    step.settling_s(0.7);
+    step.duration_s(0.6);
+  }
+  const EvaluationOutput output = evaluate(run, measurement);
+  ASSERT_EQ(output.results.size(), 2U);
+  for (const CalibrationResult& result : output.results) {
+    ASSERT_TRUE(result.valid()) << result.problem();
+    EXPECT_TRUE(result.flags().empty()) << result.flags().front();
+    EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
+    // 0.05 s ln(0.1 / 1e-4) = 0.35 s after the beginning, whole blocks of periods and the window's edge beside it.
+    const double begin_s = run.off_s + (result.step() - 1) * (run.on_s + run.off_s);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].first_ns()) * 1e-9 - begin_s, 0.4, 0.15);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].last_ns() - result.samples()[0].first_ns()) * 1e-9, 0.6, 0.001);
+  }
+}
+
+TEST(RunEvaluator, SaysSoWhenSettlingTakesLongerThanPlanned) {
+  tests::SyntheticRun run;
+  run.settling_time_constant_s = 0.05;
+  Measurement measurement = run.measurement();
+  measurement.settling_from_data(true);
+  for (PlannedStep& step : measurement.steps()) {
+    step.settling_s(0.05);
+    step.duration_s(1.2);
+  }
+  const EvaluationOutput output = evaluate(run, measurement);
+  ASSERT_EQ(output.results.size(), 2U);
+  for (const CalibrationResult& result : output.results) {
+    ASSERT_EQ(result.flags().size(), 1U);
+    EXPECT_THAT(result.flags().front(), HasSubstr("settles for"));
+  }
+}
+
+TEST(RunEvaluator, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
+  const tests::SyntheticRun run;
+  Measurement measurement = run.measurement();
+  measurement.monte_carlo_trials(50'000);
+  measurement.reference_delay_s(2e-6);
+  tests::expect_drawing_agrees(evaluate(run, measurement).results, 2);
+  tests::expect_drawing_agrees(evaluate(run, analogue(measurement)).results, 2);
+}
+
+TEST(RunEvaluator, GivesTheSameBitsHoweverTheStreamsWereCut) {
+  tests::SyntheticRun run;
+  const EvaluationOutput coarse = evaluate(run);
+  run.block_samples = 13;
+  const EvaluationOutput fine = evaluate(run);
+  ASSERT_EQ(coarse.results.size(), fine.results.size());
+  for (std::size_t i = 0; i < coarse.results.size(); ++i) {
+    EXPECT_EQ(coarse.results[i].magnitude(), fine.results[i].magnitude());
+    EXPECT_EQ(coarse.results[i].phase_rad(), fine.results[i].phase_rad());
+    EXPECT_EQ(coarse.results[i].u_phase_rad(), fine.results[i].u_phase_rad());
+    EXPECT_EQ(coarse.results[i].data_sha256(), fine.results[i].data_sha256());
+  }
+}
+
+TEST(RunEvaluator, GivesTheSameResultsFromThreadsOfTheirOwn) {
+  tests::SyntheticRun run;
+  run.lost_block = 22;
+  const EvaluationOutput here = evaluate(run, run.measurement());
+  for (const std::size_t at_once : {1U, 3U}) {
+    const EvaluationOutput elsewhere = evaluate(run, run.measurement(), at_once);
+    ASSERT_EQ(elsewhere.results.size(), here.results.size());
+    for (std::size_t i = 0; i < here.results.size(); ++i) {
+      EXPECT_TRUE(elsewhere.results[i] == here.results[i]) << "result " << i;
+    }
+    EXPECT_TRUE(elsewhere.transfer_functions == here.transfer_functions);
+    EXPECT_TRUE(elsewhere.clock_reports == here.clock_reports);
+  }
+}
+
+TEST(RunEvaluator, CountsLostSamplesInTheResultOfTheStepTheyBelongTo) {
+  tests::SyntheticRun run;
+  run.lost_block = 22; // about 1.1 s into the run, in the evaluated part of the first step
+  const EvaluationOutput output = evaluate(run);
+  ASSERT_EQ(output.results.size(), 2U);
+  EXPECT_EQ(output.results[0].lost(), 50U);
+  EXPECT_THAT(output.results[0].flags(), testing::Contains("dau: samples lost"));
+  EXPECT_EQ(output.results[1].lost(), 0U);
+  EXPECT_NEAR(output.results[0].magnitude(), run.magnitude, 4.0 * output.results[0].u_magnitude());
+}
+
+TEST(RunEvaluator, SaysWhichSyncIsMissingForAStepThatWasNotExcited) {
+  tests::SyntheticRun run;
+  run.steps = {{"40", 10.0}, {"63", 0.0}, {"80", 10.0}};
+  const EvaluationOutput output = evaluate(run);
+  ASSERT_EQ(output.results.size(), 3U);
+  EXPECT_TRUE(output.results[0].valid());
+  EXPECT_FALSE(output.results[1].valid());
+  EXPECT_THAT(output.results[1].problem(), HasSubstr("no steady sine of 63 Hz was found in acs/sync"));
+  EXPECT_TRUE(std::isnan(output.results[1].magnitude()));
+  EXPECT_TRUE(output.results[2].valid());
+}
+
+TEST(RunEvaluator, RefusesASourceWithoutTheChannelAndListsThoseItHas) {
+  const tests::SyntheticRun run;
+  Measurement measurement = run.measurement();
+  measurement.sync_dau("dau/synch");
+  RunEvaluator evaluator(*parse_recipe(measurement));
+  const auto described = evaluator.describe(run.dau_description());
+  ASSERT_FALSE(described);
+  EXPECT_EQ(described.error().message, "source 'dau' has no channel 'synch'; it has: acceleration_z, temperature, sync");
+}
+
+TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {
+  const tests::SyntheticRun run;
+  RunEvaluator evaluator(*parse_recipe(run.measurement()));
+  ASSERT_TRUE(evaluator.describe(run.acs_description()));
+  ASSERT_TRUE(evaluator.describe(run.dau_description()));
+  for (const SampleBlock& block : run.acs_blocks()) {
+    evaluator.add(block);
+  }
+  for (const SampleBlock& block : run.dau_blocks()) {
+    evaluator.add(block);
+  }
+  Excitation excitation;
+  excitation.step(1);
+  excitation.state(EXCITATION_ABORTED);
+  evaluator.announce(excitation);
+  evaluator.end_of_excitation(true);
+  const EvaluationOutput output = evaluator.take_output();
+  EXPECT_TRUE(evaluator.finished());
+  ASSERT_EQ(output.results.size(), 1U);
+  EXPECT_TRUE(output.results.front().valid());
+  EXPECT_THAT(output.results.front().flags(), testing::Contains("excitation broken off"));
+}
+
+} // namespace
+} // namespace dyncal::services
