@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/sample_stamping.hpp"
 
 namespace dyncal::analysis {

@@ -17,7 +17,7 @@
 #include <cstdint>
 
 #include "analysis/adc_calibration.hpp"
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

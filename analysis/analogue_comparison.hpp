@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
 
 namespace dyncal::analysis {

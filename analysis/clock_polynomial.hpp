@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/least_squares.hpp"
 
 namespace dyncal::analysis {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 

@@ -5,7 +5,7 @@
 // Fails: invalid_argument (uncertainty not positive, or a covariance larger than the uncertainties allow). Any thread.
 #pragma once
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sine_fit.hpp"
 
 namespace dyncal::analysis {

@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

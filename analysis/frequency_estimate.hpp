@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {

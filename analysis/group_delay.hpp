@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -16,7 +16,7 @@
 #include <span>
 
 #include "analysis/coverage.hpp"
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
 #include "analysis/uncertainty.hpp"
 

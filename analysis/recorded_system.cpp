@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/disturbances.hpp"
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 #include "analysis/quantisation.hpp"
 
 namespace dyncal::analysis {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/coverage.hpp"
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {

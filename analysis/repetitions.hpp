@@ -17,7 +17,7 @@
 #include <complex>
 #include <span>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/sample_stamping.hpp"
 
 namespace dyncal::analysis {

@@ -9,7 +9,7 @@
 #include <ceres/jet.h>
 
 #include "analysis/group_delay.hpp"
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/least_squares.hpp"
 
 namespace dyncal::analysis {

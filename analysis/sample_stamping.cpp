@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 #include "analysis/ratio_scatter.hpp"
 #include "analysis/recorded_system.hpp"
 #include "analysis/stamped_apart.hpp"

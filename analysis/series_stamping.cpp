@@ -8,7 +8,7 @@
 
 #include "analysis/disturbances.hpp"
 #include "analysis/equidistant_axis.hpp"
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 #include "analysis/recorded_system.hpp"
 
 namespace dyncal::analysis {

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/nominal_frequency.hpp"
 #include "analysis/repetitions.hpp"
 #include "analysis/transfer_point.hpp"

@@ -19,8 +19,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

@@ -21,8 +21,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/robust_weights.hpp"
 #include "analysis/sine_fit.hpp"
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <span>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis::kernel {
 

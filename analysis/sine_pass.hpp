@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sine_grid.hpp"
 #include "analysis/sine_kernel.hpp"
 #include "analysis/sine_series.hpp"

@@ -9,8 +9,8 @@
 
 #include <span>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sine_pass.hpp"
 
 namespace dyncal::analysis::kernel {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

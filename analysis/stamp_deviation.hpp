@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "analysis/allan_deviation.hpp"
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/pulse_edges.hpp"
 
 namespace dyncal::analysis {

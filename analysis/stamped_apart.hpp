@@ -13,7 +13,7 @@
 #include <span>
 
 #include "analysis/budget.hpp"
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
 
 namespace dyncal::analysis {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sine_fit.hpp"
 
 namespace dyncal::analysis {

@@ -14,7 +14,7 @@
 #include <complex>
 #include <span>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/error.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/evaluation/source_record.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "drivers/generator/by_hand_generator.hpp"
 #include "drivers/generator/scpi_generator.hpp"
 #include "services/bench/level_settling.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "services/bus/topics.hpp"
 #include "services/dso/series_channels.hpp"
 #include "services/utc_clock.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/adc_calibration.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sample_stamping.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"

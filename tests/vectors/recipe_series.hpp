@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

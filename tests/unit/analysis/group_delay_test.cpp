@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {

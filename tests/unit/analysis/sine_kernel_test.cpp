@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/composed_fma.hpp"
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 #include "analysis/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {

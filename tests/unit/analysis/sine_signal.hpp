@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 

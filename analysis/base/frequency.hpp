@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "analysis/error.hpp"
+#include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {
 

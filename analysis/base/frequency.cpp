@@ -1,4 +1,4 @@
-#include "analysis/frequency.hpp"
+#include "analysis/base/frequency.hpp"
 
 #include <algorithm>
 #include <cmath>

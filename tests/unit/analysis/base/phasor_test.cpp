@@ -1,4 +1,4 @@
-#include "analysis/phasor.hpp"
+#include "analysis/base/phasor.hpp"
 
 #include <cmath>
 #include <numbers>
