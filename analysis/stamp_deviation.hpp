@@ -25,7 +25,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/allan_deviation.hpp"
+#include "analysis/clock/allan_deviation.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/pulse_edges.hpp"
 

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/sample_clock.hpp"
+#include "analysis/clock/sample_clock.hpp"
 #include "services/command/series_file.hpp"
 #include "services/program/program.hpp"
 

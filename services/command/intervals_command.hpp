@@ -1,5 +1,5 @@
 // `dyncal intervals DATA.csv`: the sample clock of a recorded series by direct sample interval evaluation (paper section 3,
-// analysis/sample_clock.hpp): statistics, histogram, events. Belongs to one thread.
+// analysis/clock/sample_clock.hpp): statistics, histogram, events. Belongs to one thread.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // Follows the sample clock of the sensor under calibration through a run and reports on it: paper section 3 (direct sample interval
-// evaluation) and section 4.2 (analysis/sample_clock.hpp has the definitions).
+// evaluation) and section 4.2 (analysis/clock/sample_clock.hpp has the definitions).
 //
 // Takes the blocks of the DAU source as they come, relates intervals to the temperature channel if the recipe names one of the
 // same source. Belongs to one thread.
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sample_clock.hpp"
+#include "analysis/clock/sample_clock.hpp"
 #include "idl/dyncal.h"
 #include "services/bus/sample_continuity.hpp"
 #include "services/evaluation/recipe.hpp"

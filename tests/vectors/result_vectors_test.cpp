@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/allan_deviation.hpp"
+#include "analysis/clock/allan_deviation.hpp"
 #include "analysis/group_delay.hpp"
 #include "analysis/sample_stamping.hpp"
 #include "analysis/series_stamping.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/interval_overview.hpp"
+#include "analysis/clock/interval_overview.hpp"
 
 #include <algorithm>
 

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/interval_counts.hpp"
+#include "analysis/clock/interval_counts.hpp"
 
 namespace dyncal::analysis {
 

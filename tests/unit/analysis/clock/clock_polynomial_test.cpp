@@ -1,4 +1,4 @@
-#include "analysis/clock_polynomial.hpp"
+#include "analysis/clock/clock_polynomial.hpp"
 
 #include <cmath>
 #include <numbers>

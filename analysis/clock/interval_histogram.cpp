@@ -1,4 +1,4 @@
-#include "analysis/interval_histogram.hpp"
+#include "analysis/clock/interval_histogram.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "analysis/temperature_relation.hpp"
+#include "analysis/clock/temperature_relation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/interval_counts.hpp"
+#include "analysis/clock/interval_counts.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "analysis/interval_events.hpp"
+#include "analysis/clock/interval_events.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/allan_deviation.hpp"
+#include "analysis/clock/allan_deviation.hpp"
 
 #include <cmath>
 #include <random>

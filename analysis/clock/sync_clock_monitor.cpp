@@ -1,4 +1,4 @@
-#include "analysis/sync_clock_monitor.hpp"
+#include "analysis/clock/sync_clock_monitor.hpp"
 
 #include <algorithm>
 #include <array>

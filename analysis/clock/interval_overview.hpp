@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/interval_events.hpp"
+#include "analysis/clock/interval_events.hpp"
 
 namespace dyncal::analysis {
 

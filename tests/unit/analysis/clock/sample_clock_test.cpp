@@ -1,4 +1,4 @@
-#include "analysis/sample_clock.hpp"
+#include "analysis/clock/sample_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

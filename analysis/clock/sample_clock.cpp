@@ -1,11 +1,11 @@
-#include "analysis/sample_clock.hpp"
+#include "analysis/clock/sample_clock.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 
-#include "analysis/interval_counts.hpp"
+#include "analysis/clock/interval_counts.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/allan_deviation.hpp"
-#include "analysis/interval_events.hpp"
-#include "analysis/interval_histogram.hpp"
-#include "analysis/interval_overview.hpp"
-#include "analysis/temperature_relation.hpp"
+#include "analysis/clock/allan_deviation.hpp"
+#include "analysis/clock/interval_events.hpp"
+#include "analysis/clock/interval_histogram.hpp"
+#include "analysis/clock/interval_overview.hpp"
+#include "analysis/clock/temperature_relation.hpp"
 
 namespace dyncal::analysis {
 
