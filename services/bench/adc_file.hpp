@@ -6,14 +6,14 @@
 // without the ADC's level. "Phase" is positive for a lag in most files; older ones have the other sign, so the bench file says it.
 // `dyncal calibrate adc` adds "u_Amplitude" and "u_Phase" to a measurement (services/bench/adc_file_writer.hpp): standard uncertainties of
 // what all measurements of a frequency have in common; other files have none. Several measurements of a frequency become one point with the
-// uncertainty of their mean (analysis/adc_calibration.hpp); test amplitudes are never mixed: one is returned, the nearest to the one asked
+// uncertainty of their mean (analysis/instrument/adc_calibration.hpp); test amplitudes are never mixed: one is returned, the nearest to the one asked
 // for. Fails (bad_file), one sentence with file, channel and what is wrong: missing or no JSON, the channel is not in it, values that are
 // not numbers or not possible, several test amplitudes and none chosen, none within a factor of two.
 #pragma once
 
 #include <vector>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"
 

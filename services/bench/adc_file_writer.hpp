@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

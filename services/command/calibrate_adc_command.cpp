@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/adc_comparison.hpp"
+#include "analysis/instrument/adc_comparison.hpp"
 #include "services/bench/adc_file_writer.hpp"
 #include "services/bench/digest.hpp"
 #include "services/bus/topics.hpp"

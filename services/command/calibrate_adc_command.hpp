@@ -1,5 +1,5 @@
 // `dyncal calibrate adc BENCH.toml`: the response of the DAU's sync ADC over frequency and test amplitude, in the path that calibrations
-// use (data-ready edge, stamp, conversion), against the ACS's sync channel; analysis/adc_comparison.hpp has the model.
+// use (data-ready edge, stamp, conversion), against the ACS's sync channel; analysis/instrument/adc_comparison.hpp has the model.
 //
 // Conducts one run of the bench's excitation list for each test amplitude, with sync itself as reference and as channel under calibration,
 // and writes all measurements as a file that `[corrections] adc` reads. Without --amplitudes the bench's levels are used and the test

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trigger_delay.hpp"
+#include "analysis/instrument/trigger_delay.hpp"
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/generator/scpi_generator.hpp"
 #include "services/program/program.hpp"

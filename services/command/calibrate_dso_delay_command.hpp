@@ -1,5 +1,5 @@
 // `dyncal calibrate dso-delay`: the delay of an oscilloscope's trigger output, in the set-up of paper section 2.4: the sync line on one
-// input, the trigger output fed back to another (analysis/trigger_delay.hpp).
+// input, the trigger output fed back to another (analysis/instrument/trigger_delay.hpp).
 //
 // Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that [corrections] dso_delay = { file = ... } of
 // a bench file names (services/bench/dso_delay_file.hpp). With a generator's address the generator is set and its output switched on and

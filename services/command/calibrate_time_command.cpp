@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/pulse_edges.hpp"
-#include "analysis/stamp_deviation.hpp"
+#include "analysis/instrument/pulse_edges.hpp"
+#include "analysis/instrument/stamp_deviation.hpp"
 #include "services/command/pulse_file.hpp"
 #include "services/figures/stamp_deviation.hpp"
 #include "services/program/program.hpp"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/pulse_edges.hpp"
+#include "analysis/instrument/pulse_edges.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

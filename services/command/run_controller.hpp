@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/sample_stamping.hpp"
 #include "idl/dyncal.h"

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/group_delay.hpp"
 #include "analysis/repetitions.hpp"
 #include "services/version.hpp"

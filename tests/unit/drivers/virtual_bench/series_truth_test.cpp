@@ -8,7 +8,7 @@
 
 #include "analysis/series_stamping.hpp"
 #include "analysis/start_latency.hpp"
-#include "analysis/trigger_delay.hpp"
+#include "analysis/instrument/trigger_delay.hpp"
 #include "drivers/virtual_bench/acs_instrument.hpp"
 #include "drivers/virtual_bench/oscilloscope_model.hpp"
 #include "drivers/virtual_bench/series_sensor.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

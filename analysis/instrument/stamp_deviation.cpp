@@ -1,4 +1,4 @@
-#include "analysis/stamp_deviation.hpp"
+#include "analysis/instrument/stamp_deviation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -27,7 +27,7 @@
 
 #include "analysis/clock/allan_deviation.hpp"
 #include "analysis/base/error.hpp"
-#include "analysis/pulse_edges.hpp"
+#include "analysis/instrument/pulse_edges.hpp"
 
 namespace dyncal::analysis {
 

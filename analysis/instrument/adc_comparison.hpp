@@ -16,7 +16,7 @@
 
 #include <cstdint>
 
-#include "analysis/adc_calibration.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/base/error.hpp"
 
 namespace dyncal::analysis {

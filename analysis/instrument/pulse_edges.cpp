@@ -1,4 +1,4 @@
-#include "analysis/pulse_edges.hpp"
+#include "analysis/instrument/pulse_edges.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "analysis/adc_comparison.hpp"
+#include "analysis/instrument/adc_comparison.hpp"
 
 #include <cmath>
 #include <complex>

@@ -1,4 +1,4 @@
-#include "analysis/trigger_delay.hpp"
+#include "analysis/instrument/trigger_delay.hpp"
 
 #include <algorithm>
 #include <array>
