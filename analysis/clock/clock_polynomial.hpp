@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
-#include "analysis/least_squares.hpp"
+#include "analysis/response/least_squares.hpp"
 
 namespace dyncal::analysis {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/comparison.hpp"
+#include "analysis/response/comparison.hpp"
 #include "services/command/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"

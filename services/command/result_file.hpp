@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/comparison.hpp"
+#include "analysis/response/comparison.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/triaxial.hpp"
+#include "analysis/response/triaxial.hpp"
 #include "services/command/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"

@@ -1,5 +1,5 @@
 // `dyncal triaxial --x X.json --y Y.json --z Z.json`: the response of a sensor's three axes from one result for each direction of
-// excitation, and its transverse sensitivity (analysis/triaxial.hpp).
+// excitation, and its transverse sensitivity (analysis/response/triaxial.hpp).
 //
 // The result of an excitation along j holds the transfer functions of the sensor's three channels against the reference along j: column j
 // of the 3x3 response. Any one direction is enough for its column; what moved across it then counts as nothing and goes into the

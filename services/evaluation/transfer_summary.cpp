@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "analysis/group_delay.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "analysis/repetitions.hpp"
 #include "services/version.hpp"
 

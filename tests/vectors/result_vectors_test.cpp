@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "analysis/clock/allan_deviation.hpp"
-#include "analysis/group_delay.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "analysis/sample_stamping.hpp"
 #include "analysis/series_stamping.hpp"
-#include "analysis/triaxial.hpp"
+#include "analysis/response/triaxial.hpp"
 #include "analysis/uncertainty.hpp"
 #include "tests/vectors/recipe_series.hpp"
 

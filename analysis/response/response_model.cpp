@@ -1,4 +1,4 @@
-#include "analysis/response_model.hpp"
+#include "analysis/response/response_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
 
-#include "analysis/group_delay.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {

@@ -1,4 +1,4 @@
-#include "analysis/group_delay.hpp"
+#include "analysis/response/group_delay.hpp"
 
 #include <cmath>
 #include <cstdlib>

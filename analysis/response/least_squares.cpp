@@ -1,4 +1,4 @@
-#include "analysis/least_squares.hpp"
+#include "analysis/response/least_squares.hpp"
 
 #include <algorithm>
 #include <array>

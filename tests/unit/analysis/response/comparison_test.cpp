@@ -1,4 +1,4 @@
-#include "analysis/comparison.hpp"
+#include "analysis/response/comparison.hpp"
 
 #include <cmath>
 

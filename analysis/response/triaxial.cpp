@@ -1,4 +1,4 @@
-#include "analysis/triaxial.hpp"
+#include "analysis/response/triaxial.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The judge from outside: nonlinear problems of the NIST Statistical Reference Datasets of the sine and exponential kind, from both of
 // their starting points, to nine digits.
-#include "analysis/least_squares.hpp"
+#include "analysis/response/least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/response_model.hpp"
+#include "analysis/response/response_model.hpp"
 
 #include <cmath>
 #include <random>
