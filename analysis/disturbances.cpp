@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "analysis/sine_fit_extended.hpp"
-#include "analysis/sine_values.hpp"
+#include "analysis/sine/kernel/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {

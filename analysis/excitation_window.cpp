@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "analysis/sine_values.hpp"
+#include "analysis/sine/kernel/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {

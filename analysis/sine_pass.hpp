@@ -11,8 +11,8 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/sine_grid.hpp"
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_grid.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine_series.hpp"
 
 namespace dyncal::analysis::kernel {

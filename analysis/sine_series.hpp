@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/sine_polynomial.hpp"
+#include "analysis/sine/kernel/sine_polynomial.hpp"
 
 namespace dyncal::analysis::kernel {
 

@@ -10,7 +10,7 @@
 #include <array>
 
 #include "analysis/sine_fit.hpp"
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 
 namespace dyncal::analysis::kernel {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine_series.hpp"
 #include "analysis/sine_solve.hpp"
 #include "analysis/sine_stream.hpp"

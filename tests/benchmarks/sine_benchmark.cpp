@@ -20,7 +20,7 @@
 #endif
 
 #include "analysis/sine_fit.hpp"
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine_stream.hpp"
 #include "tests/benchmarks/only_reading.hpp"
 

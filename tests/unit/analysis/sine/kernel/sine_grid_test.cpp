@@ -1,4 +1,4 @@
-#include "analysis/sine_grid.hpp"
+#include "analysis/sine/kernel/sine_grid.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine_pass.hpp"
 #include "tests/unit/analysis/sine_signal.hpp"
 

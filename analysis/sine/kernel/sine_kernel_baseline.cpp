@@ -1,8 +1,8 @@
 // For every processor: two lanes a register (SSE2, NEON), and the fused multiply-add composed when there is none.
-#include "analysis/sine_kernel.hpp"
-#include "analysis/sine_polynomial.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_polynomial.hpp"
 
-#include "analysis/composed_fma.hpp"
+#include "analysis/sine/kernel/composed_fma.hpp"
 
 namespace {
 
@@ -122,13 +122,13 @@ struct StepCheck {
 
 } // namespace
 
-#include "analysis/sine_kernel_body.hpp"
+#include "analysis/sine/kernel/sine_kernel_body.hpp"
 
-#include "analysis/sine_grid_body.hpp"
+#include "analysis/sine/kernel/sine_grid_body.hpp"
 
-#include "analysis/sine_grid_series_body.hpp"
+#include "analysis/sine/kernel/sine_grid_series_body.hpp"
 
-#include "analysis/sine_model_body.hpp"
+#include "analysis/sine/kernel/sine_model_body.hpp"
 
 namespace dyncal::analysis::kernel {
 const SineKernel baseline_kernel{"baseline", fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,

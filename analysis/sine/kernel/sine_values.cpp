@@ -1,8 +1,8 @@
-#include "analysis/sine_values.hpp"
+#include "analysis/sine/kernel/sine_values.hpp"
 
 #include <algorithm>
 
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 
 namespace dyncal::analysis {
 

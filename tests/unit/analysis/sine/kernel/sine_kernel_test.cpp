@@ -1,4 +1,4 @@
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/composed_fma.hpp"
+#include "analysis/sine/kernel/composed_fma.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine_solve.hpp"
 

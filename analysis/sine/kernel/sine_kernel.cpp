@@ -1,4 +1,4 @@
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

@@ -1,10 +1,10 @@
-#include "analysis/sine_grid.hpp"
+#include "analysis/sine/kernel/sine_grid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
 
-#include "analysis/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

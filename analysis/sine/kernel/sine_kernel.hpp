@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "analysis/sine_grid.hpp"
+#include "analysis/sine/kernel/sine_grid.hpp"
 
 namespace dyncal::analysis::kernel {
 

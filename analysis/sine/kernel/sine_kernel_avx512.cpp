@@ -1,6 +1,6 @@
 // Compiled for AVX-512 (F and DQ); entered only when the processor has them.
-#include "analysis/sine_kernel.hpp"
-#include "analysis/sine_polynomial.hpp"
+#include "analysis/sine/kernel/sine_kernel.hpp"
+#include "analysis/sine/kernel/sine_polynomial.hpp"
 
 #include <immintrin.h>
 
@@ -83,13 +83,13 @@ struct StepCheck {
 
 } // namespace
 
-#include "analysis/sine_kernel_body.hpp"
+#include "analysis/sine/kernel/sine_kernel_body.hpp"
 
-#include "analysis/sine_grid_body.hpp"
+#include "analysis/sine/kernel/sine_grid_body.hpp"
 
-#include "analysis/sine_grid_series_body.hpp"
+#include "analysis/sine/kernel/sine_grid_series_body.hpp"
 
-#include "analysis/sine_model_body.hpp"
+#include "analysis/sine/kernel/sine_model_body.hpp"
 
 namespace dyncal::analysis::kernel {
 const SineKernel avx512_kernel{"avx512",  fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
