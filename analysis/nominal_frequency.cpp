@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/equidistant_axis.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/equidistant_axis.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/disturbances.hpp"
+#include "analysis/sine/disturbances.hpp"
 #include "analysis/base/phasor.hpp"
 #include "analysis/quantisation.hpp"
 

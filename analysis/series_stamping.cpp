@@ -6,8 +6,8 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/disturbances.hpp"
-#include "analysis/equidistant_axis.hpp"
+#include "analysis/sine/disturbances.hpp"
+#include "analysis/sine/equidistant_axis.hpp"
 #include "analysis/base/phasor.hpp"
 #include "analysis/recorded_system.hpp"
 

@@ -6,7 +6,7 @@
 #include <complex>
 #include <vector>
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 namespace {

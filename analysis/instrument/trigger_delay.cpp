@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 namespace {

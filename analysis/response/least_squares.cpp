@@ -9,7 +9,7 @@
 #include <Eigen/QR>
 #include <ceres/ceres.h>
 
-#include "analysis/robust_weights.hpp"
+#include "analysis/sine/robust_weights.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -7,16 +7,16 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/frequency_estimate.hpp"
-#include "analysis/sine_fit.hpp"
-#include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine/frequency_estimate.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
 #include "services/command/series_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
 namespace {
 
-// The estimate is good to this many bins 1/T (analysis/frequency_estimate.hpp).
+// The estimate is good to this many bins 1/T (analysis/sine/frequency_estimate.hpp).
 constexpr double estimate_bins = 1.5;
 
 struct Fit {

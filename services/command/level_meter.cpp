@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 #include "services/bench/level_settling.hpp"
 #include "services/bus/topics.hpp"
 

@@ -1,6 +1,6 @@
 // The level of the excitation as the reference shows it, while a run goes on: from the ACS's sample blocks on DDS.
 //
-// Amplitude of the sine of the step's frequency (three-parameter approximation, analysis/sine_fit.hpp) in the newest window of samples that
+// Amplitude of the sine of the step's frequency (three-parameter approximation, analysis/sine/sine_fit.hpp) in the newest window of samples that
 // were taken after a given bench time. The ACS's clock and bench time share nothing, so their difference is learnt from arrival: a block
 // with the newest stamp a that is there at bench time b says that the clocks differ by a - b at least, and the largest of these is short of
 // the truth by the smallest delay of any block. level_transport_s bounds that delay. Against a longer one, and a level that still moves:

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/settling.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::services {
 namespace {

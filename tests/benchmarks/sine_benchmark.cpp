@@ -19,9 +19,9 @@
 #include <immintrin.h>
 #endif
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/kernel/sine_kernel.hpp"
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/sine_stream.hpp"
 #include "tests/benchmarks/only_reading.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <immintrin.h>
 #endif
 
-#include "analysis/sine_fit.hpp"
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_stream.hpp"
 #include "tests/benchmarks/only_reading.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 
 The series themselves are not stored: their recipe is in the JSON file and both this script and sine_vectors_test.cpp make
 them from it. Stamps come from integers only; a value is rounded to a multiple of its quantum (a power of two, or 1 for a
-sensor that delivers LSB), so that both get the same doubles. Model, sign and units are those of analysis/sine_fit.hpp:
+sensor that delivers LSB), so that both get the same doubles. Model, sign and units are those of analysis/sine/sine_fit.hpp:
 
     y = A sin(w (t - t_ref)) + B cos(w (t - t_ref)) + C + ...,   theta = atan2(B, A),   times in integer nanoseconds.
 

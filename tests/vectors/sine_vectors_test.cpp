@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/sine_fit.hpp"
-#include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
 #include "tests/vectors/recipe_series.hpp"
 
 namespace dyncal::analysis {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/sample_stamping.hpp"
-#include "tests/unit/analysis/sine_signal.hpp"
+#include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis {
 namespace {

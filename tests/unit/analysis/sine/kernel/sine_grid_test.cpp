@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "analysis/sine/kernel/sine_kernel.hpp"
-#include "analysis/sine_pass.hpp"
-#include "tests/unit/analysis/sine_signal.hpp"
+#include "analysis/sine/sine_pass.hpp"
+#include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "analysis/sine/kernel/composed_fma.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/robust_weights.hpp"
+#include "analysis/sine/robust_weights.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/disturbances.hpp"
+#include "analysis/sine/disturbances.hpp"
 
 #include <array>
 #include <cmath>

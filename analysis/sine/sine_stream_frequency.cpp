@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/sine_stream_state.hpp"
+#include "analysis/sine/sine_stream_state.hpp"
 
 namespace dyncal::analysis {
 namespace {

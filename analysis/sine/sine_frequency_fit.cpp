@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/sine_fit.hpp"
-#include "analysis/sine_pass.hpp"
-#include "analysis/sine_search.hpp"
-#include "analysis/sine_series.hpp"
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_pass.hpp"
+#include "analysis/sine/frequency_search.hpp"
+#include "analysis/sine/frequency_series.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -13,7 +13,7 @@
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/kernel/sine_grid.hpp"
 #include "analysis/sine/kernel/sine_kernel.hpp"
-#include "analysis/sine_series.hpp"
+#include "analysis/sine/frequency_series.hpp"
 
 namespace dyncal::analysis::kernel {
 

@@ -1,4 +1,4 @@
-#include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/analysis/sine_signal.hpp"
+#include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -22,7 +22,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 

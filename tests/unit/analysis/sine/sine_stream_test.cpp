@@ -1,4 +1,4 @@
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/sine_stream.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/analysis/sine_signal.hpp"
+#include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis {
 namespace {

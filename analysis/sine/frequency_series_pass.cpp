@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/sine_pass.hpp"
+#include "analysis/sine/sine_pass.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

@@ -23,8 +23,8 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/robust_weights.hpp"
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/robust_weights.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "analysis/sine/kernel/sine_kernel.hpp"
-#include "analysis/sine_series.hpp"
-#include "analysis/sine_solve.hpp"
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/frequency_series.hpp"
+#include "analysis/sine/sine_solve.hpp"
+#include "analysis/sine/sine_stream.hpp"
 
 namespace dyncal::analysis {
 namespace kernel {

@@ -1,4 +1,4 @@
-#include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 
 #include <Eigen/Dense>
 
-#include "analysis/sine_basis.hpp"
-#include "analysis/sine_pass.hpp"
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/extended_basis.hpp"
+#include "analysis/sine/sine_pass.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis {
 namespace {

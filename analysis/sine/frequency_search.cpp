@@ -1,4 +1,4 @@
-#include "analysis/sine_search.hpp"
+#include "analysis/sine/frequency_search.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/sine_pass.hpp"
+#include "analysis/sine/sine_pass.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "analysis/sine_fit.hpp"
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_stream.hpp"
 
 namespace dyncal::analysis {
 namespace {

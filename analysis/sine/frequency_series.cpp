@@ -1,4 +1,4 @@
-#include "analysis/sine_series.hpp"
+#include "analysis/sine/frequency_series.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "analysis/sine_stream.hpp"
+#include "analysis/sine/sine_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/sine_stream_state.hpp"
+#include "analysis/sine/sine_stream_state.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/disturbances.hpp"
+#include "analysis/sine/disturbances.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "analysis/sine_fit_extended.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/kernel/sine_values.hpp"
 
 namespace dyncal::analysis {

@@ -9,7 +9,7 @@
 
 #include <array>
 
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/kernel/sine_kernel.hpp"
 
 namespace dyncal::analysis::kernel {

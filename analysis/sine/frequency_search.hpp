@@ -11,7 +11,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/sine_pass.hpp"
+#include "analysis/sine/sine_pass.hpp"
 
 namespace dyncal::analysis::kernel {
 

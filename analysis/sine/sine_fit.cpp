@@ -1,4 +1,4 @@
-#include "analysis/sine_fit.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "analysis/sine_pass.hpp"
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_pass.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/frequency_estimate.hpp"
+#include "analysis/sine/frequency_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/sine_fit_extended.hpp"
-#include "analysis/sine_pass.hpp"
+#include "analysis/sine/extended_sine_fit.hpp"
+#include "analysis/sine/sine_pass.hpp"
 
 namespace dyncal::analysis::kernel {
 

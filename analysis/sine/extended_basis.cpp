@@ -1,4 +1,4 @@
-#include "analysis/sine_basis.hpp"
+#include "analysis/sine/extended_basis.hpp"
 
 #include <algorithm>
 

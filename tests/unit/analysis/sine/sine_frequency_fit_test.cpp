@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/sine_fit.hpp"
-#include "tests/unit/analysis/sine_signal.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/sine/kernel/sine_kernel.hpp"
-#include "analysis/sine_solve.hpp"
+#include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {
 
