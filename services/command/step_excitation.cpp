@@ -25,7 +25,7 @@ constexpr double shot_slice_s = 0.25;
 constexpr double slice_s = 1.0;     // bench time between two looks at the network
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
-// Time beyond settling and duration for which a step is excited, see analysis/excitation_window.hpp.
+// Time beyond settling and duration for which a step is excited, see analysis/step/excitation_window.hpp.
 double margin_s(double frequency_hz) {
   return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
 }

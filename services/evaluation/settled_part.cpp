@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/settling.hpp"
+#include "analysis/step/settling.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::services {

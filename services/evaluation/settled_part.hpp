@@ -1,4 +1,4 @@
-// Settling found from the data (analysis/settling.hpp): how much of the beginning of a step is left out.
+// Settling found from the data (analysis/step/settling.hpp): how much of the beginning of a step is left out.
 //
 // Reference and channels under calibration are looked at from where the step's excitation was found, at the frequency that sync has in each
 // source's own clock; the one that takes longest counts. A channel under calibration that says nothing of settling (no excitation there) is

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/excitation_window.hpp"
+#include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"
 #include "services/evaluation/step_evaluation.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/excitation_window.hpp"
+#include "analysis/step/excitation_window.hpp"
 
 #include <algorithm>
 #include <cassert>

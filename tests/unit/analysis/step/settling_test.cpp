@@ -1,4 +1,4 @@
-#include "analysis/settling.hpp"
+#include "analysis/step/settling.hpp"
 
 #include <cmath>
 #include <numbers>
