@@ -6,7 +6,7 @@
 
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/base/phasor.hpp"
-#include "analysis/quantisation.hpp"
+#include "analysis/uncertainty/quantisation.hpp"
 
 namespace dyncal::analysis {
 namespace {

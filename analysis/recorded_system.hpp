@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/budget.hpp"
+#include "analysis/uncertainty/budget.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/coverage.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 #include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <span>
 
-#include "analysis/budget.hpp"
+#include "analysis/uncertainty/budget.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
 

@@ -10,7 +10,7 @@
 #include "analysis/sample_stamping.hpp"
 #include "analysis/series_stamping.hpp"
 #include "analysis/response/triaxial.hpp"
-#include "analysis/uncertainty.hpp"
+#include "analysis/uncertainty/law_of_propagation.hpp"
 #include "tests/vectors/recipe_series.hpp"
 
 namespace dyncal::analysis {

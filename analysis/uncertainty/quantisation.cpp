@@ -1,4 +1,4 @@
-#include "analysis/quantisation.hpp"
+#include "analysis/uncertainty/quantisation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/monte_carlo.hpp"
+#include "analysis/uncertainty/monte_carlo.hpp"
 
 #include <algorithm>
 #include <cmath>

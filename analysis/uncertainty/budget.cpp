@@ -1,4 +1,4 @@
-#include "analysis/budget.hpp"
+#include "analysis/uncertainty/budget.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
-#include "analysis/uncertainty.hpp"
+#include "analysis/uncertainty/law_of_propagation.hpp"
 
 #include <cmath>
 
-#include "analysis/coverage.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -15,10 +15,10 @@
 #include <functional>
 #include <span>
 
-#include "analysis/coverage.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/transfer_point.hpp"
-#include "analysis/uncertainty.hpp"
+#include "analysis/uncertainty/law_of_propagation.hpp"
 
 namespace dyncal::analysis {
 

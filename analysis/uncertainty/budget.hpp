@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/ratio_scatter.hpp"
+#include "analysis/uncertainty/ratio_scatter.hpp"
 #include "analysis/transfer_point.hpp"
 
 namespace dyncal::analysis {

@@ -1,4 +1,4 @@
-#include "analysis/ratio_scatter.hpp"
+#include "analysis/uncertainty/ratio_scatter.hpp"
 
 #include <algorithm>
 #include <array>

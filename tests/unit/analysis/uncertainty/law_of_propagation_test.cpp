@@ -1,4 +1,4 @@
-#include "analysis/uncertainty.hpp"
+#include "analysis/uncertainty/law_of_propagation.hpp"
 
 #include <array>
 #include <cmath>

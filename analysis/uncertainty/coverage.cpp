@@ -1,4 +1,4 @@
-#include "analysis/coverage.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 #include <cmath>
 
