@@ -2,7 +2,7 @@
 //
 // Model: G(f) = g0 e^{-i w tau} / (1 + i f / fc), approximated to the points (1 / g^2 is linear in f^2; the rest of the lag is
 // w tau); the ratio of points and model is interpolated, log gain and phase each linearly in f. A pure delay and a first-order
-// low pass are therefore exact. Sign: phase_lag_rad = -arg G, positive = the ADC reads late (analysis/sample_stamping.hpp).
+// low pass are therefore exact. Sign: phase_lag_rad = -arg G, positive = the ADC reads late (analysis/method/sample_stamping.hpp).
 // u^2 = (w1 u1 + w2 u2)^2 + e^2 / 3 with e the larger of the neighbouring second differences as a bound of what a straight line misses;
 // the first term holds however much the two points have in common (time scales, voltmeter), and is an upper bound where they have nothing.
 // Points of different test amplitudes are never mixed: gains differ by per cents, delays by a factor.
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 
 namespace dyncal::analysis {
 

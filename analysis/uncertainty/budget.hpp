@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/uncertainty/ratio_scatter.hpp"
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
 

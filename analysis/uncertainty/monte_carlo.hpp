@@ -17,7 +17,7 @@
 
 #include "analysis/uncertainty/coverage.hpp"
 #include "analysis/base/error.hpp"
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 #include "analysis/uncertainty/law_of_propagation.hpp"
 
 namespace dyncal::analysis {

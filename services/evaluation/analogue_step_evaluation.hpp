@@ -1,5 +1,5 @@
 // From the samples of one excitation step to its results when sensor and reference are channels of one system: the analogue method, paper
-// eqs. (1) and (2) (analysis/analogue_comparison.hpp).
+// eqs. (1) and (2) (analysis/method/analogue_comparison.hpp).
 //
 // A step that cannot be evaluated gives results that are not valid and name the reason. No state; the same samples give the same bits.
 #pragma once

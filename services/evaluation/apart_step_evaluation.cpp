@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/analogue_comparison.hpp"
+#include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/step_evaluation.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/nominal_frequency.hpp"
+#include "analysis/method/nominal_frequency.hpp"
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 

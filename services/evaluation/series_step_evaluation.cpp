@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/series_stamping.hpp"
+#include "analysis/method/series_stamping.hpp"
 #include "services/bench/digest.hpp"
 
 namespace dyncal::services {

@@ -1,7 +1,7 @@
-// From the shots of one excitation step to its results: series time stamping, paper eqs. (5) to (8) (analysis/series_stamping.hpp).
+// From the shots of one excitation step to its results: series time stamping, paper eqs. (5) to (8) (analysis/method/series_stamping.hpp).
 //
 // Series of another length than most are left out and named in a flag, and so is a step with fewer shots than planned. Whether the sensor
-// starts with the trigger or with its next own sample is judged from the shots (analysis/start_latency.hpp), or as at earlier steps when
+// starts with the trigger or with its next own sample is judged from the shots (analysis/method/start_latency.hpp), or as at earlier steps when
 // these do not tell; a sensor that runs free gets the mean of half a sample interval corrected.
 // A step that cannot be evaluated gives results that are not valid and name the reason. No state; the same records give the same bits.
 #pragma once
@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/nominal_frequency.hpp"
-#include "analysis/start_latency.hpp"
+#include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/start_latency.hpp"
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/shot_record.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"

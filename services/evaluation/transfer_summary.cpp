@@ -7,7 +7,7 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/response/group_delay.hpp"
-#include "analysis/repetitions.hpp"
+#include "analysis/method/repetitions.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {

@@ -7,8 +7,8 @@
 
 #include "analysis/clock/allan_deviation.hpp"
 #include "analysis/response/group_delay.hpp"
-#include "analysis/sample_stamping.hpp"
-#include "analysis/series_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
+#include "analysis/method/series_stamping.hpp"
 #include "analysis/response/triaxial.hpp"
 #include "analysis/uncertainty/law_of_propagation.hpp"
 #include "tests/vectors/recipe_series.hpp"

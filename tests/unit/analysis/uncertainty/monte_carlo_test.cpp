@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/analogue_comparison.hpp"
+#include "analysis/method/analogue_comparison.hpp"
 #include "drivers/can/sensor_stream.hpp"
 
 namespace dyncal::drivers::can {

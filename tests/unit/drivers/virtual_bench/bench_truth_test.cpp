@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 #include "drivers/virtual_bench/truth.hpp"
 #include "drivers/virtual_bench/virtual_bench.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/analogue_comparison.hpp"
+#include "analysis/method/analogue_comparison.hpp"
 #include "drivers/can/sensor_stream.hpp"
 #include "drivers/virtual_bench/virtual_bench.hpp"
 #include "services/virtual_bench/can_sensor.hpp"

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/series_stamping.hpp"
-#include "analysis/start_latency.hpp"
+#include "analysis/method/series_stamping.hpp"
+#include "analysis/method/start_latency.hpp"
 #include "analysis/instrument/trigger_delay.hpp"
 #include "drivers/virtual_bench/acs_instrument.hpp"
 #include "drivers/virtual_bench/oscilloscope_model.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/analogue_comparison.hpp"
+#include "analysis/method/analogue_comparison.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "analysis/start_latency.hpp"
+#include "analysis/method/start_latency.hpp"
 
 #include <algorithm>
 #include <cmath>

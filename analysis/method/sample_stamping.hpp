@@ -21,7 +21,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
 

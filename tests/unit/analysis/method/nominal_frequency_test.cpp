@@ -1,4 +1,4 @@
-#include "analysis/nominal_frequency.hpp"
+#include "analysis/method/nominal_frequency.hpp"
 
 #include <cmath>
 #include <numbers>

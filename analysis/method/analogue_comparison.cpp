@@ -1,11 +1,11 @@
-#include "analysis/analogue_comparison.hpp"
+#include "analysis/method/analogue_comparison.hpp"
 
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/uncertainty/ratio_scatter.hpp"
-#include "analysis/recorded_system.hpp"
-#include "analysis/stamped_apart.hpp"
+#include "analysis/method/recorded_system.hpp"
+#include "analysis/method/own_clock_channel.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/series_stamping.hpp"
+#include "analysis/method/series_stamping.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,9 +1,9 @@
-#include "analysis/stamped_apart.hpp"
+#include "analysis/method/own_clock_channel.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "analysis/recorded_system.hpp"
+#include "analysis/method/recorded_system.hpp"
 
 namespace dyncal::analysis {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/repetitions.hpp"
+#include "analysis/method/repetitions.hpp"
 
 #include <array>
 #include <cmath>

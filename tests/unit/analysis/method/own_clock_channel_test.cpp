@@ -1,11 +1,11 @@
-#include "analysis/stamped_apart.hpp"
+#include "analysis/method/own_clock_channel.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 #include "tests/unit/analysis/sine/sine_signal.hpp"
 
 namespace dyncal::analysis {

@@ -24,9 +24,9 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
-#include "analysis/nominal_frequency.hpp"
-#include "analysis/repetitions.hpp"
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/repetitions.hpp"
+#include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
 

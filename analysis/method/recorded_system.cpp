@@ -1,4 +1,4 @@
-#include "analysis/recorded_system.hpp"
+#include "analysis/method/recorded_system.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/uncertainty/ratio_scatter.hpp"
-#include "analysis/recorded_system.hpp"
-#include "analysis/stamped_apart.hpp"
+#include "analysis/method/recorded_system.hpp"
+#include "analysis/method/own_clock_channel.hpp"
 
 namespace dyncal::analysis {
 namespace {

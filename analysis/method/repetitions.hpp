@@ -18,7 +18,7 @@
 #include <span>
 
 #include "analysis/base/error.hpp"
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 
 namespace dyncal::analysis {
 

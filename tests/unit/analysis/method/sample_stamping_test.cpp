@@ -1,4 +1,4 @@
-#include "analysis/sample_stamping.hpp"
+#include "analysis/method/sample_stamping.hpp"
 
 #include <cmath>
 #include <cstdlib>

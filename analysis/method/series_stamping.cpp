@@ -1,4 +1,4 @@
-#include "analysis/series_stamping.hpp"
+#include "analysis/method/series_stamping.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/equidistant_axis.hpp"
 #include "analysis/base/phasor.hpp"
-#include "analysis/recorded_system.hpp"
+#include "analysis/method/recorded_system.hpp"
 
 namespace dyncal::analysis {
 namespace {

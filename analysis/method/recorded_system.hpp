@@ -17,7 +17,7 @@
 
 #include "analysis/uncertainty/budget.hpp"
 #include "analysis/base/error.hpp"
-#include "analysis/transfer_point.hpp"
+#include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
 
