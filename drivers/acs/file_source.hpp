@@ -14,7 +14,7 @@
 
 #include "drivers/acs/acs_driver.hpp"
 #include "drivers/acs/sample_rate.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::acs {
 

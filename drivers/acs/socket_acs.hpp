@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/acs/acs_driver.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::acs {
 

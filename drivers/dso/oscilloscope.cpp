@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::dso {
 namespace {

@@ -19,7 +19,7 @@
 #include "drivers/dso/scope_commands.hpp"
 #include "drivers/dso/waveform.hpp"
 #include "drivers/error.hpp"
-#include "drivers/scpi_connection.hpp"
+#include "drivers/link/scpi_connection.hpp"
 
 namespace dyncal::drivers::dso {
 
@@ -31,7 +31,7 @@ struct InputSettings {
 };
 
 struct OscilloscopeSettings {
-  std::string address; // see drivers/scpi_transport.hpp
+  std::string address; // see drivers/link/scpi_transport.hpp
   std::string family;  // of the table; empty: by *IDN?
   std::vector<InputSettings> inputs;
   std::size_t trigger_input = 0; // place in `inputs`

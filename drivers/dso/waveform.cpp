@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::dso {
 namespace {

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <utility>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::generator {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "drivers/generator/generator.hpp"
 #include "drivers/generator/host_clock.hpp"
-#include "drivers/scpi_connection.hpp"
+#include "drivers/link/scpi_connection.hpp"
 
 namespace dyncal::drivers::generator {
 

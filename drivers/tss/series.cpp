@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::tss {
 namespace {

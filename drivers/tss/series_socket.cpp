@@ -1,7 +1,7 @@
 #include <array>
 #include <utility>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 #include "drivers/tss/series_source.hpp"
 
 namespace dyncal::drivers::tss {

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "drivers/error.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "drivers/tss/series.hpp"
 
 namespace dyncal::drivers::tss {

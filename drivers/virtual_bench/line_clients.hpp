@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "drivers/virtual_bench/scpi_instrument.hpp"
 
 namespace dyncal::drivers::virtual_bench {

@@ -1,4 +1,4 @@
-// Text of SCPI commands as an instrument reads it. Written apart from what dyncal reads answers with (drivers/scpi_answer.hpp): one must
+// Text of SCPI commands as an instrument reads it. Written apart from what dyncal reads answers with (drivers/link/scpi_answer.hpp): one must
 // not share the other's mistakes. Any thread.
 #pragma once
 

@@ -1,8 +1,8 @@
-// The instruments' ends of their cables: sockets that never block. Fails as drivers/tcp_connection.hpp does. Any thread.
+// The instruments' ends of their cables: sockets that never block. Fails as drivers/link/tcp_connection.hpp does. Any thread.
 #pragma once
 
 #include "drivers/error.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "drivers/virtual_bench/acs_instrument.hpp"
 
 namespace dyncal::drivers::virtual_bench {

@@ -9,7 +9,7 @@
 #include <list>
 #include <vector>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "drivers/virtual_bench/oscilloscope_scpi.hpp"
 #include "drivers/virtual_bench/series_sensor.hpp"
 

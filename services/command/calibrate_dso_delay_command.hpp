@@ -13,7 +13,7 @@
 namespace dyncal::services {
 
 struct CalibrateDsoDelayCommand {
-  std::string oscilloscope;     // address, see drivers/scpi_transport.hpp
+  std::string oscilloscope;     // address, see drivers/link/scpi_transport.hpp
   std::string family;           // of the oscilloscope; empty: by its identity
   std::string generator;        // address; empty: set by hand
   std::string by = "rectangle"; // or "sine"

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

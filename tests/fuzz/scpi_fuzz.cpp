@@ -8,8 +8,8 @@
 #include <string>
 
 #include "drivers/dso/waveform.hpp"
-#include "drivers/scpi_answer.hpp"
-#include "drivers/scpi_connection.hpp"
+#include "drivers/link/scpi_answer.hpp"
+#include "drivers/link/scpi_connection.hpp"
 #include "drivers/tss/series.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/drivers/acs/collecting_sink.hpp"
-#include "tests/unit/drivers/scripted_instrument.hpp"
+#include "tests/unit/drivers/link/scripted_instrument.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

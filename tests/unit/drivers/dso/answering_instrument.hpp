@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/unit/drivers/scripted_instrument.hpp"
+#include "tests/unit/drivers/link/scripted_instrument.hpp"
 
 namespace dyncal::drivers {
 

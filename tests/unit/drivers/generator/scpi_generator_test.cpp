@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include "tests/unit/drivers/scripted_instrument.hpp"
+#include "tests/unit/drivers/link/scripted_instrument.hpp"
 
 namespace dyncal::drivers::generator {
 namespace {

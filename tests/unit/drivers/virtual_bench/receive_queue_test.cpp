@@ -5,7 +5,7 @@
 #include <sstream>
 #include <sys/socket.h>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/scpi_transport.hpp"
+#include "drivers/link/scpi_transport.hpp"
 
 namespace dyncal::drivers {
 

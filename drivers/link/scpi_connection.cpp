@@ -1,8 +1,8 @@
-#include "drivers/scpi_connection.hpp"
+#include "drivers/link/scpi_connection.hpp"
 
 #include <utility>
 
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers {
 namespace {

@@ -1,6 +1,6 @@
 // VXI-11 (TCP/IP instrument protocol, VXIbus consortium 1995) through liblxi. A device_read of liblxi collects the whole answer up to its
 // END mark, so an answer longer than the buffer cannot be read in parts: the buffer holds the longest that any driver asks for.
-#include "drivers/scpi_transport.hpp"
+#include "drivers/link/scpi_transport.hpp"
 
 #include <algorithm>
 #include <mutex>

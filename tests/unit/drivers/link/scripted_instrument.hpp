@@ -8,7 +8,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers {
 

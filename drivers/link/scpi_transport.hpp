@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "drivers/error.hpp"
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers {
 

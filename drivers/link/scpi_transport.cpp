@@ -1,4 +1,4 @@
-#include "drivers/scpi_transport.hpp"
+#include "drivers/link/scpi_transport.hpp"
 
 #include <utility>
 

@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/scpi_connection.hpp"
-#include "drivers/scpi_transport.hpp"
-#include "tests/unit/drivers/dso/vxi11_server.hpp"
+#include "drivers/link/scpi_connection.hpp"
+#include "drivers/link/scpi_transport.hpp"
+#include "tests/unit/drivers/link/vxi11_server.hpp"
 
 namespace dyncal::drivers {
 namespace {

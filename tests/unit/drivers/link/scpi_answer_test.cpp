@@ -1,4 +1,4 @@
-#include "drivers/scpi_answer.hpp"
+#include "drivers/link/scpi_answer.hpp"
 
 #include <gtest/gtest.h>
 

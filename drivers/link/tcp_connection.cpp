@@ -1,4 +1,4 @@
-#include "drivers/tcp_connection.hpp"
+#include "drivers/link/tcp_connection.hpp"
 
 #include <algorithm>
 #include <cerrno>
