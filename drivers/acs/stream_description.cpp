@@ -1,7 +1,7 @@
 // The description line of the instrument's stream.
 #include <nlohmann/json.hpp>
 
-#include "drivers/acs/sample_rate.hpp"
+#include "drivers/files/sample_rate.hpp"
 #include "drivers/acs/socket_acs.hpp"
 
 namespace dyncal::drivers::acs {

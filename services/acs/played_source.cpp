@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 #include "drivers/acs/socket_acs.hpp"
 
 namespace dyncal::services::acs {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -21,7 +21,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "drivers/acs/mapped_file.hpp"
+#include "drivers/files/mapped_file.hpp"
 #include "tests/unit/services/dau/child_process.hpp"
 
 namespace {

@@ -1,1 +1,1 @@
-dyncal_benchmark(file_benchmark SOURCES file_benchmark.cpp LIBRARIES dyncal_acs)
+dyncal_benchmark(file_benchmark SOURCES file_benchmark.cpp LIBRARIES dyncal_acs dyncal_files)

@@ -12,7 +12,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 namespace {
 

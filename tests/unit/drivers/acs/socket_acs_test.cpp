@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/drivers/acs/collecting_sink.hpp"
+#include "tests/unit/drivers/files/collecting_sink.hpp"
 #include "tests/unit/drivers/link/scripted_instrument.hpp"
 
 namespace dyncal::drivers::acs {

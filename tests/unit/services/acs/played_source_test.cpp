@@ -7,7 +7,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/topics.hpp"
 #include "services/source/source_service.hpp"
-#include "tests/unit/drivers/acs/temporary_file.hpp"
+#include "tests/unit/drivers/files/temporary_file.hpp"
 
 namespace dyncal::services::acs {
 namespace {

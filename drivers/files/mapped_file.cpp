@@ -1,4 +1,4 @@
-#include "drivers/acs/mapped_file.hpp"
+#include "drivers/files/mapped_file.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -1,11 +1,11 @@
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 #include <algorithm>
 #include <cctype>
 
-#include "drivers/acs/csv_reader.hpp"
-#include "drivers/acs/npy_reader.hpp"
-#include "drivers/acs/wav_reader.hpp"
+#include "drivers/files/csv_reader.hpp"
+#include "drivers/files/npy_reader.hpp"
+#include "drivers/files/wav_reader.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

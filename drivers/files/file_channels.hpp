@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -1,12 +1,12 @@
-#include "drivers/acs/wav_reader.hpp"
+#include "drivers/files/wav_reader.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sndfile.h>
 
-#include "tests/unit/drivers/acs/collecting_sink.hpp"
-#include "tests/unit/drivers/acs/temporary_file.hpp"
+#include "tests/unit/drivers/files/collecting_sink.hpp"
+#include "tests/unit/drivers/files/temporary_file.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

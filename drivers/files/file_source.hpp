@@ -13,7 +13,7 @@
 #include <string>
 
 #include "drivers/acs/acs_driver.hpp"
-#include "drivers/acs/sample_rate.hpp"
+#include "drivers/files/sample_rate.hpp"
 #include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::acs {

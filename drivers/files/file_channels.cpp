@@ -1,4 +1,4 @@
-#include "drivers/acs/file_channels.hpp"
+#include "drivers/files/file_channels.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
-#include "drivers/acs/csv_reader.hpp"
+#include "drivers/files/csv_reader.hpp"
 
 #include <algorithm>
 #include <thread>
 
-#include "drivers/acs/file_channels.hpp"
-#include "drivers/acs/regular_stamps.hpp"
+#include "drivers/files/file_channels.hpp"
+#include "drivers/files/regular_stamps.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

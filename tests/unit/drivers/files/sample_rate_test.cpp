@@ -1,4 +1,4 @@
-#include "drivers/acs/sample_rate.hpp"
+#include "drivers/files/sample_rate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/acs/file_source.hpp"
-#include "drivers/acs/mapped_file.hpp"
-#include "drivers/acs/npy_header.hpp"
+#include "drivers/files/file_source.hpp"
+#include "drivers/files/mapped_file.hpp"
+#include "drivers/files/npy_header.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -1,4 +1,4 @@
-#include "drivers/acs/npy_reader.hpp"
+#include "drivers/files/npy_reader.hpp"
 
 #include <cstring>
 #include <string>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/drivers/acs/file_playing.hpp"
+#include "tests/unit/drivers/files/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

@@ -1,12 +1,12 @@
-#include "drivers/acs/csv_rows.hpp"
+#include "drivers/files/csv_rows.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
 #include <type_traits>
 
-#include "drivers/acs/decimal.hpp"
-#include "drivers/acs/regular_stamps.hpp"
+#include "drivers/files/decimal.hpp"
+#include "drivers/files/regular_stamps.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

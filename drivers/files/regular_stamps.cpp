@@ -1,4 +1,4 @@
-#include "drivers/acs/regular_stamps.hpp"
+#include "drivers/files/regular_stamps.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -1,10 +1,10 @@
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/drivers/acs/file_playing.hpp"
+#include "tests/unit/drivers/files/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

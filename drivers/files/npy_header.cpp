@@ -1,4 +1,4 @@
-#include "drivers/acs/npy_header.hpp"
+#include "drivers/files/npy_header.hpp"
 
 #include <algorithm>
 #include <charconv>

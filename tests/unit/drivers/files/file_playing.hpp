@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "drivers/acs/file_source.hpp"
-#include "tests/unit/drivers/acs/collecting_sink.hpp"
-#include "tests/unit/drivers/acs/temporary_file.hpp"
+#include "drivers/files/file_source.hpp"
+#include "tests/unit/drivers/files/collecting_sink.hpp"
+#include "tests/unit/drivers/files/temporary_file.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -1,9 +1,9 @@
-#include "drivers/acs/wav_reader.hpp"
+#include "drivers/files/wav_reader.hpp"
 
 #include <cmath>
 #include <sndfile.h>
 
-#include "drivers/acs/file_channels.hpp"
+#include "drivers/files/file_channels.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

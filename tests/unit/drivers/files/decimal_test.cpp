@@ -1,4 +1,4 @@
-#include "drivers/acs/decimal.hpp"
+#include "drivers/files/decimal.hpp"
 
 #include <cmath>
 #include <random>

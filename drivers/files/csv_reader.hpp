@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/acs/csv_rows.hpp"
-#include "drivers/acs/file_source.hpp"
-#include "drivers/acs/mapped_file.hpp"
+#include "drivers/files/csv_rows.hpp"
+#include "drivers/files/file_source.hpp"
+#include "drivers/files/mapped_file.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/acs/file_source.hpp"
+#include "drivers/files/file_source.hpp"
 
 struct sf_private_tag;
 

@@ -1,4 +1,4 @@
-#include "drivers/acs/csv_reader.hpp"
+#include "drivers/files/csv_reader.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/drivers/acs/file_playing.hpp"
+#include "tests/unit/drivers/files/file_playing.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
