@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 
 namespace dyncal::drivers::can {
 

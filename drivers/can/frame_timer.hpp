@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/clock_line.hpp"
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_settings.hpp"
 
 namespace dyncal::drivers::can {

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/dbc.hpp"
 
 namespace dyncal::drivers::can {

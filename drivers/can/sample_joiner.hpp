@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 
 namespace dyncal::drivers::can {
 

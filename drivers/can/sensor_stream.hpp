@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "drivers/can/dbc.hpp"
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/frame_timer.hpp"
 #include "drivers/can/message_index.hpp"
 #include "drivers/can/sample_joiner.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/dbc.hpp"
 
 namespace dyncal::drivers::can {

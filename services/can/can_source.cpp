@@ -7,8 +7,8 @@
 #include <spdlog/spdlog.h>
 
 #include "drivers/can/dbc.hpp"
-#include "drivers/can/log_source.hpp"
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/log_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "drivers/can/system_clock.hpp"
 #include "services/can/can_status.hpp"
 

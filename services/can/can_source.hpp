@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_stream.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/frame_duration.hpp"
 
 namespace dyncal::services::virtual_bench {

@@ -15,8 +15,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "drivers/can/can_frame.hpp"
-#include "drivers/can/frame_sender.hpp"
+#include "drivers/can/bus/can_frame.hpp"
+#include "drivers/can/bus/frame_sender.hpp"
 
 namespace dyncal::services::virtual_bench {
 

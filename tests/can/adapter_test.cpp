@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/serial_adapter.hpp"
 
 namespace dyncal::drivers::can {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/kernel_can.hpp"
 
 namespace dyncal::services::virtual_bench {

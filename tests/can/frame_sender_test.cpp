@@ -1,9 +1,9 @@
-#include "drivers/can/frame_sender.hpp"
+#include "drivers/can/bus/frame_sender.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/kernel_can.hpp"
 
 namespace dyncal::drivers::can {

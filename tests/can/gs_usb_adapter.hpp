@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/can/file_descriptor.hpp"
+#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/can/frame_duration.hpp"
 #include "drivers/can/sensor_settings.hpp"
 #include "tests/can/gs_usb_protocol.hpp"

@@ -11,7 +11,7 @@
 
 #include <linux/can.h>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 
 namespace dyncal::tests::gs_usb {
 

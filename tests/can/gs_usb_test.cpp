@@ -6,7 +6,7 @@
 #include <linux/can/error.h>
 
 #include "drivers/can/frame_duration.hpp"
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/gs_usb_adapter.hpp"
 #include "tests/can/kernel_can.hpp"
 

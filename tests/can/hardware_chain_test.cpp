@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/can_calibration.hpp"
 #include "tests/can/gs_usb_adapter.hpp"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/can/sensor_stream.hpp"
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/kernel_can.hpp"
 
 namespace dyncal::drivers::can {

@@ -1,4 +1,4 @@
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/can/file_descriptor.hpp"
+#include "drivers/can/bus/file_descriptor.hpp"
 
 namespace dyncal::tests {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "drivers/can/candump_log.hpp"
-#include "drivers/can/scripted_source.hpp"
+#include "drivers/can/bus/candump_log.hpp"
+#include "drivers/can/bus/scripted_source.hpp"
 
 namespace dyncal::drivers::can {
 namespace {

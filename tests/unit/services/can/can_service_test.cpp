@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "drivers/can/scripted_source.hpp"
+#include "drivers/can/bus/scripted_source.hpp"
 #include "services/can/can_status.hpp"
 #include "services/source/source_service.hpp"
 #include "tests/unit/services/source/bench_listener.hpp"

@@ -1,4 +1,4 @@
-#include "drivers/can/socketcan_source.hpp"
+#include "drivers/can/bus/socketcan_source.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -15,7 +15,7 @@
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 
-#include "drivers/can/error_frame.hpp"
+#include "drivers/can/bus/error_frame.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -1,4 +1,4 @@
-#include "drivers/can/candump_log.hpp"
+#include "drivers/can/bus/candump_log.hpp"
 
 #include <charconv>
 #include <fstream>

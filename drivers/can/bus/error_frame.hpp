@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -1,4 +1,4 @@
-#include "drivers/can/log_source.hpp"
+#include "drivers/can/bus/log_source.hpp"
 
 #include <fstream>
 #include <thread>

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/file_descriptor.hpp"
-#include "drivers/can/frame_source.hpp"
-#include "drivers/can/link_monitor.hpp"
+#include "drivers/can/bus/file_descriptor.hpp"
+#include "drivers/can/bus/frame_source.hpp"
+#include "drivers/can/bus/link_monitor.hpp"
 
 namespace dyncal::drivers::can {
 

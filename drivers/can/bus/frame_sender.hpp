@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "drivers/can/can_frame.hpp"
-#include "drivers/can/file_descriptor.hpp"
+#include "drivers/can/bus/can_frame.hpp"
+#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/error.hpp"
 
 namespace dyncal::drivers::can {

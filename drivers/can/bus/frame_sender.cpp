@@ -1,4 +1,4 @@
-#include "drivers/can/frame_sender.hpp"
+#include "drivers/can/bus/frame_sender.hpp"
 
 #include <cerrno>
 #include <cstring>

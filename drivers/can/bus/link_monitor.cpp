@@ -1,4 +1,4 @@
-#include "drivers/can/link_monitor.hpp"
+#include "drivers/can/bus/link_monitor.hpp"
 
 #include <array>
 #include <cerrno>

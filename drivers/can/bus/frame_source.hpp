@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "drivers/can/can_frame.hpp"
+#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/message_index.hpp"
 #include "drivers/error.hpp"
 

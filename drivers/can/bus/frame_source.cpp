@@ -1,4 +1,4 @@
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 
 namespace dyncal::drivers::can {
 

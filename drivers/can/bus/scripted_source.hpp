@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -1,9 +1,9 @@
-#include "drivers/can/log_source.hpp"
+#include "drivers/can/bus/log_source.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "drivers/can/candump_log.hpp"
+#include "drivers/can/bus/candump_log.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/file_descriptor.hpp"
-#include "drivers/can/frame_source.hpp"
+#include "drivers/can/bus/file_descriptor.hpp"
+#include "drivers/can/bus/frame_source.hpp"
 #include "drivers/error.hpp"
 
 namespace dyncal::drivers::can {

@@ -1,4 +1,4 @@
-#include "drivers/can/error_frame.hpp"
+#include "drivers/can/bus/error_frame.hpp"
 
 #include <linux/can/error.h>
 

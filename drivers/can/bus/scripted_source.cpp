@@ -1,4 +1,4 @@
-#include "drivers/can/scripted_source.hpp"
+#include "drivers/can/bus/scripted_source.hpp"
 
 #include <algorithm>
 
