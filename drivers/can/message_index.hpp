@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 
 namespace dyncal::drivers::can {
 

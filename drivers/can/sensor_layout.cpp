@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/can/signal_unit.hpp"
+#include "drivers/can/dbc/signal_unit.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/sensor_settings.hpp"
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 #include "drivers/can/system_clock.hpp"
 
 namespace dyncal::drivers::can {

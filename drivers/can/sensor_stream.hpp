@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/frame_timer.hpp"
 #include "drivers/can/message_index.hpp"

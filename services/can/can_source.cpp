@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/log_source.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
 #include "drivers/can/system_clock.hpp"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/message_index.hpp"
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 
 using namespace dyncal::drivers::can;
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 
 using namespace dyncal::drivers::can;
 

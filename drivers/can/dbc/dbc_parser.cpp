@@ -1,4 +1,4 @@
-#include "drivers/can/dbc_parser.hpp"
+#include "drivers/can/dbc/dbc_parser.hpp"
 
 #include <algorithm>
 #include <array>

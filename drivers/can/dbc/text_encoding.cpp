@@ -1,4 +1,4 @@
-#include "drivers/can/text_encoding.hpp"
+#include "drivers/can/dbc/text_encoding.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "drivers/can/signal_unit.hpp"
+#include "drivers/can/dbc/signal_unit.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "drivers/can/dbc_scanner.hpp"
+#include "drivers/can/dbc/dbc_scanner.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/can/dbc.hpp"
-#include "drivers/can/dbc_scanner.hpp"
+#include "drivers/can/dbc/dbc.hpp"
+#include "drivers/can/dbc/dbc_scanner.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -1,12 +1,12 @@
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 
-#include "drivers/can/dbc_parser.hpp"
-#include "drivers/can/text_encoding.hpp"
+#include "drivers/can/dbc/dbc_parser.hpp"
+#include "drivers/can/dbc/text_encoding.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -1,11 +1,11 @@
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "drivers/can/message_index.hpp"
-#include "drivers/can/signal_unit.hpp"
+#include "drivers/can/dbc/signal_unit.hpp"
 
 namespace dyncal::drivers::can {
 namespace {

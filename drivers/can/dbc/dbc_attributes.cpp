@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "drivers/can/dbc_parser.hpp"
+#include "drivers/can/dbc/dbc_parser.hpp"
 
 namespace dyncal::drivers::can {
 

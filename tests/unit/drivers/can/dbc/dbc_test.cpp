@@ -1,11 +1,11 @@
-#include "drivers/can/dbc.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "drivers/can/signal_decoder.hpp"
+#include "drivers/can/dbc/signal_decoder.hpp"
 
 namespace dyncal::drivers::can {
 namespace {
