@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/sample_block.hpp"
 
 namespace dyncal::drivers::can {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "drivers/can/dbc/signal_decoder.hpp"
-#include "drivers/can/system_clock.hpp"
+#include "drivers/can/time/system_clock.hpp"
 
 namespace dyncal::drivers::can {
 

@@ -18,12 +18,12 @@
 
 #include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/frame_source.hpp"
-#include "drivers/can/frame_timer.hpp"
+#include "drivers/can/time/frame_timer.hpp"
 #include "drivers/can/message_index.hpp"
 #include "drivers/can/sample_joiner.hpp"
 #include "drivers/can/sensor_layout.hpp"
 #include "drivers/can/sensor_settings.hpp"
-#include "drivers/can/wrapping_counter.hpp"
+#include "drivers/can/time/wrapping_counter.hpp"
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"
 

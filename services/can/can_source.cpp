@@ -9,7 +9,7 @@
 #include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/log_source.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
-#include "drivers/can/system_clock.hpp"
+#include "drivers/can/time/system_clock.hpp"
 #include "services/can/can_status.hpp"
 
 namespace dyncal::services::can {

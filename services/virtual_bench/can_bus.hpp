@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 
 namespace dyncal::services::virtual_bench {
 

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/kernel_can.hpp"
 #include "tests/system/program_run.hpp"
 

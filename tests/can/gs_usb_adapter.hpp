@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "drivers/can/bus/file_descriptor.hpp"
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/can/sensor_settings.hpp"
 #include "tests/can/gs_usb_protocol.hpp"
 #include "tests/can/usbip_device.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/gs_usb_adapter.hpp"
 #include "tests/can/kernel_can.hpp"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/timex.h>
 
-#include "drivers/can/clock_line.hpp"
+#include "drivers/can/time/clock_line.hpp"
 #include "tests/can/played_sensor.hpp"
 
 namespace dyncal::drivers::can {

@@ -1,4 +1,4 @@
-#include "drivers/can/frame_duration.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "drivers/can/system_clock.hpp"
+#include "drivers/can/time/system_clock.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "drivers/can/clock_line.hpp"
+#include "drivers/can/time/clock_line.hpp"
 
 #include <algorithm>
 #include <cmath>

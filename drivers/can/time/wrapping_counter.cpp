@@ -1,4 +1,4 @@
-#include "drivers/can/wrapping_counter.hpp"
+#include "drivers/can/time/wrapping_counter.hpp"
 
 #include <algorithm>
 #include <cmath>

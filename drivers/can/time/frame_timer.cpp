@@ -1,4 +1,4 @@
-#include "drivers/can/frame_timer.hpp"
+#include "drivers/can/time/frame_timer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/clock_line.hpp"
+#include "drivers/can/time/clock_line.hpp"
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_settings.hpp"
 
