@@ -16,7 +16,7 @@
 #include "drivers/virtual_bench/smartup_format.hpp"
 #include "drivers/virtual_bench/stream_client.hpp"
 #include "drivers/virtual_bench/triggered_server.hpp"
-#include "drivers/virtual_bench/virtual_bench.hpp"
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

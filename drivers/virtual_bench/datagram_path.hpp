@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/virtual_bench/random.hpp"
+#include "drivers/virtual_bench/model/random.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

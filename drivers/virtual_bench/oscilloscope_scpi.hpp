@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/virtual_bench/oscilloscope_model.hpp"
-#include "drivers/virtual_bench/random.hpp"
+#include "drivers/virtual_bench/model/oscilloscope_model.hpp"
+#include "drivers/virtual_bench/model/random.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/virtual_bench/virtual_bench.hpp"
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/virtual_bench/unit_sample.hpp"
+#include "drivers/virtual_bench/model/unit_sample.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

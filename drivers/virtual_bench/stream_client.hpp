@@ -7,7 +7,7 @@
 #include <string>
 
 #include "drivers/link/tcp_connection.hpp"
-#include "drivers/virtual_bench/acs_instrument.hpp"
+#include "drivers/virtual_bench/model/acs_instrument.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

@@ -11,7 +11,7 @@
 
 #include "drivers/link/tcp_connection.hpp"
 #include "drivers/virtual_bench/oscilloscope_scpi.hpp"
-#include "drivers/virtual_bench/series_sensor.hpp"
+#include "drivers/virtual_bench/model/series_sensor.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

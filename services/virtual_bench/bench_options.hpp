@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "drivers/virtual_bench/bench_server.hpp"
-#include "drivers/virtual_bench/recording.hpp"
-#include "drivers/virtual_bench/virtual_bench.hpp"
+#include "drivers/virtual_bench/model/recording.hpp"
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "services/error.hpp"
 #include "services/virtual_bench/can_sensor.hpp"
 

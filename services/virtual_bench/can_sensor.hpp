@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/virtual_bench/excitation.hpp"
-#include "drivers/virtual_bench/preset.hpp"
-#include "drivers/virtual_bench/random.hpp"
+#include "drivers/virtual_bench/model/excitation.hpp"
+#include "drivers/virtual_bench/model/preset.hpp"
+#include "drivers/virtual_bench/model/random.hpp"
 #include "services/virtual_bench/can_bus.hpp"
 
 namespace dyncal::services::virtual_bench {

@@ -9,7 +9,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include "drivers/virtual_bench/truth.hpp"
+#include "drivers/virtual_bench/model/truth.hpp"
 #include "services/utc_clock.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 #include "services/virtual_bench/can_line.hpp"

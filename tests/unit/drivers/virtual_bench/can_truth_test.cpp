@@ -8,7 +8,7 @@
 
 #include "analysis/method/analogue_comparison.hpp"
 #include "drivers/can/sensor_stream.hpp"
-#include "drivers/virtual_bench/virtual_bench.hpp"
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "services/virtual_bench/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {

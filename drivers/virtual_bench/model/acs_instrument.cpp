@@ -1,0 +1,87 @@
+#include "drivers/virtual_bench/model/acs_instrument.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace dyncal::drivers::virtual_bench {
+namespace {
+
+constexpr double counts_per_range = 8388608.0; // 24 bit
+constexpr double sync_range_v = 10.0;
+constexpr double reference_noise_m_s2 = 0.004;
+constexpr double sync_noise_v = 60e-6;
+constexpr double hum_hz = 49.98; // the mains are rarely exactly at 50 Hz
+constexpr double reference_hum_m_s2 = 1.5e-3;
+constexpr double sync_hum_v = 150e-6;
+
+std::int32_t to_counts(double value, double scale) {
+  return static_cast<std::int32_t>(std::clamp(std::rint(value / scale), -counts_per_range, counts_per_range - 1.0));
+}
+
+} // namespace
+
+AcsInstrument::AcsInstrument(const AcsSettings& settings) : settings_(settings), noise_(settings.seed, "ACS noise") {
+  Random draws(settings.seed, "ACS errors");
+  rate_error_ = draws.uniform(-settings.largest_rate_error, settings.largest_rate_error);
+  if (settings.utc) {
+    rate_error_ = 0.0;
+  }
+  gain_error_ = draws.normal(settings.reference_magnitude_rel);
+  phase_error_rad_ = draws.normal(settings.reference_phase_rad);
+  hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
+  reference_range_m_s2_ = 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
+  reference_scale_ = reference_range_m_s2_ / counts_per_range;
+  sync_scale_ = sync_range_v / counts_per_range;
+  reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_, 1.0 + gain_error_};
+}
+
+void AcsInstrument::sample_until(double time_s, const Excitation& excitation, AcsSamples& samples) {
+  if (samples.counts.empty()) {
+    samples.first_sample = next_sample_;
+  }
+  const double interval_s = (1.0 + rate_error_) / static_cast<double>(settings_.rate_hz);
+  for (double at_s = static_cast<double>(next_sample_) * interval_s; at_s < time_s;
+       at_s = static_cast<double>(++next_sample_) * interval_s) {
+    const Motion motion = excitation.motion(at_s);
+    const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
+    const double reference =
+        excitation.acceleration(motion, reference_gains_) + reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2);
+    const double sync_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+    const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v);
+    samples.counts.push_back(to_counts(reference, reference_scale_));
+    samples.counts.push_back(to_counts(sync, sync_scale_));
+  }
+}
+
+std::int64_t AcsInstrument::stamp_ns(std::uint64_t sample) const {
+  // Whole seconds first: the product of a long record would not fit into 64 bits.
+  const auto rate = static_cast<std::uint64_t>(settings_.rate_hz);
+  const std::uint64_t rest_ns = ((sample % rate) * 2'000'000'000U + rate) / (2 * rate);
+  return settings_.origin_ns + static_cast<std::int64_t>(sample / rate * 1'000'000'000U + rest_ns);
+}
+
+std::string AcsInstrument::description_line() const {
+  using Json = nlohmann::ordered_json;
+  const Json reference = {{"name", "reference"},
+                          {"quantity", "Acceleration"},
+                          {"unit", "\\metre\\second\\tothe{-2}"},
+                          {"minimum", -reference_range_m_s2_},
+                          {"maximum", reference_range_m_s2_},
+                          {"scale", reference_scale_}};
+  const Json sync = {{"name", "sync"},           {"quantity", "Voltage"},   {"unit", "\\volt"},
+                     {"minimum", -sync_range_v}, {"maximum", sync_range_v}, {"scale", sync_scale_}};
+  const Json line = {{"protocol", "dyncal-acs-stream"},
+                     {"version", 1},
+                     {"device", "virtual analogue calibration system"},
+                     {"serial", std::to_string(settings_.seed)},
+                     {"sample_rate_hz", {{"numerator", settings_.rate_hz}, {"denominator", 1}}},
+                     {"origin_ns", settings_.origin_ns},
+                     {"time_base", settings_.utc ? "utc" : "local"},
+                     {"values", "int32"},
+                     {"channels", Json::array({reference, sync})}};
+  return line.dump();
+}
+
+} // namespace dyncal::drivers::virtual_bench

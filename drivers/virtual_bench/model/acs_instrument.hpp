@@ -1,0 +1,67 @@
+// The analogue calibration system of the virtual bench: reference acceleration and sync, equidistant in a clock of its own.
+//
+// Sample n is taken at bench time n * (1 + rate_error) / rate and stamped origin_ns + n / rate: neither epoch nor rate is
+// that of the bench, unless it is disciplined to UTC. The reference has a gain and a phase error, drawn once from the standard
+// uncertainties that the recipe states. Values are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries
+// them. One thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/virtual_bench/model/excitation.hpp"
+#include "drivers/virtual_bench/model/random.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct AcsSettings {
+  std::uint64_t seed = 1;
+  std::int64_t rate_hz = 20000;
+  std::int64_t origin_ns = 0;
+  double highest_level_m_s2 = 130.0;
+  double sync_amplitude_v = 9.75;
+  bool sync_is_first_output = false;     // sync is what drives the exciter, not the generator's second output of constant amplitude
+  double reference_magnitude_rel = 1e-3; // standard uncertainties
+  double reference_phase_rad = 1.7e-3;
+  double largest_rate_error = 0.5e-6;
+  bool utc = false; // disciplined: the rate has no error, and origin_ns is UTC
+};
+
+struct AcsSamples {
+  std::uint64_t first_sample = 0;
+  std::vector<std::int32_t> counts; // reference, sync, reference, sync, ...
+
+  [[nodiscard]] std::size_t samples() const { return counts.size() / 2; }
+};
+
+class AcsInstrument {
+public:
+  explicit AcsInstrument(const AcsSettings& settings);
+
+  // Appends the samples taken before `time_s`.
+  void sample_until(double time_s, const Excitation& excitation, AcsSamples& samples);
+
+  [[nodiscard]] std::string description_line() const; // without the line end
+  [[nodiscard]] std::int64_t stamp_ns(std::uint64_t sample) const;
+  [[nodiscard]] double reference_scale() const { return reference_scale_; } // m/s^2 per count
+  [[nodiscard]] double sync_scale() const { return sync_scale_; }           // V per count
+  [[nodiscard]] double rate_error() const { return rate_error_; }
+  [[nodiscard]] double reference_gain_error() const { return gain_error_; }
+  [[nodiscard]] double reference_phase_error_rad() const { return phase_error_rad_; }
+
+private:
+  AcsSettings settings_;
+  Random noise_;
+  double rate_error_ = 0.0;
+  double gain_error_ = 0.0;
+  double phase_error_rad_ = 0.0;
+  double hum_phase_rad_ = 0.0;
+  double reference_range_m_s2_ = 0.0;
+  double reference_scale_ = 0.0;
+  double sync_scale_ = 0.0;
+  HarmonicGains reference_gains_;
+  std::uint64_t next_sample_ = 0;
+};
+
+} // namespace dyncal::drivers::virtual_bench

@@ -1,0 +1,91 @@
+// What the generator and the exciter do as a function of bench time.
+//
+// The generator is phase continuous: V sin(theta(t)), theta' = 2 pi f; its second output, locked to the first, gives the sync signal of
+// constant amplitude. The exciter turns V into acceleration with a magnitude and phase response of its own; after every change the
+// complex envelope approaches its new value with exp(-t/settling time). Second and third harmonic stand in a fixed ratio to
+// the fundamental. Bench time is in seconds from the start of the bench.
+// Times may be asked for up to `memory_s` before the newest change. One thread.
+#pragma once
+
+#include <complex>
+#include <deque>
+
+#include "drivers/virtual_bench/model/response.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct Drive { // what the generator is set to
+  double frequency_hz = 100.0;
+  double amplitude_v = 0.0; // zero to peak
+  bool on = false;
+  bool rectangle = false; // of the sync line only; the exciter keeps its sine
+};
+
+struct ExciterModel {
+  double acceleration_per_volt = 50.0; // m/s^2 per V at low frequency
+  double settling_time_s = 0.04;
+  double delay_s = 0.21e-3;
+  double corner_hz = 900.0;
+  double second_harmonic = 0.004; // parts of the fundamental, -40..-60 dB
+  double third_harmonic = 0.002;
+  double second_phase_rad = 0.0;
+  double third_phase_rad = 0.0;
+
+  [[nodiscard]] std::complex<double> at(double frequency_hz) const; // m/s^2 per V
+};
+
+// The state of the carrier at one instant.
+struct Motion {
+  double sine = 0.0; // of theta
+  double cosine = 1.0;
+  std::complex<double> envelope; // fundamental is Im{envelope * e^{i theta}}
+  double frequency_hz = 0.0;
+  bool sync_on = false;
+  double generator_v = 0.0; // amplitude of the generator's first output, zero to peak
+};
+
+// Response at the fundamental and the harmonics, without the delay (which shifts the instant instead).
+struct HarmonicGains {
+  std::complex<double> first{1.0, 0.0};
+  double second = 1.0;
+  double third = 1.0;
+};
+[[nodiscard]] HarmonicGains harmonic_gains(const AxisResponse& response, double frequency_hz);
+
+class Excitation {
+public:
+  static constexpr double memory_s = 1.0;
+
+  explicit Excitation(const ExciterModel& exciter)
+      : exciter_(exciter), second_(std::polar(exciter.second_harmonic, exciter.second_phase_rad)),
+        third_(std::polar(exciter.third_harmonic, exciter.third_phase_rad)) {}
+
+  // From `time_s` on; REQUIRES: not before the last change.
+  void change(double time_s, const Drive& drive);
+
+  [[nodiscard]] const Drive& drive() const { return drive_; }
+  [[nodiscard]] Motion motion(double time_s) const;
+  // Acceleration of the moving table in m/s^2 as something with these gains sees it.
+  [[nodiscard]] double acceleration(const Motion& motion, const HarmonicGains& gains) const;
+
+private:
+  struct Segment {
+    double amplitude_v = 0.0; // of the first output
+    double begin_s = 0.0;
+    double turns = 0.0; // of the carrier at the beginning, 0..1
+    double frequency_hz = 100.0;
+    std::complex<double> target;  // envelope in the end
+    std::complex<double> initial; // envelope at the beginning
+    bool on = false;
+  };
+  [[nodiscard]] const Segment& segment_at(double time_s) const;
+  [[nodiscard]] std::complex<double> envelope(const Segment& segment, double time_s) const;
+
+  ExciterModel exciter_;
+  std::complex<double> second_; // harmonics relative to the fundamental
+  std::complex<double> third_;
+  Drive drive_;
+  std::deque<Segment> segments_{Segment{}};
+};
+
+} // namespace dyncal::drivers::virtual_bench

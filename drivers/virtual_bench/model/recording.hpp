@@ -1,0 +1,27 @@
+// A whole programme of steps run without network, written as files: acs.csv, dau.csv, for playing the same samples again and again.
+//
+// The steps follow the recipe of a run: all frequencies, then all again for the next repetition; the generator is off for 0.3 s before each
+// step and at the end. Stamps are the instruments' own; `sample_number` in dau.csv tells what the unit lost.
+// Fails (refused) when a file cannot be written.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/error.hpp"
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct Programme {
+  std::vector<std::string> frequencies_hz; // decimal text
+  std::vector<double> levels_m_s2;         // one per frequency
+  int repetitions = 1;
+  double settling_s = 0.5;
+  double duration_s = 3.0; // per step, after settling
+};
+
+[[nodiscard]] Expected<void> record_csv(VirtualBench& bench, const Programme& programme, const std::filesystem::path& folder);
+
+} // namespace dyncal::drivers::virtual_bench

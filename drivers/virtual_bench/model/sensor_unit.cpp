@@ -1,0 +1,153 @@
+#include "drivers/virtual_bench/model/sensor_unit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dyncal::drivers::virtual_bench {
+namespace {
+
+constexpr double standard_gravity = 9.80665;
+constexpr double adc_range_v = 10.0;
+constexpr double adc_step_v = 2.0 * adc_range_v / 4096.0;
+constexpr double gyroscope_range_rad_s = 4.363323129985824; // 250 degrees per second
+constexpr double gyroscope_noise_rad_s = 3.9e-3;            // 0.01 degrees/s/sqrt(Hz)
+constexpr double magnetometer_range_ut = 4912.0;
+constexpr double magnetometer_noise_ut = 0.4;
+constexpr std::array<double, 3> earth_field_ut{18.6, 1.4, -45.1};
+constexpr double steps_16_bit = 65536.0;
+
+// The smallest range that holds the excitation with gravity and a tenth to spare.
+double choose_range_g(double highest_level_m_s2) {
+  for (const double range_g : {2.0, 4.0, 8.0}) {
+    if (1.1 * highest_level_m_s2 + standard_gravity <= range_g * standard_gravity) {
+      return range_g;
+    }
+  }
+  return 16.0;
+}
+
+} // namespace
+
+SensorUnit::SensorUnit(const SensorUnitSettings& settings)
+    : settings_(settings), noise_(settings.seed, "sensor noise"), clock_(settings.seed, settings.start_ns),
+      sensor_clock_(make_sensor_clock(settings.preset.sensor, settings.seed, settings.thermal_cycle_s)),
+      faults_(settings.seed, settings.faults) {
+  const Preset& preset = settings_.preset;
+  range_m_s2_ = choose_range_g(settings.highest_level_m_s2) * standard_gravity;
+  step_m_s2_ = range_m_s2_ / preset.counts_per_range;
+  noise_m_s2_ = preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 / preset.mean_interval_s);
+  Random offsets(settings.seed, "sensor offsets");
+  for (double& offset : offset_m_s2_) {
+    offset = offsets.normal(0.25);
+  }
+  offset_m_s2_[2] += standard_gravity; // z points upwards
+  if (preset.sensor == SensorKind::mpu9250) {
+    describe_mpu9250();
+  } else {
+    describe_bma280();
+  }
+  describe_scalar(10, "sync", "Voltage", "\\volt", "Voltage/0", -adc_range_v, adc_range_v, 4096.0, false);
+  describe_scalar(11, "adc_2", "Voltage", "\\volt", "Voltage/1", -adc_range_v, adc_range_v, 4096.0, false);
+  describe_scalar(12, "adc_3", "Voltage", "\\volt", "Voltage/2", -adc_range_v, adc_range_v, 4096.0, false);
+}
+
+void SensorUnit::describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit, const char* hierarchy,
+                                 double minimum, double maximum, double steps, bool declared) {
+  channels_.push_back({index, name, quantity, unit, hierarchy, minimum, maximum, steps, declared});
+}
+
+void SensorUnit::describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit, const char* hierarchy,
+                                 double range, double steps) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string small(1, "xyz"[axis]);
+    const std::string capital(1, "XYZ"[axis]);
+    channels_.push_back({first + axis, std::string(name) + "_" + small, capital + " " + quantity, unit,
+                         std::string(hierarchy) + "/" + std::to_string(axis), -range, range, steps, true});
+  }
+}
+
+void SensorUnit::describe_mpu9250() {
+  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration", range_m_s2_, steps_16_bit);
+  describe_vector(3, "angular_velocity", "Angular velocity", "\\radian\\second\\tothe{-1}", "Angular_velocity", gyroscope_range_rad_s,
+                  steps_16_bit);
+  describe_vector(6, "magnetic_flux_density", "Magnetic flux density", "\\micro\\tesla", "Magnetic_flux_density", magnetometer_range_ut,
+                  steps_16_bit);
+  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -77.14, 119.15, steps_16_bit, true);
+}
+
+void SensorUnit::describe_bma280() {
+  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration", range_m_s2_, 16384.0);
+  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -41.0, 87.0, 256.0, true);
+}
+
+float SensorUnit::quantised(double value, double step, double range) const {
+  const double counts = std::clamp(std::rint(value / step), -std::rint(range / step), std::rint(range / step) - 1.0);
+  return static_cast<float>(counts * step + 0.0); // no negative zero
+}
+
+const HarmonicGains& SensorUnit::gains(std::size_t axis, double frequency_hz) {
+  if (gains_frequency_hz_[axis] != frequency_hz) {
+    gains_[axis] = harmonic_gains(settings_.preset.axes[axis], frequency_hz);
+    gains_frequency_hz_[axis] = frequency_hz;
+  }
+  return gains_[axis];
+}
+
+void SensorUnit::measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
+    const double value =
+        excitation.acceleration(motion, gains(axis, motion.frequency_hz)) + offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
+    sample.data[axis] = quantised(value, step_m_s2_, range_m_s2_);
+  }
+}
+
+void SensorUnit::measure_rest(UnitSample& sample, double temperature_degc) {
+  if (settings_.preset.sensor == SensorKind::bma280) {
+    sample.data[9] = quantised(temperature_degc - 23.0 + noise_.normal(0.1), 0.5, 64.0) + 23.0F;
+    return;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sample.data[3 + axis] = quantised(noise_.normal(gyroscope_noise_rad_s), gyroscope_range_rad_s / 32768.0, gyroscope_range_rad_s);
+    sample.data[6 + axis] =
+        quantised(earth_field_ut[axis] + noise_.normal(magnetometer_noise_ut), magnetometer_range_ut / 32768.0, magnetometer_range_ut);
+  }
+  sample.data[9] = quantised(temperature_degc - 21.0 + noise_.normal(0.01), 1.0 / 333.87, 98.0) + 21.0F;
+}
+
+void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation) {
+  const Motion motion = excitation.motion(time_s - settings_.adc.lag_s);
+  const double amplitude_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+  const double sync_v = amplitude_v * motion.sine;
+  for (std::size_t adc = 0; adc < 3; ++adc) {
+    const double input_v = (adc == 0 ? sync_v : 0.0) + noise_.normal(adc_step_v);
+    sample.data[10 + adc] = static_cast<float>(settings_.adc.gain * static_cast<double>(quantised(input_v, adc_step_v, adc_range_v)));
+  }
+}
+
+std::optional<UnitSample> SensorUnit::next_before(double time_s, const Excitation& excitation) {
+  for (;;) {
+    if (!edge_) {
+      edge_ = sensor_clock_->next();
+    }
+    if (edge_->time_s >= time_s) {
+      return std::nullopt;
+    }
+    const SensorEdge edge = *edge_;
+    edge_.reset();
+    const DauStamp stamp = clock_.stamp(edge.time_s);
+    UnitSample sample;
+    sample.sample_number = ++sample_number_;
+    sample.utc_ns = stamp.utc_ns;
+    sample.uncertainty_ns = stamp.uncertainty_ns;
+    sample.ticks = stamp.ticks;
+    measure_acceleration(sample, edge.time_s, excitation);
+    measure_rest(sample, edge.temperature_degc);
+    measure_adcs(sample, edge.time_s, excitation);
+    if (faults_.apply(sample)) {
+      return sample;
+    }
+  }
+}
+
+} // namespace dyncal::drivers::virtual_bench

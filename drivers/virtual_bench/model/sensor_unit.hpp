@@ -1,0 +1,80 @@
+// A SmartUp Unit with one sensor: what it measures, when, and with which stamps.
+//
+// At every data-ready edge the unit stamps the sample, reads the sensor (which shows the acceleration of `delay` earlier, with its
+// response, noise, offset and quantisation), and samples three ADCs; the first one sees the sync signal through its own lag and gain,
+// with 12 bit of +-10 V.
+// One thread.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "drivers/virtual_bench/model/dau_clock.hpp"
+#include "drivers/virtual_bench/model/excitation.hpp"
+#include "drivers/virtual_bench/model/preset.hpp"
+#include "drivers/virtual_bench/model/sensor_clock.hpp"
+#include "drivers/virtual_bench/model/stamp_faults.hpp"
+#include "drivers/virtual_bench/model/unit_sample.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct SyncAdcModel {
+  double gain = 0.166245; // reported volt per volt at the input
+  double lag_s = 0.46e-6;
+};
+
+struct SensorUnitSettings {
+  Preset preset;
+  std::uint64_t seed = 1;
+  std::int64_t start_ns = 0;         // unit time at bench time 0
+  double highest_level_m_s2 = 130.0; // decides the range of the sensor
+  double thermal_cycle_s = 100.0;
+  double sync_amplitude_v = 9.75;
+  bool sync_is_first_output = false;
+  SyncAdcModel adc;
+  FaultProbabilities faults;
+};
+
+class SensorUnit {
+public:
+  explicit SensorUnit(const SensorUnitSettings& settings);
+
+  [[nodiscard]] const std::vector<UnitChannel>& channels() const { return channels_; }
+  [[nodiscard]] const DauClock& clock() const { return clock_; }
+  [[nodiscard]] double range_m_s2() const { return range_m_s2_; }
+
+  // The next sample when its edge lies before `time_s`; samples that the unit loses are left out.
+  [[nodiscard]] std::optional<UnitSample> next_before(double time_s, const Excitation& excitation);
+
+private:
+  void describe_mpu9250();
+  void describe_bma280();
+  void describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit, const char* hierarchy, double range,
+                       double steps);
+  void describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit, const char* hierarchy, double minimum,
+                       double maximum, double steps, bool declared);
+  void measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation);
+  void measure_rest(UnitSample& sample, double temperature_degc);
+  void measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation);
+  [[nodiscard]] float quantised(double value, double step, double range) const;
+  [[nodiscard]] const HarmonicGains& gains(std::size_t axis, double frequency_hz);
+
+  SensorUnitSettings settings_;
+  Random noise_;
+  DauClock clock_;
+  std::unique_ptr<SensorClock> sensor_clock_;
+  StampFaults faults_;
+  std::vector<UnitChannel> channels_;
+  double range_m_s2_ = 0.0;
+  double step_m_s2_ = 0.0;
+  double noise_m_s2_ = 0.0; // standard deviation
+  std::array<double, 3> offset_m_s2_{};
+  std::array<HarmonicGains, 3> gains_;
+  std::array<double, 3> gains_frequency_hz_{};
+  std::optional<SensorEdge> edge_;
+  std::uint32_t sample_number_ = 0;
+};
+
+} // namespace dyncal::drivers::virtual_bench
