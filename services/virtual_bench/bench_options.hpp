@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/virtual_bench/bench_server.hpp"
+#include "drivers/virtual_bench/wire/bench_server.hpp"
 #include "drivers/virtual_bench/model/recording.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "services/error.hpp"

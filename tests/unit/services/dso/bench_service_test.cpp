@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/virtual_bench/triggered_server.hpp"
+#include "drivers/virtual_bench/wire/triggered_server.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/topics.hpp"
 

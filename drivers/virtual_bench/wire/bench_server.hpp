@@ -11,11 +11,11 @@
 #include <functional>
 #include <optional>
 
-#include "drivers/virtual_bench/datagram_path.hpp"
-#include "drivers/virtual_bench/line_clients.hpp"
-#include "drivers/virtual_bench/smartup_format.hpp"
-#include "drivers/virtual_bench/stream_client.hpp"
-#include "drivers/virtual_bench/triggered_server.hpp"
+#include "drivers/virtual_bench/wire/datagram_path.hpp"
+#include "drivers/virtual_bench/wire/line_clients.hpp"
+#include "drivers/virtual_bench/wire/smartup_format.hpp"
+#include "drivers/virtual_bench/wire/stream_client.hpp"
+#include "drivers/virtual_bench/wire/triggered_server.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 
 namespace dyncal::drivers::virtual_bench {

@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/datagram_path.hpp"
+#include "drivers/virtual_bench/wire/datagram_path.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

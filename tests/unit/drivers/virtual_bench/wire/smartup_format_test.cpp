@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/smartup_format.hpp"
+#include "drivers/virtual_bench/wire/smartup_format.hpp"
 
 #include <cstring>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/stream_client.hpp"
+#include "drivers/virtual_bench/wire/stream_client.hpp"
 
 #include <bit>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/server_socket.hpp"
+#include "drivers/virtual_bench/wire/server_socket.hpp"
 
 #include <cerrno>
 #include <cstring>

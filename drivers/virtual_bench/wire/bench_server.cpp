@@ -1,12 +1,12 @@
-#include "drivers/virtual_bench/bench_server.hpp"
+#include "drivers/virtual_bench/wire/bench_server.hpp"
 
 #include <algorithm>
 
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "drivers/virtual_bench/receive_queue.hpp"
-#include "drivers/virtual_bench/server_socket.hpp"
+#include "drivers/virtual_bench/wire/receive_queue.hpp"
+#include "drivers/virtual_bench/wire/server_socket.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

@@ -1,5 +1,5 @@
 // The bench behind its sockets, met through the drivers that meet real instruments.
-#include "drivers/virtual_bench/bench_server.hpp"
+#include "drivers/virtual_bench/wire/bench_server.hpp"
 
 #include <algorithm>
 #include <arpa/inet.h>
@@ -11,7 +11,7 @@
 
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/generator/scpi_generator.hpp"
-#include "drivers/virtual_bench/receive_queue.hpp"
+#include "drivers/virtual_bench/wire/receive_queue.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

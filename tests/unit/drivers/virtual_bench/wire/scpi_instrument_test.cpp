@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/scpi_instrument.hpp"
+#include "drivers/virtual_bench/wire/scpi_instrument.hpp"
 
 #include <gtest/gtest.h>
 

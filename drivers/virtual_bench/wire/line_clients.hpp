@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/link/tcp_connection.hpp"
-#include "drivers/virtual_bench/scpi_instrument.hpp"
+#include "drivers/virtual_bench/wire/scpi_instrument.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 

@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/scpi_text.hpp"
+#include "drivers/virtual_bench/wire/scpi_text.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/link/tcp_connection.hpp"
-#include "drivers/virtual_bench/oscilloscope_scpi.hpp"
+#include "drivers/virtual_bench/wire/oscilloscope_scpi.hpp"
 #include "drivers/virtual_bench/model/series_sensor.hpp"
 
 namespace dyncal::drivers::virtual_bench {

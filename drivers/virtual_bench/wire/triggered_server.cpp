@@ -1,11 +1,11 @@
-#include "drivers/virtual_bench/triggered_server.hpp"
+#include "drivers/virtual_bench/wire/triggered_server.hpp"
 
 #include <algorithm>
 #include <cerrno>
 
 #include <sys/socket.h>
 
-#include "drivers/virtual_bench/server_socket.hpp"
+#include "drivers/virtual_bench/wire/server_socket.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

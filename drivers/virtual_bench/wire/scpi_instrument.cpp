@@ -1,10 +1,10 @@
-#include "drivers/virtual_bench/scpi_instrument.hpp"
+#include "drivers/virtual_bench/wire/scpi_instrument.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 
-#include "drivers/virtual_bench/scpi_text.hpp"
+#include "drivers/virtual_bench/wire/scpi_text.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

@@ -1,10 +1,10 @@
-#include "drivers/virtual_bench/oscilloscope_scpi.hpp"
+#include "drivers/virtual_bench/wire/oscilloscope_scpi.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 
-#include "drivers/virtual_bench/scpi_text.hpp"
+#include "drivers/virtual_bench/wire/scpi_text.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {

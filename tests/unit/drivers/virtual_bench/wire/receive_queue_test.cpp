@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/receive_queue.hpp"
+#include "drivers/virtual_bench/wire/receive_queue.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

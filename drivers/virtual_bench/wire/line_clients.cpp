@@ -1,4 +1,4 @@
-#include "drivers/virtual_bench/line_clients.hpp"
+#include "drivers/virtual_bench/wire/line_clients.hpp"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,5 +1,5 @@
 // Oscilloscope and time series sensor of the virtual bench, through the drivers that real ones are reached with.
-#include "drivers/virtual_bench/triggered_server.hpp"
+#include "drivers/virtual_bench/wire/triggered_server.hpp"
 
 #include <atomic>
 #include <cmath>
