@@ -10,7 +10,7 @@
 #include "drivers/virtual_bench/model/recording.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "services/error.hpp"
-#include "services/virtual_bench/can_sensor.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {
 

@@ -12,8 +12,8 @@
 #include "drivers/virtual_bench/model/truth.hpp"
 #include "services/utc_clock.hpp"
 #include "services/virtual_bench/bench_options.hpp"
-#include "services/virtual_bench/can_line.hpp"
-#include "services/virtual_bench/can_sensor.hpp"
+#include "drivers/virtual_bench/can/can_line.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 namespace {
 

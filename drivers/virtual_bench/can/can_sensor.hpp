@@ -16,7 +16,7 @@
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
-#include "services/virtual_bench/can_bus.hpp"
+#include "drivers/virtual_bench/can/can_bus.hpp"
 
 namespace dyncal::services::virtual_bench {
 

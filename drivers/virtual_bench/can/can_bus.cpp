@@ -1,4 +1,4 @@
-#include "services/virtual_bench/can_bus.hpp"
+#include "drivers/virtual_bench/can/can_bus.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "services/virtual_bench/can_line.hpp"
+#include "drivers/virtual_bench/can/can_line.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -9,7 +9,7 @@
 #include "analysis/method/analogue_comparison.hpp"
 #include "drivers/can/sensor_stream.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
-#include "services/virtual_bench/can_sensor.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/virtual_bench/can_sensor.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>

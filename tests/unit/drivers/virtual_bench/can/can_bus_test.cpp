@@ -1,8 +1,8 @@
-#include "services/virtual_bench/can_bus.hpp"
+#include "drivers/virtual_bench/can/can_bus.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/virtual_bench/can_sensor.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {
 namespace {
