@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/bus/topics.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {

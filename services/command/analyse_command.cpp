@@ -14,7 +14,7 @@
 #include "services/command/shot_files.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/source/messages.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {

@@ -16,7 +16,7 @@
 #include "services/bus/topics.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/command/run_command.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {

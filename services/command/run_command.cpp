@@ -12,7 +12,7 @@
 #include "services/command/progress_line.hpp"
 #include "services/command/run_figures.hpp"
 #include "services/command/run_report.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {

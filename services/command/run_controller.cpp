@@ -7,7 +7,7 @@
 
 #include "services/bus/topics.hpp"
 #include "services/evaluation/recipe.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -9,7 +9,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/bus/topics.hpp"
 #include "services/dso/series_channels.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services::dso {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "services/bus/topics.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services::dso {

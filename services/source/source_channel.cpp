@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "services/bus/topics.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 

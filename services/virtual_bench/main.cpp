@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "drivers/virtual_bench/model/truth.hpp"
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 #include "drivers/virtual_bench/can/can_line.hpp"
 #include "drivers/virtual_bench/can/can_sensor.hpp"

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <pthread.h>
 
-#include "services/utc_clock.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services::virtual_bench {
 namespace {
