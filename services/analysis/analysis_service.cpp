@@ -4,7 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 namespace {

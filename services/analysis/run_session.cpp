@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 

@@ -9,12 +9,12 @@
 #include <fmt/ranges.h>
 
 #include "services/bench/can_source.hpp"
-#include "services/bench/digest.hpp"
+#include "services/contract/digest.hpp"
 #include "services/bench/excitation_table.hpp"
 #include "services/bench/generator_table.hpp"
 #include "services/bench/toml_table.hpp"
 #include "services/bench/triggered_source.hpp"
-#include "services/bench/unit.hpp"
+#include "services/contract/unit.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "analysis/instrument/adc_comparison.hpp"
 #include "services/bench/adc_file_writer.hpp"
-#include "services/bench/digest.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/digest.hpp"
+#include "services/contract/topics.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/command/run_command.hpp"
 #include "drivers/utc_clock.hpp"

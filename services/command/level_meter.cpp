@@ -6,7 +6,7 @@
 
 #include "analysis/sine/sine_fit.hpp"
 #include "services/bench/level_settling.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 namespace {

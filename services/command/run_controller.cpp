@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "drivers/utc_clock.hpp"
 

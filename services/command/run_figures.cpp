@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "services/bench/unit.hpp"
+#include "services/contract/unit.hpp"
 #include "services/command/run_report.hpp"
 #include "services/figures/sample_clock.hpp"
 #include "services/figures/transfer_function.hpp"

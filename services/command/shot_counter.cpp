@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 

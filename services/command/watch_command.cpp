@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "idl/dyncal.h"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "analysis/base/frequency.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/dso/series_channels.hpp"
 #include "drivers/utc_clock.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "analysis/clock/sample_clock.hpp"
 #include "idl/dyncal.h"
-#include "services/bus/sample_continuity.hpp"
+#include "services/contract/sample_continuity.hpp"
 #include "services/evaluation/recipe.hpp"
 
 namespace dyncal::services {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/method/series_stamping.hpp"
-#include "services/bench/digest.hpp"
+#include "services/contract/digest.hpp"
 
 namespace dyncal::services {
 namespace {

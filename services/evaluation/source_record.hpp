@@ -17,7 +17,7 @@
 
 #include "drivers/sample_block.hpp"
 #include "idl/dyncal.h"
-#include "services/bus/sample_continuity.hpp"
+#include "services/contract/sample_continuity.hpp"
 
 namespace dyncal::services {
 

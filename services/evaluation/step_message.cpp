@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "services/bench/digest.hpp"
-#include "services/bench/unit.hpp"
+#include "services/contract/digest.hpp"
+#include "services/contract/unit.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {

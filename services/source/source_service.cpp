@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/source/source_channel.hpp"
 
 namespace dyncal::services {

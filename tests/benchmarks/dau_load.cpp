@@ -16,7 +16,7 @@
 
 #include "drivers/smartup/sensor_id.hpp"
 #include "services/bus/bus.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
 #include "tests/unit/services/dau/child_process.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/sample_continuity.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/sample_continuity.hpp"
+#include "services/contract/topics.hpp"
 
 namespace {
 

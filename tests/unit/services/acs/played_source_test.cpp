@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/source/source_service.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/bus/type_support_of.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 

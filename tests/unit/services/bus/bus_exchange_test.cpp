@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "services/bus/qos_profiles.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 
 namespace dyncal::bus {

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::bus {
 namespace {

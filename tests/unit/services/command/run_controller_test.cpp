@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 #include "services/command/run_controller.hpp"
 
 namespace dyncal::services {

@@ -13,7 +13,7 @@
 
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services::dso {
 namespace {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/topics.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::tests {
 

@@ -1,4 +1,4 @@
-#include "services/bench/unit.hpp"
+#include "services/contract/unit.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "services/bench/digest.hpp"
+#include "services/contract/digest.hpp"
 
 #include <array>
 #include <stdexcept>

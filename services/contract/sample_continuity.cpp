@@ -1,4 +1,4 @@
-#include "services/bus/sample_continuity.hpp"
+#include "services/contract/sample_continuity.hpp"
 
 #include <algorithm>
 
