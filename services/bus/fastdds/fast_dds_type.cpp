@@ -1,4 +1,4 @@
-#include "services/bus/fast_dds_type.hpp"
+#include "services/bus/fastdds/fast_dds_type.hpp"
 
 #include <algorithm>
 #include <array>

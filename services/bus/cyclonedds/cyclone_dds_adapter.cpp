@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "services/bus/adapters.hpp"
-#include "services/bus/cyclone_dds_config.hpp"
-#include "services/bus/cyclone_dds_type.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_config.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 

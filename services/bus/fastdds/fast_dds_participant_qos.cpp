@@ -1,4 +1,4 @@
-#include "services/bus/fast_dds_participant_qos.hpp"
+#include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>

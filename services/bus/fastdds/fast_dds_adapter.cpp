@@ -17,8 +17,8 @@
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/cdr_key.hpp"
-#include "services/bus/fast_dds_participant_qos.hpp"
-#include "services/bus/fast_dds_type.hpp"
+#include "services/bus/fastdds/fast_dds_participant_qos.hpp"
+#include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/qos_profiles.hpp"
 
 namespace dyncal::bus {

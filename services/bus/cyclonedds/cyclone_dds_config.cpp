@@ -1,4 +1,4 @@
-#include "services/bus/cyclone_dds_config.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_config.hpp"
 
 #include <cstdlib>
 

@@ -1,4 +1,4 @@
-#include "services/bus/cyclone_dds_type.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 
 #include <algorithm>
 #include <array>
