@@ -12,7 +12,7 @@
 
 #include "drivers/tss/series.hpp"
 #include "services/dso/series_channels.hpp"
-#include "services/evaluation/shot_record.hpp"
+#include "services/evaluation/method/shot_record.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {

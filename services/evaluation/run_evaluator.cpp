@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/evaluation/analogue_step_evaluation.hpp"
-#include "services/evaluation/series_clock.hpp"
-#include "services/evaluation/time_scales.hpp"
+#include "services/evaluation/method/analogue_step_evaluation.hpp"
+#include "services/evaluation/method/series_clock.hpp"
+#include "services/evaluation/method/time_scales.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -14,7 +14,7 @@
 #include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"
-#include "services/evaluation/step_evaluation.hpp"
+#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 
 namespace dyncal::services {
 

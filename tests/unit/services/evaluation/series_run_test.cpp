@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/evaluation/run_evaluator.hpp"
-#include "services/evaluation/shot_record.hpp"
+#include "services/evaluation/method/shot_record.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
 namespace dyncal::services {

@@ -1,4 +1,4 @@
-#include "services/evaluation/series_clock.hpp"
+#include "services/evaluation/method/series_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

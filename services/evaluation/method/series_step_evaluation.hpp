@@ -14,7 +14,7 @@
 #include "analysis/method/start_latency.hpp"
 #include "idl/dyncal.h"
 #include "services/evaluation/recipe.hpp"
-#include "services/evaluation/shot_record.hpp"
+#include "services/evaluation/method/shot_record.hpp"
 #include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {

@@ -1,4 +1,4 @@
-#include "services/evaluation/settled_part.hpp"
+#include "services/evaluation/method/settled_part.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Sensors with stamps of their own: absolute time, and sync recorded beside them.
-#include "services/evaluation/apart_step_evaluation.hpp"
+#include "services/evaluation/method/apart_step_evaluation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "services/evaluation/time_scales.hpp"
+#include "services/evaluation/method/time_scales.hpp"
 
 #include <vector>
 

@@ -1,12 +1,12 @@
-#include "services/evaluation/analogue_step_evaluation.hpp"
+#include "services/evaluation/method/analogue_step_evaluation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/monte_carlo_check.hpp"
-#include "services/evaluation/settled_part.hpp"
-#include "services/evaluation/step_evaluation.hpp"
+#include "services/evaluation/method/settled_part.hpp"
+#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 
 namespace dyncal::services {
 namespace {

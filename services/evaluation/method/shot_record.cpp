@@ -1,4 +1,4 @@
-#include "services/evaluation/shot_record.hpp"
+#include "services/evaluation/method/shot_record.hpp"
 
 #include <algorithm>
 #include <cmath>

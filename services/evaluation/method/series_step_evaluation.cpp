@@ -1,4 +1,4 @@
-#include "services/evaluation/series_step_evaluation.hpp"
+#include "services/evaluation/method/series_step_evaluation.hpp"
 
 #include <algorithm>
 #include <array>

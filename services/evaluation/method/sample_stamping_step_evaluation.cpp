@@ -1,4 +1,4 @@
-#include "services/evaluation/step_evaluation.hpp"
+#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/evaluation/monte_carlo_check.hpp"
-#include "services/evaluation/settled_part.hpp"
+#include "services/evaluation/method/settled_part.hpp"
 #include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {

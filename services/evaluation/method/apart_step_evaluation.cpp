@@ -1,11 +1,11 @@
-#include "services/evaluation/apart_step_evaluation.hpp"
+#include "services/evaluation/method/apart_step_evaluation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/monte_carlo_check.hpp"
-#include "services/evaluation/step_evaluation.hpp"
+#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 
 namespace dyncal::services {
 namespace {
