@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "services/command/child_process.hpp"
+#include "services/program/child_process.hpp"
 #include "services/command/demo_bench.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/run_report.hpp"

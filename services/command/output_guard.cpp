@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "drivers/generator/scpi_generator.hpp"
-#include "services/command/child_process.hpp"
+#include "services/program/child_process.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

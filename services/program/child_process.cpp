@@ -1,4 +1,4 @@
-#include "services/command/child_process.hpp"
+#include "services/program/child_process.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
