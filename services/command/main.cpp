@@ -11,7 +11,7 @@
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
-#include "services/command/output_guard.hpp"
+#include "services/run/output_guard.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
@@ -125,7 +125,7 @@ void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
   command->add_flag("--json", triaxial.json, "print JSON");
 }
 
-// Not for people: services/command/output_guard.hpp starts it.
+// Not for people: services/run/output_guard.hpp starts it.
 void add_guard_output(CLI::App& app, std::string& generator) {
   CLI::App* command = app.add_subcommand("guard-output", "switch a generator's output off when standard input ends");
   command->group("");

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 

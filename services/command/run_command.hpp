@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

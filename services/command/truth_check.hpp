@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "services/bench/level_settling.hpp"
+#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "services/bench/bench_file.hpp"
-#include "services/bench/level_settling.hpp"
+#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {

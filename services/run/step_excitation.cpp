@@ -1,4 +1,4 @@
-#include "services/command/step_excitation.hpp"
+#include "services/run/step_excitation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "analysis/base/frequency.hpp"
 #include "drivers/generator/by_hand_generator.hpp"
 #include "drivers/generator/scpi_generator.hpp"
-#include "services/bench/level_settling.hpp"
+#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/command/output_guard.hpp"
+#include "services/run/output_guard.hpp"
 
 #include <array>
 #include <cerrno>

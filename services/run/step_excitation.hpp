@@ -3,7 +3,7 @@
 // A step holds the output on for its planned settling, its duration and a margin in which the analysis finds the edges of the steady part,
 // then off for a moment, which separates it from the next. Durations are in bench time (the generator's clock) and begin when what was set
 // is in effect: with a generator set by hand, when the operator has confirmed. With a level tolerance the voltage follows what the
-// reference shows (drivers/generator/level_control.hpp) within the planned settling (services/bench/level_settling.hpp). The output is off
+// reference shows (drivers/generator/level_control.hpp) within the planned settling (services/run/level_settling.hpp). The output is off
 // whenever excite() has returned, and when the object goes; a guard sees to it when the program is killed. Fails: bad_argument (a level
 // above a limit, before anything is excited), device (generator, exciter), and as `attend` does. A requested stop is no failure. Belongs to
 // one thread.
@@ -22,9 +22,9 @@
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/command/level_meter.hpp"
-#include "services/command/output_guard.hpp"
-#include "services/command/shot_counter.hpp"
+#include "services/run/level_meter.hpp"
+#include "services/run/output_guard.hpp"
+#include "services/run/shot_counter.hpp"
 
 namespace dyncal::services {
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "services/contract/topics.hpp"
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,11 +1,11 @@
-#include "services/command/level_meter.hpp"
+#include "services/run/level_meter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "analysis/sine/sine_fit.hpp"
-#include "services/bench/level_settling.hpp"
+#include "services/run/level_settling.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services {

@@ -1,4 +1,4 @@
-#include "services/command/shot_counter.hpp"
+#include "services/run/shot_counter.hpp"
 
 #include <algorithm>
 

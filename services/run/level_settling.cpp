@@ -1,4 +1,4 @@
-#include "services/bench/level_settling.hpp"
+#include "services/run/level_settling.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "The run protocol"; services/command/step_excitation.hpp excites the steps.
+// Order of messages: idl/README.md, "The run protocol"; services/run/step_excitation.hpp excites the steps.
 // The generator's output is off on every way out: end, error, stop.
 // Fails: no_analysis (nobody answers, or the recipe is refused), no_source, device (generator), network, no_result. A stop is no failure:
 // the outcome says `interrupted` and holds what was measured. Belongs to one thread.
@@ -18,7 +18,7 @@
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/command/step_excitation.hpp"
+#include "services/run/step_excitation.hpp"
 
 namespace dyncal::services {
 

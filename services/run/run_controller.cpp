@@ -1,4 +1,4 @@
-#include "services/command/run_controller.hpp"
+#include "services/run/run_controller.hpp"
 
 #include <algorithm>
 #include <tuple>
