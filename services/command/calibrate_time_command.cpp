@@ -9,7 +9,7 @@
 #include "analysis/instrument/pulse_edges.hpp"
 #include "analysis/instrument/stamp_deviation.hpp"
 #include "services/command/pulse_file.hpp"
-#include "services/figures/stamp_deviation.hpp"
+#include "services/report/figures/stamp_deviation.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

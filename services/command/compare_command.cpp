@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/comparison.hpp"
-#include "services/command/result_file.hpp"
+#include "services/report/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
 

@@ -15,7 +15,7 @@
 #include "services/program/child_process.hpp"
 #include "services/command/demo_bench.hpp"
 #include "services/command/run_command.hpp"
-#include "services/command/run_report.hpp"
+#include "services/report/run_report.hpp"
 #include "services/command/truth_check.hpp"
 #include "services/command/vendor_assignment.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
-#include "services/command/run_figures.hpp"
-#include "services/command/run_report.hpp"
+#include "services/report/run_figures.hpp"
+#include "services/report/run_report.hpp"
 #include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
-#include "services/command/result_file.hpp"
+#include "services/report/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
 

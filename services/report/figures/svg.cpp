@@ -1,4 +1,4 @@
-#include "services/figures/svg.hpp"
+#include "services/report/figures/svg.hpp"
 
 #include <iterator>
 

@@ -1,4 +1,4 @@
-#include "tests/unit/services/figures/well_formed.hpp"
+#include "tests/unit/services/report/figures/well_formed.hpp"
 
 #include <functional>
 

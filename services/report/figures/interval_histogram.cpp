@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "services/figures/panel.hpp"
-#include "services/figures/regular_intervals.hpp"
-#include "services/figures/sample_clock.hpp"
+#include "services/report/figures/panel.hpp"
+#include "services/report/figures/regular_intervals.hpp"
+#include "services/report/figures/sample_clock.hpp"
 
 namespace dyncal::services::figures {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/command/result_file.hpp"
+#include "services/report/result_file.hpp"
 
 #include <fstream>
 

@@ -1,4 +1,4 @@
-#include "services/figures/sample_clock.hpp"
+#include "services/report/figures/sample_clock.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/figures/regular_intervals.hpp"
-#include "tests/unit/services/figures/well_formed.hpp"
+#include "services/report/figures/regular_intervals.hpp"
+#include "tests/unit/services/report/figures/well_formed.hpp"
 
 namespace dyncal::services::figures {
 namespace {

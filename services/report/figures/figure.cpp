@@ -1,4 +1,4 @@
-#include "services/figures/figure.hpp"
+#include "services/report/figures/figure.hpp"
 
 #include <algorithm>
 #include <cerrno>

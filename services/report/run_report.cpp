@@ -1,4 +1,4 @@
-#include "services/command/run_report.hpp"
+#include "services/report/run_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
-#include "services/command/run_figures.hpp"
+#include "services/report/run_figures.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "services/contract/unit.hpp"
-#include "services/command/run_report.hpp"
-#include "services/figures/sample_clock.hpp"
-#include "services/figures/transfer_function.hpp"
+#include "services/report/run_report.hpp"
+#include "services/report/figures/sample_clock.hpp"
+#include "services/report/figures/transfer_function.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,11 +1,11 @@
-#include "services/figures/svg.hpp"
+#include "services/report/figures/svg.hpp"
 
 #include <array>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/figures/well_formed.hpp"
+#include "tests/unit/services/report/figures/well_formed.hpp"
 
 namespace dyncal::services::figures {
 namespace {

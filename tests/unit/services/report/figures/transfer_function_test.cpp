@@ -1,4 +1,4 @@
-#include "services/figures/transfer_function.hpp"
+#include "services/report/figures/transfer_function.hpp"
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/figures/well_formed.hpp"
+#include "tests/unit/services/report/figures/well_formed.hpp"
 
 namespace dyncal::services::figures {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/figures/stamp_deviation.hpp"
+#include "services/report/figures/stamp_deviation.hpp"
 
 #include <cmath>
 #include <iterator>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "services/figures/panel.hpp"
+#include "services/report/figures/panel.hpp"
 
 namespace dyncal::services::figures {
 namespace {

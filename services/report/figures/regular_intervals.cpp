@@ -1,4 +1,4 @@
-#include "services/figures/regular_intervals.hpp"
+#include "services/report/figures/regular_intervals.hpp"
 
 #include <algorithm>
 #include <cmath>

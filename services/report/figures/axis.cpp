@@ -1,4 +1,4 @@
-#include "services/figures/axis.hpp"
+#include "services/report/figures/axis.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "services/figures/axis.hpp"
-#include "services/figures/svg.hpp"
+#include "services/report/figures/axis.hpp"
+#include "services/report/figures/svg.hpp"
 
 namespace dyncal::services::figures {
 

@@ -1,10 +1,10 @@
-#include "services/figures/stamp_deviation.hpp"
+#include "services/report/figures/stamp_deviation.hpp"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 
-#include "tests/unit/services/figures/well_formed.hpp"
+#include "tests/unit/services/report/figures/well_formed.hpp"
 
 namespace dyncal::services::figures {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/figures/figure.hpp"
+#include "services/report/figures/figure.hpp"
 
 namespace dyncal::services::figures {
 

@@ -1,4 +1,4 @@
-#include "services/figures/panel.hpp"
+#include "services/report/figures/panel.hpp"
 
 #include <algorithm>
 #include <array>

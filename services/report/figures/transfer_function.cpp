@@ -1,4 +1,4 @@
-#include "services/figures/transfer_function.hpp"
+#include "services/report/figures/transfer_function.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "services/figures/panel.hpp"
+#include "services/report/figures/panel.hpp"
 
 namespace dyncal::services::figures {
 namespace {
