@@ -10,8 +10,8 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/command/run_command.hpp"
-#include "services/command/sample_memory.hpp"
-#include "services/command/shot_files.hpp"
+#include "services/replay/sample_memory.hpp"
+#include "services/replay/shot_files.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/source/messages.hpp"
 #include "drivers/utc_clock.hpp"

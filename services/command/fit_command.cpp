@@ -10,7 +10,7 @@
 #include "analysis/sine/frequency_estimate.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
-#include "services/command/series_file.hpp"
+#include "services/replay/series_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/clock/sample_clock.hpp"
-#include "services/command/series_file.hpp"
+#include "services/replay/series_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -1,4 +1,4 @@
-#include "services/command/shot_files.hpp"
+#include "services/replay/shot_files.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "services/command/series_file.hpp"
+#include "services/replay/series_file.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "services/command/sample_memory.hpp"
+#include "services/replay/sample_memory.hpp"
 
 #include <cstdlib>
 #include <limits>
