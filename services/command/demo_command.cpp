@@ -13,11 +13,11 @@
 #include <nlohmann/json.hpp>
 
 #include "services/program/child_process.hpp"
-#include "services/command/demo_bench.hpp"
+#include "services/demo/demo_bench.hpp"
 #include "services/command/run_command.hpp"
 #include "services/report/run_report.hpp"
-#include "services/command/truth_check.hpp"
-#include "services/command/vendor_assignment.hpp"
+#include "services/demo/truth_check.hpp"
+#include "services/demo/vendor_assignment.hpp"
 
 namespace dyncal::services {
 namespace {

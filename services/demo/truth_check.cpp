@@ -1,4 +1,4 @@
-#include "services/command/truth_check.hpp"
+#include "services/demo/truth_check.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "services/command/vendor_assignment.hpp"
+#include "services/demo/vendor_assignment.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

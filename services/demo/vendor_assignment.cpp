@@ -1,4 +1,4 @@
-#include "services/command/vendor_assignment.hpp"
+#include "services/demo/vendor_assignment.hpp"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "services/command/demo_bench.hpp"
+#include "services/demo/demo_bench.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
