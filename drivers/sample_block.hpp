@@ -39,7 +39,7 @@ struct SourceDescription {
   double stamp_uncertainty_s = 0.0; // standard uncertainty of one stamp in its time base; 0: not known
 };
 
-// Bits of SampleBlock::flags, one octet a sample. 0 means the stamp is trusted.
+// Bits of SampleBlock::flags, one byte a sample. 0 means the stamp is trusted.
 enum StampFlag : std::uint8_t {
   stamp_second_slip = 1U << 0U,        // a whole second early or late
   stamp_counter_extension = 1U << 1U,  // 2^32 ticks off

@@ -17,8 +17,8 @@ double overlapping_allan_deviation(std::span<const double> phases_s, double tau0
   return std::sqrt(sum / (2.0 * tau * tau * static_cast<double>(phases_s.size() - 2 * m)));
 }
 
-StreamingAllan::StreamingAllan(std::size_t longest_samples)
-    : ring_(8), longest_(std::bit_floor(std::max<std::size_t>(longest_samples, 8))) {}
+StreamingAllan::StreamingAllan(std::size_t max_samples)
+    : ring_(8), longest_(std::bit_floor(std::max<std::size_t>(max_samples, 8))) {}
 
 void StreamingAllan::add(std::int64_t stamp_ns) {
   // The ring must hold 2 m + 1 stamps for every m in use; it doubles while it may and the stretch needs it.

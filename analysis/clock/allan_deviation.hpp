@@ -18,10 +18,10 @@ struct AllanPoint {
 // Of phases (time errors) in seconds at the spacing tau0_s, for one averaging factor. 0 with no more than 2 m phases.
 [[nodiscard]] double overlapping_allan_deviation(std::span<const double> phases_s, double tau0_s, std::size_t m);
 
-// The same for a stream of stamps at m = 1, 2, 4 ...; keeps the last `longest_samples` stamps.
+// The same for a stream of stamps at m = 1, 2, 4 ...; keeps the last `max_samples` stamps.
 class StreamingAllan {
 public:
-  explicit StreamingAllan(std::size_t longest_samples);
+  explicit StreamingAllan(std::size_t max_samples);
 
   void add(std::int64_t stamp_ns);
   // The next stamp does not continue the series; sums are kept.

@@ -75,14 +75,14 @@ double IntervalSums::sd_ns() const {
   return static_cast<double>(std::sqrt(std::max(0.0L, squares_ns2 - sum * sum / n) / (n - 1.0L)));
 }
 
-IntervalCounts::IntervalCounts(std::size_t most_distinct) : most_distinct_(std::max<std::size_t>(most_distinct, 16)) {}
+IntervalCounts::IntervalCounts(std::size_t max_distinct) : max_distinct_(std::max<std::size_t>(max_distinct, 16)) {}
 
 void IntervalCounts::add(std::int64_t interval_ns) {
   minimum_ns_ = sums_.count == 0 ? interval_ns : std::min(minimum_ns_, interval_ns);
   maximum_ns_ = sums_.count == 0 ? interval_ns : std::max(maximum_ns_, interval_ns);
   sums_.add(interval_ns);
   ++counts_[floor_divide(interval_ns, resolution_ns_)];
-  while (counts_.size() > most_distinct_)
+  while (counts_.size() > max_distinct_)
     coarsen();
 }
 

@@ -46,7 +46,7 @@ struct IntervalSums { // about `pivot_ns`
 
 class IntervalCounts {
 public:
-  explicit IntervalCounts(std::size_t most_distinct);
+  explicit IntervalCounts(std::size_t max_distinct);
 
   void add(std::int64_t interval_ns);
   [[nodiscard]] const IntervalSums& sums() const { return sums_; }
@@ -57,7 +57,7 @@ public:
 
 private:
   void coarsen();
-  std::size_t most_distinct_;
+  std::size_t max_distinct_;
   std::int64_t resolution_ns_ = 1;
   std::int64_t minimum_ns_ = 0;
   std::int64_t maximum_ns_ = 0;

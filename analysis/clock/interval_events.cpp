@@ -13,8 +13,8 @@ constexpr double kept_scales = 4.0;
 constexpr double unusual_scales = 6.0;
 constexpr double pair_sum_scales = 9.0;
 constexpr double gap_scales = 8.0;
-constexpr std::size_t fewest_pairs = 5; // before a period is spoken of
-constexpr double least_regularity = 0.9;
+constexpr std::size_t min_pairs = 5; // before a period is spoken of
+constexpr double min_regularity = 0.9;
 
 struct Verdict {
   std::string kind; // empty: nothing unusual
@@ -45,7 +45,7 @@ double median(std::vector<double> values) {
 }
 
 void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>& pairs) {
-  if (pairs.size() < fewest_pairs) return;
+  if (pairs.size() < min_pairs) return;
   std::vector<double> samples, seconds;
   for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
     samples.push_back(static_cast<double>(pairs[i + 1].sample) - static_cast<double>(pairs[i].sample));
@@ -57,7 +57,7 @@ void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>
   for (const double distance : samples)
     sum += std::polar(1.0, 2.0 * std::numbers::pi * distance / verdict.pair_period_samples);
   verdict.pair_regularity = std::abs(sum) / static_cast<double>(samples.size());
-  if (verdict.pair_regularity < least_regularity) verdict.pair_period_samples = verdict.pair_period_s = 0.0;
+  if (verdict.pair_regularity < min_regularity) verdict.pair_period_samples = verdict.pair_period_s = 0.0;
 }
 
 } // namespace
@@ -68,14 +68,14 @@ bool UsualInterval::is_core(std::int64_t interval_ns, double times) const {
 
 void IntervalEventCollector::add(const SampleInterval& interval, const UsualInterval& usual) {
   if (usual.known() && usual.is_core(interval.length_ns, kept_scales)) return;
-  if (kept_.size() < most_kept_) {
+  if (kept_.size() < max_kept_) {
     kept_.push_back(interval);
   } else if (!usual.is_core(interval.length_ns, unusual_scales)) {
     ++not_kept_;
   }
 }
 
-IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t most_events) const {
+IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t max_events) const {
   IntervalVerdict result;
   std::vector<SampleInterval> pairs;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -84,7 +84,7 @@ IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::i
     if (verdict.kind.empty()) continue;
     ++result.event_count;
     result.unusual_lengths_ns.push_back(interval.length_ns);
-    if (result.events.size() < most_events) {
+    if (result.events.size() < max_events) {
       result.events.push_back({verdict.kind, interval.sample, static_cast<double>(interval.begin_ns - first_stamp_ns) * 1e-9,
                                static_cast<double>(interval.length_ns) - usual.median_ns, verdict.missing});
     }

@@ -4,7 +4,7 @@
 //   pair      |d - m| > 6 s and the next interval deviates the other way, the two sum to less than 9 s: one late or early sample
 //   step      |d - m| > 6 s otherwise: stamps have moved against the samples for good
 // The collector keeps every interval that lies outside 4 s of what was usual up to then (all of the first 64), at most
-// `most_kept`, and counts the rest; the verdict comes at the end, with the final m and s.
+// `max_kept`, and counts the rest; the verdict comes at the end, with the final m and s.
 // One thread.
 #pragma once
 
@@ -51,13 +51,13 @@ struct IntervalVerdict {
 
 class IntervalEventCollector {
 public:
-  explicit IntervalEventCollector(std::size_t most_kept = 100'000) : most_kept_(most_kept) {}
+  explicit IntervalEventCollector(std::size_t max_kept = 100'000) : max_kept_(max_kept) {}
 
   void add(const SampleInterval& interval, const UsualInterval& usual);
-  [[nodiscard]] IntervalVerdict judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t most_events) const;
+  [[nodiscard]] IntervalVerdict judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t max_events) const;
 
 private:
-  std::size_t most_kept_;
+  std::size_t max_kept_;
   std::vector<SampleInterval> kept_;
   std::uint64_t not_kept_ = 0;
 };

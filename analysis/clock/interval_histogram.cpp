@@ -10,8 +10,8 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr std::size_t most_bins = 4096;
-constexpr std::int64_t longest_array = 1 << 20;
+constexpr std::size_t max_bins = 4096;
+constexpr std::int64_t max_array = 1 << 20;
 constexpr int deconvolution_steps = 5;
 constexpr std::array kernel{1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0};
 
@@ -72,7 +72,7 @@ IntervalHistogram interval_histogram(const IntervalDistribution& distribution, d
     std::map<std::int64_t, std::uint64_t> bins;
     for (const auto& [length, times] : distribution.entries())
       bins[width * std::llround(static_cast<double>(length) / (unit_ns * static_cast<double>(width)))] += times;
-    if (bins.size() > most_bins) continue;
+    if (bins.size() > max_bins) continue;
     IntervalHistogram result{unit_ns * static_cast<double>(width), {}};
     for (const auto& [ticks, times] : bins)
       result.bins.push_back({ticks, static_cast<double>(ticks) * unit_ns, times});
@@ -93,7 +93,7 @@ double lattice_statistic(const IntervalDistribution& distribution, double tick_n
 std::vector<double> interval_modes_ns(const IntervalHistogram& histogram) {
   const auto index = [&](const IntervalHistogramBin& bin) { return std::llround(bin.interval_ns / histogram.bin_ns); };
   const std::int64_t first = index(histogram.bins.front()) - 2;
-  const std::int64_t length = std::min<std::int64_t>(index(histogram.bins.back()) + 3 - first, longest_array);
+  const std::int64_t length = std::min<std::int64_t>(index(histogram.bins.back()) + 3 - first, max_array);
   std::vector<double> counts(static_cast<std::size_t>(length), 0.0);
   for (const IntervalHistogramBin& bin : histogram.bins)
     if (index(bin) - first < length) counts[static_cast<std::size_t>(index(bin) - first)] = static_cast<double>(bin.count);

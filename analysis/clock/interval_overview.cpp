@@ -4,11 +4,11 @@
 
 namespace dyncal::analysis {
 
-IntervalOverview::IntervalOverview(std::size_t most_buckets) : most_buckets_(std::max<std::size_t>(most_buckets, 2) / 2 * 2) {}
+IntervalOverview::IntervalOverview(std::size_t max_buckets) : max_buckets_(std::max<std::size_t>(max_buckets, 2) / 2 * 2) {}
 
 void IntervalOverview::add(const SampleInterval& interval) {
   if (buckets_.empty() || buckets_.back().count == per_bucket_) {
-    if (buckets_.size() == most_buckets_) halve();
+    if (buckets_.size() == max_buckets_) halve();
     if (buckets_.empty() || buckets_.back().count == per_bucket_) {
       buckets_.push_back({interval.begin_ns, interval.length_ns, interval.length_ns, interval.length_ns, 1});
       return;

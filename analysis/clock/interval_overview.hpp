@@ -21,7 +21,7 @@ struct IntervalBucket {
 
 class IntervalOverview {
 public:
-  explicit IntervalOverview(std::size_t most_buckets);
+  explicit IntervalOverview(std::size_t max_buckets);
 
   void add(const SampleInterval& interval);
   [[nodiscard]] std::vector<IntervalBucket> buckets(std::int64_t first_stamp_ns) const;
@@ -35,7 +35,7 @@ private:
     std::uint64_t count;
   };
   void halve();
-  std::size_t most_buckets_;
+  std::size_t max_buckets_;
   std::uint64_t per_bucket_ = 1;
   std::vector<Bucket> buckets_;
 };

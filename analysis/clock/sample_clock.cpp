@@ -27,8 +27,8 @@ double seconds(double ns) {
 
 struct SampleClock::State {
   explicit State(const SampleClockSettings& chosen)
-      : settings(chosen), counts(chosen.most_distinct_intervals), overview(chosen.most_buckets), close_up(chosen.close_up),
-        temperature(chosen.most_temperature_bins, chosen.most_scatter), allan(chosen.longest_allan_samples) {}
+      : settings(chosen), counts(chosen.max_distinct_intervals), overview(chosen.max_buckets), close_up(chosen.close_up),
+        temperature(chosen.max_temperature_bins, chosen.max_scatter), allan(chosen.max_allan_samples) {}
 
   void take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted, double temperature_degc);
   void take_interval(const SampleInterval& interval, double temperature_degc);
@@ -161,7 +161,7 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
       result.modes_s.push_back(seconds(mode));
   }
   result.histogram = histogram.bins;
-  describe_events(result, state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.most_events), sums);
+  describe_events(result, state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events), sums);
 
   result.over_time = state.overview.buckets(*state.first_stamp_ns);
   result.close_up_ns = state.close_up.lengths_ns();

@@ -29,13 +29,13 @@ struct SampleClockSettings {
   double nominal_rate_hz = 0.0;     // 0: not known
   double tick_s = 0.0;              // of the stamping counter, 0: not known
   double stamp_uncertainty_s = 0.0; // standard uncertainty of one stamp against the time base
-  std::size_t most_buckets = 1000;  // of the overview over time
-  std::size_t most_events = 1000;   // listed; all are counted
-  std::size_t most_scatter = 4000;  // temperature-interval pairs kept
-  std::size_t most_temperature_bins = 100;
+  std::size_t max_buckets = 1000;  // of the overview over time
+  std::size_t max_events = 1000;   // listed; all are counted
+  std::size_t max_scatter = 4000;  // temperature-interval pairs kept
+  std::size_t max_temperature_bins = 100;
   std::size_t close_up = 40; // intervals on each side of the first pair
-  std::size_t longest_allan_samples = 1u << 18;
-  std::size_t most_distinct_intervals = 1u << 20;
+  std::size_t max_allan_samples = 1u << 18;
+  std::size_t max_distinct_intervals = 1u << 20;
 };
 
 struct SampleClockStatistics {

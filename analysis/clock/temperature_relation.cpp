@@ -20,8 +20,8 @@ void TemperatureRelation::Moments::merge(const Moments& other) {
   squares += other.squares + difference * difference * a * b / (a + b);
 }
 
-TemperatureRelation::TemperatureRelation(std::size_t most_bins, std::size_t most_pairs)
-    : most_bins_(std::max<std::size_t>(most_bins, 2)), most_pairs_(std::max<std::size_t>(most_pairs, 2)) {}
+TemperatureRelation::TemperatureRelation(std::size_t max_bins, std::size_t max_pairs)
+    : max_bins_(std::max<std::size_t>(max_bins, 2)), max_pairs_(std::max<std::size_t>(max_pairs, 2)) {}
 
 void TemperatureRelation::add(double temperature_degc, std::int64_t interval_ns) {
   if (!std::isfinite(temperature_degc) || std::abs(temperature_degc) > 1e6) return;
@@ -31,7 +31,7 @@ void TemperatureRelation::add(double temperature_degc, std::int64_t interval_ns)
   interval_.add(interval);
   products_ += from_mean * (interval - interval_.mean);
   bins_[static_cast<std::int64_t>(std::floor(temperature_degc / bin_degc_))].add(interval);
-  while (bins_.size() > most_bins_)
+  while (bins_.size() > max_bins_)
     widen_bins();
   if ((interval_.count - 1) % every_ == 0) keep_pair(temperature_degc, interval);
 }
@@ -45,13 +45,13 @@ void TemperatureRelation::widen_bins() {
 }
 
 void TemperatureRelation::keep_pair(double temperature_degc, double interval_ns) {
-  if (pair_intervals_ns_.size() == most_pairs_) {
-    for (std::size_t i = 0; 2 * i < most_pairs_; ++i) {
+  if (pair_intervals_ns_.size() == max_pairs_) {
+    for (std::size_t i = 0; 2 * i < max_pairs_; ++i) {
       pair_temperatures_degc_[i] = pair_temperatures_degc_[2 * i];
       pair_intervals_ns_[i] = pair_intervals_ns_[2 * i];
     }
-    pair_temperatures_degc_.resize((most_pairs_ + 1) / 2);
-    pair_intervals_ns_.resize((most_pairs_ + 1) / 2);
+    pair_temperatures_degc_.resize((max_pairs_ + 1) / 2);
+    pair_intervals_ns_.resize((max_pairs_ + 1) / 2);
     every_ *= 2;
     if ((interval_.count - 1) % every_ != 0) return;
   }

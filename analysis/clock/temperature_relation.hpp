@@ -20,7 +20,7 @@ struct TemperatureBin {
 
 class TemperatureRelation {
 public:
-  TemperatureRelation(std::size_t most_bins, std::size_t most_pairs);
+  TemperatureRelation(std::size_t max_bins, std::size_t max_pairs);
 
   void add(double temperature_degc, std::int64_t interval_ns);
 
@@ -41,8 +41,8 @@ private:
   void widen_bins();
   void keep_pair(double temperature_degc, double interval_ns);
 
-  std::size_t most_bins_;
-  std::size_t most_pairs_;
+  std::size_t max_bins_;
+  std::size_t max_pairs_;
   double bin_degc_ = 0.01;
   std::map<std::int64_t, Moments> bins_; // by temperature / width, rounded down
   Moments temperature_;

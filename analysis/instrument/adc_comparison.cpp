@@ -30,13 +30,13 @@ bool usable(const SyncPhasor& sync) {
 
 } // namespace
 
-Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau, double longest_apart_s,
+Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau, double max_apart_s,
                                          const AdcComparisonUncertainty& uncertainty) {
   if (!usable(acs) || !usable(dau)) {
     return tl::unexpected(Error{ErrorCode::invalid_argument, "a sync signal has no amplitude or no frequency"});
   }
   const double apart_s = static_cast<double>(dau.reference_ns - acs.reference_ns) * 1e-9;
-  if (!(std::abs(apart_s) <= longest_apart_s)) {
+  if (!(std::abs(apart_s) <= max_apart_s)) {
     return tl::unexpected(Error{ErrorCode::invalid_argument, "the records of the two systems lie " + std::to_string(apart_s) +
                                                                  " s apart: their stamps are not on one time scale"});
   }

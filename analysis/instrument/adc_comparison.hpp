@@ -10,7 +10,7 @@
 // The lag contains the instant of sampling after the stamp (data-ready to conversion): that belongs to the correction.
 // Uncertainty, noise of this step: fits, and their frequencies over the way to t. Common to steps: w u_time_scale and the analogue system's
 // own sync channel: its delay and its gain are taken as known within their uncertainties.
-// Fails: invalid_argument (a phasor without amplitude or frequency, or reference instants further apart than `longest_apart_s`: then they
+// Fails: invalid_argument (a phasor without amplitude or frequency, or reference instants further apart than `max_apart_s`: then they
 // are not on one time scale, or not of one step). Any thread.
 #pragma once
 
@@ -44,7 +44,7 @@ struct AdcComparison {
   double sync_vpp = 0.0; // as the analogue system saw it
 };
 
-[[nodiscard]] Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau, double longest_apart_s,
+[[nodiscard]] Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau, double max_apart_s,
                                                        const AdcComparisonUncertainty& uncertainty);
 
 } // namespace dyncal::analysis

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t counter_period = std::uint64_t{1} << 32;
 constexpr std::size_t edges_ahead = 6;           // of the same input, looked at to tell a glitch from a restart
-constexpr std::int64_t longest_gap_s = 3600;     // of a counter that does not wrap
-constexpr double shortest_second_ticks = 1000.0; // a slower counter cannot stamp anything
+constexpr std::int64_t max_gap_s = 3600;     // of a counter that does not wrap
+constexpr double min_second_ticks = 1000.0; // a slower counter cannot stamp anything
 constexpr std::array inputs{PulseInput::gps, PulseInput::reference};
 
 std::size_t index_of(PulseInput input) {
@@ -92,7 +92,7 @@ private:
   [[nodiscard]] std::optional<std::int64_t> seconds_between(std::size_t from, std::size_t to, double second_ticks) const {
     const auto ticks = static_cast<double>(counter_.onwards(record_[from], record_[to]));
     const double seconds = std::round(ticks / second_ticks);
-    const bool on_grid = seconds >= 1.0 && seconds <= static_cast<double>(longest_gap_s) &&
+    const bool on_grid = seconds >= 1.0 && seconds <= static_cast<double>(max_gap_s) &&
                          std::abs(ticks - seconds * second_ticks) <= tolerance_s_ * second_ticks;
     return on_grid ? std::optional(static_cast<std::int64_t>(seconds)) : std::nullopt;
   }
@@ -211,7 +211,7 @@ Expected<SortedPulses> sort_pulse_edges(std::span<const PulseEdge> record, const
   if (!(settings.tolerance_s > 0.0 && settings.tolerance_s < 0.1))
     return tl::unexpected(Error{ErrorCode::invalid_argument, "the tolerance of a pulse must be above 0 and below 0.1 s"});
   const double second_ticks = record.size() < 3 ? 0.0 : usual_interval(record, Counter(record), settings.tolerance_s);
-  if (!(second_ticks >= shortest_second_ticks))
+  if (!(second_ticks >= min_second_ticks))
     return tl::unexpected(Error{ErrorCode::too_few_samples, "the record has no edges that are a second apart"});
   SortedPulses sorted = Sorter(record, settings.tolerance_s, second_ticks).sort();
   std::size_t kept = 0;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t figures_of_clock = 60;
 constexpr std::size_t trusted_figures = 2;
-constexpr std::size_t fewest_blocks = 16;
-constexpr std::size_t fewest_allan_terms = 8;
+constexpr std::size_t min_blocks = 16;
+constexpr std::size_t min_allan_terms = 8;
 
 // The unit's clock as its firmware keeps it: origin and rate from the GPS edges up to now.
 class UnitClock {
@@ -56,7 +56,7 @@ double sd_of(std::span<const double> values) {
 
 double u_mean_by_blocks(std::vector<double> blocks) {
   double u = sd_of(blocks) / std::sqrt(static_cast<double>(blocks.size()));
-  while (blocks.size() / 2 >= fewest_blocks) {
+  while (blocks.size() / 2 >= min_blocks) {
     for (std::size_t i = 0; i < blocks.size() / 2; ++i)
       blocks[i] = 0.5 * (blocks[2 * i] + blocks[2 * i + 1]);
     blocks.resize(blocks.size() / 2);
@@ -143,21 +143,21 @@ void add_drift(StampDeviationStatistics& statistics, const std::vector<double>& 
   statistics.u_drift = sd_of(residuals) * std::sqrt(inflation / squares);
 }
 
-std::vector<AllanPoint> allan_of_longest_stretch(const std::vector<Raw>& raws) {
-  std::size_t longest_begin = 0, longest = 0;
+std::vector<AllanPoint> allan_of_max_stretch(const std::vector<Raw>& raws) {
+  std::size_t max_begin = 0, longest = 0;
   for (std::size_t begin = 0, i = 0; i < raws.size(); ++i) {
     const bool follows = i > begin && raws[i].at.session == raws[i - 1].at.session && raws[i].second == raws[i - 1].second + 1;
     if (!follows) begin = i;
     if (i + 1 - begin > longest) {
       longest = i + 1 - begin;
-      longest_begin = begin;
+      max_begin = begin;
     }
   }
   std::vector<double> phases_s;
   for (std::size_t i = 0; i < longest; ++i)
-    phases_s.push_back(raws[longest_begin + i].rest_s - raws[longest_begin].rest_s);
+    phases_s.push_back(raws[max_begin + i].rest_s - raws[max_begin].rest_s);
   std::vector<AllanPoint> points;
-  for (std::size_t m = 1; phases_s.size() >= 2 * m + std::max(m, fewest_allan_terms); m *= 2)
+  for (std::size_t m = 1; phases_s.size() >= 2 * m + std::max(m, min_allan_terms); m *= 2)
     points.push_back({static_cast<double>(m), overlapping_allan_deviation(phases_s, 1.0, m)});
   return points;
 }
@@ -218,7 +218,7 @@ Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses, 
   statistics.quantile_025_s = quantile(sorted, 0.025);
   statistics.quantile_975_s = quantile(sorted, 0.975);
   add_drift(statistics, deviations_s);
-  statistics.allan = allan_of_longest_stretch(raws);
+  statistics.allan = allan_of_max_stretch(raws);
   return statistics;
 }
 

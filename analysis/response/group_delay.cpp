@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double weakest_phase_rad = 0.5; // a point less certain than this does not count
-constexpr std::size_t fewest_to_search = 6;
+constexpr std::size_t min_to_search = 6;
 
 tl::unexpected<Error> failure(ErrorCode code, std::string message) {
   return tl::unexpected(Error{code, std::move(message)});
@@ -53,7 +53,7 @@ double agreement(const std::vector<PhasePoint>& points, double delay_s) {
 
 // The delay for which all phases agree best; empty when chance could do as well (once in a thousand).
 std::optional<double> search_delay(const std::vector<PhasePoint>& points) {
-  if (points.size() < fewest_to_search) return std::nullopt;
+  if (points.size() < min_to_search) return std::nullopt;
   double spacing = points[1].frequency_hz - points[0].frequency_hz;
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
     spacing = std::min(spacing, points[i + 1].frequency_hz - points[i].frequency_hz);

@@ -195,10 +195,10 @@ private:
 
 // Gauss-Newton steps as long as they become shorter.
 Expected<Linearised> polish(const LeastSquaresProblem& problem, std::vector<double>& parameters) {
-  constexpr int most_steps = 50;
+  constexpr int max_steps = 50;
   auto here = Linearised::at(problem, parameters);
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; here && i < most_steps; ++i) {
+  for (int i = 0; here && i < max_steps; ++i) {
     const Eigen::VectorXd step = here->step();
     double size = 0.0;
     std::vector<double> next(parameters);

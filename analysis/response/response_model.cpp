@@ -15,7 +15,7 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::size_t most_parameters = 5;
+constexpr std::size_t max_parameters = 5;
 
 tl::unexpected<Error> failure(ErrorCode code, std::string message) {
   return tl::unexpected(Error{code, std::move(message)});
@@ -87,7 +87,7 @@ public:
       : layout_(layout), inverted_(inverted), points_(points), whitening_(std::move(whitening)) {}
 
   bool operator()(std::span<const double> x, std::span<double> residuals, std::span<double> jacobian) const {
-    using Jet = ceres::Jet<double, static_cast<int>(most_parameters)>;
+    using Jet = ceres::Jet<double, static_cast<int>(max_parameters)>;
     const auto n = static_cast<Eigen::Index>(points_.size());
     const auto p = static_cast<Eigen::Index>(layout_.size());
     std::vector<Jet> jets;

@@ -8,7 +8,7 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double least_reciprocal_condition = 1e-6;
+constexpr double min_reciprocal_condition = 1e-6;
 
 tl::unexpected<Error> failure(ErrorCode code, std::string message) {
   return tl::unexpected(Error{code, std::move(message)});
@@ -32,7 +32,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
   const auto& singular = decomposition.singularValues();
   TriaxialResponse result;
   result.reciprocal_condition = singular(0) > 0.0 ? singular(2) / singular(0) : 0.0;
-  if (!(result.reciprocal_condition > least_reciprocal_condition))
+  if (!(result.reciprocal_condition > min_reciprocal_condition))
     return failure(ErrorCode::ill_conditioned, "the excitations do not move the sensor in three different directions");
   const Eigen::MatrixXcd inverse =
       decomposition.matrixV() * singular.cwiseInverse().asDiagonal() * decomposition.matrixU().adjoint(); // n x 3

@@ -13,10 +13,10 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr int highest_harmonic = 10;
+constexpr int max_harmonic = 10;
 constexpr std::array mains_hz{50.0, 100.0, 150.0, 60.0, 120.0, 180.0};
 constexpr double usable_part_of_rate = 0.45;
-constexpr double least_distance = 1.5; // in 1 / T
+constexpr double min_distance = 1.5; // in 1 / T
 constexpr double significant = 4.5;    // standard uncertainties
 
 struct Candidate {
@@ -27,11 +27,11 @@ struct Candidate {
 std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, double duration_s) {
   std::vector<Candidate> result;
   const double f = frequency.hz();
-  for (int k = 2; k <= highest_harmonic && k * f < usable_part_of_rate * rate_hz; ++k)
+  for (int k = 2; k <= max_harmonic && k * f < usable_part_of_rate * rate_hz; ++k)
     result.push_back({frequency.shifted_by_hz((k - 1) * f), k});
   for (const double line : mains_hz) {
     const double distance = std::abs(line - f * std::max(1.0, std::round(line / f)));
-    if (line < usable_part_of_rate * rate_hz && distance * duration_s > least_distance) result.push_back({Frequency::from_hz(line), 0});
+    if (line < usable_part_of_rate * rate_hz && distance * duration_s > min_distance) result.push_back({Frequency::from_hz(line), 0});
   }
   return result;
 }
@@ -39,9 +39,9 @@ std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, do
 // Sine and cosine of a frequency for some samples at a time, so that they stay in the cache.
 class SineBlock {
 public:
-  static constexpr std::size_t most_samples = 512;
+  static constexpr std::size_t max_samples = 512;
 
-  // About `origin_ns`. REQUIRES: at most `most_samples`.
+  // About `origin_ns`. REQUIRES: at most `max_samples`.
   void fill(const Frequency& frequency, std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns) {
     samples_ = stamps_ns.size();
     fill_sine_cosine(frequency, origin_ns, stamps_ns, sine_.data(), cosine_.data());
@@ -54,7 +54,7 @@ public:
   }
 
 private:
-  std::array<double, most_samples> sine_, cosine_;
+  std::array<double, max_samples> sine_, cosine_;
   std::size_t samples_ = 0;
 };
 
@@ -67,8 +67,8 @@ std::complex<double> turned(const Frequency& frequency, std::complex<double> pha
 // Calls with the first index of every stretch of samples that a SineBlock holds, and their number.
 template <class Visit>
 void for_each_block(std::size_t samples, Visit visit) {
-  for (std::size_t i = 0; i < samples; i += SineBlock::most_samples)
-    visit(i, std::min(SineBlock::most_samples, samples - i));
+  for (std::size_t i = 0; i < samples; i += SineBlock::max_samples)
+    visit(i, std::min(SineBlock::max_samples, samples - i));
 }
 
 // The channels without the sine that was fitted and the offset, one after the other.
@@ -90,7 +90,7 @@ std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t 
 
 struct Disturbances { // of one channel
   ExtendedBasis basis;
-  [[nodiscard]] bool any() const { return basis.highest_harmonic > 1 || !basis.lines.empty(); }
+  [[nodiscard]] bool any() const { return basis.max_harmonic > 1 || !basis.lines.empty(); }
 };
 
 std::vector<Disturbances> search(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
@@ -112,7 +112,7 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
       const SineFit& line = (*lines)[j];
       if (!(line.amplitude() > significant * line.u_amplitude())) continue;
       if (candidate.harmonic > 0) {
-        found[j].basis.highest_harmonic = candidate.harmonic;
+        found[j].basis.max_harmonic = candidate.harmonic;
       } else {
         found[j].basis.lines.push_back(candidate.frequency);
       }

@@ -5,8 +5,8 @@
 namespace dyncal::analysis::kernel {
 namespace {
 
-constexpr int most_harmonics = 100;
-constexpr int highest_drift = 8;
+constexpr int max_harmonics = 100;
+constexpr int max_drift = 8;
 
 tl::unexpected<Error> refuse(const char* message) {
   return tl::unexpected(Error{ErrorCode::invalid_argument, message});
@@ -16,15 +16,15 @@ tl::unexpected<Error> refuse(const char* message) {
 
 std::size_t SineBasis::columns_of(const ExtendedBasis& basis) {
   const auto drift = static_cast<std::size_t>(std::max(0, basis.drift_order));
-  const auto harmonics = static_cast<std::size_t>(std::max(1, basis.highest_harmonic) - 1);
+  const auto harmonics = static_cast<std::size_t>(std::max(1, basis.max_harmonic) - 1);
   return 3 + drift + 2 * (harmonics + basis.lines.size()) + (basis.drifting_phasor ? 2 : 0);
 }
 
 Expected<SineBasis> SineBasis::make(const Record& record, const Frequency& frequency, const ExtendedBasis& basis) {
-  if (basis.drift_order < 0 || basis.drift_order > highest_drift) return refuse("the order of the drift must be 0 to 8");
-  if (basis.highest_harmonic < 1 || basis.highest_harmonic > most_harmonics) return refuse("the highest harmonic must be 1 to 100");
+  if (basis.drift_order < 0 || basis.drift_order > max_drift) return refuse("the order of the drift must be 0 to 8");
+  if (basis.max_harmonic < 1 || basis.max_harmonic > max_harmonics) return refuse("the highest harmonic must be 1 to 100");
   std::vector<Frequency> frequencies{frequency};
-  for (int h = 2; h <= basis.highest_harmonic; ++h)
+  for (int h = 2; h <= basis.max_harmonic; ++h)
     frequencies.push_back(frequency.multiple(h));
   frequencies.insert(frequencies.end(), basis.lines.begin(), basis.lines.end());
   for (const Frequency& one : frequencies) {

@@ -16,9 +16,9 @@ namespace {
 
 using namespace kernel;
 
-constexpr double smallest_rcond = 1e-10;
-constexpr int most_refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
-constexpr int most_reweightings = 200;
+constexpr double min_rcond = 1e-10;
+constexpr int max_refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
+constexpr int max_reweightings = 200;
 constexpr double settled = 1e-12; // change of the parameters against their size
 
 // Normal equations of one channel for the change of its coefficients.
@@ -97,11 +97,11 @@ public:
   explicit ScaledInverse(const Eigen::MatrixXd& normal) : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale_.asDiagonal() * normal * scale_.asDiagonal());
     rcond_ = eigen.eigenvalues().minCoeff() / eigen.eigenvalues().maxCoeff();
-    if (!(rcond_ > smallest_rcond)) return;
+    if (!(rcond_ > min_rcond)) return;
     inverse_ = scale_.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                eigen.eigenvectors().transpose() * scale_.asDiagonal();
   }
-  [[nodiscard]] bool usable() const { return rcond_ > smallest_rcond; }
+  [[nodiscard]] bool usable() const { return rcond_ > min_rcond; }
   [[nodiscard]] const Eigen::MatrixXd& matrix() const { return inverse_; }
 
 private:
@@ -140,7 +140,7 @@ Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequen
   if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
   result.inverse = inverse.matrix();
   result.coefficients += result.inverse * first->right;
-  for (int i = 0; i < most_refinements; ++i) {
+  for (int i = 0; i < max_refinements; ++i) {
     const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
     if (!again) return tl::unexpected(again.error());
     const Eigen::VectorXd step = result.inverse * again->right;
@@ -165,7 +165,7 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
   auto sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
   if (!sums) return tl::unexpected(sums.error());
   double scale = scale_of(residuals, result.coefficients, work);
-  for (int iteration = 0; iteration < most_reweightings; ++iteration) {
+  for (int iteration = 0; iteration < max_reweightings; ++iteration) {
     std::transform(residuals.begin(), residuals.end(), weights.begin(), [&](double r) { return robust_weight(weighting, r, scale); });
     sums = fitter.pass(values, result.coefficients, weights, nullptr, true);
     if (!sums) return tl::unexpected(sums.error());
@@ -237,7 +237,7 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const 
   }
   for (std::size_t line = 1; line < basis.frequencies().size(); ++line) {
     const FurtherPhasor phasor = further_phasor(solution, basis.sine_column(line), basis.frequencies()[line].hz(), turns(line));
-    (line < static_cast<std::size_t>(wanted.highest_harmonic) ? fit.harmonics : fit.lines).push_back(phasor);
+    (line < static_cast<std::size_t>(wanted.max_harmonic) ? fit.harmonics : fit.lines).push_back(phasor);
   }
   if (wanted.drifting_phasor) {
     fit.phasor_drift = further_phasor(solution, basis.phasor_drift_column(), basis.frequencies()[0].hz(), turns(0));

@@ -3,7 +3,7 @@
 // Model, channel j, u = (t - t_m) / (T/2) in [-1, 1], t_m the middle and T the length of the record:
 //   y_j(t) = A sin(w (t - t_ref)) + B cos(w (t - t_ref)) + C
 //          + sum_k d_k u^k                                    drift, k = 1..drift_order
-//          + sum_h (A_h sin(h w (t - t_ref)) + B_h cos(...))   harmonics, h = 2..highest_harmonic
+//          + sum_h (A_h sin(h w (t - t_ref)) + B_h cos(...))   harmonics, h = 2..max_harmonic
 //          + sum_l (A_l sin(w_l (t - t_ref)) + B_l cos(...))   further lines: hum, neighbouring excitation
 //          + u (A' sin(w (t - t_ref)) + B' cos(...))           linear drift of amplitude and phase
 // C is the level in the middle of the record; with a drifting phasor A and B are those in the middle. Sign, phase and units are
@@ -30,7 +30,7 @@ namespace dyncal::analysis {
 
 struct ExtendedBasis {
   int drift_order = 0;
-  int highest_harmonic = 1;
+  int max_harmonic = 1;
   std::vector<Frequency> lines;
   bool drifting_phasor = false;
 };

@@ -11,8 +11,8 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr std::size_t fewest_samples = 8;
-constexpr std::size_t longest_grid = std::size_t{1} << 20U;
+constexpr std::size_t min_samples = 8;
+constexpr std::size_t max_grid = std::size_t{1} << 20U;
 
 Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::int64_t> intervals;
@@ -62,7 +62,7 @@ double interpolated_bin(const std::vector<double>& power, std::size_t peak) {
 } // namespace
 
 Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> columns) {
-  if (stamps_ns.size() < fewest_samples) {
+  if (stamps_ns.size() < min_samples) {
     return tl::unexpected(Error{ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency"});
   }
   const auto interval_ns = median_interval_ns(stamps_ns);
@@ -72,7 +72,7 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, 
   std::vector<std::size_t> places;
   for (const std::int64_t stamp : stamps_ns) {
     const auto place = static_cast<std::size_t>((stamp - stamps_ns.front() + *interval_ns / 2) / *interval_ns);
-    if (place >= longest_grid) {
+    if (place >= max_grid) {
       break;
     }
     places.push_back(place);

@@ -17,8 +17,8 @@ using Complex = std::complex<double>;
 
 constexpr double basin_bins = 0.3; // from here the iteration always arrives
 constexpr double grid_step_bins = 0.4;
-constexpr double fewest_cycles = 8.0; // below, the image at -f disturbs a Fourier transform
-constexpr double fewest_bins = 4.0;   // below, a grid is cheaper
+constexpr double min_cycles = 8.0; // below, the image at -f disturbs a Fourier transform
+constexpr double min_bins = 4.0;   // below, a grid is cheaper
 constexpr std::size_t part_samples = 1024;
 constexpr std::size_t padding = 2; // of the transform
 constexpr std::size_t groups_a_cell = 2;
@@ -213,7 +213,7 @@ Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start
 Expected<Frequency> search_frequency(const Record& record, const Frequency& start, double search_rel) {
   const double half_range_bins = search_rel * start.hz() * record.span_s();
   if (half_range_bins <= basin_bins) return start;
-  const bool grid = half_range_bins < fewest_bins || start.hz() * (1.0 - search_rel) * record.span_s() < fewest_cycles;
+  const bool grid = half_range_bins < min_bins || start.hz() * (1.0 - search_rel) * record.span_s() < min_cycles;
   const double bin_hz = 1.0 / record.span_s();
   const auto search = [&](bool whole) -> Expected<GridPoint> {
     if (!grid) return search_spectrum(record, start, half_range_bins, whole);

@@ -187,11 +187,11 @@ SlopeProfile profile_slope(const ShiftedSums& sums, const NormalMatrix& m, const
 
 FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<const Parameters> start, double delta, double limit,
                                   double settled) {
-  constexpr int most_steps = 60;
+  constexpr int max_steps = 60;
   FrequencySolution result;
   ShiftedSums sums;
   result.delta = delta;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     shift_sums(segments, start, result.delta, sums);
     result.matrix = NormalMatrix(sums.n, sums.design);
     result.channels.clear();

@@ -20,7 +20,7 @@ constexpr std::size_t pilot_samples = pilot_groups * lanes;
 
 // Without start values for sine and cosine a pass is quicker, but the residual sum of squares is the difference of numbers this many
 // times as large: 10 digits of it are kept.
-constexpr double most_cancellation = 1e6;
+constexpr double max_cancellation = 1e6;
 
 struct Start {
   std::vector<Parameters> parameters;
@@ -62,7 +62,7 @@ Expected<Start> pilot(const Record& record, const Frequency& frequency, bool pla
     if (matrix.smallest > 1e-2) {
       const Solution solution = solve(matrix, sums->channels[j], p);
       p = solution.p;
-      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples < most_cancellation * solution.rss;
+      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples < max_cancellation * solution.rss;
     } else {
       p.offset += sums->channels[j].e / sums->samples;
     }
@@ -147,8 +147,8 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
   if (!start) return tl::unexpected(start.error());
 
   std::vector<SineFit> fits(channels.size());
-  constexpr int most_passes = 3;
-  for (int pass = 1; pass <= most_passes; ++pass) {
+  constexpr int max_passes = 3;
+  for (int pass = 1; pass <= max_passes; ++pass) {
     const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid) : accumulate(*record, frequency, start->parameters);
     if (!sums) return tl::unexpected(sums.error());
     if (!all_finite(*sums)) return tl::unexpected(record->not_finite());
@@ -159,7 +159,7 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
       const Solution solution = solve(matrix, sums->channels[j], start->parameters[j]);
       fits[j] = fit_from(*record, matrix, solution);
       start->parameters[j] = solution.p;
-      again |= too_far(matrix, solution, start->plain ? 4.0 * most_cancellation : 4.0);
+      again |= too_far(matrix, solution, start->plain ? 4.0 * max_cancellation : 4.0);
     }
     if (!again) break;
     start->plain = false;

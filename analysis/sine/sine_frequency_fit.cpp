@@ -16,7 +16,7 @@ namespace {
 
 using namespace kernel;
 
-constexpr int most_passes = 40;
+constexpr int max_passes = 40;
 constexpr std::size_t long_record = 16 * block_samples; // its first passes look at a part of it
 constexpr double series_limit = 0.5;                    // rad over half the record that one series may be moved
 constexpr double allowed_error_rad = 1e-11;             // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
@@ -74,7 +74,7 @@ void move_on(const Record& record, Estimate& estimate) {
 
 // Passes over the selection until the error is allowed.
 Expected<void> iterate(const Record& record, Selection selection, double allowed, Estimate& estimate) {
-  while (estimate.passes < most_passes) {
+  while (estimate.passes < max_passes) {
     double error = 0.0;
     if (auto done = pass(record, selection, estimate, error); !done) return done;
     if (error < allowed) return {};

@@ -10,10 +10,10 @@ namespace dyncal::analysis::kernel {
 namespace {
 
 // The kernel's limit is 2^51 ns on either side of the origin.
-constexpr std::int64_t longest_span_ns = std::int64_t{1} << 51;
+constexpr std::int64_t max_span_ns = std::int64_t{1} << 51;
 
 // Of blocks beside the grid, before it is given up.
-constexpr std::size_t most_left_over = 8;
+constexpr std::size_t max_left_over = 8;
 
 tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected(Error{code, std::move(message)});
@@ -142,7 +142,7 @@ Expected<Record> Record::make(std::span<const std::int64_t> stamps_ns, Channels 
   if (overflow ? stamps_ns.back() < stamps_ns.front() : span <= 0) {
     return fail(ErrorCode::stamps_not_increasing, "the last stamp of the record is not later than the first; sort the record by time");
   }
-  if (overflow || span > longest_span_ns) {
+  if (overflow || span > max_span_ns) {
     return fail(ErrorCode::invalid_argument, "the record spans more than 26 days; evaluate it in parts");
   }
   return Record(stamps_ns, channels);
@@ -229,7 +229,7 @@ Expected<PassSums> accumulate(const Record& record, const Frequency& frequency, 
   for (std::size_t i = 0; i < record.size();) {
     const std::size_t rest = record.size() - i;
     const std::size_t near =
-        left_over < most_left_over ? stretches.add_on_grid(i, std::min(rest / lanes * lanes, grid_call_samples), grid) : 0;
+        left_over < max_left_over ? stretches.add_on_grid(i, std::min(rest / lanes * lanes, grid_call_samples), grid) : 0;
     left_over -= std::min(left_over, near / grid_samples);
     i += near;
     if (near > 0 || i == record.size()) continue;

@@ -24,8 +24,8 @@ struct NormalMatrix {
   NormalMatrix(double samples, const DesignSums& sums);
 
   // Below this the parameters cannot be told apart: less than about a hundredth of a cycle, or a stroboscopic rate.
-  static constexpr double smallest_allowed = 1e-8;
-  [[nodiscard]] bool well_conditioned() const { return smallest > smallest_allowed; }
+  static constexpr double min_allowed = 1e-8;
+  [[nodiscard]] bool well_conditioned() const { return smallest > min_allowed; }
 };
 
 struct Solution {

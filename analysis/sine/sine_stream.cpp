@@ -9,7 +9,7 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr std::int64_t gap_intervals = 64; // a block ends before an interval this many times the one before
-constexpr std::int64_t longest_span_ns = std::int64_t{1} << 50;
+constexpr std::int64_t max_span_ns = std::int64_t{1} << 50;
 
 } // namespace
 
@@ -37,7 +37,7 @@ Expected<void> SineStream::State::check(std::span<const std::int64_t> stamps, st
     return fail(ErrorCode::stamps_not_increasing, "a stamp is not later than the one before; remove duplicates and sort by time");
   std::int64_t span = 0;
   const std::int64_t first = samples() == 0 ? stamps[0] : first_ns_;
-  if (__builtin_sub_overflow(stamps.back(), first, &span) || span > longest_span_ns) {
+  if (__builtin_sub_overflow(stamps.back(), first, &span) || span > max_span_ns) {
     return fail(ErrorCode::invalid_argument, "the stream spans more than 13 days; evaluate it in parts");
   }
   return {};
@@ -167,7 +167,7 @@ void SineStream::State::close_block() {
   std::swap(samples_, full_);
   samples_.filled = 0;
   if (full_.filled > 1)
-    highest_rate_hz_ = std::max(highest_rate_hz_, static_cast<double>(full_.filled - 1) / (2.0 * full_.half_length_s()));
+    max_rate_hz_ = std::max(max_rate_hz_, static_cast<double>(full_.filled - 1) / (2.0 * full_.half_length_s()));
   ++closed_;
   reduction_.begin(start_.size());
 }
@@ -179,9 +179,9 @@ Expected<void> SineStream::State::ready(std::size_t parameters) const {
                                                 std::to_string(parameters + 1));
   }
   if (closed_ == 0) return {};
-  if (frequency_.hz() > 0.5 * highest_rate_hz_) {
+  if (frequency_.hz() > 0.5 * max_rate_hz_) {
     return fail(ErrorCode::frequency_out_of_range, "the frequency of " + std::to_string(frequency_.hz()) +
-                                                       " Hz is above half the sample rate of " + std::to_string(highest_rate_hz_) + " Hz");
+                                                       " Hz is above half the sample rate of " + std::to_string(max_rate_hz_) + " Hz");
   }
   return {};
 }

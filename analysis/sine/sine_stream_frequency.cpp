@@ -31,10 +31,10 @@ double SineStream::State::misfit(std::span<const Segment> segments, double delta
 double SineStream::State::search(std::span<const Segment> segments, double half_range) const {
   const double bin = 2.0 * std::numbers::pi / span_s();
   constexpr double basin_bins = 0.3;
-  constexpr double fewest_bins = 4.0;
-  constexpr double fewest_cycles = 8.0;
+  constexpr double min_bins = 4.0;
+  constexpr double min_cycles = 8.0;
   if (half_range <= basin_bins * bin) return 0.0;
-  const bool few = half_range < fewest_bins * bin || frequency_.angular() - half_range < fewest_cycles * bin;
+  const bool few = half_range < min_bins * bin || frequency_.angular() - half_range < min_cycles * bin;
   const double step_bins = few ? 0.4 : 0.25;
   const int half = static_cast<int>(std::ceil(half_range / (step_bins * bin)));
   const double step = half_range / half;

@@ -124,7 +124,7 @@ private:
   kernel::Totals totals_;
   std::deque<kernel::Block> blocks_; // closed_ of them, and perhaps one whose memory is ready for the open block
   std::size_t closed_ = 0;
-  double highest_rate_hz_ = 0.0; // mean of a block
+  double max_rate_hz_ = 0.0; // mean of a block
 
   // Where a result is put together, so that it needs no fresh memory.
   struct OpenBlock {

@@ -12,16 +12,16 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::int64_t longest_frame_ns = 100'000'000;
-constexpr double most_periods = 50.0;          // more, and a frequency 1e-3 off would fade within the frame
-constexpr std::size_t fewest_samples = 8;      // of a frame that can be judged
-constexpr double largest_residual_power = 0.1; // of the power of the sine: 10 dB
+constexpr std::int64_t max_frame_ns = 100'000'000;
+constexpr double max_periods = 50.0;          // more, and a frequency 1e-3 off would fade within the frame
+constexpr std::size_t min_samples = 8;      // of a frame that can be judged
+constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
 constexpr double phase_margin_rad = 0.15;
 constexpr double slice_s = 0.05;
 
 std::int64_t frame_length_ns(const Frequency& frequency) {
   const double period_ns = 1e9 / frequency.hz();
-  return std::llround(std::max(period_ns, std::min(static_cast<double>(longest_frame_ns), most_periods * period_ns)));
+  return std::llround(std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns)));
 }
 
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
@@ -124,7 +124,7 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   Frame frame;
   frame.index = open_index_;
   const std::size_t n = stamps_ns_.size();
-  if (n < fewest_samples || stamps_ns_.back() - stamps_ns_.front() < frame_ns_ / 2) return frame;
+  if (n < min_samples || stamps_ns_.back() - stamps_ns_.front() < frame_ns_ / 2) return frame;
 
   const std::int64_t centre_ns = open_index_ * frame_ns_ + frame_ns_ / 2;
   const double count = static_cast<double>(n);
@@ -175,10 +175,10 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
           values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
       power += residual * residual;
       slice_power += residual * residual;
-      frame.largest_residual = std::max(frame.largest_residual, std::abs(residual));
+      frame.max_residual = std::max(frame.max_residual, std::abs(residual));
     }
     const double rms = i > first ? std::sqrt(slice_power / static_cast<double>(i - first)) : 0.0;
-    frame.largest_neighbours_rms = std::max(frame.largest_neighbours_rms, std::min(before, rms));
+    frame.max_neighbours_rms = std::max(frame.max_neighbours_rms, std::min(before, rms));
     before = rms;
   }
   frame.amplitude = std::hypot(sine, cosine);
@@ -191,7 +191,7 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
 
 bool ExcitationWindowFinder::starts(const Frame& frame) const {
   const double residual_power = frame.residual_rms * frame.residual_rms;
-  return frame.amplitude > 0.0 && residual_power < largest_residual_power * 0.5 * frame.amplitude * frame.amplitude;
+  return frame.amplitude > 0.0 && residual_power < max_residual_power * 0.5 * frame.amplitude * frame.amplitude;
 }
 
 double ExcitationWindowFinder::mean_advance_rad() const {
@@ -204,23 +204,23 @@ double ExcitationWindowFinder::mean_advance_rad() const {
 bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad) const {
   const Frame& last = run_.back();
   const double step = static_cast<double>(frame.index - last.index);
-  if ((step - 1.0) * static_cast<double>(frame_ns_) * 1e-9 > settings_.longest_gap_s) return false;
-  if (static_cast<double>(frame.index - run_.front().index) * static_cast<double>(frame_ns_) * 1e-9 > settings_.longest_s) return false;
+  if ((step - 1.0) * static_cast<double>(frame_ns_) * 1e-9 > settings_.max_gap_s) return false;
+  if (static_cast<double>(frame.index - run_.front().index) * static_cast<double>(frame_ns_) * 1e-9 > settings_.max_duration_s) return false;
   if (!starts(frame) || frame.amplitude < 0.5 * last.amplitude) return false;
   // An off-phase within a frame shows as neighbouring slices that the sine does not describe.
-  if (frame.largest_neighbours_rms > std::max(0.1 * frame.amplitude, 4.0 * last.residual_rms)) return false;
+  if (frame.max_neighbours_rms > std::max(0.1 * frame.amplitude, 4.0 * last.residual_rms)) return false;
 
   const double noise = 4.0 * std::hypot(frame.u_amplitude / frame.amplitude, last.u_amplitude / last.amplitude);
-  const double most_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 * settings_.frequency_tolerance_rel;
+  const double max_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 * settings_.frequency_tolerance_rel;
   const bool slope_known = run_.size() >= 3;
   const double advance = slope_known ? mean_advance_rad() : 0.0;
   const double span = static_cast<double>(last.index - run_.front().index);
   const double tolerance =
-      phase_margin_rad + noise + (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : most_advance * step);
+      phase_margin_rad + noise + (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : max_advance * step);
   const double deviation = wrapped(frame.phase_rad - last.phase_rad - advance * step);
   if (tolerance >= pi || std::abs(deviation) > tolerance) return false;
   unwrapped_rad = last.phase_rad + advance * step + deviation;
-  const double frequency_margin = most_advance + (phase_margin_rad + noise) / (span + step);
+  const double frequency_margin = max_advance + (phase_margin_rad + noise) / (span + step);
   return std::abs(unwrapped_rad - run_.front().phase_rad) <= frequency_margin * (span + step);
 }
 
@@ -269,10 +269,10 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
   if (best_end - best_begin > 3) {
     std::vector<double> residuals;
     for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i)
-      residuals.push_back(run_[i].largest_residual);
+      residuals.push_back(run_[i].max_residual);
     const double usual = median(std::move(residuals));
-    if (run_[best_begin].largest_residual > 1.6 * usual) ++best_begin;
-    if (run_[best_end - 1].largest_residual > 1.6 * usual) --best_end;
+    if (run_[best_begin].max_residual > 1.6 * usual) ++best_begin;
+    if (run_[best_end - 1].max_residual > 1.6 * usual) --best_end;
   }
   ExcitationWindow window;
   window.begin_ns = std::max(first_stamp_ns_, run_[best_begin].index * frame_ns_);
@@ -285,7 +285,7 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
       (run_[best_end - 1].phase_rad - run_[best_begin].phase_rad) /
       (2.0 * pi * frequency_.hz() * static_cast<double>((run_[best_end - 1].index - run_[best_begin].index) * frame_ns_) * 1e-9);
   window.frames = best_end - best_begin;
-  if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.shortest_s) return std::nullopt;
+  if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.min_duration_s) return std::nullopt;
   return window;
 }
 

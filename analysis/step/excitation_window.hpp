@@ -12,9 +12,9 @@
 // Lost samples leave frames thinner or empty; an excitation goes on across a gap when its phase does.
 //
 // Units: stamps int64 ns of any epoch; the window is half-open. Cost: O(samples), about one sine and cosine a sample; memory:
-// the samples of one frame and some 80 bytes for each frame of the excitation (bounded by `longest_s`).
+// the samples of one frame and some 80 bytes for each frame of the excitation (bounded by `max_duration_s`).
 // Samples that are not finite or not later than the one before are left out and counted.
-// Fails (no window): no stretch of at least two frames and `shortest_s` was found; the frame holds fewer than eight samples or
+// Fails (no window): no stretch of at least two frames and `min_duration_s` was found; the frame holds fewer than eight samples or
 // cannot tell sine from cosine (frequency at a multiple of half the sample rate).
 // One thread; no state shared between objects.
 #pragma once
@@ -32,9 +32,9 @@ namespace dyncal::analysis {
 struct ExcitationWindowSettings {
   double frequency_tolerance_rel = 1.5e-3; // generator and both clocks together
   double amplitude_tolerance_rel = 0.03;   // of the steady part
-  double shortest_s = 0.25;                // a shorter steady part is not a step
-  double longest_gap_s = 1.0;              // missing samples longer than this end the excitation
-  double longest_s = 3600.0;               // an excitation that lasts longer is closed there
+  double min_duration_s = 0.25;                // a shorter steady part is not a step
+  double max_gap_s = 1.0;              // missing samples longer than this end the excitation
+  double max_duration_s = 3600.0;               // an excitation that lasts longer is closed there
 };
 
 struct ExcitationWindow {
@@ -72,8 +72,8 @@ private:
     double u_amplitude = 0.0;
     double phase_rad = 0.0; // against the nominal frequency from origin_ns_ on, at the frame's centre; unwrapped in a run
     double residual_rms = 0.0;
-    double largest_residual = 0.0;
-    double largest_neighbours_rms = 0.0; // the larger of each two adjacent slices' smaller one
+    double max_residual = 0.0;
+    double max_neighbours_rms = 0.0; // the larger of each two adjacent slices' smaller one
     bool usable = false;
   };
 

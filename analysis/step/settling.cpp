@@ -11,8 +11,8 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double most_blocks = 64.0;
-constexpr double fewest_blocks = 8.0;
+constexpr double max_blocks = 64.0;
+constexpr double min_blocks = 8.0;
 constexpr double scatter_factor = 4.0;
 
 struct Block {
@@ -24,9 +24,9 @@ Expected<std::vector<Block>> block_phasors(const Frequency& frequency, std::span
                                            std::span<const double> values) {
   const double period_ns = 1e9 / frequency.hz();
   const double periods = std::floor(static_cast<double>(stamps_ns.back() - stamps_ns.front()) / period_ns);
-  const double periods_per_block = std::max(1.0, std::ceil(periods / most_blocks));
+  const double periods_per_block = std::max(1.0, std::ceil(periods / max_blocks));
   const double count = std::floor(periods / periods_per_block);
-  if (count < fewest_blocks)
+  if (count < min_blocks)
     return tl::unexpected(Error{ErrorCode::too_few_samples, "settling cannot be seen in fewer than eight periods"});
   const double block_ns = periods_per_block * period_ns;
   // Blocks end with the record, so that its end is what counts as settled.
@@ -79,7 +79,7 @@ Expected<Settling> find_settling(const Frequency& frequency, std::span<const std
     if (k + 1 >= blocks->size() || 2 * k >= blocks->size())
       return tl::unexpected(Error{ErrorCode::not_converged, "the excitation does not settle: less than half of the record is steady"});
     result.begin_ns = (*blocks)[k + 1].begin_ns;
-    result.largest_deviation = std::max(result.largest_deviation, deviation / size);
+    result.max_deviation = std::max(result.max_deviation, deviation / size);
   }
   result.settling_s = static_cast<double>(result.begin_ns - stamps_ns.front()) * 1e-9;
   return result;

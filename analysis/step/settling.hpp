@@ -25,7 +25,7 @@ struct SettlingSettings {
 struct Settling {
   std::int64_t begin_ns = 0;       // of the steady part: no sample before it belongs to it
   double settling_s = 0.0;         // from the record's start
-  double largest_deviation = 0.0;  // |P_k / P - 1| of the blocks left out, 0 when none was
+  double max_deviation = 0.0;  // |P_k / P - 1| of the blocks left out, 0 when none was
   double steady_scatter_rel = 0.0; // s / |P|
 };
 

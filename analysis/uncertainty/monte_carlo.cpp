@@ -152,7 +152,7 @@ Expected<MonteCarloResult> propagate_distributions(std::span<const InputQuantity
   auto draws = Draws::prepare(inputs, correlations, settings.seed);
   if (!draws) return tl::unexpected(draws.error());
   Gathering gathering(settings.probability);
-  for (std::size_t done = 0; done < std::max(settings.most_trials, batch); done += batch) {
+  for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
     for (std::size_t i = 0; i < batch; ++i) {
       const double value = model(draws->next());
       if (!std::isfinite(value)) return failure(ErrorCode::not_finite, "the measurement model gave no number for a drawn set of inputs");
@@ -215,7 +215,7 @@ Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point, std::spa
 
   const std::complex<double> corrections = point.h / quotient(estimates, phasors);
   Gathering magnitude(settings.probability), phase(settings.probability);
-  for (std::size_t done = 0; done < std::max(settings.most_trials, batch); done += batch) {
+  for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
     for (std::size_t i = 0; i < batch; ++i) {
       const std::span<const double> drawn = draws->next();
       std::complex<double> h = quotient(drawn, phasors) * corrections;

@@ -4,7 +4,7 @@
 // Draws: normal inputs jointly with their correlations (Cholesky factor of the correlation matrix), a finite nu gives Student's t
 // scaled as in JCGM 101, 6.4.9 (standard deviation u sqrt(nu / (nu - 2))), the other distributions independently.
 // Adaptive (7.9): batches of 10 000 trials until twice the standard deviation of mean, u and both ends of the interval over the
-// batches is below half a unit of the second significant digit of u, or `most_trials` are done.
+// batches is below half a unit of the second significant digit of u, or `max_trials` are done.
 // Generator: 64-bit Mersenne twister from `seed`; the same seed gives the same numbers. Phases are taken about the evaluated one,
 // so an interval across +-pi is whole.
 // Fails: invalid_argument (as uncertainty.hpp; correlation of inputs that are not normal; correlation matrix not positive definite),
@@ -24,7 +24,7 @@ namespace dyncal::analysis {
 
 struct MonteCarloSettings {
   std::uint64_t seed = 1;
-  std::size_t most_trials = 1'000'000;
+  std::size_t max_trials = 1'000'000;
   double probability = two_sigma_probability;
 };
 

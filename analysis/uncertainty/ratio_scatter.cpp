@@ -11,8 +11,8 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double fewest_blocks = 4.0;
-constexpr double most_blocks = 16.0;
+constexpr double min_blocks = 4.0;
+constexpr double max_blocks = 16.0;
 constexpr double weakest_snr = 3.0;
 
 std::complex<double> phasor(const SineFit& fit) {
@@ -44,8 +44,8 @@ std::optional<RatioScatter> ratio_scatter(const Frequency& frequency, std::span<
   if (stamps_ns.size() < 2) return std::nullopt;
   const double period_ns = 1e9 / frequency.hz();
   const double periods = std::floor(static_cast<double>(stamps_ns.back() - stamps_ns.front()) / period_ns);
-  const double blocks = std::min(periods, most_blocks);
-  if (blocks < fewest_blocks) return std::nullopt;
+  const double blocks = std::min(periods, max_blocks);
+  if (blocks < min_blocks) return std::nullopt;
   const double block_ns = std::floor(periods / blocks) * period_ns;
 
   std::vector<double> magnitudes;

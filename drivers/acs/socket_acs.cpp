@@ -9,12 +9,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t longest_description = 65536;
+constexpr std::size_t max_description = 65536;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
-constexpr std::uint32_t most_samples = 65536;
+constexpr std::uint32_t max_samples = 65536;
 constexpr milliseconds retry_interval{500};
 constexpr std::chrono::hours frame_limit{24 * 365}; // an instrument may be silent as long as it likes; who reads the status sees it
-constexpr double shortest_block_s = 0.02;
+constexpr double min_block_s = 0.02;
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian and read as they are");
 
@@ -40,7 +40,7 @@ Expected<void> SocketAcs::connect(milliseconds limit) {
   if (!connection) {
     return tl::unexpected(connection.error());
   }
-  const auto line = connection->read_line(longest_description, limit);
+  const auto line = connection->read_line(max_description, limit);
   if (!line) {
     return tl::unexpected(line.error());
   }
@@ -126,7 +126,7 @@ Expected<void> SocketAcs::read_session(BlockSink& sink) {
     }
     next_sample = frame->first_sample + frame->samples;
     join(pending, std::move(*frame));
-    if (static_cast<double>(pending.samples) >= shortest_block_s * stream_.source.nominal_rate_hz || pending.samples >= most_samples) {
+    if (static_cast<double>(pending.samples) >= min_block_s * stream_.source.nominal_rate_hz || pending.samples >= max_samples) {
       hand_over();
     }
   }
@@ -140,7 +140,7 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   SampleBlock frame;
   frame.samples = load<std::uint32_t>(header.data() + 4);
   frame.first_sample = load<std::uint64_t>(header.data() + 8);
-  if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > most_samples) {
+  if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > max_samples) {
     return tl::unexpected(Error{ErrorCode::malformed, settings_.address + ": what comes is not a frame of the ACS stream"});
   }
   const std::size_t channels = stream_.scale.size();

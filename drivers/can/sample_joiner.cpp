@@ -16,7 +16,7 @@ std::optional<JoinedSample> SampleJoiner::add(std::size_t message, std::uint64_t
       ++counts_.repeated;
       return std::nullopt;
     }
-    if (open_.size() == most_open) {
+    if (open_.size() == max_open) {
       left_.push_back(open_.front().key);
       open_.pop_front();
       ++counts_.incomplete;
@@ -40,7 +40,7 @@ std::optional<JoinedSample> SampleJoiner::add(std::size_t message, std::uint64_t
   JoinedSample joined = std::move(open_.front());
   open_.pop_front();
   left_.push_back(key);
-  while (left_.size() > most_open)
+  while (left_.size() > max_open)
     left_.pop_front();
   return joined;
 }

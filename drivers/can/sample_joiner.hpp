@@ -1,7 +1,7 @@
 // Joins the frames that make up one sample by what stands in them (a counter or a time field), never by when they came.
 //
 // A sample of one message is complete with its frame. A sample of several is complete when each message has come once with the same key. Up
-// to `most_open` samples may be open at a time, since frames of neighbouring samples may overtake each other; the oldest is given up when
+// to `max_open` samples may be open at a time, since frames of neighbouring samples may overtake each other; the oldest is given up when
 // one more begins. Samples leave in the order in which their keys were first seen. Belongs to one thread.
 #pragma once
 
@@ -27,7 +27,7 @@ struct JoinCounts {
 
 class SampleJoiner {
 public:
-  static constexpr std::size_t most_open = 4;
+  static constexpr std::size_t max_open = 4;
 
   explicit SampleJoiner(std::size_t messages) : messages_(messages) {}
 

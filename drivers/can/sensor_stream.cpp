@@ -13,15 +13,15 @@ namespace dyncal::drivers::can {
 namespace {
 
 constexpr std::int64_t block_span_ns = 50'000'000;
-constexpr std::size_t most_waiting = 1U << 17U; // 16 s at 8000 samples/s
-constexpr std::size_t most_causes = 32;
+constexpr std::size_t max_waiting = 1U << 17U; // 16 s at 8000 samples/s
+constexpr std::size_t max_causes = 32;
 constexpr std::uint8_t trusted = 0;
 constexpr std::uint8_t untimed = stamp_no_uncertainty;
 
 // A sensor's own oscillator, against its nominal rate: a counter follows the sampling rate of the element, a time field a timer.
 ClockLineOptions key_line_options(bool key_is_time) {
   ClockLineOptions options;
-  options.largest_rate = key_is_time ? 0.02 : 0.2;
+  options.max_rate = key_is_time ? 0.02 : 0.2;
   return options;
 }
 
@@ -77,7 +77,7 @@ double SensorStream::u_stamp_s() const {
   const bool waits_count = time_source_ == TimeSource::kernel_stamp || time_source_ == TimeSource::hardware_stamp;
   if (waits_count && settings_.bus_is_shared) // a longest frame of another device may have been on the bus: 0 ... that, one-sided
     u_wait_s =
-        longest_frame_s(link_.fd && settings_.bit_rates.data_per_s > 0.0, true, link_.fd ? 64 : 8, settings_.bit_rates) / std::sqrt(3.0);
+        max_frame_s(link_.fd && settings_.bit_rates.data_per_s > 0.0, true, link_.fd ? 64 : 8, settings_.bit_rates) / std::sqrt(3.0);
   const double u_common_s = timer_->u_common_s();
   return std::sqrt(u_common_s * u_common_s + u_utc_s_ * u_utc_s_ + u_wait_s * u_wait_s);
 }
@@ -156,7 +156,7 @@ void SensorStream::take_fault(const BusFault& fault) {
     link_.transmit_errors = fault.transmit_errors;
     link_.receive_errors = fault.receive_errors;
   }
-  if (counts_.faults.size() < most_causes || counts_.faults.contains(fault.cause)) ++counts_.faults[fault.cause];
+  if (counts_.faults.size() < max_causes || counts_.faults.contains(fault.cause)) ++counts_.faults[fault.cause];
   interrupted_ = interrupted_ || fault.frames_lost || fault.state == BusState::bus_off;
 }
 
@@ -286,7 +286,7 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     Waiting& sample = for_bus_time_.front();
     const bool at_sync = time_source_ == TimeSource::canopen_sync;
     auto base = at_sync ? timer_->end_of_frame_ns(sample.timed) : timer_->start_of_frame_ns(sample.timed);
-    const bool hopeless = !base && (at_any_rate || for_bus_time_.size() > most_waiting);
+    const bool hopeless = !base && (at_any_rate || for_bus_time_.size() > max_waiting);
     if (!base && !hopeless) break;
     sample.base_ns = base.value_or(timer_->kernel_start_of_frame_ns(sample.timed));
     Waiting resolved = std::move(sample);
@@ -305,7 +305,7 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     }
     for_sensor_time_.push_back(std::move(resolved));
   }
-  while (!for_sensor_time_.empty() && (key_line_.ready() || at_any_rate || for_sensor_time_.size() > most_waiting)) {
+  while (!for_sensor_time_.empty() && (key_line_.ready() || at_any_rate || for_sensor_time_.size() > max_waiting)) {
     Waiting sample = std::move(for_sensor_time_.front());
     for_sensor_time_.pop_front();
     const std::int64_t stamp_ns = key_line_.ready() ? key_line_.to_host(free_ns(sample.key)) : sample.base_ns;

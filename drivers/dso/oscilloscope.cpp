@@ -260,7 +260,7 @@ Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& p
     }
     if (codes->size() != wanted) {
       give_up_connection();
-      return tl::unexpected(Error{ErrorCode::malformed, message("a block of " + std::to_string(codes->size()) + " octets where " +
+      return tl::unexpected(Error{ErrorCode::malformed, message("a block of " + std::to_string(codes->size()) + " bytes where " +
                                                                 std::to_string(wanted) + " samples were asked for")});
     }
     append_volts(preamble, commands_->voltage, *codes, trace.volts);

@@ -8,10 +8,10 @@ namespace dyncal::drivers::dso {
 namespace {
 
 constexpr std::size_t field_count = 10;
-constexpr double most_points = 5e8; // the deepest memory of the known families
+constexpr double max_points = 5e8; // the deepest memory of the known families
 
 bool whole_and_positive(double value) {
-  return value >= 1.0 && value <= most_points && value == std::floor(value);
+  return value >= 1.0 && value <= max_points && value == std::floor(value);
 }
 
 } // namespace
@@ -25,7 +25,7 @@ Expected<Preamble> parse_preamble(std::string_view answer) {
     return malformed("does not consist of ten numbers");
   }
   if ((*fields)[0] != 0.0) {
-    return malformed("does not announce octets (format BYTE)");
+    return malformed("does not announce bytes (format BYTE)");
   }
   if (!whole_and_positive((*fields)[2])) {
     return malformed("announces no possible number of points");
@@ -45,8 +45,8 @@ Expected<Preamble> parse_preamble(std::string_view answer) {
 }
 
 void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes, std::vector<double>& volts) {
-  for (const char octet : codes) {
-    const double code = static_cast<unsigned char>(octet);
+  for (const char byte : codes) {
+    const double code = static_cast<unsigned char>(byte);
     volts.push_back(rule == VoltageRule::rigol ? (code - preamble.y_origin - preamble.y_reference) * preamble.y_increment_v
                                                : (code - preamble.y_reference) * preamble.y_increment_v + preamble.y_origin);
   }

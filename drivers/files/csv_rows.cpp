@@ -11,7 +11,7 @@
 namespace dyncal::drivers::acs {
 namespace {
 
-constexpr std::size_t longest_quote = 40;
+constexpr std::size_t max_quote = 40;
 
 bool blank(char c) {
   return c == ' ' || c == '\r' || c == '\t';
@@ -136,7 +136,7 @@ private:
     if (is_whole(signless, value)) {
       return true;
     }
-    problem_ = "'" + std::string(field.substr(0, longest_quote)) + "' in column " + layout_.columns[column] + " is not " +
+    problem_ = "'" + std::string(field.substr(0, max_quote)) + "' in column " + layout_.columns[column] + " is not " +
                (std::is_integral_v<Number> ? "a whole number" : "a number");
     return false;
   }

@@ -21,10 +21,10 @@ namespace decimal {
 
 __extension__ using Wide = unsigned __int128;
 
-inline constexpr int most_decimals = 54;                      // 5^54 is below 2^126: its remainder can be doubled in 128 bits
-inline constexpr int most_digits = 19;                        // hold in 64 bits
+inline constexpr int max_decimals = 54;                      // 5^54 is below 2^126: its remainder can be doubled in 128 bits
+inline constexpr int max_digits = 19;                        // hold in 64 bits
 inline constexpr std::ptrdiff_t taken_digits = 24;            // at most, in one go
-inline constexpr std::ptrdiff_t room = 3 * taken_digits + 16; // octets read at most from the first one of a number on
+inline constexpr std::ptrdiff_t room = 3 * taken_digits + 16; // bytes read at most from the first one of a number on
 
 struct ReciprocalPower {
   std::uint64_t high = 0; // of floor(2^shift / 5^k), which has 128 bits
@@ -32,10 +32,10 @@ struct ReciprocalPower {
   int shift = 0;
 };
 
-constexpr std::array<ReciprocalPower, most_decimals + 1> reciprocal_powers_of_five() {
-  std::array<ReciprocalPower, most_decimals + 1> powers;
+constexpr std::array<ReciprocalPower, max_decimals + 1> reciprocal_powers_of_five() {
+  std::array<ReciprocalPower, max_decimals + 1> powers;
   Wide five_to_k = 1;
-  for (int k = 0; k <= most_decimals; ++k, five_to_k *= 5) {
+  for (int k = 0; k <= max_decimals; ++k, five_to_k *= 5) {
     int shift = 127;
     for (Wide rest = k == 0 ? 0 : five_to_k; rest != 0; rest >>= 1U) {
       ++shift;
@@ -58,35 +58,35 @@ constexpr std::array<ReciprocalPower, most_decimals + 1> reciprocal_powers_of_fi
 inline constexpr auto reciprocals = reciprocal_powers_of_five();
 inline constexpr std::array<std::uint64_t, 9> powers_of_ten{1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 
-// Eight octets of text as the digits' values, for as many as are digits.
-inline std::uint64_t eight_octets(const char* at) {
-  std::uint64_t octets = 0;
-  std::memcpy(&octets, at, sizeof(octets));
-  return octets ^ 0x3030303030303030;
+// Eight bytes of text as the digits' values, for as many as are digits.
+inline std::uint64_t eight_bytes(const char* at) {
+  std::uint64_t bytes = 0;
+  std::memcpy(&bytes, at, sizeof(bytes));
+  return bytes ^ 0x3030303030303030;
 }
 
-// With how many digits they begin. A carry only reaches octets behind the first one that is none.
-inline unsigned leading_digits(std::uint64_t octets) {
-  const std::uint64_t others = ((octets + 0x7676767676767676) | octets) & 0x8080808080808080;
+// With how many digits they begin. A carry only reaches bytes behind the first one that is none.
+inline unsigned leading_digits(std::uint64_t bytes) {
+  const std::uint64_t others = ((bytes + 0x7676767676767676) | bytes) & 0x8080808080808080;
   return static_cast<unsigned>(std::countr_zero(others)) / 8U;
 }
 
-// The first `count` of eight octets appended to `number`, modulo 2^64. Neighbours are added side by side: 8 of 1, 4 of 2, 2 of 4 digits.
-inline std::uint64_t appended(std::uint64_t number, std::uint64_t octets, unsigned count) {
+// The first `count` of eight bytes appended to `number`, modulo 2^64. Neighbours are added side by side: 8 of 1, 4 of 2, 2 of 4 digits.
+inline std::uint64_t appended(std::uint64_t number, std::uint64_t bytes, unsigned count) {
   const unsigned half_of_rest = 4U * (8U - count); // a shift by all 64 bits must be made of two
-  octets = octets << half_of_rest << half_of_rest;
-  octets = (octets * 10 + (octets >> 8U)) & 0x00FF00FF00FF00FF;
-  octets = (octets * 100 + (octets >> 16U)) & 0x0000FFFF0000FFFF;
-  octets = (octets * 10'000 + (octets >> 32U)) & 0x00000000FFFFFFFF;
-  return number * powers_of_ten[count] + octets;
+  bytes = bytes << half_of_rest << half_of_rest;
+  bytes = (bytes * 10 + (bytes >> 8U)) & 0x00FF00FF00FF00FF;
+  bytes = (bytes * 100 + (bytes >> 16U)) & 0x0000FFFF0000FFFF;
+  bytes = (bytes * 10'000 + (bytes >> 32U)) & 0x00000000FFFFFFFF;
+  return number * powers_of_ten[count] + bytes;
 }
 
 // Digits from `at` on, appended to `number` modulo 2^64; at most `taken_digits`.
 inline const char* read_digits(const char* at, std::uint64_t& number) {
   for (std::ptrdiff_t words = 0; words < taken_digits / 8; ++words) {
-    const std::uint64_t octets = eight_octets(at);
-    const unsigned count = leading_digits(octets);
-    number = appended(number, octets, count);
+    const std::uint64_t bytes = eight_bytes(at);
+    const unsigned count = leading_digits(bytes);
+    number = appended(number, bytes, count);
     at += count;
     if (count < 8) {
       break;
@@ -143,25 +143,25 @@ struct Decimal {
   int decimals = 0;
 };
 
-// Digits with a point among the second to the eighth octet; null: something else. The point is taken out of the first word of digits, then
+// Digits with a point among the second to the eighth byte; null: something else. The point is taken out of the first word of digits, then
 // three words are read without a jump that depends on the number of digits: it varies as it pleases, and a jump that was guessed wrong
 // costs more than the work that it saves.
 inline const char* read_with_point(const char* at, Decimal& decimal) {
-  const std::uint64_t octets = eight_octets(at);
-  const unsigned point = leading_digits(octets);
+  const std::uint64_t bytes = eight_bytes(at);
+  const unsigned point = leading_digits(bytes);
   if (point == 0 || point == 8 || at[point] != '.') {
     return nullptr;
   }
   const std::uint64_t before = (std::uint64_t{1} << (8U * point)) - 1;
-  const std::uint64_t first = (octets & before) | (eight_octets(at + 1) & ~before);
-  const std::uint64_t second = eight_octets(at + 9);
-  const std::uint64_t third = eight_octets(at + 17);
+  const std::uint64_t first = (bytes & before) | (eight_bytes(at + 1) & ~before);
+  const std::uint64_t second = eight_bytes(at + 9);
+  const std::uint64_t third = eight_bytes(at + 17);
   const unsigned in_first = leading_digits(first);
   const unsigned in_second = in_first == 8 ? leading_digits(second) : 0;
   const unsigned in_third = in_second == 8 ? leading_digits(third) : 0;
   const unsigned digits = in_first + in_second + in_third;
   const unsigned zeros = static_cast<unsigned>(std::countr_zero(first)) / 8U; // leading ones
-  if (digits == point || in_third == 8 || digits > most_digits + zeros) {
+  if (digits == point || in_third == 8 || digits > max_digits + zeros) {
     return nullptr;
   }
   decimal.w = appended(appended(appended(0, first, in_first), second, in_second), third, in_third);
@@ -171,10 +171,10 @@ inline const char* read_with_point(const char* at, Decimal& decimal) {
 
 inline const char* read_without_point(const char* at, Decimal& decimal) {
   const char* const end = read_digits(at, decimal.w);
-  return end == at || end - at > most_digits || *end == '.' ? nullptr : end;
+  return end == at || end - at > max_digits || *end == '.' ? nullptr : end;
 }
 
-// Null: not one of the numbers for which this is made. REQUIRES: `room` octets at `at`.
+// Null: not one of the numbers for which this is made. REQUIRES: `room` bytes at `at`.
 inline const char* read_quickly(const char* at, double& value) {
   const bool negative = *at == '-';
   at += negative ? 1 : 0;
@@ -189,7 +189,7 @@ inline const char* read_quickly(const char* at, double& value) {
   }
   const int scale = decimal.decimals - exponent;
   double size = 0.0;
-  if (decimal.w != 0 && (scale < 0 || scale > most_decimals || !scaled_down(decimal.w, scale, size))) {
+  if (decimal.w != 0 && (scale < 0 || scale > max_decimals || !scaled_down(decimal.w, scale, size))) {
     return nullptr;
   }
   value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) | (negative ? std::uint64_t{1} << 63U : 0));
@@ -199,7 +199,7 @@ inline const char* read_quickly(const char* at, double& value) {
 inline const char* read_quickly(const char* at, std::uint64_t& value) {
   std::uint64_t number = 0;
   const char* const end = read_digits(at, number);
-  if (end == at || end - at > most_digits) {
+  if (end == at || end - at > max_digits) {
     return nullptr;
   }
   value = number;

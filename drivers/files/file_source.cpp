@@ -10,7 +10,7 @@
 namespace dyncal::drivers::acs {
 namespace {
 
-constexpr std::size_t longest_block = 4096; // samples
+constexpr std::size_t max_block = 4096; // samples
 constexpr double paced_block_s = 0.05;
 
 std::int64_t host_utc_ns() {
@@ -62,10 +62,10 @@ Expected<SourceDescription> FileSource::describe() {
 std::size_t FileSource::block_samples() const {
   const auto interval_ns = first_.samples < 2 ? 0 : stamp_of(first_, 1) - stamp_of(first_, 0);
   if (settings_.speed <= 0.0 || interval_ns <= 0) {
-    return longest_block;
+    return max_block;
   }
   const double samples = paced_block_s * 1e9 * settings_.speed / static_cast<double>(interval_ns);
-  return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(longest_block)));
+  return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(max_block)));
 }
 
 bool FileSource::wait_for_due_time(const SampleBlock& block, std::chrono::steady_clock::time_point started) const {

@@ -83,7 +83,7 @@ tl::expected<std::vector<NpyField>, std::string> read_fields(LiteralReader& read
     }
     if (!read_type(type, field)) {
       return tl::unexpected("has a field '" + field.name + "' of type '" + type +
-                            "'; little-endian integers and floating-point numbers of up to 8 octets can be read");
+                            "'; little-endian integers and floating-point numbers of up to 8 bytes can be read");
     }
     field.place = place;
     place += field.size;
@@ -104,13 +104,13 @@ bool read_shape(LiteralReader& reader, std::size_t& rows) {
 
 tl::expected<NpyHeader, std::string> NpyHeader::of(std::string_view file) {
   constexpr std::string_view magic = "\x93NUMPY";
-  const auto octet = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(file[i])); };
-  if (!file.starts_with(magic) || file.size() < 12 || octet(6) < 1 || octet(6) > 3) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(file[i])); };
+  if (!file.starts_with(magic) || file.size() < 12 || byte(6) < 1 || byte(6) > 3) {
     return tl::unexpected<std::string>("is not a NumPy file");
   }
-  const bool short_length = octet(6) == 1;
+  const bool short_length = byte(6) == 1;
   const std::size_t begin = short_length ? 10 : 12;
-  const std::size_t length = octet(8) + (octet(9) << 8U) + (short_length ? 0 : (octet(10) << 16U) + (octet(11) << 24U));
+  const std::size_t length = byte(8) + (byte(9) << 8U) + (short_length ? 0 : (byte(10) << 16U) + (byte(11) << 24U));
   if (length > file.size() - begin) {
     return tl::unexpected<std::string>("ends within its header");
   }

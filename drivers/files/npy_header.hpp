@@ -13,9 +13,9 @@ namespace dyncal::drivers::acs {
 
 struct NpyField {
   std::string name;
-  char kind = 'f';       // 'i', 'u', 'f'; 'V' for octets without meaning
-  std::size_t size = 8;  // octets
-  std::size_t place = 0; // octets from the start of a row
+  char kind = 'f';       // 'i', 'u', 'f'; 'V' for bytes without meaning
+  std::size_t size = 8;  // bytes
+  std::size_t place = 0; // bytes from the start of a row
 };
 
 struct NpyHeader {

@@ -8,7 +8,7 @@ namespace dyncal::drivers::generator {
 namespace {
 
 constexpr double first_part = 0.5;         // of the voltage that should do
-constexpr double smallest_response = 0.05; // of the one expected
+constexpr double min_response = 0.05; // of the one expected
 constexpr double rounding = 1.0 + 1e-9;    // a limit may be reached
 
 std::string number(double value) {
@@ -61,7 +61,7 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
 }
 
 Expected<bool> LevelControl::take(double measured_m_s2) {
-  if (!std::isfinite(measured_m_s2) || measured_m_s2 < smallest_response * voltage_v_ * level_per_volt_) {
+  if (!std::isfinite(measured_m_s2) || measured_m_s2 < min_response * voltage_v_ * level_per_volt_) {
     return failure(ErrorCode::refused, "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) + " V where " +
                                            number(voltage_v_ * level_per_volt_) +
                                            " are expected: is the amplifier on, and the reference connected?");

@@ -25,7 +25,7 @@ struct InstrumentError {
 };
 [[nodiscard]] Expected<InstrumentError> parse_instrument_error(std::string_view answer);
 
-// The number of digits that a definite-length block (#<d><length of d digits><octets>) announces after "#d": 1..9. An indefinite block
+// The number of digits that a definite-length block (#<d><length of d digits><bytes>) announces after "#d": 1..9. An indefinite block
 // (#0...) has no length that could be checked and is malformed.
 [[nodiscard]] Expected<std::size_t> parse_block_digit_count(std::string_view hash_and_digit);
 [[nodiscard]] Expected<std::size_t> parse_block_length(std::string_view digits);

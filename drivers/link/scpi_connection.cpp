@@ -8,7 +8,7 @@ namespace dyncal::drivers {
 namespace {
 
 constexpr std::chrono::milliseconds connect_limit{5000};
-constexpr std::size_t longest_line = 4096;
+constexpr std::size_t max_line = 4096;
 
 } // namespace
 
@@ -52,7 +52,7 @@ Expected<std::string> ScpiConnection::query(const std::string& text) {
   if (auto sent = send(text); !sent) {
     return tl::unexpected(sent.error());
   }
-  auto answer = transport_->read_line(longest_line, answer_limit_);
+  auto answer = transport_->read_line(max_line, answer_limit_);
   if (!answer) {
     return failure(answer.error(), text);
   }
@@ -124,18 +124,18 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
     return malformed(length.error().message);
   }
   if (*length > longest) {
-    return malformed("a block of " + std::to_string(*length) + " octets where at most " + std::to_string(longest) + " can be");
+    return malformed("a block of " + std::to_string(*length) + " bytes where at most " + std::to_string(longest) + " can be");
   }
   std::vector<char> block(*length);
   if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
     return tl::unexpected(read.error());
   }
-  const auto end = transport_->read_line(longest_line, answer_limit_);
+  const auto end = transport_->read_line(max_line, answer_limit_);
   if (!end) {
     return tl::unexpected(end.error());
   }
   if (!end->empty()) {
-    return malformed("a block is longer than the " + std::to_string(*length) + " octets it announces");
+    return malformed("a block is longer than the " + std::to_string(*length) + " bytes it announces");
   }
   return block;
 }

@@ -29,7 +29,7 @@ public:
   [[nodiscard]] Expected<void> command(const std::string& text);
   [[nodiscard]] Expected<std::string> query(const std::string& text);
   [[nodiscard]] Expected<double> query_number(const std::string& text);
-  // Octets of the block that answers; longer than `longest` is malformed.
+  // Bytes of the block that answers; longer than `longest` is malformed.
   [[nodiscard]] Expected<std::vector<char>> query_block(const std::string& text, std::size_t longest);
   // Nothing is asked: for commands before the instrument is known to listen, or that end an activity.
   [[nodiscard]] Expected<void> send(const std::string& text);

@@ -12,8 +12,8 @@ public:
   Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
     return connection_.read_line(longest, limit);
   }
-  Expected<void> read_exactly(std::span<char> octets, std::chrono::milliseconds limit) override {
-    return connection_.read_exactly(octets, limit);
+  Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) override {
+    return connection_.read_exactly(bytes, limit);
   }
   bool has_unread() override { return connection_.has_unread(); }
 

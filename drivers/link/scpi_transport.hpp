@@ -1,4 +1,4 @@
-// What carries SCPI to an instrument: a TCP socket, or VXI-11 (RPC) through liblxi. Both deliver the answers as one stream of octets.
+// What carries SCPI to an instrument: a TCP socket, or VXI-11 (RPC) through liblxi. Both deliver the answers as one stream of bytes.
 //
 // Addresses: "HOST:PORT" (raw socket; Rigol: port 5555) or "vxi11:HOST" (device inst0), "vxi11:HOST/inst1".
 // Every wait has a limit. StopSignal ends waits on a TCP socket at once; liblxi cannot be interrupted, so over VXI-11 a stop takes effect
@@ -25,8 +25,8 @@ public:
   [[nodiscard]] virtual Expected<void> send(std::string_view message, std::chrono::milliseconds limit) = 0;
   // Without its line end ("\n" or "\r\n").
   [[nodiscard]] virtual Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) = 0;
-  [[nodiscard]] virtual Expected<void> read_exactly(std::span<char> octets, std::chrono::milliseconds limit) = 0;
-  // Whether octets have come that nobody has read: before a query that means an answer to something else.
+  [[nodiscard]] virtual Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) = 0;
+  // Whether bytes have come that nobody has read: before a query that means an answer to something else.
   [[nodiscard]] virtual bool has_unread() = 0;
 };
 

@@ -240,7 +240,7 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono:
       return line;
     }
     if (received_.size() > longest) {
-      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " + std::to_string(longest) + " octets");
+      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " + std::to_string(longest) + " bytes");
     }
     searched = received_.size();
     char chunk[4096];
@@ -253,8 +253,8 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono:
 }
 
 bool TcpConnection::has_unread() const {
-  char octet = 0;
-  return !received_.empty() || recv(socket_.number(), &octet, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+  char byte = 0;
+  return !received_.empty() || recv(socket_.number(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
 }
 
 Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) {

@@ -65,7 +65,7 @@ public:
   // Without its line end ("\n" or "\r\n"). A longer line than `longest` is malformed.
   [[nodiscard]] Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit);
   [[nodiscard]] Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit);
-  // Octets have come that nobody has read. Does not wait.
+  // Bytes have come that nobody has read. Does not wait.
   [[nodiscard]] bool has_unread() const;
 
 private:

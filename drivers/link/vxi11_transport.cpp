@@ -12,7 +12,7 @@ namespace dyncal::drivers {
 namespace {
 
 constexpr std::string_view scheme = "vxi11:";
-constexpr std::size_t longest_answer = std::size_t{4} << 20U;
+constexpr std::size_t max_answer = std::size_t{4} << 20U;
 
 class Vxi11Transport : public ScpiTransport {
 public:
@@ -36,7 +36,7 @@ public:
       const std::size_t size = static_cast<std::size_t>(end - received_.begin()) - taken_;
       if (size > longest) {
         return tl::unexpected(
-            Error{ErrorCode::malformed, address_ + ": a line without an end after " + std::to_string(longest) + " octets"});
+            Error{ErrorCode::malformed, address_ + ": a line without an end after " + std::to_string(longest) + " bytes"});
       }
       if (end != received_.end()) {
         std::string line(received_.data() + taken_, size);
@@ -52,15 +52,15 @@ public:
     }
   }
 
-  Expected<void> read_exactly(std::span<char> octets, std::chrono::milliseconds limit) override {
+  Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) override {
     const auto deadline = Clock::now() + limit;
-    while (received_.size() - taken_ < octets.size()) {
+    while (received_.size() - taken_ < bytes.size()) {
       if (auto more = receive(deadline); !more) {
         return more;
       }
     }
-    std::copy_n(received_.data() + taken_, octets.size(), octets.begin());
-    taken_ += octets.size();
+    std::copy_n(received_.data() + taken_, bytes.size(), bytes.begin());
+    taken_ += bytes.size();
     return {};
   }
 
@@ -78,8 +78,8 @@ private:
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(taken_));
     taken_ = 0;
     const std::size_t held = received_.size();
-    received_.resize(held + longest_answer);
-    const int count = lxi_receive(device_, received_.data() + held, static_cast<int>(longest_answer), static_cast<int>(left));
+    received_.resize(held + max_answer);
+    const int count = lxi_receive(device_, received_.data() + held, static_cast<int>(max_answer), static_cast<int>(left));
     received_.resize(held + static_cast<std::size_t>(std::max(count, 0)));
     if (count <= 0) {
       return tl::unexpected(Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});

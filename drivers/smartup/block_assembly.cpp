@@ -8,15 +8,15 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 4096;
+constexpr std::size_t max_samples = 4096;
 
 void append_columns(std::vector<double>& values, const std::vector<SampleRow>& rows, std::uint16_t columns,
-                    std::uint16_t SampleRow::*present, std::array<float, kChannels> SampleRow::*measured) {
-  constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+                    std::uint16_t SampleRow::*present, std::array<float, channels_of_unit> SampleRow::*measured) {
+  constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t channel = 0; channel < channels_of_unit; ++channel) {
     if ((columns & (1U << channel)) == 0) continue;
     for (const SampleRow& row : rows)
-      values.push_back((row.*present & (1U << channel)) != 0 ? static_cast<double>((row.*measured)[channel]) : kNotMeasured);
+      values.push_back((row.*present & (1U << channel)) != 0 ? static_cast<double>((row.*measured)[channel]) : not_measured);
   }
 }
 
@@ -56,7 +56,7 @@ std::optional<SampleBlock> BlockAssembly::add(const SampleRow& row, double perio
   if (ready) return ready; // a block of one sample never fills in the same step
   const bool full = period_ns > 0.0 ? static_cast<double>(rows_.size()) * period_ns >= static_cast<double>(block_ns_)
                                     : arrival.monotonic_ns - first_arrival_.monotonic_ns >= block_ns_;
-  if (full || rows_.size() >= kMostSamples) ready = take();
+  if (full || rows_.size() >= max_samples) ready = take();
   return ready;
 }
 

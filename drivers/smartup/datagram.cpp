@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::size_t kKeywordBytes = 4;
+constexpr std::size_t keyword_bytes = 4;
 
 struct Tag {
   std::uint32_t field = 0;
@@ -55,12 +55,12 @@ public:
       seen_ |= 1U << tag.field;
       return read_u32(reader, header(tag.field));
     }
-    if (tag.type == WireType::fixed32 && tag.field >= kFirstValue && tag.field < kFirstValue + kChannels) {
-      const std::uint32_t channel = tag.field - kFirstValue;
+    if (tag.type == WireType::fixed32 && tag.field >= first_value_field && tag.field < first_value_field + channels_of_unit) {
+      const std::uint32_t channel = tag.field - first_value_field;
       message_.present = static_cast<std::uint16_t>(message_.present | (1U << channel));
       return read_float(reader, message_.values[channel]);
     }
-    if (tag.type == WireType::varint && tag.field == kTimeTicks) {
+    if (tag.type == WireType::varint && tag.field == time_ticks_field) {
       std::uint64_t ticks = 0;
       if (!reader.varint(ticks)) return false;
       message_.time_ticks = ticks;
@@ -69,7 +69,7 @@ public:
     return reader.skip(tag.type);
   }
 
-  [[nodiscard]] bool complete() const { return seen_ == kRequired && (message_.present & 1U) != 0; }
+  [[nodiscard]] bool complete() const { return seen_ == all_required && (message_.present & 1U) != 0; }
   [[nodiscard]] RejectedMessage rejected(Rejection cause) const {
     RejectedMessage rejected{.cause = cause, .sensor = {}, .sample_number = {}};
     if ((seen_ & (1U << 1U)) != 0) rejected.sensor = message_.sensor;
@@ -79,9 +79,9 @@ public:
   DataMessage& message() { return message_; }
 
 private:
-  static constexpr std::uint32_t kFirstValue = 6;
-  static constexpr std::uint32_t kTimeTicks = 22;
-  static constexpr std::uint32_t kRequired = 0b111110; // fields 1 to 5; Data_01 shows in `present`
+  static constexpr std::uint32_t first_value_field = 6;
+  static constexpr std::uint32_t time_ticks_field = 22;
+  static constexpr std::uint32_t all_required = 0b111110; // fields 1 to 5; Data_01 shows in `present`
 
   std::uint32_t& header(std::uint32_t field) {
     switch (field) {
@@ -127,18 +127,18 @@ public:
     if (tag.type == WireType::bytes) {
       Bytes text;
       if (!reader.delimited(text)) return false;
-      if (tag.field == kName) {
+      if (tag.field == name) {
         message_.sensor_name = text_of(text);
         has_name_ = true;
-      } else if (tag.field >= kFirstText && tag.field < kFirstText + kChannels) {
-        message_.texts[tag.field - kFirstText] = text_of(text);
+      } else if (tag.field >= first_text_field && tag.field < first_text_field + channels_of_unit) {
+        message_.texts[tag.field - first_text_field] = text_of(text);
       }
       return true;
     }
-    if (tag.type == WireType::fixed32 && tag.field >= kFirstNumber && tag.field < kFirstNumber + kChannels) {
+    if (tag.type == WireType::fixed32 && tag.field >= first_number_field && tag.field < first_number_field + channels_of_unit) {
       float value = 0.0F;
       if (!read_float(reader, value)) return false;
-      message_.numbers[tag.field - kFirstNumber] = value;
+      message_.numbers[tag.field - first_number_field] = value;
       return true;
     }
     return reader.skip(tag.type);
@@ -147,7 +147,7 @@ public:
   // Nothing when the message is whole.
   [[nodiscard]] std::optional<Rejection> problem() const {
     if (!has_sensor_ || !has_name_ || !type_) return Rejection::missing_field;
-    if (*type_ >= kDescriptionTypes) return Rejection::unknown_type;
+    if (*type_ >= description_types) return Rejection::unknown_type;
     return std::nullopt;
   }
   [[nodiscard]] RejectedMessage rejected(Rejection cause) const {
@@ -161,22 +161,22 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t kSensor = 1;
-  static constexpr std::uint32_t kName = 2;
-  static constexpr std::uint32_t kType = 3;
-  static constexpr std::uint32_t kFirstText = 4;
-  static constexpr std::uint32_t kFirstNumber = 20;
-  static constexpr std::uint32_t kHasTimeTicks = 36;
+  static constexpr std::uint32_t sensor_field = 1;
+  static constexpr std::uint32_t name_field = 2;
+  static constexpr std::uint32_t type_field = 3;
+  static constexpr std::uint32_t first_text_field = 4;
+  static constexpr std::uint32_t first_number_field = 20;
+  static constexpr std::uint32_t has_time_ticks_field = 36;
 
   bool read_number(WireReader& reader, Tag tag) {
     std::uint64_t value = 0;
     if (!reader.varint(value)) return false;
-    if (tag.field == kSensor) {
+    if (tag.field == sensor_field) {
       message_.sensor = static_cast<std::uint32_t>(value);
       has_sensor_ = true;
-    } else if (tag.field == kType) {
+    } else if (tag.field == type_field) {
       type_ = value;
-    } else if (tag.field == kHasTimeTicks) {
+    } else if (tag.field == has_time_ticks_field) {
       message_.has_time_ticks = value != 0;
     }
     return true;
@@ -230,14 +230,14 @@ void decode(Bytes bytes, Datagram& datagram) {
   datagram.descriptions.clear();
   datagram.rejected.clear();
   datagram.broken.reset();
-  const bool has_keyword = bytes.size() >= kKeywordBytes;
-  const bool is_data = has_keyword && std::memcmp(bytes.data(), "DATA", kKeywordBytes) == 0;
-  const bool is_description = has_keyword && std::memcmp(bytes.data(), "DSCP", kKeywordBytes) == 0;
+  const bool has_keyword = bytes.size() >= keyword_bytes;
+  const bool is_data = has_keyword && std::memcmp(bytes.data(), "DATA", keyword_bytes) == 0;
+  const bool is_description = has_keyword && std::memcmp(bytes.data(), "DSCP", keyword_bytes) == 0;
   if (!is_data && !is_description) {
     datagram.broken = Rejection::unknown_keyword;
     return;
   }
-  WireReader reader(bytes.subspan(kKeywordBytes));
+  WireReader reader(bytes.subspan(keyword_bytes));
   while (!reader.at_end()) {
     const std::size_t left_before = reader.left();
     std::uint64_t length = 0;

@@ -18,7 +18,7 @@
 
 namespace dyncal::drivers::smartup {
 
-inline constexpr std::size_t kChannels = 16; // Data_01 ... Data_16
+inline constexpr std::size_t channels_of_unit = 16; // Data_01 ... Data_16
 
 enum class Rejection {
   unknown_keyword, // the first four bytes are neither DATA nor DSCP
@@ -28,7 +28,7 @@ enum class Rejection {
   missing_field,   // a required field is absent
   unknown_type     // a description of a type that does not exist
 };
-inline constexpr std::size_t kRejections = 6;
+inline constexpr std::size_t rejections = 6;
 
 [[nodiscard]] const char* rejection_name(Rejection rejection);
 
@@ -40,7 +40,7 @@ struct DataMessage {
   std::uint32_t time_uncertainty_ns = 0; // as sent: four standard uncertainties; 0: not trustworthy
   std::uint16_t present = 0;             // bit i: Data_(i+1) was measured
   std::uint16_t bytes = 0;               // of the message and its length, on the wire
-  std::array<float, kChannels> values{};
+  std::array<float, channels_of_unit> values{};
   std::optional<std::uint64_t> time_ticks;
 
   [[nodiscard]] std::int64_t stamp_ns() const { return std::int64_t{unix_time_s} * 1'000'000'000 + nanoseconds; }
@@ -55,14 +55,14 @@ enum class DescriptionType {
   max_scale = 5,
   hierarchy = 6
 };
-inline constexpr std::size_t kDescriptionTypes = 7;
+inline constexpr std::size_t description_types = 7;
 
 struct DescriptionMessage {
   std::uint32_t sensor = 0;
   std::string sensor_name;
   DescriptionType type = DescriptionType::physical_quantity;
-  std::array<std::optional<std::string>, kChannels> texts;
-  std::array<std::optional<float>, kChannels> numbers;
+  std::array<std::optional<std::string>, channels_of_unit> texts;
+  std::array<std::optional<float>, channels_of_unit> numbers;
   std::optional<bool> has_time_ticks;
 };
 

@@ -10,9 +10,9 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::uint32_t kTypesToCome = 0b1111011; // all but UNCERTAINTY_TYPE, which no unit sends
-constexpr std::size_t kFirstAdc = 10;             // Data_11..13 of the calibration firmware
-constexpr std::size_t kLastAdc = 12;
+constexpr std::uint32_t types_to_come = 0b1111011; // all but UNCERTAINTY_TYPE, which no unit sends
+constexpr std::size_t first_adc_channel = 10;             // Data_11..13 of the calibration firmware
+constexpr std::size_t last_adc_channel = 12;
 
 struct Place {
   std::string group;                // as declared
@@ -83,10 +83,10 @@ void make_names_unique(std::vector<ChannelDescription>& channels, const std::vec
 } // namespace
 
 std::string d_si_unit(const std::string& text) {
-  static const std::map<std::string, std::string> kKnownWrong = {
+  static const std::map<std::string, std::string> known_wrong = {
       {"\\seconds", "\\second"}, {"\\nanoseconds", "\\nano\\second"}, {"\\A.U.", "\\one"}, {"/hertz", "\\hertz"}};
-  const auto known = kKnownWrong.find(text);
-  return known == kKnownWrong.end() ? text : known->second;
+  const auto known = known_wrong.find(text);
+  return known == known_wrong.end() ? text : known->second;
 }
 
 bool DescriptionAssembly::add(const DescriptionMessage& message) {
@@ -100,7 +100,7 @@ bool DescriptionAssembly::add(const DescriptionMessage& message) {
     kept = std::move(said);
     is_new = true;
   };
-  for (std::size_t i = 0; i < kChannels; ++i) {
+  for (std::size_t i = 0; i < channels_of_unit; ++i) {
     Declared& declared = declared_[i];
     switch (message.type) {
     case DescriptionType::physical_quantity:
@@ -129,7 +129,7 @@ bool DescriptionAssembly::add(const DescriptionMessage& message) {
 }
 
 bool DescriptionAssembly::complete() const {
-  return (types_seen_ & kTypesToCome) == kTypesToCome;
+  return (types_seen_ & types_to_come) == types_to_come;
 }
 
 std::string DescriptionAssembly::declared_name(std::size_t channel) const {
@@ -153,7 +153,7 @@ std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t colu
                                                               const std::string& prefix) const {
   std::vector<ChannelDescription> channels;
   std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < kChannels; ++i) {
+  for (std::size_t i = 0; i < channels_of_unit; ++i) {
     if ((columns & (1U << i)) == 0) continue;
     const Declared& declared = declared_[i];
     ChannelDescription channel;
@@ -164,7 +164,7 @@ std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t colu
     channel.quantity = declared.quantity;
     channel.unit = d_si_unit(declared.unit);
     const bool undeclared = declared.quantity.empty() && declared.unit.empty() && declared.hierarchy.empty();
-    if (undeclared && i >= kFirstAdc && i <= kLastAdc) {
+    if (undeclared && i >= first_adc_channel && i <= last_adc_channel) {
       channel.quantity = "Voltage";
       channel.unit = "\\volt";
     }
@@ -185,7 +185,7 @@ std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t colu
 
 std::vector<std::string> DescriptionAssembly::warnings() const {
   std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < kChannels; ++i) {
+  for (std::size_t i = 0; i < channels_of_unit; ++i) {
     const Declared& declared = declared_[i];
     if (!declared.hierarchy.empty() && !place_of(declared.hierarchy).index)
       warnings.push_back(data_name(i) + ": hierarchy without index: '" + declared.hierarchy + "'");

@@ -61,7 +61,7 @@ private:
 
   std::string sensor_name_;
   std::uint32_t types_seen_ = 0;
-  std::array<Declared, kChannels> declared_;
+  std::array<Declared, channels_of_unit> declared_;
 };
 
 } // namespace dyncal::drivers::smartup

@@ -7,10 +7,10 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr double kWholeDatagram = 0.6;         // of the usual size: sizes vary, and slow sensors notice their part later
-constexpr double kSizeMemory = 1.0 / 16.0;     // weight of one datagram in the usual size
-constexpr std::uint32_t kInEveryDatagram = 16; // that many in a row
-constexpr std::size_t kRememberedLosses = 64;
+constexpr double whole_datagram = 0.6;         // of the usual size: sizes vary, and slow sensors notice their part later
+constexpr double size_memory = 1.0 / 16.0;     // weight of one datagram in the usual size
+constexpr std::uint32_t in_every_datagram = 16; // that many in a row
+constexpr std::size_t remembered_losses = 64;
 
 } // namespace
 
@@ -33,7 +33,7 @@ void LossAttribution::message(std::uint32_t sensor, std::uint64_t missing, std::
   const bool first = trace.last_datagram != datagram_;
   if (missing > 0) {
     gaps_.push_back({sensor, missing, static_cast<std::size_t>(missing) * message_bytes, trace.last_datagram, first});
-  } else if (first && trace.datagrams_in_a_row >= kInEveryDatagram) {
+  } else if (first && trace.datagrams_in_a_row >= in_every_datagram) {
     without_gap_.push_back(sensor);
   }
   if (first) {
@@ -48,7 +48,7 @@ bool LossAttribution::datagram_is_missing() const {
   for (const Gap& gap : gaps_) {
     if (gap.between_datagrams) missing_bytes += static_cast<double>(gap.bytes);
   }
-  return missing_bytes > 0.0 && missing_bytes >= kWholeDatagram * usual_bytes_;
+  return missing_bytes > 0.0 && missing_bytes >= whole_datagram * usual_bytes_;
 }
 
 bool LossAttribution::lost_since(std::uint64_t datagram) const {
@@ -63,9 +63,9 @@ std::span<const AttributedLoss> LossAttribution::end() {
       missing_bytes += static_cast<double>(gap.bytes);
     datagrams_lost_ += static_cast<std::uint64_t>(std::max(1.0, std::round(missing_bytes / usual_bytes_)));
     losses_.push_back(datagram_);
-    if (losses_.size() > kRememberedLosses) losses_.pop_front();
+    if (losses_.size() > remembered_losses) losses_.pop_front();
   }
-  usual_bytes_ += kSizeMemory * (static_cast<double>(datagram_bytes_) - usual_bytes_);
+  usual_bytes_ += size_memory * (static_cast<double>(datagram_bytes_) - usual_bytes_);
   for (const Gap& gap : gaps_) {
     const bool on_way = gap.between_datagrams && lost_since(gap.last_datagram);
     attributed_.push_back({gap.sensor, on_way ? 0 : gap.missing, on_way ? gap.missing : 0});

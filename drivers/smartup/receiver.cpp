@@ -18,11 +18,11 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::size_t kBatch = 64;             // datagrams per recvmmsg
-constexpr std::size_t kLongestDatagram = 2048; // a unit sends 1000 bytes at most
-constexpr int kTick_ms = 25;
-constexpr int kRest_ms = 2;
-constexpr std::size_t kRestWorthwhile = 2; // datagrams at one wake-up, from which on batches pay
+constexpr std::size_t batch_size = 64;             // datagrams per recvmmsg
+constexpr std::size_t max_datagram = 2048; // a unit sends 1000 bytes at most
+constexpr int tick_ms = 25;
+constexpr int rest_ms = 2;
+constexpr std::size_t rest_worthwhile = 2; // datagrams at one wake-up, from which on batches pay
 
 template <class Clock>
 std::int64_t now_ns() {
@@ -78,8 +78,8 @@ Expected<ListenAddress> parse_listen_address(const std::string& text) {
 class Receiver::Batch {
 public:
   Batch() {
-    for (std::size_t i = 0; i < kBatch; ++i) {
-      parts_[i] = {bytes_.data() + i * kLongestDatagram, kLongestDatagram};
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      parts_[i] = {bytes_.data() + i * max_datagram, max_datagram};
       headers_[i].msg_hdr.msg_iov = &parts_[i];
       headers_[i].msg_hdr.msg_iovlen = 1;
       headers_[i].msg_hdr.msg_name = &senders_[i];
@@ -88,17 +88,17 @@ public:
 
   // Datagrams received, 0 when there are none.
   std::size_t receive(int descriptor) {
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       headers_[i].msg_hdr.msg_namelen = sizeof senders_[i];
       headers_[i].msg_hdr.msg_control = controls_[i].data();
       headers_[i].msg_hdr.msg_controllen = controls_[i].size();
     }
-    const int count = recvmmsg(descriptor, headers_.data(), kBatch, MSG_DONTWAIT, nullptr);
+    const int count = recvmmsg(descriptor, headers_.data(), batch_size, MSG_DONTWAIT, nullptr);
     return count > 0 ? static_cast<std::size_t>(count) : 0;
   }
 
   [[nodiscard]] std::span<const std::uint8_t> datagram(std::size_t i) const {
-    return {bytes_.data() + i * kLongestDatagram, headers_[i].msg_len};
+    return {bytes_.data() + i * max_datagram, headers_[i].msg_len};
   }
   [[nodiscard]] bool cut_off(std::size_t i) const { return (headers_[i].msg_hdr.msg_flags & MSG_TRUNC) != 0; }
   [[nodiscard]] Sender sender(std::size_t i) const { return {ntohl(senders_[i].sin_addr.s_addr), ntohs(senders_[i].sin_port)}; }
@@ -115,11 +115,11 @@ public:
   }
 
 private:
-  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kBatch * kLongestDatagram);
-  std::array<iovec, kBatch> parts_{};
-  std::array<mmsghdr, kBatch> headers_{};
-  std::array<sockaddr_in, kBatch> senders_{};
-  std::array<std::array<char, CMSG_SPACE(sizeof(std::uint32_t))>, kBatch> controls_{};
+  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(batch_size * max_datagram);
+  std::array<iovec, batch_size> parts_{};
+  std::array<mmsghdr, batch_size> headers_{};
+  std::array<sockaddr_in, batch_size> senders_{};
+  std::array<std::array<char, CMSG_SPACE(sizeof(std::uint32_t))>, batch_size> controls_{};
 };
 
 class Receiver::Socket {
@@ -162,9 +162,9 @@ public:
   // Everything that waits in the socket; how many datagrams that were.
   std::size_t drain(Batch& batch) {
     std::size_t total = 0;
-    std::size_t count = kBatch;
+    std::size_t count = batch_size;
     // Bounded, so that a flood at this socket cannot starve the others and the stop.
-    for (int round = 0; round < kRounds && count == kBatch; ++round) {
+    for (int round = 0; round < rounds && count == batch_size; ++round) {
       count = batch.receive(descriptor_);
       const HostTime now = host_time();
       for (std::size_t i = 0; i < count; ++i)
@@ -177,7 +177,7 @@ public:
   Reception& reception() { return reception_; }
 
 private:
-  static constexpr int kRounds = 64;
+  static constexpr int rounds = 64;
 
   Socket(int descriptor, std::vector<SensorSettings> wanted, SampleSink& sink)
       : descriptor_(descriptor), reception_(std::move(wanted), sink) {}
@@ -248,7 +248,7 @@ void Receiver::run() {
     events.push_back({socket->descriptor(), POLLIN, 0});
   std::int64_t next_tick_ns = 0;
   while (true) {
-    poll(events.data(), events.size(), kTick_ms);
+    poll(events.data(), events.size(), tick_ms);
     std::size_t received = 0;
     for (auto& socket : sockets_)
       received += socket->drain(batch);
@@ -256,9 +256,9 @@ void Receiver::run() {
     if (now.monotonic_ns >= next_tick_ns) {
       for (auto& socket : sockets_)
         socket->reception().tick(now);
-      next_tick_ns = now.monotonic_ns + kTick_ms * std::int64_t{1'000'000};
+      next_tick_ns = now.monotonic_ns + tick_ms * std::int64_t{1'000'000};
     }
-    if (received >= kRestWorthwhile) poll(events.data(), 1, kRest_ms); // the stop event alone
+    if (received >= rest_worthwhile) poll(events.data(), 1, rest_ms); // the stop event alone
     if ((events[0].revents & POLLIN) != 0) break;
   }
   for (auto& socket : sockets_)

@@ -6,8 +6,8 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::int64_t kReportInterval_ns = 500'000'000;
-constexpr std::int64_t kSenderSilent_ns = 2'000'000'000;
+constexpr std::int64_t report_interval_ns = 500'000'000;
+constexpr std::int64_t sender_silent_ns = 2'000'000'000;
 
 } // namespace
 
@@ -34,7 +34,7 @@ Reception::Reception(std::vector<SensorSettings> wanted, SampleSink& sink) : sin
 // Nothing when there are too many.
 Reception::Entry* Reception::entry_of(std::uint32_t sensor) {
   if (const auto found = sensors_.find(sensor); found != sensors_.end()) return found->second.get();
-  if (sensors_.size() >= kMostSensors) return nullptr;
+  if (sensors_.size() >= max_sensors) return nullptr;
   auto entry = std::make_unique<Entry>(Entry{.sensor = Sensor(sensor, std::nullopt, sink_), .sender = {}});
   return sensors_.emplace(sensor, std::move(entry)).first->second.get();
 }
@@ -45,7 +45,7 @@ Reception::Entry* Reception::entry_from(std::uint32_t sensor, Sender sender, Hos
     ++counts_.refused;
     return nullptr;
   }
-  if (entry->received && entry->sender != sender && now.monotonic_ns - entry->last_ns < kSenderSilent_ns) {
+  if (entry->received && entry->sender != sender && now.monotonic_ns - entry->last_ns < sender_silent_ns) {
     entry->sensor.add_other_sender();
     return nullptr;
   }
@@ -57,7 +57,7 @@ Reception::Entry* Reception::entry_from(std::uint32_t sensor, Sender sender, Hos
 
 Reception::Unit* Reception::unit_of(Sender sender) {
   if (const auto found = units_.find(sender); found != units_.end()) return &found->second;
-  if (units_.size() >= kMostUnits) return nullptr;
+  if (units_.size() >= max_units) return nullptr;
   return &units_[sender];
 }
 
@@ -120,7 +120,7 @@ void Reception::tick(HostTime now) {
   for (auto& [sensor, entry] : sensors_) {
     if (entry->received) entry->sensor.tick(now);
   }
-  if (now.monotonic_ns - last_report_ns_ < kReportInterval_ns) return;
+  if (now.monotonic_ns - last_report_ns_ < report_interval_ns) return;
   last_report_ns_ = now.monotonic_ns;
   report();
 }

@@ -2,7 +2,7 @@
 //
 // A sensor belongs to the sender it was first received from; the same id from a second sender at the same time (two boards with one
 // checksum) is counted and not mixed in. When the first sender has been silent for two seconds, the second one is taken for the same unit
-// with a new address. Senders and sensors that are kept apart are limited (kMostUnits, kMostSensors), so that nobody can fill the memory.
+// with a new address. Senders and sensors that are kept apart are limited (max_units, max_sensors), so that nobody can fill the memory.
 // No sockets here. One thread at a time; never fails.
 #pragma once
 
@@ -31,8 +31,8 @@ struct Sender {
 
 class Reception {
 public:
-  static constexpr std::size_t kMostUnits = 256;
-  static constexpr std::size_t kMostSensors = 1024;
+  static constexpr std::size_t max_units = 256;
+  static constexpr std::size_t max_sensors = 1024;
 
   // `sink` outlives the reception. REQUIRES: no sensor twice in `wanted`.
   Reception(std::vector<SensorSettings> wanted, SampleSink& sink);

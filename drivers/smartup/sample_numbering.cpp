@@ -12,7 +12,7 @@ Place SampleNumbering::accept(Arrival arrival, std::uint32_t number, std::int64_
   last_number_ = number;
   last_stamp_ns_ = stamp_ns;
   last_sample_ = sample;
-  seen_[number % kRemembered] = {number, stamp_ns, true};
+  seen_[number % remembered] = {number, stamp_ns, true};
   odd_in_a_row_ = 0;
   return {arrival, sample, missing};
 }
@@ -21,15 +21,15 @@ Place SampleNumbering::accept(Arrival arrival, std::uint32_t number, std::int64_
 Arrival SampleNumbering::unless_it_continues(std::uint32_t number) {
   odd_in_a_row_ = number == next_odd_number_ ? odd_in_a_row_ + 1 : 1;
   next_odd_number_ = number + 1;
-  return odd_in_a_row_ > kNewNumberingProof ? Arrival::restart : Arrival::stale;
+  return odd_in_a_row_ > new_numbering_proof ? Arrival::restart : Arrival::stale;
 }
 
 Arrival SampleNumbering::look_back(std::uint32_t number, std::int64_t stamp_ns) {
-  const Seen& seen = seen_[number % kRemembered];
+  const Seen& seen = seen_[number % remembered];
   const bool known = seen.valid && seen.number == number;
   if (known && seen.stamp_ns == stamp_ns) return Arrival::duplicate;
   const std::uint32_t back = last_number_ - number;
-  if (!known && back < kRemembered && stamp_ns < last_stamp_ns_) return Arrival::late;
+  if (!known && back < remembered && stamp_ns < last_stamp_ns_) return Arrival::late;
   if (number == 1 || stamp_ns > last_stamp_ns_) return Arrival::restart;
   return unless_it_continues(number);
 }
@@ -41,9 +41,9 @@ Place SampleNumbering::place(std::uint32_t number, std::int64_t stamp_ns) {
   Arrival arrival = Arrival::after_gap;
   if (ahead == 0 || ahead > UINT32_MAX / 2) {
     arrival = look_back(number, stamp_ns);
-  } else if (ahead > kLargestGap) {
+  } else if (ahead > max_gap) {
     arrival = Arrival::restart;
-  } else if (ahead > kPlainGap && stamp_ns < last_stamp_ns_ - kClearlyEarlier_ns) {
+  } else if (ahead > plain_gap && stamp_ns < last_stamp_ns_ - clearly_earlier_ns) {
     arrival = unless_it_continues(number);
   }
 

@@ -40,11 +40,11 @@ private:
     std::int64_t stamp_ns = 0;
     bool valid = false;
   };
-  static constexpr std::size_t kRemembered = 256;                   // samples: two dozen datagrams
-  static constexpr std::uint32_t kLargestGap = 1U << 24U;           // hours at 1 kS/s; beyond that it is another numbering
-  static constexpr std::uint32_t kPlainGap = 64;                    // up to here a gap is believed whatever the stamp says
-  static constexpr std::int64_t kClearlyEarlier_ns = 1'500'000'000; // more than a second that is mislabelled
-  static constexpr std::uint32_t kNewNumberingProof = 16;
+  static constexpr std::size_t remembered = 256;                   // samples: two dozen datagrams
+  static constexpr std::uint32_t max_gap = 1U << 24U;           // hours at 1 kS/s; beyond that it is another numbering
+  static constexpr std::uint32_t plain_gap = 64;                    // up to here a gap is believed whatever the stamp says
+  static constexpr std::int64_t clearly_earlier_ns = 1'500'000'000; // more than a second that is mislabelled
+  static constexpr std::uint32_t new_numbering_proof = 16;
 
   [[nodiscard]] Arrival look_back(std::uint32_t number, std::int64_t stamp_ns);
   [[nodiscard]] Arrival unless_it_continues(std::uint32_t number);
@@ -55,7 +55,7 @@ private:
   std::uint32_t last_number_ = 0;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t last_sample_ = 0;
-  std::array<Seen, kRemembered> seen_{};
+  std::array<Seen, remembered> seen_{};
   std::uint32_t next_odd_number_ = 0; // of a run of numbers that do not fit
   std::uint32_t odd_in_a_row_ = 0;
 };

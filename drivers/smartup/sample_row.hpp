@@ -20,9 +20,9 @@ struct SampleRow {
   std::uint32_t stamp_uncertainty_ns = 0; // standard uncertainty
   std::uint8_t flags = 0;                 // StampFlag bits
   std::uint16_t present = 0;
-  std::array<float, kChannels> values{};
+  std::array<float, channels_of_unit> values{};
   std::uint16_t sync_present = 0; // of the sync sensor, when the unit sends its ADCs as a sensor of their own
-  std::array<float, kChannels> sync_values{};
+  std::array<float, channels_of_unit> sync_values{};
 };
 
 // The columns of a block: channels of the sensor, then channels of its sync sensor.

@@ -25,8 +25,8 @@ struct SensorCounts {
   std::uint64_t other_sender = 0; // same id from a second sender, not handed on
   std::uint64_t new_columns = 0;  // channels appeared that had not been there
   std::uint64_t without_sync = 0; // samples whose partner of the sync sensor never came
-  std::array<std::uint64_t, kRejections> rejected{};
-  std::array<std::uint64_t, kStampFlags> stamp_flags{};
+  std::array<std::uint64_t, rejections> rejected{};
+  std::array<std::uint64_t, stamp_flag_count> stamp_flags{};
   std::uint64_t stamps_not_trusted = 0;   // samples with at least one flag
   std::uint32_t stamp_uncertainty_ns = 0; // standard uncertainty of the newest stamp in the unit's clock; 0: it does not know
 };
@@ -46,7 +46,7 @@ struct ReceptionCounts {
   std::uint64_t found_lost = 0;                      // datagrams that never came, as far as whole ones can be told
   std::uint64_t too_long = 0;                        // datagrams longer than any of a unit
   std::uint64_t refused = 0;                         // datagrams or messages of more units or sensors than can be kept apart
-  std::array<std::uint64_t, kRejections> rejected{}; // datagrams, and messages of no known sensor
+  std::array<std::uint64_t, rejections> rejected{}; // datagrams, and messages of no known sensor
 };
 
 class SampleSink {

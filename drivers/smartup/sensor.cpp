@@ -8,13 +8,13 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kLongestWaitForDescription_ns = 5 * kSecond_ns; // they come every 4 s
-constexpr std::uint64_t kLongestBeginning = 16;                        // samples of one sensor in one datagram
-constexpr std::int64_t kPause_ns = 2 * kSecond_ns;
-constexpr std::int64_t kPauseInSteps = 10;
-constexpr double kTick_s = 1.0 / 108e6;
-constexpr double kStampUncertainty_s = 100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t max_wait_for_description_ns = 5 * second_ns; // they come every 4 s
+constexpr std::uint64_t max_beginning = 16;                        // samples of one sensor in one datagram
+constexpr std::int64_t pause_of_sensor_ns = 2 * second_ns;
+constexpr std::int64_t pause_in_steps = 10;
+constexpr double tick_of_unit_s = 1.0 / 108e6;
+constexpr double u_gps_pulse_s = 100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
 
 // The unit sends four standard uncertainties.
 std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
@@ -36,9 +36,9 @@ bool Sensor::all_stale_before(const DataMessage& message, std::uint64_t missing)
   const std::int64_t step_ns = message.stamp_ns() - beginning_.last_stamp_ns;
   const std::int64_t step_before_ns = std::exchange(beginning_.last_step_ns, step_ns);
   beginning_.last_stamp_ns = message.stamp_ns();
-  if (++beginning_.samples < 3 || beginning_.samples > kLongestBeginning || missing > 0) return false;
+  if (++beginning_.samples < 3 || beginning_.samples > max_beginning || missing > 0) return false;
   const auto is_pause = [](std::int64_t pause_ns, std::int64_t other_ns) {
-    return pause_ns > kPause_ns && other_ns > 0 && pause_ns / kPauseInSteps > other_ns;
+    return pause_ns > pause_of_sensor_ns && other_ns > 0 && pause_ns / pause_in_steps > other_ns;
   };
   return is_pause(step_ns, step_before_ns) || (beginning_.samples == 3 && is_pause(step_before_ns, step_ns));
 }
@@ -53,7 +53,7 @@ void Sensor::discard_stale() {
 
 void Sensor::begin_numbering(HostTime now) {
   ++counts_.restarts;
-  if (!session_has_blocks_ && beginning_.samples <= kLongestBeginning) {
+  if (!session_has_blocks_ && beginning_.samples <= max_beginning) {
     discard_stale();
   } else {
     join_.release();
@@ -101,7 +101,7 @@ std::optional<std::uint64_t> Sensor::take(const DataMessage& message, HostTime n
   ++counts_.received;
   counts_.stamp_uncertainty_ns = row.stamp_uncertainty_ns;
   if (row.flags != 0) ++counts_.stamps_not_trusted;
-  for (std::size_t bit = 0; bit < kStampFlags; ++bit)
+  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit)
     counts_.stamp_flags[bit] += (row.flags >> bit) & 1U;
 
   if (sync_of_ != nullptr) sync_of_->take_sync(message, now);
@@ -166,7 +166,7 @@ void Sensor::take(const DescriptionMessage& message, HostTime now) {
 void Sensor::describe(HostTime now) {
   if (!settings_ || !description_changed_ || blocks_.columns() == Columns{}) return;
   const bool whole = declared_.complete() && (sync_ == nullptr || sync_->declared_.complete());
-  const bool waited = first_sample_ns_ && now.monotonic_ns - *first_sample_ns_ >= kLongestWaitForDescription_ns;
+  const bool waited = first_sample_ns_ && now.monotonic_ns - *first_sample_ns_ >= max_wait_for_description_ns;
   if (!described_ && !whole && !waited) return;
   described_ = true;
   description_changed_ = false;
@@ -185,8 +185,8 @@ SourceDescription Sensor::description() const {
   }
   description.time_base = settings_->time_base;
   description.stamp_instant = StampInstant::data_ready_edge;
-  description.tick_s = kTick_s;
-  description.stamp_uncertainty_s = kStampUncertainty_s;
+  description.tick_s = tick_of_unit_s;
+  description.stamp_uncertainty_s = u_gps_pulse_s;
   return description;
 }
 

@@ -8,10 +8,10 @@ namespace dyncal::drivers::smartup {
 
 // "0xbccb0100"
 [[nodiscard]] inline std::string sensor_text(std::uint32_t sensor) {
-  constexpr const char* kDigits = "0123456789abcdef";
+  constexpr const char* digits = "0123456789abcdef";
   std::string text = "0x";
   for (int shift = 28; shift >= 0; shift -= 4)
-    text += kDigits[(sensor >> static_cast<unsigned>(shift)) & 0xFU];
+    text += digits[(sensor >> static_cast<unsigned>(shift)) & 0xFU];
   return text;
 }
 

@@ -10,25 +10,25 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr double kSecond_ns = 1e9;
-constexpr double kTicksPerSecond[] = {108e6, 100e6};
-constexpr double kTicksOfExtension = 4294967296.0;
-constexpr double kTicksOfHalf = 65536.0;
-constexpr double kCrystalError = 1e-4; // by which a number of ticks may differ from its nominal time
+constexpr double second_ns = 1e9;
+constexpr double ticks_per_second[] = {108e6, 100e6};
+constexpr double ticks_of_extension = 4294967296.0;
+constexpr double ticks_of_half = 65536.0;
+constexpr double crystal_error = 1e-4; // by which a number of ticks may differ from its nominal time
 
-constexpr double kPhaseGain = 0.1;
-constexpr double kPeriodGain = 0.004; // damping 0.8: it settles without ringing
-constexpr double kResidualMemory = 1.0 / 64.0;
+constexpr double phase_gain = 0.1;
+constexpr double period_gain = 0.004; // damping 0.8: it settles without ringing
+constexpr double residual_memory = 1.0 / 64.0;
 
-constexpr double kToleranceInPeriods = 0.25;
-constexpr double kLargestPlainTolerance_ns = 200e3;
-constexpr double kToleranceInUsualResiduals = 10.0;
-constexpr double kPeriodDrift = 2e-5;              // relative, while the model runs free
-constexpr double kLargestToleranceInPeriods = 0.5; // more than that is no jitter
-constexpr double kLongestPeriod_ns = 86400e9;
+constexpr double tolerance_in_periods = 0.25;
+constexpr double max_plain_tolerance_ns = 200e3;
+constexpr double tolerance_in_usual_residuals = 10.0;
+constexpr double period_drift = 2e-5;              // relative, while the model runs free
+constexpr double max_tolerance_in_periods = 0.5; // more than that is no jitter
+constexpr double max_period_ns = 86400e9;
 
-constexpr double kPersistence_ns = 10e9;
-constexpr std::uint64_t kPersistenceSamples = 8;
+constexpr double persistence_ns = 10e9;
+constexpr std::uint64_t persistence_samples = 8;
 
 bool is_close(double value, double target, double tolerance) {
   return std::abs(std::abs(value) - target) <= tolerance;
@@ -44,10 +44,10 @@ double median(Values& values) {
 } // namespace
 
 const char* stamp_flag_name(std::size_t bit) {
-  static constexpr const char* kNames[kStampFlags] = {
+  static constexpr const char* flag_names[stamp_flag_count] = {
       "stamp: second slipped", "stamp: 2^32 ticks off", "stamp: 2^16 ticks off", "stamp: offset below a second",
       "stamp: repeated",       "stamp: no uncertainty", "stamp: no fix",         "stamp: backwards"};
-  return bit < kStampFlags ? kNames[bit] : "stamp";
+  return bit < stamp_flag_count ? flag_names[bit] : "stamp";
 }
 
 double StampCheck::residual_ns(const Stamp& stamp) const {
@@ -56,25 +56,25 @@ double StampCheck::residual_ns(const Stamp& stamp) const {
 }
 
 double StampCheck::tolerance_ns(const Stamp& stamp) const {
-  const double plain = std::min(kToleranceInPeriods * period_ns_, kLargestPlainTolerance_ns);
+  const double plain = std::min(tolerance_in_periods * period_ns_, max_plain_tolerance_ns);
   const double free_running_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
-  const double tolerance = std::max(plain, kToleranceInUsualResiduals * usual_residual_ns_) + kPeriodDrift * free_running_ns;
-  return std::min(tolerance, kLargestToleranceInPeriods * period_ns_);
+  const double tolerance = std::max(plain, tolerance_in_usual_residuals * usual_residual_ns_) + period_drift * free_running_ns;
+  return std::min(tolerance, max_tolerance_in_periods * period_ns_);
 }
 
 // The period is the median of the founders' steps and the phase the median of their distances from it, so that a fault among them does not
 // count.
 void StampCheck::found(const Stamp& stamp) {
   founders_[founder_count_++] = stamp;
-  if (founder_count_ < kFounders) return;
+  if (founder_count_ < founder_count) return;
   std::vector<double> periods;
-  for (std::size_t i = 1; i < kFounders; ++i) {
+  for (std::size_t i = 1; i < founder_count; ++i) {
     const auto samples = static_cast<double>(founders_[i].sample - founders_[i - 1].sample);
     periods.push_back(static_cast<double>(founders_[i].stamp_ns - founders_[i - 1].stamp_ns) / samples);
   }
   period_ns_ = median(periods);
   founder_count_ = 0;
-  if (!(period_ns_ > 0.0 && period_ns_ < kLongestPeriod_ns)) return;
+  if (!(period_ns_ > 0.0 && period_ns_ < max_period_ns)) return;
   origin_ = stamp;
   phase_ns_ = 0.0;
   std::vector<double> residuals;
@@ -89,14 +89,14 @@ void StampCheck::found(const Stamp& stamp) {
 }
 
 std::uint8_t StampCheck::signature(double residual, double tolerance, const Stamp& stamp) const {
-  const double seconds = std::round(std::abs(residual) / kSecond_ns);
-  for (const double rate : kTicksPerSecond) {
-    const double extension_ns = kTicksOfExtension / rate * kSecond_ns;
-    if (is_close(residual, extension_ns, tolerance + kCrystalError * extension_ns)) return stamp_counter_extension;
-    if (is_close(residual, kTicksOfHalf / rate * kSecond_ns, std::min(tolerance, kLargestPlainTolerance_ns / 10)))
+  const double seconds = std::round(std::abs(residual) / second_ns);
+  for (const double rate : ticks_per_second) {
+    const double extension_ns = ticks_of_extension / rate * second_ns;
+    if (is_close(residual, extension_ns, tolerance + crystal_error * extension_ns)) return stamp_counter_extension;
+    if (is_close(residual, ticks_of_half / rate * second_ns, std::min(tolerance, max_plain_tolerance_ns / 10)))
       return stamp_torn_counter;
   }
-  if (seconds >= 1.0 && is_close(residual, seconds * kSecond_ns, tolerance)) return stamp_second_slip;
+  if (seconds >= 1.0 && is_close(residual, seconds * second_ns, tolerance)) return stamp_second_slip;
   if (has_last_ && stamp.stamp_ns < last_.stamp_ns) return stamp_backwards;
   return stamp_offset_below_second;
 }
@@ -110,20 +110,20 @@ bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
 bool StampCheck::lasts(const Stamp& stamp) {
   ++distrusted_in_a_row_;
   const double since_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
-  return distrusted_in_a_row_ >= kPersistenceSamples && since_ns >= kPersistence_ns;
+  return distrusted_in_a_row_ >= persistence_samples && since_ns >= persistence_ns;
 }
 
 void StampCheck::follow(const Stamp& stamp, double residual) {
   const auto samples = static_cast<double>(stamp.sample - origin_.sample);
   // The new origin lies where the model expected this sample, moved a little towards where it was.
-  const double correction = kPhaseGain * residual;
+  const double correction = phase_gain * residual;
   const double predicted_from_stamp = -residual + correction;
   const double whole = std::round(predicted_from_stamp);
   origin_ = stamp;
   origin_.stamp_ns += static_cast<std::int64_t>(whole);
   phase_ns_ = predicted_from_stamp - whole;
-  period_ns_ += kPeriodGain * residual / samples;
-  usual_residual_ns_ += kResidualMemory * (std::abs(residual) - usual_residual_ns_);
+  period_ns_ += period_gain * residual / samples;
+  usual_residual_ns_ += residual_memory * (std::abs(residual) - usual_residual_ns_);
   distrusted_in_a_row_ = 0;
 }
 
@@ -143,7 +143,7 @@ std::uint8_t StampCheck::check_against_model(const Stamp& stamp) {
     return 0;
   }
   const std::uint8_t flag = signature(residual, tolerance, stamp);
-  last_was_jump_ = flag == stamp_offset_below_second && residual > kSecond_ns;
+  last_was_jump_ = flag == stamp_offset_below_second && residual > second_ns;
   if (lasts(stamp)) founded_ = false;
   return flag;
 }

@@ -2,7 +2,7 @@
 // StampFlag bits. The stamps themselves are never changed.
 //
 // Model: true stamps lie on t(n) = t0 + n T with a period that drifts slowly; t0 and T follow the trusted stamps with a second-order loop
-// (gains kPhaseGain, kPeriodGain), so that a single early or late sample hardly moves them. The difference r = stamp - t(n) is honest
+// (gains phase_gain, period_gain), so that a single early or late sample hardly moves them. The difference r = stamp - t(n) is honest
 // jitter while |r| stays below a tolerance: a quarter of a period up to 200 us, or ten times the usual |r| of this sensor if that is more,
 // but never more than half a period. Beyond it:
 //   r = +-k s                          second_slip          second mislabelled
@@ -32,7 +32,7 @@ struct Stamp {
   bool no_fix = false; // unix time 0
 };
 
-inline constexpr std::size_t kStampFlags = 8;
+inline constexpr std::size_t stamp_flag_count = 8;
 // Name of bit `bit` of StampFlag, for counts and messages.
 [[nodiscard]] const char* stamp_flag_name(std::size_t bit);
 
@@ -45,7 +45,7 @@ public:
   [[nodiscard]] double period_ns() const { return founded_ ? period_ns_ : 0.0; }
 
 private:
-  static constexpr std::size_t kFounders = 8;
+  static constexpr std::size_t founder_count = 8;
 
   void found(const Stamp& stamp);
   [[nodiscard]] double residual_ns(const Stamp& stamp) const;
@@ -56,7 +56,7 @@ private:
   void follow(const Stamp& stamp, double residual_ns);
   std::uint8_t check_against_model(const Stamp& stamp);
 
-  std::array<Stamp, kFounders> founders_{};
+  std::array<Stamp, founder_count> founders_{};
   std::size_t founder_count_ = 0;
   bool founded_ = false;
 

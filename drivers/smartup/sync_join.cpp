@@ -6,12 +6,12 @@ namespace dyncal::drivers::smartup {
 
 void SyncJoin::add(const SampleRow& row) {
   rows_.push_back(row);
-  if (rows_.size() > kLongestWait) releasing_ = std::max<std::size_t>(releasing_, 1);
+  if (rows_.size() > max_wait) releasing_ = std::max<std::size_t>(releasing_, 1);
 }
 
-void SyncJoin::add_sync(std::int64_t stamp_ns, std::uint16_t present, const std::array<float, kChannels>& values) {
+void SyncJoin::add_sync(std::int64_t stamp_ns, std::uint16_t present, const std::array<float, channels_of_unit>& values) {
   sync_.push_back({stamp_ns, present, values});
-  if (sync_.size() > kLongestWait) drop_sync(1);
+  if (sync_.size() > max_wait) drop_sync(1);
 }
 
 void SyncJoin::drop_sync(std::size_t count) {

@@ -23,7 +23,7 @@ public:
   // At most ten bytes; bits beyond the 64th are lost, as the format says.
   bool varint(std::uint64_t& value) {
     std::uint64_t result = 0;
-    for (std::size_t i = 0; i < kLongestVarint && position_ + i < bytes_.size(); ++i) {
+    for (std::size_t i = 0; i < max_varint && position_ + i < bytes_.size(); ++i) {
       const std::uint8_t byte = bytes_[position_ + i];
       result |= static_cast<std::uint64_t>(byte & 0x7FU) << (7 * i);
       if ((byte & 0x80U) == 0) {
@@ -76,7 +76,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t kLongestVarint = 10;
+  static constexpr std::size_t max_varint = 10;
 
   std::span<const std::uint8_t> bytes_;
   std::size_t position_ = 0;

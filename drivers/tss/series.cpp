@@ -14,14 +14,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are taken over as they come");
 
-constexpr std::size_t most_samples = 50'000'000;
-constexpr std::size_t most_channels = 64;
+constexpr std::size_t max_samples = 50'000'000;
+constexpr std::size_t max_channels = 64;
 
 tl::unexpected<Error> malformed(const std::string& message) {
   return tl::unexpected(Error{ErrorCode::malformed, message});
 }
 
-std::size_t octets_of(ValueForm form) {
+std::size_t bytes_of(ValueForm form) {
   switch (form) {
   case ValueForm::int16:
     return 2;
@@ -35,24 +35,24 @@ std::size_t octets_of(ValueForm form) {
 }
 
 template <class Number>
-double number_at(const char* octets) {
+double number_at(const char* bytes) {
   Number value;
-  std::memcpy(&value, octets, sizeof(value));
+  std::memcpy(&value, bytes, sizeof(value));
   return static_cast<double>(value);
 }
 
-double value_at(ValueForm form, const char* octets) {
+double value_at(ValueForm form, const char* bytes) {
   switch (form) {
   case ValueForm::int16:
-    return number_at<std::int16_t>(octets);
+    return number_at<std::int16_t>(bytes);
   case ValueForm::int32:
-    return number_at<std::int32_t>(octets);
+    return number_at<std::int32_t>(bytes);
   case ValueForm::float32:
-    return number_at<float>(octets);
+    return number_at<float>(bytes);
   case ValueForm::float64:
     break;
   }
-  return number_at<double>(octets);
+  return number_at<double>(bytes);
 }
 
 std::optional<ValueForm> form_by_name(const std::string& name) {
@@ -88,10 +88,10 @@ Expected<void> check(const Series& series) {
   if (!(series.nominal_rate_hz > 0.0) || !std::isfinite(series.nominal_rate_hz)) {
     return malformed("a series without a nominal rate above 0");
   }
-  if (series.samples == 0 || series.samples > most_samples) {
+  if (series.samples == 0 || series.samples > max_samples) {
     return malformed("a series of " + std::to_string(series.samples) + " samples");
   }
-  if (series.channels.empty() || series.channels.size() > most_channels) {
+  if (series.channels.empty() || series.channels.size() > max_channels) {
     return malformed("a series of " + std::to_string(series.channels.size()) + " channels");
   }
   return {};
@@ -171,8 +171,8 @@ std::vector<std::string_view> split(std::string_view line) {
 
 } // namespace
 
-std::size_t SeriesHeader::octets() const {
-  return series.samples * series.channels.size() * octets_of(form);
+std::size_t SeriesHeader::bytes() const {
+  return series.samples * series.channels.size() * bytes_of(form);
 }
 
 Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
@@ -196,18 +196,18 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
   }
 }
 
-Expected<Series> decode_series(SeriesHeader header, std::span<const char> octets) {
-  if (octets.size() != header.octets()) {
-    return malformed("a series of " + std::to_string(octets.size()) + " octets where " + std::to_string(header.octets()) +
+Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes) {
+  if (bytes.size() != header.bytes()) {
+    return malformed("a series of " + std::to_string(bytes.size()) + " bytes where " + std::to_string(header.bytes()) +
                      " were announced");
   }
   Series series = std::move(header.series);
   const std::size_t channels = series.channels.size();
-  const std::size_t step = octets_of(header.form);
+  const std::size_t step = bytes_of(header.form);
   series.values.resize(series.samples * channels);
   for (std::size_t sample = 0; sample < series.samples; ++sample) {
     for (std::size_t channel = 0; channel < channels; ++channel) {
-      const double value = value_at(header.form, octets.data() + (sample * channels + channel) * step) * header.scales[channel];
+      const double value = value_at(header.form, bytes.data() + (sample * channels + channel) * step) * header.scales[channel];
       if (!std::isfinite(value)) {
         return malformed("sample " + std::to_string(sample) + " of the series is not a number");
       }

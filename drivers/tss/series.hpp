@@ -32,20 +32,20 @@ struct Series {
 
 enum class ValueForm { int16, int32, float32, float64 };
 
-// The line before the octets: everything but the values.
+// The line before the bytes: everything but the values.
 struct SeriesHeader {
   Series series; // without values
   ValueForm form = ValueForm::float64;
   std::vector<double> scales; // unit per count, one per channel
 
-  [[nodiscard]] std::size_t octets() const; // of all values
+  [[nodiscard]] std::size_t bytes() const; // of all values
 };
 
 [[nodiscard]] Expected<SeriesHeader> parse_series_header(std::string_view json_line);
 
-// Values of sample after sample, each with all channels, little endian. Fails when the size is not header.octets() or a value is not
+// Values of sample after sample, each with all channels, little endian. Fails when the size is not header.bytes() or a value is not
 // finite.
-[[nodiscard]] Expected<Series> decode_series(SeriesHeader header, std::span<const char> octets);
+[[nodiscard]] Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes);
 
 // The CSV form: "# key = value" lines, a line of channel names, one line a sample.
 [[nodiscard]] Expected<Series> parse_series_csv(std::string_view text);

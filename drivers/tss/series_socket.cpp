@@ -10,9 +10,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds connect_limit{3000};
-constexpr milliseconds rest_limit{5000};  // for the octets behind a header that has come
+constexpr milliseconds rest_limit{5000};  // for the bytes behind a header that has come
 constexpr milliseconds leftover_limit{1}; // what has come is there at once
-constexpr std::size_t longest_header = 65'536;
+constexpr std::size_t max_header = 65'536;
 
 class SocketSource : public SeriesSource {
 public:
@@ -34,7 +34,7 @@ public:
     if (auto connected = connect(); !connected) {
       return tl::unexpected(connected.error());
     }
-    auto line = connection_->read_line(longest_header, limit);
+    auto line = connection_->read_line(max_header, limit);
     if (!line) {
       // Nothing has come yet: the connection is as good as before.
       return line.error().code == ErrorCode::timeout && !connection_->has_unread() ? failure(line.error()) : give_up(line.error());
@@ -43,11 +43,11 @@ public:
     if (!header) {
       return give_up({header.error().code, address_ + ": " + header.error().message});
     }
-    auto octets = read_block(header->octets());
-    if (!octets) {
-      return give_up(octets.error());
+    auto bytes = read_block(header->bytes());
+    if (!bytes) {
+      return give_up(bytes.error());
     }
-    auto series = decode_series(std::move(*header), *octets);
+    auto series = decode_series(std::move(*header), *bytes);
     if (!series) {
       return give_up({series.error().code, address_ + ": " + series.error().message});
     }
@@ -89,20 +89,20 @@ private:
     const auto length = parse_block_length({digits.data(), *count});
     if (!length || *length != wanted) {
       return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a block of '" + shown({digits.data(), *count}) +
-                                                            "' octets where the series has " + std::to_string(wanted)});
+                                                            "' bytes where the series has " + std::to_string(wanted)});
     }
-    std::vector<char> octets(wanted);
-    if (auto read = connection_->read_exactly(octets, rest_limit); !read) {
+    std::vector<char> bytes(wanted);
+    if (auto read = connection_->read_exactly(bytes, rest_limit); !read) {
       return tl::unexpected(read.error());
     }
-    const auto end = connection_->read_line(longest_header, rest_limit);
+    const auto end = connection_->read_line(max_header, rest_limit);
     if (!end) {
       return tl::unexpected(end.error());
     }
     if (!end->empty()) {
       return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a series is longer than it announces"});
     }
-    return octets;
+    return bytes;
   }
 
   static tl::unexpected<Error> failure(const Error& error) {

@@ -10,7 +10,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr const char* all_benches = "*";
-constexpr std::chrono::milliseconds longest_wait{100};
+constexpr std::chrono::milliseconds max_wait{100};
 
 } // namespace
 
@@ -44,7 +44,7 @@ Expected<void> AnalysisService::open_readers() {
 void AnalysisService::serve(const std::stop_token& stop) {
   spdlog::info("analysis ready ({} on {})", identity_.dds, identity_.service);
   while (!stop.stop_requested()) {
-    wake_up_->wait_until(RunSession::Clock::now() + longest_wait);
+    wake_up_->wait_until(RunSession::Clock::now() + max_wait);
     take_messages();
     for (auto& [key, session] : runs_) {
       session->work(benches_[key.first], RunSession::Clock::now());

@@ -19,13 +19,13 @@
 namespace dyncal::services {
 namespace {
 
-constexpr std::size_t longest_key = 64; // of the contract's key strings
+constexpr std::size_t max_key = 64; // of the contract's key strings
 
 void check_name(TomlTable& table, const std::string& key, const std::string& name) {
   const bool plain =
       std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; });
-  if (!plain || name.size() > longest_key) {
-    table.refuse(key, fmt::format("is \"{}\" but a name may hold letters, digits, '-', '_' and '.', {} at the most", name, longest_key));
+  if (!plain || name.size() > max_key) {
+    table.refuse(key, fmt::format("is \"{}\" but a name may hold letters, digits, '-', '_' and '.', {} at the most", name, max_key));
   }
 }
 

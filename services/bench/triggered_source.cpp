@@ -49,10 +49,10 @@ void read_series_source(TomlTable& table, const std::filesystem::path& folder, S
 }
 
 void read_shots(TomlTable& table, const std::vector<SourceSettings>& sources, MethodSettings& method) {
-  constexpr int most_shots = 1000;
+  constexpr int max_shots = 1000;
   method.shots = table.whole_number("shots", method.shots, 1);
-  if (method.shots > most_shots) {
-    table.refuse("shots", fmt::format("must be {} at most", most_shots));
+  if (method.shots > max_shots) {
+    table.refuse("shots", fmt::format("must be {} at most", max_shots));
   }
   method.trigger_phase_correction = table.yes_no("trigger_phase_correction", method.trigger_phase_correction);
   require_driver(table, "sync_dso", sources, method.sync_dau.source, SourceDriver::oscilloscope, "oscilloscope");

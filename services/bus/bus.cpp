@@ -7,7 +7,7 @@
 namespace dyncal::bus {
 namespace {
 
-constexpr int highest_domain = 232; // the last one whose ports fit 16 bits (DDSI-RTPS 9.6.2.3)
+constexpr int max_domain = 232; // the last one whose ports fit 16 bits (DDSI-RTPS 9.6.2.3)
 
 services::Error network_error(std::string message) {
   return {services::ErrorCode::network, std::move(message)};
@@ -38,9 +38,9 @@ bool WakeUp::wait_until(std::chrono::steady_clock::time_point deadline) {
 }
 
 services::Expected<Participant> Participant::create(const ParticipantOptions& options) {
-  if (options.domain < 0 || options.domain > highest_domain)
+  if (options.domain < 0 || options.domain > max_domain)
     return tl::unexpected(network_error("DDS domain " + std::to_string(options.domain) + " does not exist: choose one from 0 to " +
-                                        std::to_string(highest_domain)));
+                                        std::to_string(max_domain)));
   services::Expected<std::unique_ptr<UntypedParticipant>> untyped =
       tl::unexpected(network_error(vendor_word(options.vendor) + " is not in this build, which has " + words_of_this_build()));
 #ifdef DYNCAL_HAVE_FAST_DDS

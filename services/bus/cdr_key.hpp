@@ -21,7 +21,7 @@ struct KeyLayout;
 inline constexpr std::size_t cdr_header_bytes = 4; // encapsulation: representation (2 bytes, big-endian), options (2 bytes)
 
 // No key of the contract is longer: three strings and two numbers.
-inline constexpr std::size_t longest_key_payload_bytes = 512;
+inline constexpr std::size_t max_key_payload_bytes = 512;
 
 struct Key {
   std::vector<std::string> strings;

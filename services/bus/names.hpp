@@ -11,11 +11,11 @@
 
 namespace dyncal::bus {
 
-inline constexpr std::size_t longest_name = 64;     // characters of bench, source, run, service, target
-inline constexpr std::size_t longest_channel = 128; // characters of "source/channel"
+inline constexpr std::size_t max_name = 64;     // characters of bench, source, run, service, target
+inline constexpr std::size_t max_channel = 128; // characters of "source/channel"
 
 // Fails (bad_argument) when the name is empty or too long. `what` begins the sentence: "the bench", "source".
-[[nodiscard]] services::Expected<void> check_name(const std::string& what, const std::string& name, std::size_t longest = longest_name);
+[[nodiscard]] services::Expected<void> check_name(const std::string& what, const std::string& name, std::size_t longest = max_name);
 
 // A name that one bench can have: as above, and without the characters that make a DDS partition a pattern (* ? [ ]).
 [[nodiscard]] services::Expected<void> check_bench_name(const std::string& name);

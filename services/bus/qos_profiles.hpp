@@ -49,7 +49,7 @@ inline constexpr std::chrono::seconds lease_announcement{1};
 inline constexpr std::chrono::milliseconds fast_dds_heartbeat{10};
 
 // No packet is longer than an Ethernet frame: one lost fragment of a longer datagram stalls the reassembly of all others.
-inline constexpr int longest_udp_payload_bytes = 1472;
+inline constexpr int max_udp_payload_bytes = 1472;
 
 // Processes on one host that can be found without multicast, and that a peer's address is tried for.
 inline constexpr int participants_per_host = 32;

@@ -8,7 +8,7 @@ using drivers::can::BusState;
 
 namespace {
 
-constexpr auto longest_silence = std::chrono::seconds(2);
+constexpr auto max_silence = std::chrono::seconds(2);
 
 std::string ids_of(const drivers::can::SensorStream& stream) {
   std::string ids;
@@ -59,7 +59,7 @@ std::string to_message(const drivers::can::SensorStream& stream, std::chrono::na
   if (link.bus == BusState::error_warning || link.bus == BusState::error_passive)
     return fmt::format("interface '{}' is {}: check bit rate, wiring and termination", link.name, to_text(link.bus));
   const drivers::can::SensorCounts counts = stream.counts();
-  if (counts.frames == 0 && listened > longest_silence)
+  if (counts.frames == 0 && listened > max_silence)
     return fmt::format("interface '{}' is up, but none of the sensor's messages has come ({}); check the ids of the DBC file, 'messages', "
                        "the bit rate and whether the sensor sends",
                        link.name, ids_of(stream));

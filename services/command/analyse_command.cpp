@@ -21,7 +21,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr std::size_t blocks_ahead = 64;    // of at most 4096 samples
-constexpr std::size_t most_evaluations = 4; // at once, one a processor: a step takes longer than reading the next; each holds its samples
+constexpr std::size_t max_evaluations = 4; // at once, one a processor: a step takes longer than reading the next; each holds its samples
 constexpr std::uint64_t session = 1;        // a file is one session; nothing depends on its number
 
 // A file of the bench, read in a thread of its own that waits when it is `blocks_ahead` in front. The thread ends with the file, with a
@@ -219,7 +219,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (!recipe) {
     return tl::unexpected(recipe.error());
   }
-  RunEvaluator evaluator(std::move(*recipe), std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_evaluations));
+  RunEvaluator evaluator(std::move(*recipe), std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, max_evaluations));
   auto inputs = open_inputs(*bench, evaluator);
   if (!inputs) {
     return tl::unexpected(inputs.error());

@@ -27,7 +27,7 @@ using Measurements = std::vector<analysis::AdcCalibrationPoint>;
 constexpr auto description_limit = 6s;
 constexpr double amplitude_tolerance = 0.1;  // of the sync voltage asked for; cables and loads take a little
 constexpr double amplitude_spread = 0.05;    // within one pass without a voltage asked for
-constexpr double longest_adc_delay_s = 2e-5; // more is a hint at something else
+constexpr double max_adc_delay_s = 2e-5; // more is a hint at something else
 
 Error refused(std::string message) {
   return {ErrorCode::bad_argument, std::move(message)};
@@ -181,7 +181,7 @@ void print(const Measurements& measurements) {
     fmt::print("{:>10.4g} {:>9.4g} {:>11.7f} {:>10.1e} {:>12.3e} {:>10.1e} {:>11.1f} {:>9.1f}\n", point.frequency_hz,
                point.test_amplitude_vpp, point.gain, point.u_gain, point.phase_lag_rad, point.u_phase_lag_rad,
                1e9 * point.phase_lag_rad / w, 1e9 * point.u_phase_lag_rad / w);
-    if (std::abs(point.phase_lag_rad) > w * longest_adc_delay_s + 6.0 * point.u_phase_lag_rad) {
+    if (std::abs(point.phase_lag_rad) > w * max_adc_delay_s + 6.0 * point.u_phase_lag_rad) {
       fmt::print("{:>10} a delay that an ADC hardly has: do both sources mark the instant of sampling in UTC? is a cable inverted?\n", "");
     }
   }

@@ -56,7 +56,7 @@ void replace_stamps(double rate_hz, std::vector<std::int64_t>& stamps_ns) {
 analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) {
   analysis::ExtendedBasis basis;
   basis.drift_order = command.drift;
-  basis.highest_harmonic = command.harmonics;
+  basis.max_harmonic = command.harmonics;
   for (const std::string& text : command.hum) {
     const auto line = analysis::Frequency::parse(text);
     if (!line) {
@@ -92,7 +92,7 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
   if (!basis) {
     return tl::unexpected(basis.error());
   }
-  if (basis->drift_order == 0 && basis->highest_harmonic <= 1 && basis->lines.empty()) {
+  if (basis->drift_order == 0 && basis->max_harmonic <= 1 && basis->lines.empty()) {
     if (!fit.fits.empty()) {
       return {};
     }

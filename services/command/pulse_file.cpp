@@ -13,7 +13,7 @@ namespace {
 using analysis::PulseEdge;
 using analysis::PulseInput;
 
-constexpr std::size_t longest_shown = 60; // of a line in an error message
+constexpr std::size_t max_shown = 60; // of a line in an error message
 
 std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t value = 0;
@@ -54,7 +54,7 @@ Expected<void> read_file(const std::filesystem::path& path, PulseRecord& record,
     if (!edge) {
       return tl::unexpected(
           Error{ErrorCode::bad_file, fmt::format("{}: line {}: '{}' is no edge: {} is expected", path.string(), number,
-                                                 line.substr(0, longest_shown), *with_input ? "GPST;n;ticks or REFT;n;ticks" : "n;ticks")});
+                                                 line.substr(0, max_shown), *with_input ? "GPST;n;ticks or REFT;n;ticks" : "n;ticks")});
     }
     record.edges.push_back(*edge);
     record.places.push_back({record.files.size() - 1, number});

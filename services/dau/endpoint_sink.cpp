@@ -15,8 +15,8 @@ namespace {
 namespace smartup = drivers::smartup;
 using smartup::sensor_text;
 
-constexpr int kReportsUntilNamed = 10;  // 5 s: descriptions come every 4 s
-constexpr std::size_t kMostListed = 16; // sensors in one sentence
+constexpr int reports_until_named = 10;  // 5 s: descriptions come every 4 s
+constexpr std::size_t max_listed = 16; // sensors in one sentence
 
 std::string name_of(const PlannedSource& planned) {
   return planned.bench + "/" + planned.source;
@@ -80,9 +80,9 @@ void EndpointSink::say_causes(Source& source, const SourceCounts& counts) {
 
 void EndpointSink::report_unknown(const smartup::SensorReport& report) {
   int& reports = unknown_[report.sensor];
-  if (reports > kReportsUntilNamed) return;
-  reports = report.name.empty() ? reports + 1 : kReportsUntilNamed + 1;
-  if (reports <= kReportsUntilNamed) return;
+  if (reports > reports_until_named) return;
+  reports = report.name.empty() ? reports + 1 : reports_until_named + 1;
+  if (reports <= reports_until_named) return;
   lines_.add(false, fmt::format("sensor {} ({}) sends to {} from {} and is in no bench file", sensor_text(report.sensor),
                                 report.name.empty() ? "without a description" : report.name, listen_, report.sender));
 }
@@ -105,7 +105,7 @@ std::string EndpointSink::present_sensors() const {
   std::string text;
   std::size_t listed = 0;
   for (const auto& [sensor, name] : present_) {
-    if (++listed > kMostListed) return text + fmt::format(" and {} more", present_.size() - kMostListed);
+    if (++listed > max_listed) return text + fmt::format(" and {} more", present_.size() - max_listed);
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", sensor_text(sensor), name.empty() ? "" : " (" + name + ")");
   }
   return text;

@@ -1,5 +1,5 @@
 // Lines for the log from threads that must not wait: the receiver's thread puts them here, the main thread prints them.
-// Bound: kMost lines; policy: further ones are left out and counted. Any number of threads add, one takes.
+// Bound: max_lines lines; policy: further ones are left out and counted. Any number of threads add, one takes.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct EventLine {
 
 class EventLines {
 public:
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t max_lines = 1000;
 
   void add(bool warning, std::string text) {
     const std::lock_guard lock(mutex_);
-    if (lines_.size() < kMost)
+    if (lines_.size() < max_lines)
       lines_.push_back({warning, std::move(text)});
     else
       ++left_out_;

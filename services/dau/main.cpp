@@ -22,8 +22,8 @@
 namespace dyncal::services::dau {
 namespace {
 
-constexpr auto kLogInterval = std::chrono::milliseconds(200);
-constexpr int kWantedReceiveBuffer = 4 << 20; // bytes; about half a second of sixteen units
+constexpr auto log_interval = std::chrono::milliseconds(200);
+constexpr int wanted_receive_buffer = 4 << 20; // bytes; about half a second of sixteen units
 
 void print(EventLines& lines) {
   const auto [events, left_out] = lines.take();
@@ -37,7 +37,7 @@ void print_until(const std::stop_token& stop, EventLines& lines) {
   std::condition_variable_any stopped;
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex);
-    stopped.wait_for(lock, stop, kLogInterval, [] { return false; });
+    stopped.wait_for(lock, stop, log_interval, [] { return false; });
     print(lines);
   }
 }
@@ -97,8 +97,8 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
     const int bytes = reception->receiver->receive_buffer_bytes(i);
     spdlog::info("listening at UDP {} for {} sensor{}", (*plan)[i].listen, (*plan)[i].sources.size(),
                  (*plan)[i].sources.size() == 1 ? "" : "s");
-    if (bytes < kWantedReceiveBuffer)
-      spdlog::warn("the system allows a receive buffer of {} bytes only: set net.core.rmem_max to {} or more", bytes, kWantedReceiveBuffer);
+    if (bytes < wanted_receive_buffer)
+      spdlog::warn("the system allows a receive buffer of {} bytes only: set net.core.rmem_max to {} or more", bytes, wanted_receive_buffer);
   }
   service->start();
   reception->receiver->start();

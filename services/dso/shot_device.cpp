@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 constexpr double periods = 2.0;
 constexpr std::size_t points = 10'000;
-constexpr milliseconds least_trigger_limit{3000};
+constexpr milliseconds min_trigger_limit{3000};
 constexpr milliseconds series_limit{10'000}; // from the trigger to the end of the series
 
 Error device_error(const drivers::Error& error) {
@@ -47,7 +47,7 @@ Expected<ShotPair> ShotDevice::take(double frequency_hz) {
   if (auto ready = connect(frequency_hz); !ready) {
     return tl::unexpected(ready.error());
   }
-  const milliseconds trigger_limit = least_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
+  const milliseconds trigger_limit = min_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
   auto trace = oscilloscope_.acquire(trigger_limit);
   if (!trace) {
     triggers_.trigger_may_have_come();

@@ -9,7 +9,7 @@ void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& 
   if (recipe.monte_carlo_trials == 0) {
     return;
   }
-  const auto drawn = analysis::check_transfer(point, link, {.most_trials = recipe.monte_carlo_trials});
+  const auto drawn = analysis::check_transfer(point, link, {.max_trials = recipe.monte_carlo_trials});
   if (!drawn) {
     result.flags().push_back("no Monte Carlo check: " + drawn.error().message);
     return;

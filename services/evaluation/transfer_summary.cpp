@@ -57,13 +57,13 @@ std::vector<std::size_t> first_of_each_frequency(const std::vector<PointOfMean>&
 // The ADC's lag is calibrated as one curve: its uncertainty shifts all phases alike in delay. The largest over the frequencies stands for
 // all.
 double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
-  double largest_s = 0.0;
+  double max_s = 0.0;
   for (const analysis::PhasePoint& point : phases) {
     if (const auto adc = analysis::adc_response_at(recipe.adc_calibration, point.frequency_hz)) {
-      largest_s = std::max(largest_s, adc->u_phase_lag_rad / (2.0 * std::numbers::pi * point.frequency_hz));
+      max_s = std::max(max_s, adc->u_phase_lag_rad / (2.0 * std::numbers::pi * point.frequency_hz));
     }
   }
-  return largest_s;
+  return max_s;
 }
 
 // What shifts all frequencies alike: it adds in full to the group delay.
@@ -74,15 +74,15 @@ double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhaseP
 
 // One clock against the other, and the latency of stamps: the same error of time at every frequency.
 double u_clock_offset_s(const std::map<std::pair<std::uint32_t, std::uint32_t>, CalibrationResult>& results) {
-  double largest_s = 0.0;
+  double max_s = 0.0;
   for (const auto& [key, result] : results) {
     for (const BudgetContribution& line : result.budget()) {
       if (line.name() == "offset between the clocks") {
-        largest_s = std::max(largest_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
+        max_s = std::max(max_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
       }
     }
   }
-  return largest_s;
+  return max_s;
 }
 
 void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOfMean>& points, TransferFunction& function) {

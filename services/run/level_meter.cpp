@@ -11,10 +11,10 @@
 namespace dyncal::services {
 namespace {
 
-constexpr std::size_t fewest_samples = 16; // in half a window
+constexpr std::size_t min_samples = 16; // in half a window
 constexpr double kept_s = 20.0;
-constexpr double largest_drift = 1e-4; // of two clocks
-constexpr std::size_t most_samples = std::size_t{1} << 22U;
+constexpr double max_drift = 1e-4; // of two clocks
+constexpr std::size_t max_samples = std::size_t{1} << 22U;
 
 std::int64_t ns(double seconds) {
   return std::llround(seconds * 1e9);
@@ -22,7 +22,7 @@ std::int64_t ns(double seconds) {
 
 std::optional<double> amplitude(const analysis::Frequency& frequency, std::span<const std::int64_t> stamps_ns,
                                 std::span<const double> values) {
-  if (stamps_ns.size() < fewest_samples) {
+  if (stamps_ns.size() < min_samples) {
     return std::nullopt;
   }
   const auto fit = analysis::fit_sine(frequency, stamps_ns.front(), stamps_ns, std::span(&values, 1));
@@ -33,7 +33,7 @@ std::optional<double> amplitude(const analysis::Frequency& frequency, std::span<
 
 LevelMeter::LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions, bus::Reader<SampleBlock> samples)
     : reference_(std::move(reference)), descriptions_(std::move(descriptions)), samples_(std::move(samples)),
-      record_(reference_.source, most_samples) {}
+      record_(reference_.source, max_samples) {}
 
 Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench, std::shared_ptr<bus::WakeUp> wake_up) {
   auto descriptions = participant.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
@@ -68,7 +68,7 @@ void LevelMeter::take(double bench_time_s) {
   const std::int64_t newest_ns = record_.stamps_ns().back();
   const std::int64_t difference_ns = newest_ns - ns(bench_time_s);
   if (acs_minus_bench_ns_) {
-    *acs_minus_bench_ns_ -= ns(largest_drift * (bench_time_s - taken_s_)); // a slow ACS clock must not make everybody wait
+    *acs_minus_bench_ns_ -= ns(max_drift * (bench_time_s - taken_s_)); // a slow ACS clock must not make everybody wait
   }
   acs_minus_bench_ns_ = std::max(acs_minus_bench_ns_.value_or(difference_ns), difference_ns);
   taken_s_ = bench_time_s;

@@ -5,14 +5,14 @@
 namespace dyncal::services {
 namespace {
 
-constexpr double shortest_window_s = 0.2;
+constexpr double min_window_s = 0.2;
 constexpr double window_periods = 4.0;
 constexpr double slack_s = 0.5; // to look, to set, and for samples that come late
 
 } // namespace
 
 double level_window_s(double frequency_hz) {
-  return std::max(shortest_window_s, window_periods / frequency_hz);
+  return std::max(min_window_s, window_periods / frequency_hz);
 }
 
 int level_corrections(int repetition) {

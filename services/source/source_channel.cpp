@@ -10,9 +10,9 @@ namespace dyncal::services {
 
 namespace {
 
-constexpr int kBlocksPerStep = 16;                    // so that one source cannot starve the others
-constexpr auto kRateWindow = std::chrono::seconds(3); // over which the rate of the status is taken
-constexpr std::size_t kRunsToAnswer = 16;             // a run asks again, so a forgotten one is not lost
+constexpr int blocks_per_step = 16;                    // so that one source cannot starve the others
+constexpr auto rate_window = std::chrono::seconds(3); // over which the rate of the status is taken
+constexpr std::size_t runs_to_answer = 16;             // a run asks again, so a forgotten one is not lost
 
 } // namespace
 
@@ -36,7 +36,7 @@ SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::st
 void SourceChannel::answer(const std::string& run) {
   if (std::ranges::count(runs_to_answer_, run) != 0) return;
   runs_to_answer_.push_back(run);
-  if (runs_to_answer_.size() > kRunsToAnswer) runs_to_answer_.pop_front();
+  if (runs_to_answer_.size() > runs_to_answer) runs_to_answer_.pop_front();
 }
 
 void SourceChannel::begin_session(std::uint64_t session) {
@@ -102,7 +102,7 @@ bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
 bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
   if (!write_description(write_limit)) return false;
   if (!description_ && !flushing_) return false;
-  for (int i = 0; i < kBlocksPerStep; ++i) {
+  for (int i = 0; i < blocks_per_step; ++i) {
     if (!write_next(write_limit)) return false;
     if (ended_) write_status(Clock::now(), write_limit); // ENDED is seen even if the next session follows at once
   }
@@ -120,7 +120,7 @@ dyncal::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapsh
 
 void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
   rate_points_.push_back({now, offered_samples});
-  while (rate_points_.size() > 2 && now - rate_points_.front().time > kRateWindow)
+  while (rate_points_.size() > 2 && now - rate_points_.front().time > rate_window)
     rate_points_.pop_front();
   const double elapsed_s = std::chrono::duration<double>(now - rate_points_.front().time).count();
   rate_hz_ = elapsed_s > 0.0 ? static_cast<double>(offered_samples - rate_points_.front().samples) / elapsed_s : 0.0;

@@ -16,10 +16,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kWriteLimit = std::chrono::milliseconds(50);    // of one write, before the other sources get their turn
-constexpr auto kRetryInterval = std::chrono::milliseconds(10); // for what could not be written
-constexpr auto kAcknowledgmentLimit = std::chrono::seconds(2);
-constexpr std::size_t kLongestName = 64; // bound of the keys of the contract
+constexpr auto write_limit = std::chrono::milliseconds(50);    // of one write, before the other sources get their turn
+constexpr auto retry_interval = std::chrono::milliseconds(10); // for what could not be written
+constexpr auto acknowledgment_limit = std::chrono::seconds(2);
+constexpr std::size_t max_name = 64; // bound of the keys of the contract
 
 // What the bench says to its sources.
 struct BenchReaders {
@@ -70,7 +70,7 @@ Expected<void> SourceService::Implementation::join_bench(const std::string& benc
 
 Expected<std::shared_ptr<SourcePublisher>> SourceService::Implementation::add(SourceOptions source) {
   for (const auto* name : {&source.bench, &source.source}) {
-    if (name->empty() || name->size() > kLongestName)
+    if (name->empty() || name->size() > max_name)
       return tl::unexpected(Error{ErrorCode::bad_argument, "the name '" + *name + "' of a bench or source must have 1 to 64 characters"});
   }
   const auto taken = [&](const auto& channel) {
@@ -124,7 +124,7 @@ void SourceService::Implementation::listen() {
 bool SourceService::Implementation::step_channels() {
   bool more = false;
   for (auto& channel : channels_)
-    more = channel->step(kWriteLimit) || more;
+    more = channel->step(write_limit) || more;
   return more;
 }
 
@@ -135,8 +135,8 @@ void SourceService::Implementation::run(const std::stop_token& stop) {
     const bool more = step_channels();
     auto due = Clock::now() + options_.status_interval;
     for (auto& channel : channels_) {
-      due = std::min(due, channel->step_status(options_.status_interval, kWriteLimit));
-      if (channel->blocked()) due = std::min(due, Clock::now() + kRetryInterval);
+      due = std::min(due, channel->step_status(options_.status_interval, write_limit));
+      if (channel->blocked()) due = std::min(due, Clock::now() + retry_interval);
     }
     if (!more) wake_up_->wait_until(due);
   }
@@ -151,11 +151,11 @@ void SourceService::Implementation::finish() {
   }
   const auto idle = [](const auto& channel) { return channel->idle(); };
   while (!std::ranges::all_of(channels_, idle) && Clock::now() < deadline) {
-    if (!step_channels()) wake_up_->wait_until(std::min(deadline, Clock::now() + kRetryInterval));
+    if (!step_channels()) wake_up_->wait_until(std::min(deadline, Clock::now() + retry_interval));
   }
-  const auto acknowledged_by = Clock::now() + kAcknowledgmentLimit;
+  const auto acknowledged_by = Clock::now() + acknowledgment_limit;
   for (auto& channel : channels_) {
-    channel->step_status(std::chrono::nanoseconds(0), kWriteLimit);
+    channel->step_status(std::chrono::nanoseconds(0), write_limit);
     channel->wait_for_acknowledgments(std::max(Clock::duration(0), acknowledged_by - Clock::now()));
   }
 }

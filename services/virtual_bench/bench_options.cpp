@@ -49,7 +49,7 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_flag("--tss-free-running", words.free_running, "the time series sensor starts with its next own sample");
   app.add_option("--scope-fault", words.scope_faults,
                  fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}", fmt::join(device::scope_fault_names(), ", ")));
-  app.add_option("--scope-pieces", words.scope_pieces, "the oscilloscope's answers come in pieces of so many octets (0: whole)");
+  app.add_option("--scope-pieces", words.scope_pieces, "the oscilloscope's answers come in pieces of so many bytes (0: whole)");
   app.add_option("--ports-file", options.ports_file, "write the ports to this file as JSON once they are open");
   app.add_option("--truth", options.truth_file, "write what is true to this file");
   app.add_option("--adc-file", options.adc_file, "write the calibration of the sync ADC to this file");
@@ -170,7 +170,7 @@ Expected<void> read_triggered(const Words& words, BenchOptions& options) {
   device::TriggeredSettings triggered;
   triggered.trigger.seed = options.bench.seed;
   triggered.trigger.sync_amplitude_v = device::VirtualBench::sync_amplitude_v;
-  triggered.piece_octets = words.scope_pieces;
+  triggered.piece_bytes = words.scope_pieces;
   const auto scope = drivers::parse_address(words.dso);
   const auto sensor = drivers::parse_address(words.tss);
   if (!scope || !sensor) {

@@ -1,4 +1,4 @@
-// How fast `dyncal analyse` evaluates recorded files, beside the time that only looking at every octet of them takes (the lines of a CSV
+// How fast `dyncal analyse` evaluates recorded files, beside the time that only looking at every byte of them takes (the lines of a CSV
 // file counted in one thread): all in one run, on the same files, which lie in the page cache; the quickest of some runs counts.
 //   analyse_speed [--program P] [--folder F] [--only KIND] [--step-s 20] [--runs 5] [--disturbed]
 // A step lasts 20 s in the full form: 9.5 million samples. With --disturbed harmonics and hum are found and taken out as well.

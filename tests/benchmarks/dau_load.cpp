@@ -69,7 +69,7 @@ public:
     for (std::uint32_t sensor = 0; sensor < load_.sensors; ++sensor) {
       data_.sensor = sensor_id(number_, sensor);
       datagram_.data(data_);
-      if (datagram_.bytes().size() < kFullDatagram) continue;
+      if (datagram_.bytes().size() < full_datagram) continue;
       sender_.send(datagram_.bytes());
       datagram_ = tests::DatagramWriter("DATA");
     }
@@ -78,7 +78,7 @@ public:
   void flush() { sender_.send(datagram_.bytes()); }
 
 private:
-  static constexpr std::size_t kFullDatagram = 873;
+  static constexpr std::size_t full_datagram = 873;
 
   const Load& load_;
   const std::uint32_t number_;

@@ -84,8 +84,8 @@ void play(benchmark::State& state, const char* extension, std::string (*make)())
   std::filesystem::remove(settings.path);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
-BENCHMARK_CAPTURE(play, csv, ".csv", csv)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(play, npy, ".npy", npy)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(play, csv, ".csv", csv)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::millisecond);
+BENCHMARK_CAPTURE(play, npy, ".npy", npy)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::millisecond);
 
 } // namespace
 

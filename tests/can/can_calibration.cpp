@@ -146,7 +146,7 @@ std::optional<CanCalibration::Points> CanCalibration::run(const std::vector<std:
   return points;
 }
 
-void CanCalibration::expect_truth(const Points& points, const std::string& source, double most_in_u) const {
+void CanCalibration::expect_truth(const Points& points, const std::string& source, double max_in_u) const {
   double worst_in_u = 0.0;
   int compared = 0;
   const nlohmann::json all = read_json(folder_ / "truth.json");
@@ -168,7 +168,7 @@ void CanCalibration::expect_truth(const Points& points, const std::string& sourc
     }
   }
   EXPECT_EQ(compared, 18);
-  EXPECT_LT(worst_in_u, most_in_u) << source;
+  EXPECT_LT(worst_in_u, max_in_u) << source;
 }
 
 void CanCalibration::expect_late_by_a_frame(const Points& points, const std::string& corrected, const std::string& uncorrected) const {

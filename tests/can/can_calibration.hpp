@@ -46,9 +46,9 @@ public:
   // Calibrates the channels. Nothing when the machine had no time for it.
   [[nodiscard]] std::optional<Points> run(const std::vector<std::string>& channels);
 
-  // All three axes of a source within `most_in_u` of the truth in phase and magnitude, with a line for each frequency of the axis of
+  // All three axes of a source within `max_in_u` of the truth in phase and magnitude, with a line for each frequency of the axis of
   // excitation.
-  void expect_truth(const Points& points, const std::string& source, double most_in_u) const;
+  void expect_truth(const Points& points, const std::string& source, double max_in_u) const;
   // The second source is wrong by the duration of the sensor's frames against the first.
   void expect_late_by_a_frame(const Points& points, const std::string& corrected, const std::string& uncorrected) const;
 

@@ -1,5 +1,5 @@
 // Any signal layout on any payload: the bits read are those that a bit-by-bit reading gives, and nothing beyond the payload is touched.
-// Input: start bit (2 octets), length, flags (order, type), then the payload.
+// Input: start bit (2 bytes), length, flags (order, type), then the payload.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

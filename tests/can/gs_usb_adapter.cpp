@@ -281,7 +281,7 @@ void GsUsbAdapter::mishear(std::size_t channel, std::int64_t end_ns) {
 }
 
 void GsUsbAdapter::tell_host(gs_usb::HostFrame said, std::int64_t stamped_ns, std::int64_t end_ns) {
-  std::uniform_real_distribution<double> latency_s(settings_.least_latency_s, settings_.greatest_latency_s);
+  std::uniform_real_distribution<double> latency_s(settings_.min_latency_s, settings_.max_latency_s);
   std::int64_t due_ns = end_ns + std::llround(latency_s(random_) * 1e9);
   if (!to_host_.empty()) due_ns = std::max(due_ns, to_host_.back().due_ns);
   said.stamp_us = clock_us(stamped_ns);

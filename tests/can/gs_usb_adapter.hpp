@@ -33,8 +33,8 @@ struct GsUsbSettings {
   drivers::can::StampPoint stamp_point = drivers::can::StampPoint::end_of_frame;
   double clock_ppm = 0.0;
   std::uint32_t clock_start_us = 5'000'000; // when it is plugged in
-  double least_latency_s = 100e-6;          // from the end of a frame to the host
-  double greatest_latency_s = 2e-3;
+  double min_latency_s = 100e-6;          // from the end of a frame to the host
+  double max_latency_s = 2e-3;
   std::uint32_t seed = 1;
 };
 

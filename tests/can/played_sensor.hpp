@@ -76,7 +76,7 @@ protected:
     adapter->set_up(0, timing);
     sensor.channels = {{"x", "x"}, {"serial", "serial"}};
     sensor.hardware_stamp_point = settings.stamp_point;
-    sensor.latency_s = settings.least_latency_s;
+    sensor.latency_s = settings.min_latency_s;
     sensor.u_latency_s = 0.5e-6;
     sensor.bus_is_shared = false;
     sensor.time_base = drivers::TimeBase::local;
@@ -149,7 +149,7 @@ protected:
   }
 
   // Every sample is stamped with the start of its frame, but those few, with a flag, for which a link that went down left no clock.
-  void expect_true_stamps(std::size_t most_flagged = 0, double most_in_u = 4.0) {
+  void expect_true_stamps(std::size_t max_flagged = 0, double max_in_u = 4.0) {
     std::size_t with_flag = 0;
     double worst_in_u = 0.0;
     double worst_ns = 0.0;
@@ -171,9 +171,9 @@ protected:
                 std::sqrt(squares / trusted) * 1e-3, worst_ns * 1e-3, worst_in_u, 100.0 * static_cast<double>(beyond_2u) / trusted,
                 with_flag);
     EXPECT_GT(trusted, 0.0);
-    largest_error_ns = worst_ns;
-    EXPECT_LT(worst_in_u, most_in_u);
-    EXPECT_LE(with_flag, most_flagged);
+    max_error_ns = worst_ns;
+    EXPECT_LT(worst_in_u, max_in_u);
+    EXPECT_LE(with_flag, max_flagged);
   }
 
   double rate_hz = 1000.0;
@@ -186,7 +186,7 @@ protected:
   Samples samples;
   std::vector<std::int64_t> starts_ns; // of all frames, in bench time
   std::int64_t next_start_ns = 0;
-  double largest_error_ns = 0.0; // of a stamp without flag
+  double max_error_ns = 0.0; // of a stamp without flag
   Digest digest;                 // of what came
   std::optional<std::int64_t> last_hardware_ns;
 };

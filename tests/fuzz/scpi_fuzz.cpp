@@ -1,6 +1,6 @@
 // Whatever an instrument answers: no crash, no hang, no memory beyond what was allowed, and never a block of another length than announced.
 //
-// The input is what the instrument sends, octet by octet; the conversation asks as the oscilloscope driver does.
+// The input is what the instrument sends, byte by byte; the conversation asks as the oscilloscope driver does.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -18,30 +18,30 @@ using namespace dyncal::drivers;
 
 class Recording : public ScpiTransport {
 public:
-  explicit Recording(std::string_view octets) : octets_(octets) {}
+  explicit Recording(std::string_view bytes) : bytes_(bytes) {}
 
   Expected<void> send(std::string_view, std::chrono::milliseconds) override { return {}; }
   Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds) override {
-    const std::size_t end = octets_.find('\n');
+    const std::size_t end = bytes_.find('\n');
     if (end == std::string_view::npos || end > longest) {
       return tl::unexpected(Error{ErrorCode::timeout, "recording: nothing more"});
     }
-    std::string line(octets_.substr(0, end));
-    octets_.remove_prefix(end + 1);
+    std::string line(bytes_.substr(0, end));
+    bytes_.remove_prefix(end + 1);
     return line;
   }
   Expected<void> read_exactly(std::span<char> wanted, std::chrono::milliseconds) override {
-    if (octets_.size() < wanted.size()) {
+    if (bytes_.size() < wanted.size()) {
       return tl::unexpected(Error{ErrorCode::timeout, "recording: nothing more"});
     }
-    std::copy_n(octets_.begin(), wanted.size(), wanted.begin());
-    octets_.remove_prefix(wanted.size());
+    std::copy_n(bytes_.begin(), wanted.size(), wanted.begin());
+    bytes_.remove_prefix(wanted.size());
     return {};
   }
   bool has_unread() override { return false; } // everything is there from the beginning
 
 private:
-  std::string_view octets_;
+  std::string_view bytes_;
 };
 
 void require(bool condition) {
@@ -50,9 +50,9 @@ void require(bool condition) {
   }
 }
 
-void converse(std::string_view octets) {
+void converse(std::string_view bytes) {
   constexpr std::size_t longest = 100'000;
-  ScpiConnection connection("oscilloscope", "recording", std::chrono::milliseconds(1), std::make_unique<Recording>(octets));
+  ScpiConnection connection("oscilloscope", "recording", std::chrono::milliseconds(1), std::make_unique<Recording>(bytes));
   while (!connection.lost()) {
     static_cast<void>(connection.command(":SINGle"));
     const auto preamble = connection.query(":WAVeform:PREamble?");
@@ -72,11 +72,11 @@ void converse(std::string_view octets) {
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string octets(reinterpret_cast<const char*>(data), size);
-  converse(octets);
-  if (const auto header = tss::parse_series_header(octets); header && header->octets() <= size) {
-    static_cast<void>(tss::decode_series(*header, std::span(octets).first(header->octets())));
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  converse(bytes);
+  if (const auto header = tss::parse_series_header(bytes); header && header->bytes() <= size) {
+    static_cast<void>(tss::decode_series(*header, std::span(bytes).first(header->bytes())));
   }
-  static_cast<void>(tss::parse_series_csv(octets));
+  static_cast<void>(tss::parse_series_csv(bytes));
   return 0;
 }

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   Bytes all;
   bool good = true;
-  for (const auto& vector : dyncal::tests::kWireVectors) {
+  for (const auto& vector : dyncal::tests::all_wire_vectors) {
     const auto bytes = dyncal::tests::wire_vector(vector.name);
     good = write(folder / vector.name, bytes) && good;
     append(all, bytes);

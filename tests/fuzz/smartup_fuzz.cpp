@@ -1,5 +1,5 @@
 // Any bytes at the receiver of SmartUp Units: they may be counted, they may not break anything. The input is a series of datagrams, parted
-// by kSeparator, from two senders in turn. After them the accounts must agree with what was handed on.
+// by separator, from two senders in turn. After them the accounts must agree with what was handed on.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -14,10 +14,10 @@ namespace {
 using namespace dyncal::drivers;
 using namespace dyncal::drivers::smartup;
 
-constexpr std::uint32_t kWanted = 0xbccb0100;
-constexpr std::uint32_t kWithSync = 0xbccb0200;
-constexpr std::uint32_t kSync = 0xbccb0a00;
-constexpr std::uint8_t kSeparator[] = {0xf8, 0xf9, 0xfa, 0xfb};
+constexpr std::uint32_t wanted_id = 0xbccb0100;
+constexpr std::uint32_t with_sync_id = 0xbccb0200;
+constexpr std::uint32_t sync_id = 0xbccb0a00;
+constexpr std::uint8_t separator[] = {0xf8, 0xf9, 0xfa, 0xfb};
 
 void require(bool condition) {
   if (!condition) std::abort();
@@ -45,7 +45,7 @@ public:
   void on_report(const ReceptionCounts&) override {}
 
   void check_accounts() {
-    for (const std::uint32_t sensor : {kWanted, kWithSync})
+    for (const std::uint32_t sensor : {wanted_id, with_sync_id})
       require(samples_[sensor] == counts_[sensor].received);
   }
 
@@ -61,19 +61,19 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   CheckingSink sink;
   std::vector<SensorSettings> wanted(2);
-  wanted[0].sensor = kWanted;
+  wanted[0].sensor = wanted_id;
   wanted[0].naming.names = {{"Data_11", "sync"}};
-  wanted[1].sensor = kWithSync;
-  wanted[1].sync_sensor = kSync;
+  wanted[1].sensor = with_sync_id;
+  wanted[1].sync_sensor = sync_id;
   Reception reception(wanted, sink);
 
   std::span<const std::uint8_t> rest(data, size);
   HostTime now{1, 1};
   for (std::uint32_t turn = 0; !rest.empty(); ++turn) {
-    const auto end = std::search(rest.begin(), rest.end(), std::begin(kSeparator), std::end(kSeparator));
+    const auto end = std::search(rest.begin(), rest.end(), std::begin(separator), std::end(separator));
     const auto length = static_cast<std::size_t>(end - rest.begin());
     reception.take(rest.first(length), {0x7f000001, static_cast<std::uint16_t>(turn % 5 == 4 ? 2 : 1)}, now);
-    rest = rest.subspan(std::min(rest.size(), length + sizeof kSeparator));
+    rest = rest.subspan(std::min(rest.size(), length + sizeof separator));
     now.monotonic_ns += 40'000'000;
     now.utc_ns += 40'000'000;
     if (turn % 2 == 0) reception.tick(now);

@@ -58,7 +58,7 @@ SampleBlock make_block(const std::string& source, std::uint64_t session, std::ui
 }
 
 struct WriteFigures {
-  Clock::duration longest_write{};
+  Clock::duration max_write{};
   std::uint64_t not_written = 0;
 };
 
@@ -97,15 +97,15 @@ int write_stream(bus::Participant& participant, const Options& options) {
     const SampleBlock block = make_block(names[source], session, number, number + 1 == rounds);
     const auto before = Clock::now();
     if (writers[source].write(block, 60s) != bus::WriteOutcome::written) ++figures.not_written;
-    figures.longest_write = std::max(figures.longest_write, Clock::now() - before);
+    figures.max_write = std::max(figures.max_write, Clock::now() - before);
   }
   const double lasted_s = std::chrono::duration<double>(Clock::now() - begin).count();
   std::printf("wrote %llu blocks in %.1f s, longest write %.3f s, not written %llu\n",
               static_cast<unsigned long long>(rounds * names.size()), lasted_s,
-              std::chrono::duration<double>(figures.longest_write).count(), static_cast<unsigned long long>(figures.not_written));
+              std::chrono::duration<double>(figures.max_write).count(), static_cast<unsigned long long>(figures.not_written));
   std::fflush(stdout);
   wait_until_ended();
-  return figures.not_written == 0 && figures.longest_write < 60s ? 0 : 1;
+  return figures.not_written == 0 && figures.max_write < 60s ? 0 : 1;
 }
 
 int read_stream(bus::Participant& participant) {

@@ -18,7 +18,7 @@ constexpr const char* channel = "tss/acceleration_z";
 struct Deviation {
   double magnitude_u = 0.0; // largest, in standard uncertainties
   double phase_u = 0.0;
-  double least_phase_rad = 1e9; // least of all frequencies
+  double min_phase_rad = 1e9; // least of all frequencies
   std::size_t points = 0;
 };
 
@@ -33,7 +33,7 @@ Deviation deviation(const nlohmann::json& result, const nlohmann::json& truth) {
       const double phase = std::remainder(point["phase_rad"].get<double>() - expected["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
       worst.magnitude_u = std::max(worst.magnitude_u, std::abs(magnitude) / point["u_magnitude"].get<double>());
       worst.phase_u = std::max(worst.phase_u, std::abs(phase) / point["u_phase_rad"].get<double>());
-      worst.least_phase_rad = std::min(worst.least_phase_rad, std::abs(phase));
+      worst.min_phase_rad = std::min(worst.min_phase_rad, std::abs(phase));
       ++worst.points;
     }
   }
@@ -88,7 +88,7 @@ TEST(SeriesDemoWithoutCorrection, IsWrongByMoreThanTenMilliradians) {
   ASSERT_FALSE(result.is_discarded() || truth.is_discarded());
   const Deviation worst = deviation(result, truth);
   EXPECT_EQ(worst.points, 6U);
-  EXPECT_GT(worst.least_phase_rad, 0.010);
+  EXPECT_GT(worst.min_phase_rad, 0.010);
   EXPECT_LE(worst.magnitude_u, 4.0); // the trigger has no part in it
   for (const auto& point : result["points"]) {
     EXPECT_THAT(point["flags"].dump(), testing::HasSubstr("the phase of the trigger is not corrected"));

@@ -9,7 +9,7 @@
 namespace dyncal::analysis::kernel {
 namespace {
 
-constexpr std::size_t shortest_record = 2 * grid_samples;
+constexpr std::size_t min_record = 2 * grid_samples;
 constexpr std::size_t middle = grid_samples / 2;
 constexpr std::int64_t intervals = grid_samples - 1;
 constexpr double third_order_rad = 3.3e-4; // x^4 / 24 = 5e-16
@@ -30,11 +30,11 @@ std::int64_t usual_span_ns(std::span<const std::int64_t> stamps) {
 } // namespace
 
 std::optional<SampleGrid> sample_grid(std::span<const std::int64_t> stamps, const Frequency& frequency) {
-  constexpr std::int64_t longest_span_ns = std::int64_t{1} << 50;
-  if (stamps.size() < shortest_record) return std::nullopt;
+  constexpr std::int64_t max_span_ns = std::int64_t{1} << 50;
+  if (stamps.size() < min_record) return std::nullopt;
   const std::int64_t span_ns = usual_span_ns(stamps);
   const std::int64_t interval_ns = span_ns / intervals;
-  if (interval_ns < 3 || span_ns > longest_span_ns) return std::nullopt;
+  if (interval_ns < 3 || span_ns > max_span_ns) return std::nullopt;
 
   std::optional<SampleGrid> made(std::in_place);
   SampleGrid& grid = *made;
@@ -53,8 +53,8 @@ std::optional<SampleGrid> sample_grid(std::span<const std::int64_t> stamps, cons
   const double radians_per_ns = frequency.angular() * 1e-9;
   grid.scaled_radians_per_ns = radians_per_ns / std::numbers::sqrt2;
   const std::int64_t half_interval_ns = interval_ns / 2 - 1; // so that stamps within the limit increase
-  grid.largest_ns = std::min(fifth_order_rad / radians_per_ns, static_cast<double>(half_interval_ns));
-  grid.largest_of_third_order_ns = std::min(third_order_rad / radians_per_ns, grid.largest_ns);
+  grid.max_ns = std::min(fifth_order_rad / radians_per_ns, static_cast<double>(half_interval_ns));
+  grid.max_of_third_order_ns = std::min(third_order_rad / radians_per_ns, grid.max_ns);
   return made;
 }
 

@@ -24,8 +24,8 @@ struct alignas(64) SampleGrid {
   double sine[grid_samples];
   double cosine[grid_samples];
   double scaled_radians_per_ns;     // w sqrt(1/2)
-  double largest_of_third_order_ns; // deviation up to which x^4 / 24 < 5e-16
-  double largest_ns;                // and x^6 / 720, with the fifth order
+  double max_of_third_order_ns; // deviation up to which x^4 / 24 < 5e-16
+  double max_ns;                // and x^6 / 720, with the fifth order
 };
 
 // The grid of a record from its usual interval; empty when the record is too short for it to be worth while or has no such interval.

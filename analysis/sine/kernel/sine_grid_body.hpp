@@ -72,7 +72,7 @@ public:
   GridTurns(const std::int64_t* stamps, const GridPlace& place, const SampleGrid& grid)
       : from_(stamps + place.first), offsets_ns_(grid.offsets_ns + place.on_grid), sine_(grid.sine + place.on_grid),
         cosine_(grid.cosine + place.on_grid), anchor_ns_(stamps[place.anchor()]), scale_(Lanes::all(grid.scaled_radians_per_ns)),
-        largest_(Lanes::all(0.0)), limit_ns_(order == Order::third ? grid.largest_of_third_order_ns : grid.largest_ns) {}
+        largest_(Lanes::all(0.0)), limit_ns_(order == Order::third ? grid.max_of_third_order_ns : grid.max_ns) {}
 
   SineCosine at(std::size_t i) {
     prefetch_ahead(from_ + i);

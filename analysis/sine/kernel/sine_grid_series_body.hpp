@@ -112,7 +112,7 @@ inline bool grid_series_design(const std::int64_t* stamps, const GridPlace& plac
   sums[0] = {rows, s, c, fused_less(two, ss, rows), sc + sc};
   sums[1] = {v1, vs, vc, fused_less(two, vss, v1), vsc + vsc};
   sums[2] = {v2, vvs, vvc, fused_less(two, vvss, v2), vvsc + vvsc};
-  return largest.all_at_most(order == Order::third ? grid.largest_of_third_order_ns : grid.largest_ns);
+  return largest.all_at_most(order == Order::third ? grid.max_of_third_order_ns : grid.max_ns);
 }
 
 struct SeriesResidualLanes {

@@ -24,8 +24,8 @@ std::optional<std::int64_t> read_stamp(std::string_view text) {
   std::string fraction(text.substr(point + 1));
   fraction.resize(9, '0');
   std::int64_t nanoseconds = 0;
-  constexpr std::int64_t largest_s = 9'000'000'000;
-  if (!read_number(text.substr(0, point), seconds, 10) || seconds < 0 || seconds > largest_s || !read_number(fraction, nanoseconds, 10))
+  constexpr std::int64_t max_s = 9'000'000'000;
+  if (!read_number(text.substr(0, point), seconds, 10) || seconds < 0 || seconds > max_s || !read_number(fraction, nanoseconds, 10))
     return std::nullopt;
   return seconds * 1'000'000'000 + nanoseconds;
 }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t batch = 64;
 constexpr std::size_t control_bytes = 256;
-constexpr int most_errors = 4; // of an interface that goes, in one read: down, and gone
+constexpr int max_errors = 4; // of an interface that goes, in one read: down, and gone
 
 std::string system_text(int error) {
   return std::generic_category().message(error);
@@ -174,7 +174,7 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events, std::ch
 bool SocketCanSource::receive(std::vector<BusEvent>& events) {
   bool went_down = false;
   bool gone = false;
-  for (int errors = 0; errors < most_errors;) {
+  for (int errors = 0; errors < max_errors;) {
     buffers_->prepare();
     const int got = ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
     for (int i = 0; i < got; ++i)

@@ -12,7 +12,7 @@ namespace dyncal::drivers::can {
 
 namespace {
 
-constexpr std::uintmax_t largest_file = std::uintmax_t{64} << 20U;
+constexpr std::uintmax_t max_file = std::uintmax_t{64} << 20U;
 
 } // namespace
 
@@ -31,7 +31,7 @@ Expected<DbcFile> read_dbc_file(const std::filesystem::path& path) {
   const auto size = std::filesystem::file_size(path, error);
   if (error)
     return tl::make_unexpected(Error{ErrorCode::not_found, path.string() + ": the DBC file cannot be read (" + error.message() + ")"});
-  if (size > largest_file)
+  if (size > max_file)
     return tl::make_unexpected(Error{ErrorCode::malformed, path.string() + ": larger than 64 MiB, which no DBC file is"});
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t extended_mark = 0x80000000;
 constexpr std::uint64_t unused_signals_id = 0xC0000000; // VECTOR__INDEPENDENT_SIG_MSG
-constexpr unsigned largest_frame_bits = 64 * 8;
+constexpr unsigned max_frame_bits = 64 * 8;
 
 // Statements that say nothing about how a frame is decoded.
 constexpr std::array passed_over = {
@@ -168,7 +168,7 @@ void DbcParser::signal() {
   if (problem_ || in_pseudo_message_) return;
   check(signal);
   Draft& draft = drafts_.back();
-  if (signal.start_bit >= largest_frame_bits || signal.length_bits == 0) {
+  if (signal.start_bit >= max_frame_bits || signal.length_bits == 0) {
     warn(line, "signal '" + *name + "' stands in no frame and is left out");
     return;
   }

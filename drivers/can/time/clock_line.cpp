@@ -92,7 +92,7 @@ ClockLine::Line ClockLine::line_below(std::size_t first_chunk, std::size_t strid
     ++right;
   const Point& a = hull[right - 1];
   const Point& b = hull[right];
-  const double slope = std::clamp((b.difference_s - a.difference_s) / (b.free_s - a.free_s), -options_.largest_rate, options_.largest_rate);
+  const double slope = std::clamp((b.difference_s - a.difference_s) / (b.free_s - a.free_s), -options_.max_rate, options_.max_rate);
   // A slope that had to be limited goes through the lowest point that it then touches.
   double at_zero = a.difference_s - slope * a.free_s;
   for (const Point& point : hull)

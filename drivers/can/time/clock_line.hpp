@@ -26,7 +26,7 @@ struct ClockLineOptions {
   std::size_t settle_points = 32;
   double step_s = 5e-3;
   std::size_t step_points = 200;
-  double largest_rate = 500e-6; // of a clock that is no worse than its quartz, and of a nominal rate that is meant
+  double max_rate = 500e-6; // of a clock that is no worse than its quartz, and of a nominal rate that is meant
 };
 
 class ClockLine {

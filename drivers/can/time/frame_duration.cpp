@@ -126,11 +126,11 @@ double frame_duration_s(const CanFrame& frame, const BitRates& rates) {
   return bits.nominal / rates.nominal_per_s + (bits.data > 0 ? bits.data / rates.data_per_s : 0.0);
 }
 
-double longest_frame_s(bool fd, bool bit_rate_switch, unsigned length_bytes, const BitRates& rates) {
+double max_frame_s(bool fd, bool bit_rate_switch, unsigned length_bytes, const BitRates& rates) {
   if (!fd) { // extended id; every fifth bit from SOF to the checksum may bring a stuff bit, which counts for the next five
     const unsigned stuffed = 54 + 8 * std::min(length_bytes, 8U);
-    const unsigned most_stuff_bits = (stuffed - 1) / 4;
-    return (stuffed + most_stuff_bits + 10) / rates.nominal_per_s;
+    const unsigned max_stuff_bits = (stuffed - 1) / 4;
+    return (stuffed + max_stuff_bits + 10) / rates.nominal_per_s;
   }
   const unsigned length = fd_lengths[fd_dlc(length_bytes)];
   const unsigned data_field = 5 + 8 * length;

@@ -29,6 +29,6 @@ struct FrameBits {
 [[nodiscard]] double frame_duration_s(const CanFrame& frame, const BitRates& rates);
 
 // The longest that a frame of this format and length can be, whatever its id and content.
-[[nodiscard]] double longest_frame_s(bool fd, bool bit_rate_switch, unsigned length_bytes, const BitRates& rates);
+[[nodiscard]] double max_frame_s(bool fd, bool bit_rate_switch, unsigned length_bytes, const BitRates& rates);
 
 } // namespace dyncal::drivers::can

@@ -13,7 +13,7 @@ namespace {
 // the kernel's stamps alone.
 constexpr double u_kernel_latency_s = 60e-6;
 constexpr double u_hardware_latency_s = 20e-6;
-constexpr double longest_usb_latency_s = 300e-6;
+constexpr double max_usb_latency_s = 300e-6;
 
 } // namespace
 
@@ -45,7 +45,7 @@ std::int64_t FrameTimer::hardware_start_ns(const CanFrame& frame) const {
 
 bool FrameTimer::add(const CanFrame& frame) {
   if (!uses_hardware_) uses_hardware_ = frame.hardware_ns != 0 && settings_.time_source != TimeSource::kernel_stamp;
-  longest_s_ = std::max(longest_s_, static_cast<double>(duration_ns(frame)) * 1e-9);
+  max_duration_s_ = std::max(max_duration_s_, static_cast<double>(duration_ns(frame)) * 1e-9);
   if (!*uses_hardware_ || frame.hardware_ns == 0) return true;
   return hardware_line_.add(hardware_start_ns(frame), kernel_start_of_frame_ns(frame));
 }
@@ -69,9 +69,9 @@ std::optional<std::int64_t> FrameTimer::end_of_frame_ns(const CanFrame& frame) c
 double FrameTimer::u_common_s() const {
   const double bit_s = settings_.bit_rates.nominal_per_s > 0.0 ? 1.0 / settings_.bit_rates.nominal_per_s : 0.0;
   const bool unknown_point = uses_hardware() && settings_.hardware_stamp_point == StampPoint::unknown;
-  const double u_instant_s = (unknown_point ? longest_s_ : bit_s) / std::sqrt(12.0);
+  const double u_instant_s = (unknown_point ? max_duration_s_ : bit_s) / std::sqrt(12.0);
   const double u_tick_s = uses_hardware() ? settings_.hardware_tick_s / std::sqrt(12.0) : 0.0;
-  const double u_default_s = remote_adapter_   ? longest_usb_latency_s / std::sqrt(3.0)
+  const double u_default_s = remote_adapter_   ? max_usb_latency_s / std::sqrt(3.0)
                              : uses_hardware() ? u_hardware_latency_s
                                                : u_kernel_latency_s;
   const double u_latency_s = settings_.u_latency_s.value_or(u_default_s);

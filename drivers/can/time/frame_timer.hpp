@@ -47,7 +47,7 @@ private:
   bool remote_adapter_; // behind USB or a serial line
   std::optional<bool> uses_hardware_;
   ClockLine hardware_line_;
-  double longest_s_ = 0.0; // of the frames seen
+  double max_duration_s_ = 0.0; // of the frames seen
 };
 
 } // namespace dyncal::drivers::can

@@ -13,9 +13,9 @@ namespace dyncal::services::virtual_bench {
 namespace {
 
 // What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more, in simulated time nothing.
-constexpr std::int64_t shortest_watch_ns = 5'000;
+constexpr std::int64_t min_watch_ns = 5'000;
 constexpr std::int64_t first_watch_ns = 60'000;
-constexpr std::int64_t longest_watch_ns = 500'000;
+constexpr std::int64_t max_watch_ns = 500'000;
 constexpr std::int64_t attend_before_ns = 20'000'000;
 constexpr std::int64_t late_ns = 100'000;
 constexpr std::int64_t second_ns = 1'000'000'000;
@@ -51,7 +51,7 @@ void CanLine::sleep_until_watch(std::int64_t end_utc_ns) {
   }
   sleep_until(wake_up_ns);
   const std::int64_t needed_ns = (utc_now_ns() - wake_up_ns) * 3 / 2;
-  watch_ns_ = std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), shortest_watch_ns, longest_watch_ns);
+  watch_ns_ = std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), min_watch_ns, max_watch_ns);
 }
 
 void CanLine::send(const Due& due) {

@@ -10,7 +10,7 @@ namespace device = drivers::virtual_bench;
 using drivers::can::CanFrame;
 
 constexpr double resolution_m_s2 = 0.005;
-constexpr double largest_rate_error = 200e-6;
+constexpr double max_rate_error = 200e-6;
 constexpr double standard_gravity = 9.80665;
 constexpr std::uint8_t classic_bytes = 8;
 constexpr std::uint8_t fd_bytes = 24; // three axes and a counter, and what else such a sensor sends
@@ -30,7 +30,7 @@ const std::vector<CanBusKind>& can_bus_kinds() {
 CanSensor::CanSensor(const CanSensorSettings& settings)
     : settings_(settings), bus_(settings.bus.rates), noise_(settings.seed, "CAN sensor noise"), traffic_(settings.seed, "CAN traffic") {
   device::Random draws(settings.seed, "CAN sensor");
-  rate_hz_ = nominal_rate_hz * (1.0 + draws.uniform(-largest_rate_error, largest_rate_error));
+  rate_hz_ = nominal_rate_hz * (1.0 + draws.uniform(-max_rate_error, max_rate_error));
   noise_m_s2_ = settings.preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 * nominal_rate_hz);
   for (double& offset : offset_m_s2_) {
     offset = draws.normal(0.25);

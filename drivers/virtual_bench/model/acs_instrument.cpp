@@ -24,7 +24,7 @@ std::int32_t to_counts(double value, double scale) {
 
 AcsInstrument::AcsInstrument(const AcsSettings& settings) : settings_(settings), noise_(settings.seed, "ACS noise") {
   Random draws(settings.seed, "ACS errors");
-  rate_error_ = draws.uniform(-settings.largest_rate_error, settings.largest_rate_error);
+  rate_error_ = draws.uniform(-settings.max_rate_error, settings.max_rate_error);
   if (settings.utc) {
     rate_error_ = 0.0;
   }

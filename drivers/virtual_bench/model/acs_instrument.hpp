@@ -24,7 +24,7 @@ struct AcsSettings {
   bool sync_is_first_output = false;     // sync is what drives the exciter, not the generator's second output of constant amplitude
   double reference_magnitude_rel = 1e-3; // standard uncertainties
   double reference_phase_rad = 1.7e-3;
-  double largest_rate_error = 0.5e-6;
+  double max_rate_error = 0.5e-6;
   bool utc = false; // disciplined: the rate has no error, and origin_ns is UTC
 };
 

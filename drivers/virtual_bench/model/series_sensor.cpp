@@ -68,15 +68,15 @@ std::string SeriesSensor::header_line(std::uint64_t shot) const {
 }
 
 std::string SeriesSensor::wire_form(const RecordedSeries& series) const {
-  std::string octets = header_line(series.shot) + "\n";
+  std::string bytes = header_line(series.shot) + "\n";
   const std::string length = std::to_string(2 * series.counts.size());
-  octets += "#" + std::to_string(length.size()) + length;
+  bytes += "#" + std::to_string(length.size()) + length;
   for (const std::int16_t count : series.counts) {
     const auto bits = static_cast<std::uint16_t>(count);
-    octets.push_back(static_cast<char>(bits & 0xffU));
-    octets.push_back(static_cast<char>(bits >> 8U));
+    bytes.push_back(static_cast<char>(bits & 0xffU));
+    bytes.push_back(static_cast<char>(bits >> 8U));
   }
-  return octets + "\n";
+  return bytes + "\n";
 }
 
 } // namespace dyncal::drivers::virtual_bench

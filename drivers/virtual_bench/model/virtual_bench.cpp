@@ -47,7 +47,7 @@ AcsSettings acs_settings(const BenchSettings& settings) {
     acs.origin_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
   }
   if (settings.utc_origin_ns) {
-    acs.largest_rate_error = 0.0;
+    acs.max_rate_error = 0.0;
   }
   acs.sync_is_first_output = settings.sync_is_first_output;
   acs.highest_level_m_s2 = settings.highest_level_m_s2;

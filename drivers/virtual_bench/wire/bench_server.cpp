@@ -14,13 +14,13 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double description_interval_s = 4.0;
-constexpr double shortest_slice_s = 0.004; // of bench time, unless somebody waits for an instant before
-constexpr double longest_slice_s = 0.02;
-constexpr double largest_arrears_s = 0.5; // host time that is made up for after a delay
+constexpr double min_slice_s = 0.004; // of bench time, unless somebody waits for an instant before
+constexpr double max_slice_s = 0.02;
+constexpr double max_arrears_s = 0.5; // host time that is made up for after a delay
 constexpr double frame_s = 0.05;
-constexpr double largest_backlog_s = 0.1;
+constexpr double max_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
-constexpr std::size_t largest_receive_queue = 64U * 1024U;     // of the 208 KiB that hosts allow at least
+constexpr std::size_t max_receive_queue = 64U * 1024U;     // of the 208 KiB that hosts allow at least
 constexpr std::chrono::microseconds queue_look_interval{2000}; // a look costs about 30 us
 constexpr milliseconds idle_wait{4};
 constexpr milliseconds blocked_wait{20};
@@ -73,7 +73,7 @@ void BenchServer::run(const StopSignal& stop) {
     if (time_s > bench_.now_s()) {
       advance_to(time_s);
     } else {
-      wait_for_events(stop, stream_.backlog_octets() > 0 && !queue_full_ ? blocked_wait : idle_wait);
+      wait_for_events(stop, stream_.backlog_bytes() > 0 && !queue_full_ ? blocked_wait : idle_wait);
     }
   }
   end_stream(stop);
@@ -99,7 +99,7 @@ void BenchServer::wait_for_events(const StopSignal& stop, milliseconds limit) co
   std::vector<pollfd> watched{
       {stop.descriptor(), POLLIN, 0}, {acs_listener_.number(), POLLIN, 0}, {generator_listener_.number(), POLLIN, 0}};
   if (stream_.connected()) {
-    watched.push_back({stream_.descriptor(), static_cast<short>(stream_.backlog_octets() > 0 ? POLLIN | POLLOUT : POLLIN), 0});
+    watched.push_back({stream_.descriptor(), static_cast<short>(stream_.backlog_bytes() > 0 ? POLLIN | POLLOUT : POLLIN), 0});
   }
   for (const int descriptor : generator_clients_.descriptors()) {
     watched.push_back({descriptor, POLLIN, 0});
@@ -118,15 +118,15 @@ bool BenchServer::consumers_keep_up() {
   const double passed_s = std::chrono::duration<double>(now - credit_at_).count();
   datagram_credit_ = std::min(datagram_burst, datagram_credit_ + passed_s * settings_.datagrams_per_s);
   credit_at_ = now;
-  const double backlog_limit = largest_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) * 2.0 * sizeof(std::int32_t);
-  return datagram_credit_ > 0.0 && datagrams_are_taken() && static_cast<double>(stream_.backlog_octets()) <= backlog_limit;
+  const double backlog_limit = max_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) * 2.0 * sizeof(std::int32_t);
+  return datagram_credit_ > 0.0 && datagrams_are_taken() && static_cast<double>(stream_.backlog_bytes()) <= backlog_limit;
 }
 
 bool BenchServer::datagrams_are_taken() {
   const auto now = Clock::now();
   if (receiver_on_this_host_ && now - queue_looked_at_ >= queue_look_interval) {
     queue_looked_at_ = now;
-    queue_full_ = udp_receive_queue(settings_.dau.port) > largest_receive_queue;
+    queue_full_ = udp_receive_queue(settings_.dau.port) > max_receive_queue;
   }
   return !queue_full_;
 }
@@ -143,7 +143,7 @@ double BenchServer::paced_time_s() {
   }
   const double speed = settings_.speed > 0.0 ? settings_.speed : 1.0;
   const double time_s = pace_bench_s_ + speed * std::chrono::duration<double>(Clock::now() - pace_host_).count();
-  if (time_s > bench_.now_s() + speed * largest_arrears_s) {
+  if (time_s > bench_.now_s() + speed * max_arrears_s) {
     hold_pace();
   }
   return time_s;
@@ -159,9 +159,9 @@ double BenchServer::allowed_time_s() {
   double time_s = now_s;
   if (settings_.speed <= 0.0 && !bench_.settings().utc_origin_ns && wait_s && stream_.connected()) {
     hold_pace();
-    time_s = now_s + longest_slice_s;
+    time_s = now_s + max_slice_s;
   } else {
-    time_s = std::min(paced_time_s(), now_s + longest_slice_s);
+    time_s = std::min(paced_time_s(), now_s + max_slice_s);
   }
   if (settings_.duration_s > 0.0) {
     time_s = std::min(time_s, settings_.duration_s);
@@ -169,7 +169,7 @@ double BenchServer::allowed_time_s() {
   if (wait_s && *wait_s <= time_s) {
     return std::max(*wait_s, now_s);
   }
-  return time_s >= now_s + shortest_slice_s || time_s == settings_.duration_s ? time_s : now_s;
+  return time_s >= now_s + min_slice_s || time_s == settings_.duration_s ? time_s : now_s;
 }
 
 void BenchServer::advance_to(double time_s) {
@@ -212,7 +212,7 @@ void BenchServer::end_stream(const StopSignal& stop) {
   stream_.send_frame(frame_);
   stream_.send_end();
   const auto deadline = Clock::now() + std::chrono::seconds(2);
-  while (stream_.backlog_octets() > 0 && stream_.connected() && Clock::now() < deadline && !stop.raised()) {
+  while (stream_.backlog_bytes() > 0 && stream_.connected() && Clock::now() < deadline && !stop.raised()) {
     stream_.serve();
     wait_for_events(stop, blocked_wait);
   }

@@ -8,9 +8,9 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr std::size_t longest_line = 4096;
-constexpr std::size_t most_clients = 16;
-constexpr std::chrono::milliseconds longest_wait{500};
+constexpr std::size_t max_line = 4096;
+constexpr std::size_t max_clients = 16;
+constexpr std::chrono::milliseconds max_wait{500};
 
 bool would_block(int error) {
   return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
@@ -19,7 +19,7 @@ bool would_block(int error) {
 } // namespace
 
 void LineClients::add(Descriptor socket) {
-  if (clients_.size() < most_clients) {
+  if (clients_.size() < max_clients) {
     clients_.push_back(Client{std::move(socket), {}, {}, {}, {}});
   }
 }
@@ -49,7 +49,7 @@ bool LineClients::serve(Client& client, double bench_time_s) {
     }
     client.answers.erase(0, static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
   }
-  return client.received.size() <= longest_line && client.answers.size() <= longest_line;
+  return client.received.size() <= max_line && client.answers.size() <= max_line;
 }
 
 void LineClients::execute_lines(Client& client, double bench_time_s) {
@@ -64,7 +64,7 @@ void LineClients::execute_lines(Client& client, double bench_time_s) {
       client.answers += ScpiInstrument::time_text(bench_time_s) + "\n";
     } else if (reply.wait_until_s) {
       client.wait_until_s = reply.wait_until_s;
-      client.wait_ends = std::chrono::steady_clock::now() + longest_wait;
+      client.wait_ends = std::chrono::steady_clock::now() + max_wait;
     }
   }
 }

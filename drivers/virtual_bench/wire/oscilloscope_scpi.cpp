@@ -9,8 +9,8 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr std::size_t most_errors = 20;
-constexpr std::size_t largest_block = 250'000;
+constexpr std::size_t max_errors = 20;
+constexpr std::size_t max_block = 250'000;
 
 // SCPI's rule: four letters, three when the fourth is a vowel; a number at the end stays.
 std::string short_form(const std::string& mnemonic) {
@@ -61,7 +61,7 @@ const std::vector<std::string>& scope_fault_names() {
 }
 
 void OscilloscopeScpi::complain(const char* error) {
-  if (errors_.size() < most_errors) {
+  if (errors_.size() < max_errors) {
     errors_.emplace_back(error);
   }
 }
@@ -134,7 +134,7 @@ std::string OscilloscopeScpi::data() {
   }
   const std::string& codes = model_.record()->codes[source_];
   const std::size_t first = std::min(std::max<std::size_t>(first_point_, 1), codes.size() + 1) - 1;
-  const std::size_t last = std::min({last_point_, codes.size(), first + largest_block});
+  const std::size_t last = std::min({last_point_, codes.size(), first + max_block});
   const std::string part = codes.substr(first, last > first ? last - first : 0);
   return "#9" + with_digits(part.size(), 9) + part + "\n";
 }

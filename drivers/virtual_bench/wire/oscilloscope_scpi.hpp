@@ -19,7 +19,7 @@
 namespace dyncal::drivers::virtual_bench {
 
 // Probabilities per answer.
-//   half-answer   the second half never comes        garbage      octets that mean nothing
+//   half-answer   the second half never comes        garbage      bytes that mean nothing
 //   wrong-length  a block says another length        other-answer the answer to another question
 //   disconnect    half of the answer, then the end   slow         the answer takes a second (of the host)
 using ScopeFaults = std::map<std::string, double>;
@@ -31,7 +31,7 @@ public:
       : model_(model), random_(seed, "DSO faults"), faults_(std::move(faults)), serial_(seed) {}
 
   struct Reply {
-    std::string octets; // with line end; empty: none
+    std::string bytes; // with line end; empty: none
     bool disconnect = false;
     bool slow = false;
   };

@@ -11,7 +11,7 @@
 
 namespace dyncal::drivers::virtual_bench {
 
-// Octets, the fullest buffer where several sockets have the port; 0 when there is none or the kernel does not tell.
+// Bytes, the fullest buffer where several sockets have the port; 0 when there is none or the kernel does not tell.
 [[nodiscard]] std::size_t udp_receive_queue(std::uint16_t port);
 
 // The same from a table in the kernel's form.

@@ -9,9 +9,9 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr std::size_t most_errors = 20;
-constexpr double highest_frequency_hz = 5000.0;
-constexpr double highest_voltage_vpp = 20.0;
+constexpr std::size_t max_errors = 20;
+constexpr double max_frequency_hz = 5000.0;
+constexpr double max_voltage_vpp = 20.0;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
@@ -56,9 +56,9 @@ std::string ScpiInstrument::time_text(double bench_time_s) {
 }
 
 void ScpiInstrument::complain(const char* error) {
-  if (errors_.size() + 1 == most_errors) {
+  if (errors_.size() + 1 == max_errors) {
     errors_.emplace_back("-350,\"Queue overflow\"");
-  } else if (errors_.size() < most_errors) {
+  } else if (errors_.size() < max_errors) {
     errors_.emplace_back(error);
   }
 }
@@ -157,7 +157,7 @@ void ScpiInstrument::set_frequency(std::string_view argument) {
   const auto frequency_hz = parse_parameter(argument);
   if (!frequency_hz) {
     complain("-104,\"Data type error\"");
-  } else if (!(*frequency_hz > 0.0 && *frequency_hz <= highest_frequency_hz)) {
+  } else if (!(*frequency_hz > 0.0 && *frequency_hz <= max_frequency_hz)) {
     complain("-222,\"Data out of range\"");
   } else {
     Drive drive = bench_.drive();
@@ -170,7 +170,7 @@ void ScpiInstrument::set_voltage(std::string_view argument) {
   const auto voltage_vpp = parse_parameter(argument);
   if (!voltage_vpp) {
     complain("-104,\"Data type error\"");
-  } else if (!(*voltage_vpp >= 0.0 && *voltage_vpp <= highest_voltage_vpp)) {
+  } else if (!(*voltage_vpp >= 0.0 && *voltage_vpp <= max_voltage_vpp)) {
     complain("-222,\"Data out of range\"");
   } else {
     Drive drive = bench_.drive();

@@ -9,23 +9,23 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr int socket_buffer_octets = 16384;
+constexpr int socket_buffer_bytes = 16384;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian and written as they are");
 
 template <class T>
 void put(std::string& out, T value) {
-  char octets[sizeof(T)];
-  std::memcpy(octets, &value, sizeof(T));
-  out.append(octets, sizeof(T));
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  out.append(bytes, sizeof(T));
 }
 
 } // namespace
 
 void StreamClient::connect(Descriptor socket, const std::string& description) {
   socket_ = std::move(socket);
-  setsockopt(socket_.number(), SOL_SOCKET, SO_SNDBUF, &socket_buffer_octets, sizeof(socket_buffer_octets));
+  setsockopt(socket_.number(), SOL_SOCKET, SO_SNDBUF, &socket_buffer_bytes, sizeof(socket_buffer_bytes));
   backlog_ = description + "\n";
   sent_ = 0;
 }
@@ -62,8 +62,8 @@ void StreamClient::serve() {
     drop();
     return;
   }
-  while (backlog_octets() > 0) {
-    const ssize_t count = send(socket_.number(), backlog_.data() + sent_, backlog_octets(), MSG_NOSIGNAL);
+  while (backlog_bytes() > 0) {
+    const ssize_t count = send(socket_.number(), backlog_.data() + sent_, backlog_bytes(), MSG_NOSIGNAL);
     if (count < 0) {
       if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
         drop();

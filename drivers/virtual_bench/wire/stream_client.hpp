@@ -1,6 +1,6 @@
 // The one client of the ACS stream: frames wait here until the client takes them. drivers/acs/README.md defines the stream.
 //
-// The socket's own buffer is kept small, so that backlog_octets() soon tells when the client does not keep up; whoever produces
+// The socket's own buffer is kept small, so that backlog_bytes() soon tells when the client does not keep up; whoever produces
 // frames stops then. One thread.
 #pragma once
 
@@ -15,7 +15,7 @@ class StreamClient {
 public:
   [[nodiscard]] bool connected() const { return socket_.open(); }
   [[nodiscard]] int descriptor() const { return socket_.number(); }
-  [[nodiscard]] std::size_t backlog_octets() const { return backlog_.size() - sent_; }
+  [[nodiscard]] std::size_t backlog_bytes() const { return backlog_.size() - sent_; }
 
   // Takes the place of a client that has gone; `description` is its first line.
   void connect(Descriptor socket, const std::string& description);
@@ -29,7 +29,7 @@ private:
 
   Descriptor socket_;
   std::string backlog_;
-  std::size_t sent_ = 0; // octets of the backlog that are on their way
+  std::size_t sent_ = 0; // bytes of the backlog that are on their way
 };
 
 } // namespace dyncal::drivers::virtual_bench

@@ -10,9 +10,9 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr std::size_t longest_line = 4096;
-constexpr std::size_t most_clients = 4;
-constexpr std::size_t largest_backlog = std::size_t{16} << 20U;
+constexpr std::size_t max_line = 4096;
+constexpr std::size_t max_clients = 4;
+constexpr std::size_t max_backlog = std::size_t{16} << 20U;
 constexpr std::chrono::milliseconds slow_answer{1000};
 
 bool would_block(int error) {
@@ -48,7 +48,7 @@ std::uint16_t TriggeredServer::sensor_port() const {
 
 void TriggeredServer::serve() {
   for (const auto& [listener, clients] : {std::pair{&scope_listener_, &scope_clients_}, std::pair{&sensor_listener_, &sensor_clients_}}) {
-    if (Descriptor client = accept_client(*listener); client.open() && clients->size() < most_clients) {
+    if (Descriptor client = accept_client(*listener); client.open() && clients->size() < max_clients) {
       clients->push_back(Client{std::move(client), {}, {}, false, {}});
     }
   }
@@ -77,16 +77,16 @@ bool TriggeredServer::serve_scope(Client& client) {
   for (std::size_t end = client.received.find('\n'); end != std::string::npos && !client.disconnect; end = client.received.find('\n')) {
     const OscilloscopeScpi::Reply reply = scpi_.execute(std::string_view(client.received).substr(0, end));
     client.received.erase(0, end + 1);
-    client.sending += reply.octets;
+    client.sending += reply.bytes;
     client.disconnect = reply.disconnect;
     if (reply.slow) {
       client.not_before = Clock::now() + slow_answer;
     }
   }
-  if (Clock::now() >= client.not_before && !transmit(client, settings_.piece_octets > 0 ? settings_.piece_octets : client.sending.size())) {
+  if (Clock::now() >= client.not_before && !transmit(client, settings_.piece_bytes > 0 ? settings_.piece_bytes : client.sending.size())) {
     return false;
   }
-  return client.received.size() <= longest_line && !(client.disconnect && client.sending.empty());
+  return client.received.size() <= max_line && !(client.disconnect && client.sending.empty());
 }
 
 bool TriggeredServer::transmit(Client& client, std::size_t most) const {
@@ -98,7 +98,7 @@ bool TriggeredServer::transmit(Client& client, std::size_t most) const {
     return false;
   }
   client.sending.erase(0, static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
-  return client.sending.size() <= largest_backlog;
+  return client.sending.size() <= max_backlog;
 }
 
 void TriggeredServer::advance_to(double time_s, const Excitation& excitation) {
@@ -106,9 +106,9 @@ void TriggeredServer::advance_to(double time_s, const Excitation& excitation) {
     sensor_.trigger(event->output_edge_s);
   }
   if (const auto series = sensor_.advance_to(time_s, excitation)) {
-    const std::string octets = sensor_.wire_form(*series);
+    const std::string bytes = sensor_.wire_form(*series);
     for (Client& client : sensor_clients_) {
-      client.sending += octets;
+      client.sending += bytes;
     }
   }
 }

@@ -21,7 +21,7 @@ struct TriggeredSettings {
   TriggerSettings trigger;
   SeriesSensorSettings sensor;
   ScopeFaults faults;
-  std::size_t piece_octets = 0; // an answer longer than this leaves in such pieces, one per call of serve(); 0: whole
+  std::size_t piece_bytes = 0; // an answer longer than this leaves in such pieces, one per call of serve(); 0: whole
 };
 
 class TriggeredServer {
@@ -36,7 +36,7 @@ public:
   void serve();
   void advance_to(double time_s, const Excitation& excitation);
   [[nodiscard]] std::vector<int> descriptors() const;
-  // Octets wait to leave that could not so far.
+  // Bytes wait to leave that could not so far.
   [[nodiscard]] bool has_backlog() const;
 
   [[nodiscard]] const OscilloscopeModel& scope() const { return scope_; }

@@ -17,7 +17,7 @@ std::string general(const ParticipantOptions& options, const std::string& addres
   if (!address.empty()) text += element("Interfaces", "<NetworkInterface address=\"" + address + "\"/>");
   // Multicast finds others; samples always travel to each reader by itself, as Fast DDS does it.
   text += element("AllowMulticast", options.multicast ? "spdp" : "false");
-  // Packets with headers stay below longest_udp_payload_bytes, which is the most that Fast DDS receives here.
+  // Packets with headers stay below max_udp_payload_bytes, which is the most that Fast DDS receives here.
   text += element("MaxMessageSize", "1400B") + element("FragmentSize", "1300B");
   return element("General", text);
 }

@@ -19,7 +19,7 @@
 namespace dyncal::bus {
 namespace {
 
-constexpr std::size_t most_known_keys = 100'000;
+constexpr std::size_t max_known_keys = 100'000;
 
 KeyHash md5_of(const std::string& canonical) {
   KeyHash hash;
@@ -40,7 +40,7 @@ struct SerType : ddsi_sertype {
   // Keys seen so far, to tell from an MD5 whose instance has ended.
   void remember(const KeyHash& hash, const Key& key) {
     const std::lock_guard lock(mutex);
-    if (known_keys.size() >= most_known_keys) known_keys.clear();
+    if (known_keys.size() >= max_known_keys) known_keys.clear();
     known_keys.try_emplace(hash, key);
   }
   std::optional<Key> recall(const KeyHash& hash) {
@@ -136,7 +136,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyh
 
 std::string encode(const TypeSupport& type, ddsi_serdata_kind kind, const void* sample) {
   const bool whole = kind == SDK_DATA;
-  std::string payload(whole ? type.serialized_size(sample) : longest_key_payload_bytes, '\0');
+  std::string payload(whole ? type.serialized_size(sample) : max_key_payload_bytes, '\0');
   payload.resize((whole ? type.serialize : type.serialize_key)(sample, payload.data(), payload.size()));
   return payload;
 }

@@ -234,8 +234,8 @@ private:
   // The end of an instance comes without its key (get_key_value() does nothing in 2.9), so the keys seen are kept.
   void remember_key(const dds::InstanceHandle_t& instance) {
     if (keys_.contains(instance)) return;
-    if (keys_.size() >= most_keys) keys_.clear();
-    std::string payload(longest_key_payload_bytes, '\0');
+    if (keys_.size() >= max_keys) keys_.clear();
+    std::string payload(max_key_payload_bytes, '\0');
     payload.resize(type_.serialize_key(sample_.get(), payload.data(), payload.size()));
     keys_.emplace(instance, std::move(payload));
   }
@@ -249,7 +249,7 @@ private:
     return read;
   }
 
-  static constexpr std::size_t most_keys = 100'000;
+  static constexpr std::size_t max_keys = 100'000;
 
   std::shared_ptr<FastDdsParticipantHandle> participant_;
   dds::Subscriber* subscriber_;

@@ -58,7 +58,7 @@ void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
   udp->sendBufferSize = wanted_receive_buffer_bytes;
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
   // It also caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
-  udp->maxMessageSize = longest_udp_payload_bytes;
+  udp->maxMessageSize = max_udp_payload_bytes;
   udp->maxInitialPeersRange = participants_per_host;
   // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to it.
   if (!address.empty() && !is_loopback(address)) udp->interfaceWhiteList.push_back(address);

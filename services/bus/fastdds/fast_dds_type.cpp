@@ -45,7 +45,7 @@ std::function<uint32_t()> FastDdsType::getSerializedSizeProvider(void* sample) {
 
 // Every key of the contract can be longer than 16 bytes, so the handle is always the MD5.
 bool FastDdsType::getKey(void* sample, rtps::InstanceHandle_t* handle, bool /*force_md5*/) {
-  std::array<char, longest_key_payload_bytes> bytes{};
+  std::array<char, max_key_payload_bytes> bytes{};
   const std::size_t count = type_.serialize_key(sample, bytes.data(), bytes.size());
   const auto key = read_key(type_.key, bytes.data(), count);
   if (!key) return false;

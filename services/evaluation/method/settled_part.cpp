@@ -43,14 +43,14 @@ Settled settled_part(const RecipeStep& step, double frequency_search_rel, const 
   if (!reference) {
     return {step.settling_s, {fmt::format("settling not found, {} s left out: {}", step.settling_s, reference.error().message)}};
   }
-  double longest_s = *reference;
+  double max_duration_s = *reference;
   for (const auto& channel : settling_times_s(step, frequency_search_rel, sensor)) {
-    longest_s = std::max(longest_s, channel.value_or(0.0));
+    max_duration_s = std::max(max_duration_s, channel.value_or(0.0));
   }
-  if (longest_s > step.settling_s) {
-    return {step.settling_s, {fmt::format("settles for {:.3g} s, {} s left out", longest_s, step.settling_s)}};
+  if (max_duration_s > step.settling_s) {
+    return {step.settling_s, {fmt::format("settles for {:.3g} s, {} s left out", max_duration_s, step.settling_s)}};
   }
-  return {longest_s, {}};
+  return {max_duration_s, {}};
 }
 
 StretchOfTime without_settling(StretchOfTime stretch, double settling_s, double duration_s) {

@@ -15,8 +15,8 @@ bool showable(Scale scale, double value) {
 
 // With a true minus sign, and no minus before a zero.
 std::string decimal(double value, int decimals) {
-  const double smallest_shown = 0.5 * std::pow(10.0, -decimals);
-  if (std::abs(value) < smallest_shown) return fmt::format("{:.{}f}", 0.0, decimals);
+  const double min_shown = 0.5 * std::pow(10.0, -decimals);
+  if (std::abs(value) < min_shown) return fmt::format("{:.{}f}", 0.0, decimals);
   const auto digits = fmt::format("{:.{}f}", std::abs(value), decimals);
   return value < 0 ? "−" + digits : digits;
 }

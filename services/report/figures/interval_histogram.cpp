@@ -16,7 +16,7 @@ constexpr double width = 820;
 constexpr double height = 470;
 constexpr double left = 92;
 constexpr double right = width - 24;
-constexpr int most_bins = 90;
+constexpr int max_bins = 90;
 
 struct Histogram {
   std::vector<Bar> bars; // microseconds
@@ -49,10 +49,10 @@ Histogram merged(const IntervalHistogramData& data) {
   const double tick_ns = 1e9 * data.tick_s;
   if (tick_ns > 0) {
     const auto ticks = kept.back().interval_ticks - first.interval_ticks + 1;
-    histogram.ticks_per_bin = std::max<std::int64_t>(1, (ticks + most_bins - 1) / most_bins);
+    histogram.ticks_per_bin = std::max<std::int64_t>(1, (ticks + max_bins - 1) / max_bins);
     histogram.bin_ns = static_cast<double>(histogram.ticks_per_bin) * tick_ns;
   } else {
-    histogram.bin_ns = span_ns > 0 ? span_ns / (most_bins - 1) : 1.0;
+    histogram.bin_ns = span_ns > 0 ? span_ns / (max_bins - 1) : 1.0;
   }
   std::map<std::int64_t, std::uint64_t> bins;
   for (const auto& c : kept) {

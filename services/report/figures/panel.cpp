@@ -47,7 +47,7 @@ Range y_range(const Panel& panel) {
   return range;
 }
 
-double longest_label(const Axis& axis, double font_size) {
+double max_label(const Axis& axis, double font_size) {
   double longest = 0;
   for (const auto& tick : axis.ticks)
     longest = std::max(longest, text_width(tick.label, font_size));
@@ -93,7 +93,7 @@ void draw_scales(Svg& svg, const Panel& panel, const Axes& axes) {
              {.size = size + 1, .anchor = Anchor::middle});
   }
   const auto label = labelled(panel.y_label, axes.y);
-  const double beside_labels = area.left - 16 - longest_label(axes.y, size);
+  const double beside_labels = area.left - 16 - max_label(axes.y, size);
   svg.text({beside_labels, area.top + area.height / 2}, label, {.size = size + 1, .anchor = Anchor::middle, .upwards = true});
 }
 

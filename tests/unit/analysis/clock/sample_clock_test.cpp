@@ -195,7 +195,7 @@ TEST(SampleClock, IsTheSameHoweverTheStreamWasCut) {
   for (std::size_t i = 0; i < a->allan.size(); ++i)
     EXPECT_EQ(a->allan[i].deviation, b->allan[i].deviation);
   ASSERT_EQ(a->over_time.size(), b->over_time.size());
-  EXPECT_LE(a->over_time.size(), SampleClockSettings{}.most_buckets);
+  EXPECT_LE(a->over_time.size(), SampleClockSettings{}.max_buckets);
 }
 
 // The clock model of an MPU-9250 (four preferred intervals that follow the temperature) as far as a test needs it.

@@ -58,7 +58,7 @@ TEST(SineFitExtended, SeparatesHarmonicsHumAndDrift) {
   }
   ExtendedBasis basis;
   basis.drift_order = 2;
-  basis.highest_harmonic = 3;
+  basis.max_harmonic = 3;
   basis.lines = {*Frequency::parse("83.3")};
   const auto fit = fit_one(basis, Weighting::none, stamps, values);
   ASSERT_TRUE(fit) << fit.error().message;
@@ -141,9 +141,9 @@ TEST(SineFitExtended, NamesWhatIsWrongWithTheInput) {
   basis.lines = {*Frequency::parse("80")};
   EXPECT_EQ(code(fit_one(basis, Weighting::none, stamps, good)), ErrorCode::ill_conditioned);
   basis = {};
-  basis.highest_harmonic = 7; // 560 Hz at 1 kHz
+  basis.max_harmonic = 7; // 560 Hz at 1 kHz
   EXPECT_EQ(code(fit_one(basis, Weighting::none, stamps, good)), ErrorCode::frequency_out_of_range);
-  basis.highest_harmonic = 0;
+  basis.max_harmonic = 0;
   EXPECT_EQ(code(fit_one(basis, Weighting::none, stamps, good)), ErrorCode::invalid_argument);
   basis = {};
   basis.drift_order = 9;

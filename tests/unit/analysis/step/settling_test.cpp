@@ -34,7 +34,7 @@ TEST(Settling, ASteadyRecordIsUsedWhole) {
   const auto result = find_settling(*Frequency::parse("80"), steady.stamps_ns, steady.values);
   ASSERT_TRUE(result.has_value());
   EXPECT_EQ(result->settling_s, 0.0);
-  EXPECT_EQ(result->largest_deviation, 0.0);
+  EXPECT_EQ(result->max_deviation, 0.0);
 }
 
 TEST(Settling, CutsOffAFirstOrderApproachWhereItNoLongerCounts) {
@@ -43,7 +43,7 @@ TEST(Settling, CutsOffAFirstOrderApproachWhereItNoLongerCounts) {
   ASSERT_TRUE(result.has_value()) << result.error().message;
   const double expected = 0.15 * std::log(0.5 * std::sqrt(2.0) / 1e-4);
   EXPECT_NEAR(result->settling_s, expected, 0.1);
-  EXPECT_GT(result->largest_deviation, 0.3);
+  EXPECT_GT(result->max_deviation, 0.3);
 }
 
 TEST(Settling, NoiseHidesASmallRest) {

@@ -54,8 +54,8 @@ TEST(MonteCarlo, FewDegreesOfFreedomGiveTheWiderStudentDistribution) {
 
 TEST(MonteCarlo, SameSeedGivesTheSameNumbers) {
   const std::array inputs{InputQuantity{.name = "a", .u = 1.0}};
-  const auto a = propagate_distributions(inputs, {}, sum, {.seed = 9, .most_trials = 20'000});
-  const auto b = propagate_distributions(inputs, {}, sum, {.seed = 9, .most_trials = 20'000});
+  const auto a = propagate_distributions(inputs, {}, sum, {.seed = 9, .max_trials = 20'000});
+  const auto b = propagate_distributions(inputs, {}, sum, {.seed = 9, .max_trials = 20'000});
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->mean, b->mean);
   EXPECT_EQ(a->trials, 20'000u);

@@ -21,9 +21,9 @@ std::string description(const std::string& values, int rate_hz) {
 
 template <class Value>
 void put(std::string& out, Value value) {
-  char octets[sizeof(Value)];
-  std::memcpy(octets, &value, sizeof(Value));
-  out.append(octets, sizeof(Value));
+  char bytes[sizeof(Value)];
+  std::memcpy(bytes, &value, sizeof(Value));
+  out.append(bytes, sizeof(Value));
 }
 
 // Two channels: the sample number, and its negative.
@@ -63,9 +63,9 @@ TEST(SocketAcs, TurnsCountsIntoUnitsAndFramesIntoBlocks) {
 
 TEST(SocketAcs, ReadsTheFrameOfTheReadme) {
   const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
-    const unsigned char octets[] = {0x41, 0x43, 0x53, 0x46, 2,    0,    0,    0,    0xe8, 3, 0, 0, 0,    0,    0,    0,
+    const unsigned char bytes[] = {0x41, 0x43, 0x53, 0x46, 2,    0,    0,    0,    0xe8, 3, 0, 0, 0,    0,    0,    0,
                                     3,    0,    0,    0,    0xff, 0xff, 0xff, 0xff, 4,    0, 0, 0, 0xfe, 0xff, 0xff, 0xff};
-    client.say(description("int32", 1000) + std::string(reinterpret_cast<const char*>(octets), sizeof(octets)) + end_of_stream);
+    client.say(description("int32", 1000) + std::string(reinterpret_cast<const char*>(bytes), sizeof(bytes)) + end_of_stream);
     static_cast<void>(client.hear());
   });
   SocketAcs acs({instrument.address()});
@@ -133,9 +133,9 @@ TEST(SocketAcs, EndsWithASentenceWhenTheStreamCannotBeUnderstood) {
       {"this is no frame at all", "is not a frame"},
       {frame<std::int32_t>(100, 30) + frame<std::int32_t>(50, 30), "go back from 130 to 50"},
   };
-  for (const auto& [octets, message] : cases) {
-    const ScriptedInstrument instrument([&octets](int, ScriptedInstrument::Client& client) {
-      client.say(description("int32", 1000) + octets);
+  for (const auto& [bytes, message] : cases) {
+    const ScriptedInstrument instrument([&bytes](int, ScriptedInstrument::Client& client) {
+      client.say(description("int32", 1000) + bytes);
       static_cast<void>(client.hear());
     });
     SocketAcs acs({instrument.address()});

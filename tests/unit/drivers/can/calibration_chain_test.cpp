@@ -48,7 +48,7 @@ public:
     frame.data[2] = static_cast<std::uint8_t>(k_);
     frame.data[3] = static_cast<std::uint8_t>(k_ >> 8);
     // Frames of others take a quarter of the bus: the sensor's frame waits until the one that is being sent has ended.
-    const double foreign_s = longest_frame_s(bus_.fd, bus_.fd, bus_.fd ? 64 : 8, bus_.rates);
+    const double foreign_s = max_frame_s(bus_.fd, bus_.fd, bus_.fd ? 64 : 8, bus_.rates);
     const bool occupied = std::bernoulli_distribution(0.25)(random_);
     const double start_s = sampled_s + (occupied ? std::uniform_real_distribution<>(0.0, foreign_s)(random_) : 0.0);
     const double latency_s = truth_.minimum_latency_s + std::exponential_distribution<>(1.0 / 15e-6)(random_);

@@ -13,9 +13,9 @@
 namespace dyncal::drivers {
 
 struct Piece {
-  std::string octets;
+  std::string bytes;
   std::chrono::milliseconds after{0}; // waits this long before it is sent
-  bool close = false;                 // closes the connection after the octets
+  bool close = false;                 // closes the connection after the bytes
 };
 
 class AnsweringInstrument {
@@ -44,7 +44,7 @@ private:
         if (stop_.wait_for(piece.after)) {
           return;
         }
-        client.say(piece.octets);
+        client.say(piece.bytes);
         if (piece.close) {
           return;
         }

@@ -225,13 +225,13 @@ TEST_F(OscilloscopeTest, ABlockLongerThanItSaysIsMalformed) {
   std::string block = Scope::block(1000);
   block.insert(block.size() - 1, "xyz");
   scope_.next(":WAVeform:DATA?", {{block}});
-  expect_failure_then_recovery(ErrorCode::malformed, "longer than the 1000 octets");
+  expect_failure_then_recovery(ErrorCode::malformed, "longer than the 1000 bytes");
 }
 
 TEST_F(OscilloscopeTest, ABlockOfAnotherLengthThanAskedForIsMalformed) {
   start();
   scope_.next(":WAVeform:DATA?", {{Scope::block(999)}});
-  expect_failure_then_recovery(ErrorCode::malformed, "999 octets where 1000");
+  expect_failure_then_recovery(ErrorCode::malformed, "999 bytes where 1000");
 }
 
 TEST_F(OscilloscopeTest, AnAnswerToAnotherCommandIsNoticed) {

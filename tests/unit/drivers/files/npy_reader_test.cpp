@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 template <class Number>
-std::string octets(Number value) {
+std::string bytes(Number value) {
   std::string text(sizeof(value), '\0');
   std::memcpy(text.data(), &value, sizeof(value));
   return text;
@@ -26,7 +26,7 @@ std::string npy(const std::string& fields, std::size_t rows, const std::string& 
   std::string header = "{'descr': " + fields + ", 'fortran_order': False, 'shape': (" + std::to_string(rows) + ",), }";
   header.append(64 - (10 + header.size() + 1) % 64, ' ');
   header += '\n';
-  return "\x93NUMPY" + std::string("\x01\x00", 2) + octets(static_cast<std::uint16_t>(header.size())) + header + data;
+  return "\x93NUMPY" + std::string("\x01\x00", 2) + bytes(static_cast<std::uint16_t>(header.size())) + header + data;
 }
 
 std::string problem_with(const std::string& text, FileSettings settings = {}) {
@@ -38,9 +38,9 @@ std::string problem_with(const std::string& text, FileSettings settings = {}) {
 TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
   std::string data;
   for (int i = 0; i < 3; ++i) {
-    data += octets(std::int64_t{1'700'000'000'123'456'789} + i * i) + octets(0.1 * i) + octets(static_cast<std::int16_t>(-5 * i)) +
-            octets(0.5F * static_cast<float>(i)) + std::string(3, 'x') + octets(static_cast<std::uint8_t>(250 + i)) +
-            octets(static_cast<std::uint32_t>(4'000'000'000U));
+    data += bytes(std::int64_t{1'700'000'000'123'456'789} + i * i) + bytes(0.1 * i) + bytes(static_cast<std::int16_t>(-5 * i)) +
+            bytes(0.5F * static_cast<float>(i)) + std::string(3, 'x') + bytes(static_cast<std::uint8_t>(250 + i)) +
+            bytes(static_cast<std::uint32_t>(4'000'000'000U));
   }
   const TemporaryFile file("types.npy", npy("[('t_ns', '<i8'), ('sync', '<f8'), ('z', '<i2'), ('f', '<f4'), ('', '|V3'), "
                                             "('b', '|u1'), ('u', '<u4')]",
@@ -67,7 +67,7 @@ TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
 TEST(NpyReader, ShowsGapsOfTheSampleNumber) {
   std::string data;
   for (const std::int64_t number : {7, 8, 10, 11}) {
-    data += octets(number) + octets(10 * number) + octets(1.0);
+    data += bytes(number) + bytes(10 * number) + bytes(1.0);
   }
   const TemporaryFile file("gap.npy", npy("[('sample_number', '<i8'), ('t_ns', '<i8'), ('z', '<f8')]", 4, data));
   FileSettings settings;
@@ -84,12 +84,12 @@ TEST(NpyReader, ShowsGapsOfTheSampleNumber) {
 TEST(NpyReader, TakesTheRateWhereThereIsNoTime) {
   FileSettings settings;
   settings.sample_rate = sample_rate_from_hz(1000.0);
-  EXPECT_EQ(problem_with(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0)), settings), "");
-  EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, octets(1.0) + octets(2.0))), HasSubstr("no field t_ns and no sample_rate_hz"));
+  EXPECT_EQ(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0)), settings), "");
+  EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0))), HasSubstr("no field t_ns and no sample_rate_hz"));
 }
 
 TEST(NpyReader, SaysWhatIsWrong) {
-  const std::string two = octets(std::int64_t{5}) + octets(1.0) + octets(std::int64_t{4}) + octets(1.0);
+  const std::string two = bytes(std::int64_t{5}) + bytes(1.0) + bytes(std::int64_t{4}) + bytes(1.0);
   const std::string fields = "[('t_ns', '<i8'), ('z', '<f8')]";
   EXPECT_THAT(problem_with("t_ns,z\n0,1\n"), HasSubstr("wrong.npy: is not a NumPy file"));
   EXPECT_THAT(problem_with(npy("'<f8'", 2, two)), HasSubstr("holds no structured array"));
@@ -103,7 +103,7 @@ TEST(NpyReader, SaysWhatIsWrong) {
 }
 
 TEST(NpyReader, SurvivesHeadersCutAnywhere) {
-  const std::string whole = npy("[('t_ns', '<i8'), ('z', '<f8')]", 1, octets(std::int64_t{5}) + octets(1.0));
+  const std::string whole = npy("[('t_ns', '<i8'), ('z', '<f8')]", 1, bytes(std::int64_t{5}) + bytes(1.0));
   for (std::size_t length = 0; length < whole.size(); ++length) {
     EXPECT_NE(problem_with(whole.substr(0, length)), "") << length;
     std::string spoiled = whole;

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 struct Outcome {
   Expected<bool> done = false;
   double voltage_v = 0.0;
-  double highest_m_s2 = 0.0;
+  double max_m_s2 = 0.0;
   int measurements = 0;
 };
 
@@ -30,7 +30,7 @@ Outcome control(const LevelTarget& target, const LevelLimits& limits, Exciter ex
     outcome.voltage_v = loop->voltage_v();
     EXPECT_LE(outcome.voltage_v, limits.maximum_voltage_v);
     const double level = exciter(outcome.voltage_v);
-    outcome.highest_m_s2 = std::max(outcome.highest_m_s2, level);
+    outcome.max_m_s2 = std::max(outcome.max_m_s2, level);
     ++outcome.measurements;
     outcome.done = loop->take(level);
   } while (outcome.done && !*outcome.done);

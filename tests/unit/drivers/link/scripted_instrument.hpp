@@ -18,7 +18,7 @@ public:
   class Client {
   public:
     explicit Client(int socket) : socket_(socket) {}
-    void say(const std::string& octets) const { static_cast<void>(send(socket_.number(), octets.data(), octets.size(), MSG_NOSIGNAL)); }
+    void say(const std::string& bytes) const { static_cast<void>(send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL)); }
     // The next line without its end; empty when the other side has gone.
     [[nodiscard]] std::string hear() {
       for (;;) {

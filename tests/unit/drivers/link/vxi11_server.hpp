@@ -1,6 +1,6 @@
 // A VXI-11 instrument for tests, as far as messages go: portmapper (port 111) and core channel over ONC RPC, on the loopback interface,
 // from a thread of its own. The wire forms are those of the VXIbus specification's RPCL; procedures: create_link, device_write,
-// device_read, destroy_link. An answer leaves in pieces of `piece_octets`, the last with the END reason; a read without an answer is error
+// device_read, destroy_link. An answer leaves in pieces of `piece_bytes`, the last with the END reason; a read without an answer is error
 // 15 (timeout). One at a time in a process: the RPC library's tables are global. open() is false when port 111 is not to be had.
 #pragma once
 
@@ -27,7 +27,7 @@ class Vxi11Server {
 public:
   using Answer = std::function<std::string(const std::string& command)>; // empty: none
 
-  explicit Vxi11Server(Answer answer, std::size_t piece_octets = 100'000) : answer_(std::move(answer)), piece_octets_(piece_octets) {}
+  explicit Vxi11Server(Answer answer, std::size_t piece_bytes = 100'000) : answer_(std::move(answer)), piece_bytes_(piece_bytes) {}
   ~Vxi11Server() {
     thread_ = {};
     for (SVCXPRT* transport : {core_, mapper_tcp_, mapper_udp_}) {
@@ -83,7 +83,7 @@ private:
   struct Parameters {
     std::int32_t numbers[5] = {};
     char* text = nullptr; // of the RPC library
-    u_int octets = 0;
+    u_int bytes = 0;
   };
 
   static Vxi11Server*& current() {
@@ -146,7 +146,7 @@ private:
         return 0;
       }
     }
-    return !with_text || xdr_bytes(xdr, &parameters->text, &parameters->octets, 1U << 20U) != 0 ? 1 : 0;
+    return !with_text || xdr_bytes(xdr, &parameters->text, &parameters->bytes, 1U << 20U) != 0 ? 1 : 0;
   }
 
   static void serve(svc_req* request, SVCXPRT* transport) { current()->execute(request->rq_proc, transport); }
@@ -158,22 +158,22 @@ private:
     case 10: { // create_link: client, lock, lock timeout, device
       svc_getargs(transport, (read_parameters<3, true>), static_cast<char*>(raw));
       ++links;
-      std::int32_t reply[4] = {0, 1, 0, 1 << 20}; // error, link, abort port, most octets of a write
+      std::int32_t reply[4] = {0, 1, 0, 1 << 20}; // error, link, abort port, most bytes of a write
       answer_with(transport, numbers<4>, reply);
       break;
     }
     case 11: { // device_write: link, timeouts, flags, data
       svc_getargs(transport, (read_parameters<4, true>), static_cast<char*>(raw));
-      std::string command(parameters.text == nullptr ? "" : parameters.text, parameters.octets);
+      std::string command(parameters.text == nullptr ? "" : parameters.text, parameters.bytes);
       while (command.ends_with('\n')) {
         command.pop_back();
       }
       waiting_ += answer_(command);
-      std::int32_t reply[2] = {0, static_cast<std::int32_t>(parameters.octets)};
+      std::int32_t reply[2] = {0, static_cast<std::int32_t>(parameters.bytes)};
       answer_with(transport, numbers<2>, reply);
       break;
     }
-    case 12: { // device_read: link, most octets, timeouts, flags, terminator
+    case 12: { // device_read: link, most bytes, timeouts, flags, terminator
       svc_getargs(transport, (read_parameters<5, false>), static_cast<char*>(raw));
       ++reads;
       send_piece(transport, static_cast<std::size_t>(parameters.numbers[1]));
@@ -210,7 +210,7 @@ private:
   };
 
   void send_piece(SVCXPRT* transport, std::size_t most) {
-    ReadReply reply{waiting_.empty() ? io_timeout : 0, 0, waiting_.substr(0, std::min(most, piece_octets_))};
+    ReadReply reply{waiting_.empty() ? io_timeout : 0, 0, waiting_.substr(0, std::min(most, piece_bytes_))};
     waiting_.erase(0, reply.data.size());
     reply.reason = waiting_.empty() && reply.error == 0 ? end_of_answer : 0;
     answer_with(
@@ -226,7 +226,7 @@ private:
   }
 
   Answer answer_;
-  std::size_t piece_octets_;
+  std::size_t piece_bytes_;
   std::string waiting_; // to be read
   std::uint16_t core_port_ = 0;
   SVCXPRT* core_ = nullptr;

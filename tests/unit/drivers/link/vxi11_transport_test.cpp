@@ -50,7 +50,7 @@ TEST_F(Vxi11TransportTest, AsksAndIsAnswered) {
   EXPECT_EQ(server_.links, 0);
 }
 
-TEST_F(Vxi11TransportTest, ABlockMayComeInPiecesAndHoldAnyOctet) {
+TEST_F(Vxi11TransportTest, ABlockMayComeInPiecesAndHoldAnyByte) {
   for (std::size_t i = 0; i < block_.size(); ++i) {
     block_[i] = static_cast<char>(i % 251); // line ends too
   }

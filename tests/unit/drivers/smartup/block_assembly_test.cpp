@@ -8,8 +8,8 @@
 namespace dyncal::drivers::smartup {
 namespace {
 
-constexpr std::int64_t kBlock_ns = 50'000'000;
-constexpr double kPeriod_ns = 1e6;
+constexpr std::int64_t block_ns = 50'000'000;
+constexpr double period_ns = 1e6;
 
 SampleRow row(std::uint64_t sample) {
   SampleRow row;
@@ -27,7 +27,7 @@ HostTime at_ms(std::int64_t ms) {
 }
 
 BlockAssembly assembly() {
-  BlockAssembly blocks(kBlock_ns);
+  BlockAssembly blocks(block_ns);
   blocks.set_columns({.own = 0b101, .sync = 0});
   return blocks;
 }
@@ -36,7 +36,7 @@ TEST(BlockAssembly, CutsFiftyMilliseconds) {
   auto blocks = assembly();
   std::vector<SampleBlock> ready;
   for (std::uint64_t n = 1; n <= 200; ++n) {
-    if (auto block = blocks.add(row(n), kPeriod_ns, at_ms(static_cast<std::int64_t>(n)))) ready.push_back(std::move(*block));
+    if (auto block = blocks.add(row(n), period_ns, at_ms(static_cast<std::int64_t>(n)))) ready.push_back(std::move(*block));
   }
   ASSERT_EQ(ready.size(), 4U);
   EXPECT_EQ(ready[1].first_sample, 51U);
@@ -53,8 +53,8 @@ TEST(BlockAssembly, CutsFiftyMilliseconds) {
 TEST(BlockAssembly, AGapEndsTheBlock) {
   auto blocks = assembly();
   for (std::uint64_t n = 1; n <= 10; ++n)
-    EXPECT_FALSE(blocks.add(row(n), kPeriod_ns, at_ms(0)));
-  const auto block = blocks.add(row(12), kPeriod_ns, at_ms(0));
+    EXPECT_FALSE(blocks.add(row(n), period_ns, at_ms(0)));
+  const auto block = blocks.add(row(12), period_ns, at_ms(0));
   ASSERT_TRUE(block);
   EXPECT_EQ(block->samples, 10U);
   EXPECT_EQ(blocks.flush()->first_sample, 12U);
@@ -72,7 +72,7 @@ TEST(BlockAssembly, WhatWasNotMeasuredIsNotANumber) {
   auto blocks = assembly();
   auto sparse = row(1);
   sparse.present = 0b001;
-  (void)blocks.add(sparse, kPeriod_ns, at_ms(0));
+  (void)blocks.add(sparse, period_ns, at_ms(0));
   const auto block = blocks.flush();
   ASSERT_TRUE(block);
   EXPECT_EQ(block->values[0], 1.0);
@@ -81,20 +81,20 @@ TEST(BlockAssembly, WhatWasNotMeasuredIsNotANumber) {
 
 TEST(BlockAssembly, FlagsOfOneSampleComeWithAllOfItsBlock) {
   auto blocks = assembly();
-  (void)blocks.add(row(1), kPeriod_ns, at_ms(0));
+  (void)blocks.add(row(1), period_ns, at_ms(0));
   auto flagged = row(2);
   flagged.flags = stamp_repeated;
-  (void)blocks.add(flagged, kPeriod_ns, at_ms(0));
+  (void)blocks.add(flagged, period_ns, at_ms(0));
   EXPECT_EQ(blocks.flush()->flags, (std::vector<std::uint8_t>{0, stamp_repeated}));
 }
 
 TEST(BlockAssembly, SyncColumnsFollowTheSensorsOwn) {
-  BlockAssembly blocks(kBlock_ns);
+  BlockAssembly blocks(block_ns);
   blocks.set_columns({.own = 0b101, .sync = 0b010});
   auto joined = row(1);
   joined.sync_present = 0b010;
   joined.sync_values[1] = 9.0F;
-  (void)blocks.add(joined, kPeriod_ns, at_ms(0));
+  (void)blocks.add(joined, period_ns, at_ms(0));
   EXPECT_EQ(blocks.flush()->values, (std::vector<double>{1.0, -1.0, 9.0}));
 }
 

@@ -8,7 +8,7 @@
 namespace dyncal::drivers::smartup {
 namespace {
 
-constexpr std::size_t kMessageBytes = 75;
+constexpr std::size_t message_bytes = 75;
 
 // A unit whose sensors take turns; datagrams are filled with twelve messages.
 class SimulatedUnit {
@@ -38,10 +38,10 @@ public:
 private:
   void ship() {
     if (!std::exchange(losing_, false)) {
-      losses.begin(datagram_.size() * kMessageBytes);
+      losses.begin(datagram_.size() * message_bytes);
       for (const auto& [sensor, number] : datagram_) {
         const std::uint64_t last = std::exchange(last_[sensor], number);
-        losses.message(sensor, last == 0 ? 0 : number - last - 1, kMessageBytes);
+        losses.message(sensor, last == 0 ? 0 : number - last - 1, message_bytes);
       }
       for (const auto& loss : losses.end()) {
         in_unit += loss.in_unit;

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using tests::DatagramWriter;
 using tests::UdpSender;
 
-constexpr std::uint32_t kSensor = 0xbccb0100;
+constexpr std::uint32_t sensor_id = 0xbccb0100;
 
 bool eventually(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -30,7 +30,7 @@ bool eventually(const std::function<bool()>& condition) {
   return true;
 }
 
-DatagramWriter datagram_from(std::uint32_t first, std::uint32_t sensor = kSensor) {
+DatagramWriter datagram_from(std::uint32_t first, std::uint32_t sensor = sensor_id) {
   DatagramWriter datagram("DATA");
   for (std::uint32_t n = first; n < first + 12; ++n)
     datagram.data({.sensor = sensor, .sample_number = n, .stamp_ns = 1'600'000'000'000'000'000 + n * 1'000'000LL});
@@ -38,7 +38,7 @@ DatagramWriter datagram_from(std::uint32_t first, std::uint32_t sensor = kSensor
 }
 
 Receiver::Endpoint endpoint(tests::RecordingSink& sink, const std::string& listen = "127.0.0.1:0") {
-  return {.listen = listen, .wanted = {{.sensor = kSensor, .sync_sensor = {}, .naming = {}}}, .sink = &sink};
+  return {.listen = listen, .wanted = {{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}}, .sink = &sink};
 }
 
 TEST(ListenAddress, IsAnAddressAndAPort) {
@@ -68,9 +68,9 @@ TEST(Receiver, ReceivesOverUdpFromSeveralUnitsAtSeveralPorts) {
     EXPECT_TRUE(to_first.send(datagram_from(n).bytes()));
     to_second.send(datagram_from(n).bytes());
   }
-  EXPECT_TRUE(eventually([&] { return first.samples(kSensor) == 1200 && second.samples(kSensor) == 1200; }));
+  EXPECT_TRUE(eventually([&] { return first.samples(sensor_id) == 1200 && second.samples(sensor_id) == 1200; }));
   (*receiver)->stop();
-  EXPECT_EQ(first.reports.at(kSensor).counts.received, 1200U);
+  EXPECT_EQ(first.reports.at(sensor_id).counts.received, 1200U);
   EXPECT_EQ(first.reception.dropped_by_kernel, 0U);
   EXPECT_EQ(second.reception.datagrams, 100U);
 }
@@ -82,7 +82,7 @@ TEST(Receiver, HandsOverASlowSensorsSampleInTime) {
   (*receiver)->start();
   UdpSender sender((*receiver)->port(0));
   EXPECT_TRUE(sender.send(DatagramWriter("DATA").data({.sample_number = 1}).bytes()));
-  EXPECT_TRUE(eventually([&] { return sink.samples(kSensor) == 1; }));
+  EXPECT_TRUE(eventually([&] { return sink.samples(sensor_id) == 1; }));
 }
 
 TEST(Receiver, CountsWhatTheKernelHadToDrop) {
@@ -104,8 +104,8 @@ TEST(Receiver, CountsWhatTheKernelHadToDrop) {
     return sink.reception.dropped_by_kernel > 0;
   }));
   (*receiver)->stop();
-  EXPECT_GT(sink.reports.at(kSensor).counts.lost_on_way, 0U);
-  EXPECT_EQ(sink.reports.at(kSensor).counts.lost_in_unit, 0U);
+  EXPECT_GT(sink.reports.at(sensor_id).counts.lost_on_way, 0U);
+  EXPECT_EQ(sink.reports.at(sensor_id).counts.lost_in_unit, 0U);
 }
 
 TEST(Receiver, CountsDatagramsThatNoUnitSends) {

@@ -5,11 +5,11 @@
 namespace dyncal::drivers::smartup {
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'600'000'000'000'000'000;
-constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr std::int64_t start_ns = 1'600'000'000'000'000'000;
+constexpr std::int64_t period_ns = 1'000'000;
 
 std::int64_t stamp(std::int64_t n) {
-  return kStart_ns + n * kPeriod_ns;
+  return start_ns + n * period_ns;
 }
 
 TEST(SampleNumbering, CountsOnFromTheFirstNumberItSees) {

@@ -12,8 +12,8 @@
 namespace dyncal::drivers::smartup {
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'600'000'000'000'000'000;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t start_ns = 1'600'000'000'000'000'000;
+constexpr std::int64_t second_ns = 1'000'000'000;
 
 // A sensor with a true stamp for every sample; faults are added to single samples.
 class SimulatedSensor {
@@ -24,7 +24,7 @@ public:
   std::uint8_t next(std::int64_t error_ns = 0, std::uint32_t uncertainty_ns = 84) {
     ++sample_;
     const auto offset_ns = static_cast<std::int64_t>(std::llround(static_cast<double>(sample_) * period_ns_));
-    last_ns_ = kStart_ns + offset_ns + error_ns;
+    last_ns_ = start_ns + offset_ns + error_ns;
     return check_.check({sample_, last_ns_, uncertainty_ns, false});
   }
 
@@ -92,7 +92,7 @@ TEST(StampCheck, TrustsAClockThatDriftsWithTemperature) {
   double stamp_ns = 0;
   for (std::uint64_t n = 1; n <= 200000; ++n) {
     stamp_ns += 1e6 * (1.0 + 2e-3 * std::sin(static_cast<double>(n) / 20000.0)); // +-0.2 % over minutes
-    ASSERT_EQ(check.check({n, kStart_ns + std::llround(stamp_ns), 84, false}), 0) << n;
+    ASSERT_EQ(check.check({n, start_ns + std::llround(stamp_ns), 84, false}), 0) << n;
   }
 }
 
@@ -104,7 +104,7 @@ TEST(StampCheck, TrustsWhatComesAfterALoss) {
 }
 
 TEST(StampCheck, RecognisesAMislabelledSecond) {
-  for (const std::int64_t slip_ns : {kSecond_ns, -kSecond_ns}) {
+  for (const std::int64_t slip_ns : {second_ns, -second_ns}) {
     SimulatedSensor sensor(996960);
     (void)sensor.run(2000);
     EXPECT_EQ(sensor.run(3000, slip_ns), (Flags{{stamp_second_slip, 3000}}));
@@ -159,7 +159,7 @@ TEST(StampCheck, RecognisesMissingUncertaintyBesideOtherFaults) {
   EXPECT_EQ(sensor.next(0, 0), stamp_no_uncertainty);
   (void)sensor.run(2000);
   EXPECT_EQ(sensor.next(0, 0), stamp_no_uncertainty);
-  EXPECT_EQ(sensor.next(kSecond_ns, 0), stamp_no_uncertainty | stamp_second_slip);
+  EXPECT_EQ(sensor.next(second_ns, 0), stamp_no_uncertainty | stamp_second_slip);
 }
 
 TEST(StampCheck, RecognisesAUnitWithoutFix) {
@@ -179,9 +179,9 @@ TEST(StampCheck, RecognisesStampsThatRunBackwards) {
 TEST(StampCheck, AcceptsAChangeThatLasts) {
   SimulatedSensor sensor(996960);
   (void)sensor.run(2000);
-  auto flags = sensor.run(20000, kSecond_ns);
+  auto flags = sensor.run(20000, second_ns);
   EXPECT_NEAR(flags[stamp_second_slip], 10030, 20); // ten seconds
-  EXPECT_EQ(sensor.run(1000, kSecond_ns), (Flags{{0, 1000}}));
+  EXPECT_EQ(sensor.run(1000, second_ns), (Flags{{0, 1000}}));
   EXPECT_GE(sensor.run(100).at(stamp_second_slip), 100); // and back is a slip again
 }
 
@@ -194,14 +194,14 @@ TEST(StampCheck, APauseOfTheUnitCostsOneSample) {
 TEST(StampCheck, FindsItsModelThoughAFaultIsAmongTheFirstStamps) {
   SimulatedSensor sensor(996960);
   (void)sensor.next();
-  (void)sensor.next(kSecond_ns);
+  (void)sensor.next(second_ns);
   (void)sensor.run(20);
   EXPECT_EQ(sensor.run(1000), (Flags{{0, 1000}}));
 }
 
 TEST(StampCheck, FollowsASensorWhoseRateIsChanged) {
   StampCheck check;
-  std::int64_t stamp_ns = kStart_ns;
+  std::int64_t stamp_ns = start_ns;
   std::uint64_t n = 0;
   for (int i = 0; i < 2000; ++i)
     (void)check.check({++n, stamp_ns += 1'000'000, 84, false});
@@ -213,7 +213,7 @@ TEST(StampCheck, FollowsASensorWhoseRateIsChanged) {
 }
 
 TEST(StampCheck, EveryFlagHasAName) {
-  for (std::size_t bit = 0; bit < kStampFlags; ++bit)
+  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit)
     EXPECT_GT(std::string(stamp_flag_name(bit)).size(), 8U);
 }
 

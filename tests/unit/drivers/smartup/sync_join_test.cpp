@@ -78,14 +78,14 @@ TEST(SyncJoin, RepeatedStampsAreJoinedInOrder) {
 
 TEST(SyncJoin, WaitsNoLongerThanItsBound) {
   SyncJoin join;
-  for (std::uint64_t n = 1; n <= SyncJoin::kLongestWait; ++n)
+  for (std::uint64_t n = 1; n <= SyncJoin::max_wait; ++n)
     join.add(row(n, static_cast<std::int64_t>(n)));
   EXPECT_TRUE(taken(join).empty());
-  join.add(row(SyncJoin::kLongestWait + 1, 5000));
+  join.add(row(SyncJoin::max_wait + 1, 5000));
   EXPECT_EQ(taken(join).size(), 1U);
   for (int i = 0; i < 3000; ++i)
     add_sync(join, -i);
-  EXPECT_GE(join.sync_left_out(), 3000U - SyncJoin::kLongestWait);
+  EXPECT_GE(join.sync_left_out(), 3000U - SyncJoin::max_wait);
 }
 
 TEST(SyncJoin, ReleasesEverythingAtTheEnd) {

@@ -13,7 +13,7 @@ struct WireVector {
 };
 
 // clang-format off
-inline constexpr WireVector kWireVectors[] = {
+inline constexpr WireVector all_wire_vectors[] = {
   {"data_mpu9250_10ch_x2", // two samples, 10 channels
    "4441544147088082ace60b100118d3fd90fc0520988bee162854350000003e3d000080be450ae81c414d6f12833a556f1203bb5da69b443b65000048"
    "416d0000f0c175000025427d0000fc4147088082ace60b100218d3fd90fc0520ca87ab172854350000003e3d000080be450ae81c414d6f12833a556f"
@@ -71,7 +71,7 @@ inline constexpr WireVector kWireVectors[] = {
 [[nodiscard]] inline std::vector<std::uint8_t> wire_vector(std::string_view name) {
   const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
   std::vector<std::uint8_t> bytes;
-  for (const auto& vector : kWireVectors) {
+  for (const auto& vector : all_wire_vectors) {
     if (name != vector.name) continue;
     const std::string_view hex = vector.hex;
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2)

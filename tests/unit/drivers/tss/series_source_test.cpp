@@ -36,7 +36,7 @@ public:
     address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
   }
   void accept() { client_ = Descriptor(::accept(listener_.number(), nullptr, nullptr)); }
-  void send(const std::string& octets) const { ::send(client_.number(), octets.data(), octets.size(), MSG_NOSIGNAL); }
+  void send(const std::string& bytes) const { ::send(client_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
   void hang_up() { client_ = Descriptor(-1); }
   [[nodiscard]] const std::string& address() const { return address_; }
 

@@ -13,19 +13,19 @@ constexpr const char* header_text =
 TEST(Series, ValuesAreScaledAndSortedByChannel) {
   auto header = parse_series_header(header_text);
   ASSERT_TRUE(header.has_value()) << header.error().message;
-  EXPECT_EQ(header->octets(), 8U);
-  const char octets[] = {2, 0, 4, 0, -1, -1, 0, 1};
-  const auto series = decode_series(*header, octets);
+  EXPECT_EQ(header->bytes(), 8U);
+  const char bytes[] = {2, 0, 4, 0, -1, -1, 0, 1};
+  const auto series = decode_series(*header, bytes);
   ASSERT_TRUE(series.has_value()) << series.error().message;
   EXPECT_EQ(series->shot, 7U);
   EXPECT_EQ(series->channels[0].unit, "\\metre\\second\\tothe{-2}");
   EXPECT_THAT(series->values, testing::ElementsAre(1.0, -0.5, 1.0, 64.0));
 }
 
-TEST(Series, AWrongNumberOfOctetsIsRefused) {
+TEST(Series, AWrongNumberOfBytesIsRefused) {
   const auto header = parse_series_header(header_text);
-  const char octets[] = {2, 0, 4, 0, -1, -1};
-  EXPECT_FALSE(decode_series(*header, octets).has_value());
+  const char bytes[] = {2, 0, 4, 0, -1, -1};
+  EXPECT_FALSE(decode_series(*header, bytes).has_value());
 }
 
 TEST(Series, AHeaderThatCannotBeIsRefused) {

@@ -20,8 +20,8 @@ TEST(Names, HaveOneTo64Characters) {
 }
 
 TEST(Names, OfChannelsHaveUpTo128Characters) {
-  EXPECT_TRUE(check_name("channel", std::string(128, 'a'), longest_channel));
-  EXPECT_FALSE(check_name("channel", std::string(129, 'a'), longest_channel));
+  EXPECT_TRUE(check_name("channel", std::string(128, 'a'), max_channel));
+  EXPECT_FALSE(check_name("channel", std::string(129, 'a'), max_channel));
 }
 
 TEST(Names, OfBenchesAreNoPatterns) {

@@ -105,7 +105,7 @@ TYPED_TEST(EveryType, HasItsKeyWhereTheLayoutSays) {
   const TypeSupport& type = type_support<TypeParam>();
   const TypeParam sample;
   const std::string whole = bytes_of(sample);
-  std::string key_only(longest_key_payload_bytes, '\0');
+  std::string key_only(max_key_payload_bytes, '\0');
   key_only.resize(type.serialize_key(&sample, key_only.data(), key_only.size()));
   ASSERT_GT(key_only.size(), cdr_header_bytes);
   const auto key = read_key(type.key, whole.data(), whole.size());
@@ -121,7 +121,7 @@ TYPED_TEST(EveryType, AllowsItsLongestKeyAndHasAlwaysTheHashOfAKeyOver16Bytes) {
     longest.strings.emplace_back(bound, 'k');
   longest.numbers.assign(layout.numbers, 0);
   const std::string payload = key_payload(longest, ByteOrder::little);
-  EXPECT_LE(payload.size(), longest_key_payload_bytes);
+  EXPECT_LE(payload.size(), max_key_payload_bytes);
   EXPECT_GT(TypeParam::getKeyMaxCdrSerializedSize(), 16U);
   EXPECT_GE(TypeParam::getKeyMaxCdrSerializedSize() + cdr_header_bytes + 8, payload.size());
   EXPECT_LE(TypeParam::getKeyMaxCdrSerializedSize(), payload.size() + cdr_header_bytes * 4);

@@ -20,14 +20,14 @@ using tests::ChildProcess;
 using tests::DatagramWriter;
 using tests::UdpSender;
 
-constexpr int kDomain = 61;
-constexpr std::uint32_t kSensor = 0xbccb0100;
-const std::string kBench = "dau-" + std::to_string(getpid());
+constexpr int dds_domain = 61;
+constexpr std::uint32_t sensor_id = 0xbccb0100;
+const std::string bench_name = "dau-" + std::to_string(getpid());
 
 // A unit with one MPU9250, three declared channels and the sync ADC, that runs at its real pace until it is destroyed.
 class SimulatedUnit {
 public:
-  explicit SimulatedUnit(std::uint16_t port, std::uint32_t sensor = kSensor)
+  explicit SimulatedUnit(std::uint16_t port, std::uint32_t sensor = sensor_id)
       : sender_(port), sensor_(sensor), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
   void lose_datagrams(int count) { losing_ += count; }
@@ -64,12 +64,12 @@ private:
 class DauProgram : public testing::TestWithParam<bus::Vendor> {
 protected:
   std::unique_ptr<ChildProcess> start(const std::vector<std::string>& benches) {
-    std::vector<std::string> command{DYNCAL_DAU, "--dds", bus::vendor_word(GetParam()), "--domain", std::to_string(kDomain)};
+    std::vector<std::string> command{DYNCAL_DAU, "--dds", bus::vendor_word(GetParam()), "--domain", std::to_string(dds_domain)};
     command.insert(command.end(), benches.begin(), benches.end());
     return std::make_unique<ChildProcess>(command);
   }
   std::string bench_file(const std::string& sensor = "0xbccb0100") {
-    return folder.write("bench.toml", tests::bench_text(kBench, tests::smartup_source("dau", listen, sensor)));
+    return folder.write("bench.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, sensor)));
   }
 
   tests::TemporaryFolder folder;
@@ -78,8 +78,8 @@ protected:
 };
 
 TEST_P(DauProgram, CarriesAUnitToTheBus) {
-  auto network = tests::participant(GetParam(), kDomain);
-  tests::BenchListener listener(network, kBench, bus::topics::dau_samples);
+  auto network = tests::participant(GetParam(), dds_domain);
+  tests::BenchListener listener(network, bench_name, bus::topics::dau_samples);
   auto program = start({bench_file()});
   SimulatedUnit unit(port);
 
@@ -123,8 +123,8 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
 }
 
 TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
-  auto network = tests::participant(GetParam(), kDomain);
-  tests::BenchListener listener(network, kBench, bus::topics::dau_samples);
+  auto network = tests::participant(GetParam(), dds_domain);
+  tests::BenchListener listener(network, bench_name, bus::topics::dau_samples);
   auto program = start({bench_file("0x1fe40100")});
   SimulatedUnit unit(port);
   ASSERT_TRUE(listener.until([&] {
@@ -136,11 +136,11 @@ TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
 }
 
 TEST_P(DauProgram, OneProcessServesSeveralBenches) {
-  const std::string second = kBench + "-b";
-  const auto first_file = folder.write("a.toml", tests::bench_text(kBench, tests::smartup_source("dau", listen, "0xbccb0100")));
+  const std::string second = bench_name + "-b";
+  const auto first_file = folder.write("a.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, "0xbccb0100")));
   const auto second_file = folder.write("b.toml", tests::bench_text(second, tests::smartup_source("dau", listen, "0x1fe40100")));
-  auto network = tests::participant(GetParam(), kDomain);
-  tests::BenchListener here(network, kBench, bus::topics::dau_samples);
+  auto network = tests::participant(GetParam(), dds_domain);
+  tests::BenchListener here(network, bench_name, bus::topics::dau_samples);
   tests::BenchListener there(network, second, bus::topics::dau_samples);
   auto program = start({first_file, second_file});
   SimulatedUnit unit(port);
@@ -188,7 +188,7 @@ TEST_P(DauProgramErrors, AMalformedSensorIsOneLine) {
 }
 
 TEST_P(DauProgramErrors, AnAddressOfAnotherHostIsOneLine) {
-  const auto file = folder.write("bench.toml", tests::bench_text(kBench, tests::smartup_source("dau", "192.0.2.1:7654", "0xbccb0100")));
+  const auto file = folder.write("bench.toml", tests::bench_text(bench_name, tests::smartup_source("dau", "192.0.2.1:7654", "0xbccb0100")));
   const auto [status, line] = failure_of({file});
   EXPECT_NE(status, 0);
   EXPECT_THAT(line, HasSubstr("no such address"));

@@ -18,7 +18,7 @@ RingEntry entry(std::uint64_t first_sample, Clock::time_point offered = {}, std:
   return entry;
 }
 
-constexpr Clock::time_point kStart{std::chrono::seconds(1000)};
+constexpr Clock::time_point start{std::chrono::seconds(1000)};
 
 TEST(BlockRing, KeepsTheOrder) {
   BlockRing ring({});
@@ -35,12 +35,12 @@ TEST(BlockRing, HoldsSixtySecondsOfALiveSourceAndThenDropsTheNewest) {
   const auto block = std::chrono::milliseconds(50);
   int taken = 0;
   for (int n = 0; n < 1400; ++n)
-    taken += ring.offer(entry(static_cast<std::uint64_t>(n), kStart + n * block)) ? 1 : 0;
+    taken += ring.offer(entry(static_cast<std::uint64_t>(n), start + n * block)) ? 1 : 0;
   EXPECT_EQ(taken, 60 * 20 + 1);
   EXPECT_EQ(ring.dropped_samples(), (1400U - 1201U) * 50U);
   EXPECT_DOUBLE_EQ(ring.fill(), 1.0);
   EXPECT_EQ(ring.take()->block.first_sample, 0U);
-  EXPECT_TRUE(ring.offer(entry(1400, kStart + 1201 * block)));
+  EXPECT_TRUE(ring.offer(entry(1400, start + 1201 * block)));
 }
 
 TEST(BlockRing, HoldsNoMoreBytesThanItsBound) {
@@ -48,7 +48,7 @@ TEST(BlockRing, HoldsNoMoreBytesThanItsBound) {
   BlockRing ring({.span = std::chrono::hours(1), .bytes = 10 * size});
   int taken = 0;
   for (int n = 0; n < 20; ++n)
-    taken += ring.offer(entry(0, kStart)) ? 1 : 0;
+    taken += ring.offer(entry(0, start)) ? 1 : 0;
   EXPECT_EQ(taken, 10);
   EXPECT_NEAR(ring.fill(), 1.0, 1e-9);
 }
@@ -64,7 +64,7 @@ TEST(BlockRing, AlwaysTakesMarks) {
   EXPECT_TRUE(ring.offer(entry(0)));
   RingEntry mark;
   mark.end_of_stream = true;
-  mark.offered = kStart + std::chrono::hours(1);
+  mark.offered = start + std::chrono::hours(1);
   EXPECT_TRUE(ring.offer(mark));
 }
 

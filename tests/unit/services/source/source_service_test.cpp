@@ -15,10 +15,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kDomain = 60;
+constexpr int dds_domain = 60;
 
 // Test programs run side by side in one domain: each has benches of its own.
-const std::string kBench = "acc-" + std::to_string(getpid());
+const std::string bench_name = "acc-" + std::to_string(getpid());
 
 drivers::SampleBlock block_from(std::uint64_t first, std::size_t samples = 50) {
   drivers::SampleBlock block;
@@ -45,17 +45,17 @@ drivers::SourceDescription two_channels(const std::string& first_name = "referen
 
 class SourceServiceTest : public testing::TestWithParam<bus::Vendor> {
 protected:
-  std::shared_ptr<SourcePublisher> add(const std::string& bench = kBench, const std::string& source = "acs",
+  std::shared_ptr<SourcePublisher> add(const std::string& bench = bench_name, const std::string& source = "acs",
                                        std::chrono::nanoseconds silent_after = std::chrono::seconds(2)) {
     auto publisher = service->add({.bench = bench, .source = source, .kind = SourceKind::acs, .silent_after = silent_after});
     EXPECT_TRUE(publisher) << publisher.error().message;
     return *publisher;
   }
 
-  bus::Participant network = tests::participant(GetParam(), kDomain);
-  bus::Participant reader_network = tests::participant(GetParam(), kDomain);
+  bus::Participant network = tests::participant(GetParam(), dds_domain);
+  bus::Participant reader_network = tests::participant(GetParam(), dds_domain);
   std::unique_ptr<SourceService> service = SourceService::create(network, {.software = "test 1.0"});
-  tests::BenchListener listener{reader_network, kBench, bus::topics::acs_samples};
+  tests::BenchListener listener{reader_network, bench_name, bus::topics::acs_samples};
 };
 
 TEST_P(SourceServiceTest, PublishesDescriptionStatusAndBlocksInOrder) {
@@ -139,7 +139,7 @@ TEST_P(SourceServiceTest, ANewSessionHasItsOwnNumberAndDescription) {
 }
 
 TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
-  auto source = add(kBench, "acs", std::chrono::milliseconds(300));
+  auto source = add(bench_name, "acs", std::chrono::milliseconds(300));
   source->describe(two_channels());
   service->start();
   EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_SILENT); }));
@@ -149,7 +149,7 @@ TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
 }
 
 TEST_P(SourceServiceTest, AFileIsNeverSilent) {
-  auto source = add(kBench, "acs", std::chrono::nanoseconds(0));
+  auto source = add(bench_name, "acs", std::chrono::nanoseconds(0));
   source->describe(two_channels());
   service->start();
   EXPECT_TRUE(listener.until([&] { return listener.statuses.size() >= 6; }));
@@ -263,8 +263,8 @@ TEST_P(SourceServiceTest, AFileWaitsForItsRunAndPlaysEachRunOnce) {
 }
 
 TEST_P(SourceServiceTest, BenchesAreKeptApart) {
-  auto here = add(kBench);
-  auto elsewhere = add(kBench + "-b");
+  auto here = add(bench_name);
+  auto elsewhere = add(bench_name + "-b");
   here->describe(two_channels());
   elsewhere->describe(two_channels());
   service->start();
@@ -273,16 +273,16 @@ TEST_P(SourceServiceTest, BenchesAreKeptApart) {
   here->offer(block_from(0));
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") > 0; }));
   for (const auto& block : listener.blocks)
-    EXPECT_EQ(block.bench().c_str(), kBench);
+    EXPECT_EQ(block.bench().c_str(), bench_name);
 }
 
 TEST_P(SourceServiceTest, RefusesNamesThatCannotBe) {
-  add(kBench, "acs");
-  const auto twice = service->add({.bench = kBench, .source = "acs"});
+  add(bench_name, "acs");
+  const auto twice = service->add({.bench = bench_name, .source = "acs"});
   ASSERT_FALSE(twice);
   EXPECT_THAT(twice.error().message, HasSubstr("'acs' twice"));
   EXPECT_FALSE(service->add({.bench = "", .source = "acs"}));
-  EXPECT_FALSE(service->add({.bench = kBench, .source = std::string(65, 'x')}));
+  EXPECT_FALSE(service->add({.bench = bench_name, .source = std::string(65, 'x')}));
   EXPECT_TRUE(service->add({.bench = std::string(64, 'b'), .source = std::string(64, 's')}));
 }
 

@@ -108,7 +108,7 @@ TEST(FrameDuration, IsBitsOverRateOfEachPhase) {
 TEST(FrameDuration, OfNoFrameExceedsTheLongestThereIs) {
   for (const Expected& expected : reference) {
     const CanFrame frame = frame_of(expected);
-    EXPECT_LE(frame_duration_s(frame, {1e6, 5e6}), longest_frame_s(frame.fd, frame.bit_rate_switch, frame.length, {1e6, 5e6}));
+    EXPECT_LE(frame_duration_s(frame, {1e6, 5e6}), max_frame_s(frame.fd, frame.bit_rate_switch, frame.length, {1e6, 5e6}));
   }
 }
 

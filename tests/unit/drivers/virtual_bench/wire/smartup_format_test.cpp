@@ -16,35 +16,35 @@ struct Message {
 
 class Decoder {
 public:
-  explicit Decoder(const std::string& octets) : octets_(octets) {}
-  [[nodiscard]] bool at_end() const { return at_ == octets_.size(); }
+  explicit Decoder(const std::string& bytes) : bytes_(bytes) {}
+  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 
   std::uint64_t varint() {
     std::uint64_t value = 0;
     for (unsigned shift = 0;; shift += 7) {
-      const auto octet = static_cast<unsigned char>(octets_.at(at_++));
-      value |= static_cast<std::uint64_t>(octet & 0x7fU) << shift;
-      if (octet < 0x80U) {
+      const auto byte = static_cast<unsigned char>(bytes_.at(at_++));
+      value |= static_cast<std::uint64_t>(byte & 0x7fU) << shift;
+      if (byte < 0x80U) {
         return value;
       }
     }
   }
 
   std::string take(std::size_t count) {
-    const std::string part = octets_.substr(at_, count);
+    const std::string part = bytes_.substr(at_, count);
     EXPECT_EQ(part.size(), count);
     at_ += count;
     return part;
   }
 
 private:
-  std::string octets_;
+  std::string bytes_;
   std::size_t at_ = 0;
 };
 
-Message decode(const std::string& octets) {
+Message decode(const std::string& bytes) {
   Message message;
-  Decoder decoder(octets);
+  Decoder decoder(bytes);
   while (!decoder.at_end()) {
     const std::uint64_t key = decoder.varint();
     const auto field = static_cast<std::uint32_t>(key >> 3U);
@@ -74,11 +74,11 @@ std::vector<Message> decode_datagram(const std::string& datagram, const std::str
 }
 
 std::string from_hex(const std::string& hex) {
-  std::string octets;
+  std::string bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2) {
-    octets.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+    bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));
   }
-  return octets;
+  return bytes;
 }
 
 UnitSample sample(std::uint32_t number, std::size_t channels) {
@@ -93,7 +93,7 @@ UnitSample sample(std::uint32_t number, std::size_t channels) {
   return result;
 }
 
-TEST(SmartUpPacker, WritesTheOctetsOfTheUnitsFormat) {
+TEST(SmartUpPacker, WritesTheBytesOfTheUnitsFormat) {
   // A message of 13 channels from the published test vectors for this format, with its length in front.
   const std::string message = from_hex("59088082ace60b100318d3fd90fc0520fc83e8172854350000003e3d000080be450ae81c414d6f12833a556f1203bb"
                                        "5da69b443b65000048416d0000f0c175000025427d0000fc4185010000803f8d01000000c095010000003f");
@@ -115,7 +115,7 @@ TEST(SmartUpPacker, WritesTheOctetsOfTheUnitsFormat) {
   EXPECT_EQ(*datagram, wanted);
 }
 
-TEST(SmartUpPacker, FillsDatagramsTo873To996Octets) {
+TEST(SmartUpPacker, FillsDatagramsTo873To996Bytes) {
   for (const std::size_t channels : {4U, 10U, 13U, 16U}) {
     SmartUpPacker packer(0xbccb0100, "MPU 9250", true);
     std::uint32_t next = 1;

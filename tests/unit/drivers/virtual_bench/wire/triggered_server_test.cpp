@@ -24,11 +24,11 @@ constexpr double frequency_hz = 100.0;
 // Serves both instruments from a thread of its own; bench time runs ten times as fast as the host's clock at most.
 class TriggeredServerTest : public testing::Test {
 protected:
-  void start(ScopeFaults faults = {}, std::size_t piece_octets = 0, bool on = true) {
+  void start(ScopeFaults faults = {}, std::size_t piece_bytes = 0, bool on = true) {
     TriggeredSettings settings;
     settings.scope_listen = settings.sensor_listen = {"127.0.0.1", 0};
     settings.faults = std::move(faults);
-    settings.piece_octets = piece_octets;
+    settings.piece_bytes = piece_bytes;
     settings.sensor = series_sensor_of(*preset_by_name("tss"), 1, 157.0);
     settings.sensor.samples = 200;
     server_ = std::make_unique<TriggeredServer>(settings);
