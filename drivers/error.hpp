@@ -1,7 +1,7 @@
 // What can go wrong between a driver and its device, as a value.
 //
-// `message` is one sentence for the person at the bench: what, where (file, line, address, key) and what to do about it.
-// Drivers return tl::expected<T, Error>; they throw nothing and log nothing.
+// `message` is one sentence for the person at the bench: what, where (file, line, address, key) and
+// what to do about it. Drivers return tl::expected<T, Error>; they throw nothing and log nothing.
 #pragma once
 
 #include <string>

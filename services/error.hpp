@@ -1,6 +1,7 @@
 // What can go wrong in a program of dyncal, as a value, and the exit status that goes with it.
 //
-// `message` is one sentence for the user: what, where (file, line, key, source, service) and what to do about it.
+// `message` is one sentence for the user: what, where (file, line, key, source, service) and what
+// to do about it.
 #pragma once
 
 #include <string>
@@ -9,14 +10,14 @@
 namespace dyncal::services {
 
 enum class ErrorCode {
-  bad_file,      // a file is missing, unreadable or says something that cannot be
-  bad_argument,  // an option of the command line cannot be
-  no_source,     // a source is missing, silent, or lacks a channel
-  no_analysis,   // no analysis service answers, or it refuses the recipe
-  device,        // a driver reports an error
-  network,       // DDS cannot be used as asked
-  interrupted,   // the user stopped it
-  no_result      // the run ended without what it was for
+  bad_file,     // a file is missing, unreadable or says something that cannot be
+  bad_argument, // an option of the command line cannot be
+  no_source,    // a source is missing, silent, or lacks a channel
+  no_analysis,  // no analysis service answers, or it refuses the recipe
+  device,       // a driver reports an error
+  network,      // DDS cannot be used as asked
+  interrupted,  // the user stopped it
+  no_result     // the run ended without what it was for
 };
 
 struct Error {

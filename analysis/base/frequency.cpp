@@ -49,8 +49,9 @@ DoubleDouble divided(DoubleDouble a, DoubleDouble b) {
 
 DoubleDouble power_of_ten(int exponent) {
   DoubleDouble result{1.0, 0.0};
-  for (int i = 0; i < exponent; ++i)
+  for (int i = 0; i < exponent; ++i) {
     result = times_ten_plus(result, 0);
+  }
   return result;
 }
 
@@ -76,7 +77,9 @@ public:
   // False unless the whole text is one number.
   bool read(Decimal& out) {
     out.negative = take('-');
-    if (!out.negative) take('+');
+    if (!out.negative) {
+      take('+');
+    }
     const std::size_t before = position_;
     read_digits(out, false);
     std::size_t count = position_ - before;
@@ -90,7 +93,9 @@ public:
 
 private:
   bool take(char c) {
-    if (position_ == text_.size() || text_[position_] != c) return false;
+    if (position_ == text_.size() || text_[position_] != c) {
+      return false;
+    }
     ++position_;
     return true;
   }
@@ -101,16 +106,22 @@ private:
       const bool kept = kept_ < max_digits;
       if (kept) {
         out.digits = times_ten_plus(out.digits, digit);
-        if (kept_ > 0 || digit != 0) ++kept_;
+        if (kept_ > 0 || digit != 0) {
+          ++kept_;
+        }
       }
       out.exponent += (kept ? 0 : 1) - (fraction ? 1 : 0);
     }
   }
 
   bool read_exponent(Decimal& out) {
-    if (!take('e') && !take('E')) return true;
+    if (!take('e') && !take('E')) {
+      return true;
+    }
     const bool negative = take('-');
-    if (!negative) take('+');
+    if (!negative) {
+      take('+');
+    }
     const std::size_t before = position_;
     int exponent = 0;
     for (; position_ < text_.size() && is_digit(text_[position_]); ++position_) {
@@ -133,14 +144,16 @@ Expected<Frequency> Frequency::parse(std::string_view decimal_hz) {
   quoted.append(decimal_hz.substr(0, 64)).append("'");
   if (!DecimalReader(decimal_hz).read(decimal)) {
     return tl::unexpected(
-        Error{ErrorCode::invalid_argument, "the frequency " + quoted + " is not a decimal number; write hertz such as 12.5"});
+        Error{ErrorCode::invalid_argument,
+              "the frequency " + quoted + " is not a decimal number; write hertz such as 12.5"});
   }
   // Outside of this range neither a sample rate nor the arithmetic could follow.
   const bool zero = decimal.digits.high == 0.0;
   const double magnitude = zero ? 0.0 : std::log10(decimal.digits.high) + decimal.exponent;
   if (zero || decimal.negative || magnitude < -12.0 || magnitude > 12.0) {
-    return tl::unexpected(
-        Error{ErrorCode::frequency_out_of_range, "the frequency " + quoted + " Hz must lie between 1e-12 and 1e12; it must be positive"});
+    return tl::unexpected(Error{ErrorCode::frequency_out_of_range,
+                                "the frequency " + quoted +
+                                    " Hz must lie between 1e-12 and 1e12; it must be positive"});
   }
   const DoubleDouble per_ns = scaled_by_ten(decimal.digits, decimal.exponent - 9);
   return Frequency(per_ns.high, per_ns.low);
@@ -176,7 +189,8 @@ double Frequency::angular() const {
 double Frequency::reduced_turns(std::int64_t dt_ns) const {
   // Two parts of 32 bits, each exact in a double, so that any int64 difference is served.
   constexpr std::int64_t step = std::int64_t{1} << 32;
-  const double parts[2] = {static_cast<double>(dt_ns / step) * static_cast<double>(step), static_cast<double>(dt_ns % step)};
+  const double parts[2] = {static_cast<double>(dt_ns / step) * static_cast<double>(step),
+                           static_cast<double>(dt_ns % step)};
   double turns = 0.0;
   double rest = 0.0;
   for (const double dt : parts) {

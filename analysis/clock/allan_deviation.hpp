@@ -1,6 +1,8 @@
 // Overlapping Allan deviation (NIST SP 1065, section 5.2.4) of time stamps:
-//   sigma_y^2(m tau_0) = sum_i (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 m^2 tau_0^2 (N - 2m)),   x_i = t_i - i tau_0, N phases
-// The second difference does not see the mean interval, so stamps are used as they are, in integers. One thread.
+//   sigma_y^2(m tau_0) = sum_i (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 m^2 tau_0^2 (N - 2m)),   x_i =
+//   t_i - i tau_0, N phases
+// The second difference does not see the mean interval, so stamps are used as they are, in
+// integers. One thread.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +17,10 @@ struct AllanPoint {
   double deviation = 0.0;
 };
 
-// Of phases (time errors) in seconds at the spacing tau0_s, for one averaging factor. 0 with no more than 2 m phases.
-[[nodiscard]] double overlapping_allan_deviation(std::span<const double> phases_s, double tau0_s, std::size_t m);
+// Of phases (time errors) in seconds at the spacing tau0_s, for one averaging factor. 0 with no
+// more than 2 m phases.
+[[nodiscard]] double overlapping_allan_deviation(std::span<const double> phases_s, double tau0_s,
+                                                 std::size_t m);
 
 // The same for a stream of stamps at m = 1, 2, 4 ...; keeps the last `max_samples` stamps.
 class StreamingAllan {

@@ -1,8 +1,10 @@
-// How often each sample interval occurred: counts of whole nanoseconds, and the statistics that follow from them exactly.
+// How often each sample interval occurred: counts of whole nanoseconds, and the statistics that
+// follow from them exactly.
 //
-// Mean and standard deviation (n - 1) come from integer sums about the first interval; median, quantiles and MAD from the counts,
-// quantiles linear between order statistics (x_(h), h = (n - 1) p). With more distinct lengths than the bound the counts, and only
-// they, are kept in steps of 2, 4, 8 ... ns. Units: ns. One thread.
+// Mean and standard deviation (n - 1) come from integer sums about the first interval; median,
+// quantiles and MAD from the counts, quantiles linear between order statistics (x_(h), h = (n - 1)
+// p). With more distinct lengths than the bound the counts, and only they, are kept in steps of 2,
+// 4, 8 ... ns. Units: ns. One thread.
 #pragma once
 
 #include <cstddef>

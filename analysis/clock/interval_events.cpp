@@ -21,19 +21,30 @@ struct Verdict {
   std::uint32_t missing = 0;
 };
 
-Verdict judge_one(const SampleInterval& interval, const SampleInterval* next, const UsualInterval& usual) {
+Verdict judge_one(const SampleInterval& interval, const SampleInterval* next,
+                  const UsualInterval& usual) {
   const double length = static_cast<double>(interval.length_ns);
   const double deviation = length - usual.median_ns;
-  if (length < 0.0) return {"backward"};
-  if (length <= duplicate_part * usual.median_ns) return {"duplicate"};
-  if (std::abs(deviation) <= unusual_scales * usual.scale_ns) return {};
+  if (length < 0.0) {
+    return {"backward"};
+  }
+  if (length <= duplicate_part * usual.median_ns) {
+    return {"duplicate"};
+  }
+  if (std::abs(deviation) <= unusual_scales * usual.scale_ns) {
+    return {};
+  }
   const double multiple = std::round(length / usual.median_ns);
-  const double width = std::max(gap_scales * usual.scale_ns * std::sqrt(multiple), duplicate_part * usual.median_ns);
-  if (multiple >= 2.0 && std::abs(length - multiple * usual.median_ns) < width)
+  const double width =
+      std::max(gap_scales * usual.scale_ns * std::sqrt(multiple), duplicate_part * usual.median_ns);
+  if (multiple >= 2.0 && std::abs(length - multiple * usual.median_ns) < width) {
     return {"gap", static_cast<std::uint32_t>(std::min(multiple - 1.0, 4e9))};
+  }
   if (next && next->ordinal == interval.ordinal + 1 && next->continues) {
     const double other = static_cast<double>(next->length_ns) - usual.median_ns;
-    if (deviation * other < 0.0 && std::abs(deviation + other) < pair_sum_scales * usual.scale_ns) return {"pair"};
+    if (deviation * other < 0.0 && std::abs(deviation + other) < pair_sum_scales * usual.scale_ns) {
+      return {"pair"};
+    }
   }
   return {"step"};
 }
@@ -45,19 +56,25 @@ double median(std::vector<double> values) {
 }
 
 void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>& pairs) {
-  if (pairs.size() < min_pairs) return;
+  if (pairs.size() < min_pairs) {
+    return;
+  }
   std::vector<double> samples, seconds;
   for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
-    samples.push_back(static_cast<double>(pairs[i + 1].sample) - static_cast<double>(pairs[i].sample));
+    samples.push_back(static_cast<double>(pairs[i + 1].sample) -
+                      static_cast<double>(pairs[i].sample));
     seconds.push_back(static_cast<double>(pairs[i + 1].begin_ns - pairs[i].begin_ns) * 1e-9);
   }
   verdict.pair_period_samples = median(samples);
   verdict.pair_period_s = median(seconds);
   std::complex<double> sum;
-  for (const double distance : samples)
+  for (const double distance : samples) {
     sum += std::polar(1.0, 2.0 * std::numbers::pi * distance / verdict.pair_period_samples);
+  }
   verdict.pair_regularity = std::abs(sum) / static_cast<double>(samples.size());
-  if (verdict.pair_regularity < min_regularity) verdict.pair_period_samples = verdict.pair_period_s = 0.0;
+  if (verdict.pair_regularity < min_regularity) {
+    verdict.pair_period_samples = verdict.pair_period_s = 0.0;
+  }
 }
 
 } // namespace
@@ -67,7 +84,9 @@ bool UsualInterval::is_core(std::int64_t interval_ns, double times) const {
 }
 
 void IntervalEventCollector::add(const SampleInterval& interval, const UsualInterval& usual) {
-  if (usual.known() && usual.is_core(interval.length_ns, kept_scales)) return;
+  if (usual.known() && usual.is_core(interval.length_ns, kept_scales)) {
+    return;
+  }
   if (kept_.size() < max_kept_) {
     kept_.push_back(interval);
   } else if (!usual.is_core(interval.length_ns, unusual_scales)) {
@@ -75,18 +94,25 @@ void IntervalEventCollector::add(const SampleInterval& interval, const UsualInte
   }
 }
 
-IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t max_events) const {
+IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual,
+                                              std::int64_t first_stamp_ns,
+                                              std::size_t max_events) const {
   IntervalVerdict result;
   std::vector<SampleInterval> pairs;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const SampleInterval& interval = kept_[i];
-    const Verdict verdict = judge_one(interval, i + 1 < kept_.size() ? &kept_[i + 1] : nullptr, usual);
-    if (verdict.kind.empty()) continue;
+    const Verdict verdict =
+        judge_one(interval, i + 1 < kept_.size() ? &kept_[i + 1] : nullptr, usual);
+    if (verdict.kind.empty()) {
+      continue;
+    }
     ++result.event_count;
     result.unusual_lengths_ns.push_back(interval.length_ns);
     if (result.events.size() < max_events) {
-      result.events.push_back({verdict.kind, interval.sample, static_cast<double>(interval.begin_ns - first_stamp_ns) * 1e-9,
-                               static_cast<double>(interval.length_ns) - usual.median_ns, verdict.missing});
+      result.events.push_back({verdict.kind, interval.sample,
+                               static_cast<double>(interval.begin_ns - first_stamp_ns) * 1e-9,
+                               static_cast<double>(interval.length_ns) - usual.median_ns,
+                               verdict.missing});
     }
     if (verdict.kind == "pair") {
       pairs.push_back(interval);

@@ -1,11 +1,13 @@
-// Intervals that are not as usual, and what they are. With m the median, s = 1.4826 MAD (at least half a nanosecond):
+// Intervals that are not as usual, and what they are. With m the median, s = 1.4826 MAD (at least
+// half a nanosecond):
 //   backward  d < 0                                 duplicate  0 <= d <= 0.02 m
 //   gap       |d - k m| < max(8 s sqrt(k), 0.02 m), k = 2, 3 ...; k - 1 samples are missing
-//   pair      |d - m| > 6 s and the next interval deviates the other way, the two sum to less than 9 s: one late or early sample
-//   step      |d - m| > 6 s otherwise: stamps have moved against the samples for good
-// The collector keeps every interval that lies outside 4 s of what was usual up to then (all of the first 64), at most
-// `max_kept`, and counts the rest; the verdict comes at the end, with the final m and s.
-// One thread.
+//   pair      |d - m| > 6 s and the next interval deviates the other way, the two sum to less than
+//   9 s: one late or early sample step      |d - m| > 6 s otherwise: stamps have moved against the
+//   samples for good
+// The collector keeps every interval that lies outside 4 s of what was usual up to then (all of the
+// first 64), at most `max_kept`, and counts the rest; the verdict comes at the end, with the final
+// m and s. One thread.
 #pragma once
 
 #include <cstddef>
@@ -44,9 +46,11 @@ struct IntervalVerdict {
   std::uint64_t event_count = 0;                // all
   std::vector<std::int64_t> unusual_lengths_ns; // of every interval that is part of an event
   std::uint64_t pair_count = 0;
-  double pair_period_samples = 0.0; // median distance of pairs; 0 with fewer than five, or without regularity (below 0.9)
+  double pair_period_samples =
+      0.0; // median distance of pairs; 0 with fewer than five, or without regularity (below 0.9)
   double pair_period_s = 0.0;
-  double pair_regularity = 0.0; // |mean exp(2 pi i distance / period)|: 1 regular, towards 0 by chance
+  double pair_regularity =
+      0.0; // |mean exp(2 pi i distance / period)|: 1 regular, towards 0 by chance
 };
 
 class IntervalEventCollector {
@@ -54,7 +58,8 @@ public:
   explicit IntervalEventCollector(std::size_t max_kept = 100'000) : max_kept_(max_kept) {}
 
   void add(const SampleInterval& interval, const UsualInterval& usual);
-  [[nodiscard]] IntervalVerdict judge(const UsualInterval& usual, std::int64_t first_stamp_ns, std::size_t max_events) const;
+  [[nodiscard]] IntervalVerdict judge(const UsualInterval& usual, std::int64_t first_stamp_ns,
+                                      std::size_t max_events) const;
 
 private:
   std::size_t max_kept_;

@@ -1,6 +1,6 @@
-// Two bounded views of a long series of intervals, made as it passes: an overview over time whose buckets double their length
-// whenever there would be too many, and a close-up of the intervals around the first late or early sample.
-// Units: ns, int64 stamps. One thread.
+// Two bounded views of a long series of intervals, made as it passes: an overview over time whose
+// buckets double their length whenever there would be too many, and a close-up of the intervals
+// around the first late or early sample. Units: ns, int64 stamps. One thread.
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,9 @@ public:
 
   void add(const SampleInterval& interval, const UsualInterval& usual);
   [[nodiscard]] std::vector<double> lengths_ns() const; // empty while there was no pair
-  [[nodiscard]] std::int64_t first_begin_ns() const { return recent_.empty() ? 0 : recent_.front().length_begin_ns; }
+  [[nodiscard]] std::int64_t first_begin_ns() const {
+    return recent_.empty() ? 0 : recent_.front().length_begin_ns;
+  }
 
 private:
   struct Kept {

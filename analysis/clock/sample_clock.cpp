@@ -13,10 +13,12 @@ namespace {
 constexpr std::uint64_t first_lesson = 64; // intervals after which it is known what is usual
 constexpr double normal_mad = 1.4826;
 constexpr double core_scales = 6.0;
-constexpr double gap_part = 1.5; // an interval longer than this many medians interrupts the Allan deviation
+constexpr double gap_part =
+    1.5; // an interval longer than this many medians interrupts the Allan deviation
 
 UsualInterval usual_of(const IntervalDistribution& distribution) {
-  return {distribution.quantile(0.5), std::max(0.5, normal_mad * distribution.median_absolute_deviation())};
+  return {distribution.quantile(0.5),
+          std::max(0.5, normal_mad * distribution.median_absolute_deviation())};
 }
 
 double seconds(double ns) {
@@ -27,10 +29,12 @@ double seconds(double ns) {
 
 struct SampleClock::State {
   explicit State(const SampleClockSettings& chosen)
-      : settings(chosen), counts(chosen.max_distinct_intervals), overview(chosen.max_buckets), close_up(chosen.close_up),
-        temperature(chosen.max_temperature_bins, chosen.max_scatter), allan(chosen.max_allan_samples) {}
+      : settings(chosen), counts(chosen.max_distinct_intervals), overview(chosen.max_buckets),
+        close_up(chosen.close_up), temperature(chosen.max_temperature_bins, chosen.max_scatter),
+        allan(chosen.max_allan_samples) {}
 
-  void take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted, double temperature_degc);
+  void take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted,
+                   double temperature_degc);
   void take_interval(const SampleInterval& interval, double temperature_degc);
 
   SampleClockSettings settings;
@@ -52,15 +56,20 @@ struct SampleClock::State {
   std::uint64_t untrusted = 0;
 };
 
-void SampleClock::State::take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted, double temperature_degc) {
+void SampleClock::State::take_sample(std::uint64_t sample, std::int64_t stamp_ns, bool trusted,
+                                     double temperature_degc) {
   if (!trusted) {
     ++untrusted;
     have_last = false;
     return;
   }
-  if (!first_stamp_ns) first_stamp_ns = stamp_ns;
+  if (!first_stamp_ns) {
+    first_stamp_ns = stamp_ns;
+  }
   if (have_last) {
-    take_interval({counts.sums().count, sample - 1, last_stamp_ns, stamp_ns - last_stamp_ns, have_interval_before}, last_temperature_degc);
+    take_interval({counts.sums().count, sample - 1, last_stamp_ns, stamp_ns - last_stamp_ns,
+                   have_interval_before},
+                  last_temperature_degc);
   } else {
     have_interval_before = false;
     allan.interrupt();
@@ -77,26 +86,37 @@ void SampleClock::State::take_interval(const SampleInterval& interval, double te
   overview.add(interval);
   close_up.add(interval, usual);
   if (usual.known()) {
-    if (usual.is_core(interval.length_ns, core_scales)) temperature.add(temperature_degc, interval.length_ns);
-    if (interval.length_ns <= 0 || static_cast<double>(interval.length_ns) > gap_part * usual.median_ns) allan.interrupt();
+    if (usual.is_core(interval.length_ns, core_scales)) {
+      temperature.add(temperature_degc, interval.length_ns);
+    }
+    if (interval.length_ns <= 0 ||
+        static_cast<double>(interval.length_ns) > gap_part * usual.median_ns) {
+      allan.interrupt();
+    }
   }
   have_interval_before = true;
   const std::uint64_t n = counts.sums().count;
-  if (n >= first_lesson && std::has_single_bit(n)) usual = usual_of(counts.distribution());
+  if (n >= first_lesson && std::has_single_bit(n)) {
+    usual = usual_of(counts.distribution());
+  }
 }
 
-SampleClock::SampleClock(const SampleClockSettings& settings) : state_(std::make_unique<State>(settings)) {}
+SampleClock::SampleClock(const SampleClockSettings& settings)
+    : state_(std::make_unique<State>(settings)) {}
 SampleClock::~SampleClock() = default;
 SampleClock::SampleClock(SampleClock&&) noexcept = default;
 SampleClock& SampleClock::operator=(SampleClock&&) noexcept = default;
 
-void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns, std::span<const std::uint8_t> flags,
+void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns,
+                       std::span<const std::uint8_t> flags,
                        std::span<const double> temperature_degc) {
   assert(flags.empty() || flags.size() == stamps_ns.size());
   assert(temperature_degc.empty() || temperature_degc.size() == stamps_ns.size());
   State& state = *state_;
   if (state.next_sample && first_sample != *state.next_sample) {
-    if (first_sample > *state.next_sample) state.lost += first_sample - *state.next_sample;
+    if (first_sample > *state.next_sample) {
+      state.lost += first_sample - *state.next_sample;
+    }
     state.have_last = false;
   }
   for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
@@ -108,7 +128,8 @@ void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t>
 
 namespace {
 
-void describe_intervals(SampleClockStatistics& result, const IntervalCounts& counts, const IntervalDistribution& distribution) {
+void describe_intervals(SampleClockStatistics& result, const IntervalCounts& counts,
+                        const IntervalDistribution& distribution) {
   const IntervalSums& sums = counts.sums();
   result.intervals = sums.count;
   result.mean_interval_s = seconds(sums.mean_ns());
@@ -125,8 +146,9 @@ void describe_intervals(SampleClockStatistics& result, const IntervalCounts& cou
 }
 
 void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, IntervalSums core) {
-  for (const std::int64_t length : verdict.unusual_lengths_ns)
+  for (const std::int64_t length : verdict.unusual_lengths_ns) {
     core.remove(length);
+  }
   if (core.count > 1) {
     result.core_mean_s = seconds(core.mean_ns());
     result.core_sd_s = seconds(core.sd_ns());
@@ -144,35 +166,47 @@ void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, Int
 std::optional<SampleClockStatistics> SampleClock::statistics() const {
   const State& state = *state_;
   const IntervalSums& sums = state.counts.sums();
-  if (sums.count < 2) return std::nullopt;
+  if (sums.count < 2) {
+    return std::nullopt;
+  }
   SampleClockStatistics result;
   const IntervalDistribution distribution = state.counts.distribution();
   describe_intervals(result, state.counts, distribution);
-  result.u_mean_interval_s = std::sqrt(2.0) * state.settings.stamp_uncertainty_s / static_cast<double>(sums.count);
+  result.u_mean_interval_s =
+      std::sqrt(2.0) * state.settings.stamp_uncertainty_s / static_cast<double>(sums.count);
   result.nominal_rate_hz = state.settings.nominal_rate_hz;
   result.mean_rate_hz = result.mean_interval_s > 0.0 ? 1.0 / result.mean_interval_s : 0.0;
   result.tick_s = state.settings.tick_s;
 
   const double tick_ns = state.settings.tick_s * 1e9;
-  const IntervalHistogram histogram = interval_histogram(distribution, tick_ns, result.mad_sd_s * 1e9);
+  const IntervalHistogram histogram =
+      interval_histogram(distribution, tick_ns, result.mad_sd_s * 1e9);
   result.lattice_statistic = lattice_statistic(distribution, tick_ns);
   if (tick_ns > 0.0) {
-    for (const double mode : interval_modes_ns(histogram))
+    for (const double mode : interval_modes_ns(histogram)) {
       result.modes_s.push_back(seconds(mode));
+    }
   }
   result.histogram = histogram.bins;
-  describe_events(result, state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events), sums);
+  describe_events(
+      result,
+      state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events),
+      sums);
 
   result.over_time = state.overview.buckets(*state.first_stamp_ns);
   result.close_up_ns = state.close_up.lengths_ns();
-  if (!result.close_up_ns.empty())
-    result.close_up_first_time_s = seconds(static_cast<double>(state.close_up.first_begin_ns() - *state.first_stamp_ns));
+  if (!result.close_up_ns.empty()) {
+    result.close_up_first_time_s =
+        seconds(static_cast<double>(state.close_up.first_begin_ns() - *state.first_stamp_ns));
+  }
   result.over_temperature = state.temperature.bins();
   result.scatter_temperature_degc = state.temperature.pair_temperatures_degc();
   result.scatter_interval_ns = state.temperature.pair_intervals_ns();
   result.temperature_correlation = state.temperature.correlation();
   result.temperature_slope_s_per_degc = seconds(state.temperature.slope_ns_per_degc());
-  if (result.mean_interval_s > 0.0) result.allan = state.allan.points(result.mean_interval_s);
+  if (result.mean_interval_s > 0.0) {
+    result.allan = state.allan.points(result.mean_interval_s);
+  }
   result.lost = state.lost;
   result.untrusted = state.untrusted;
   return result;

@@ -1,12 +1,16 @@
-// The sample clock of a sensor from the stamps of its samples: direct sample interval evaluation, paper sections 3 and 4.2.
+// The sample clock of a sensor from the stamps of its samples: direct sample interval evaluation,
+// paper sections 3 and 4.2.
 //
-// Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an integer in ns; mean, standard
-// deviation (n - 1), median, MAD and quantiles (linear between order statistics) are those of the integers, exactly.
-// Histogram, lattice statistic and modes: interval_histogram.hpp. Events ("backward", "duplicate", "gap", "pair", "step"), their
-// number and the period of pairs: interval_events.hpp; core_mean and core_sd leave them out. Temperature: that of the sample which
-// begins an interval, of intervals within 6 s of the usual one (temperature_relation.hpp). Allan deviation: allan_deviation.hpp,
-// within stretches without lost samples. What is usual is known after 64 intervals, and learned again at 128, 256 ...
-// Memory is bounded (settings); what does not depend on a bound is exact however the stream was cut. One thread.
+// Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an
+// integer in ns; mean, standard deviation (n - 1), median, MAD and quantiles (linear between order
+// statistics) are those of the integers, exactly. Histogram, lattice statistic and modes:
+// interval_histogram.hpp. Events ("backward", "duplicate", "gap", "pair", "step"), their number and
+// the period of pairs: interval_events.hpp; core_mean and core_sd leave them out. Temperature: that
+// of the sample which begins an interval, of intervals within 6 s of the usual one
+// (temperature_relation.hpp). Allan deviation: allan_deviation.hpp, within stretches without lost
+// samples. What is usual is known after 64 intervals, and learned again at 128, 256 ... Memory is
+// bounded (settings); what does not depend on a bound is exact however the stream was cut. One
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -29,9 +33,9 @@ struct SampleClockSettings {
   double nominal_rate_hz = 0.0;     // 0: not known
   double tick_s = 0.0;              // of the stamping counter, 0: not known
   double stamp_uncertainty_s = 0.0; // standard uncertainty of one stamp against the time base
-  std::size_t max_buckets = 1000;  // of the overview over time
-  std::size_t max_events = 1000;   // listed; all are counted
-  std::size_t max_scatter = 4000;  // temperature-interval pairs kept
+  std::size_t max_buckets = 1000;   // of the overview over time
+  std::size_t max_events = 1000;    // listed; all are counted
+  std::size_t max_scatter = 4000;   // temperature-interval pairs kept
   std::size_t max_temperature_bins = 100;
   std::size_t close_up = 40; // intervals on each side of the first pair
   std::size_t max_allan_samples = 1u << 18;
@@ -66,7 +70,8 @@ struct SampleClockStatistics {
   std::vector<IntervalEvent> events;
   std::uint64_t event_count = 0;
   std::uint64_t pair_count = 0;
-  double pair_period_samples = 0.0; // median distance, 0 with fewer than five pairs or without regularity
+  double pair_period_samples =
+      0.0; // median distance, 0 with fewer than five pairs or without regularity
   double pair_period_s = 0.0;
   double pair_regularity = 0.0; // 1 regular, towards 0 by chance
   std::vector<TemperatureBin> over_temperature;
@@ -86,10 +91,12 @@ public:
   SampleClock(SampleClock&&) noexcept;
   SampleClock& operator=(SampleClock&&) noexcept;
 
-  // The next samples. `first_sample` is the number of the first of them; a number that does not follow on the last one starts a new
-  // stretch (missing ones are counted as lost; a smaller one is a restart of the numbering). `flags` (a value that is not 0: stamp
-  // not trusted) and `temperature_degc` are either empty or as long as `stamps_ns`.
-  void push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns, std::span<const std::uint8_t> flags = {},
+  // The next samples. `first_sample` is the number of the first of them; a number that does not
+  // follow on the last one starts a new stretch (missing ones are counted as lost; a smaller one is
+  // a restart of the numbering). `flags` (a value that is not 0: stamp not trusted) and
+  // `temperature_degc` are either empty or as long as `stamps_ns`.
+  void push(std::uint64_t first_sample, std::span<const std::int64_t> stamps_ns,
+            std::span<const std::uint8_t> flags = {},
             std::span<const double> temperature_degc = {});
 
   // Empty with fewer than two intervals.

@@ -21,25 +21,32 @@ void TemperatureRelation::Moments::merge(const Moments& other) {
 }
 
 TemperatureRelation::TemperatureRelation(std::size_t max_bins, std::size_t max_pairs)
-    : max_bins_(std::max<std::size_t>(max_bins, 2)), max_pairs_(std::max<std::size_t>(max_pairs, 2)) {}
+    : max_bins_(std::max<std::size_t>(max_bins, 2)),
+      max_pairs_(std::max<std::size_t>(max_pairs, 2)) {}
 
 void TemperatureRelation::add(double temperature_degc, std::int64_t interval_ns) {
-  if (!std::isfinite(temperature_degc) || std::abs(temperature_degc) > 1e6) return;
+  if (!std::isfinite(temperature_degc) || std::abs(temperature_degc) > 1e6) {
+    return;
+  }
   const auto interval = static_cast<double>(interval_ns);
   const double from_mean = temperature_degc - temperature_.mean; // of the temperatures before
   temperature_.add(temperature_degc);
   interval_.add(interval);
   products_ += from_mean * (interval - interval_.mean);
   bins_[static_cast<std::int64_t>(std::floor(temperature_degc / bin_degc_))].add(interval);
-  while (bins_.size() > max_bins_)
+  while (bins_.size() > max_bins_) {
     widen_bins();
-  if ((interval_.count - 1) % every_ == 0) keep_pair(temperature_degc, interval);
+  }
+  if ((interval_.count - 1) % every_ == 0) {
+    keep_pair(temperature_degc, interval);
+  }
 }
 
 void TemperatureRelation::widen_bins() {
   std::map<std::int64_t, Moments> wider;
-  for (const auto& [index, moments] : bins_)
+  for (const auto& [index, moments] : bins_) {
     wider[index >= 0 ? index / 2 : (index - 1) / 2].merge(moments);
+  }
   bins_ = std::move(wider);
   bin_degc_ *= 2.0;
 }
@@ -53,7 +60,9 @@ void TemperatureRelation::keep_pair(double temperature_degc, double interval_ns)
     pair_temperatures_degc_.resize((max_pairs_ + 1) / 2);
     pair_intervals_ns_.resize((max_pairs_ + 1) / 2);
     every_ *= 2;
-    if ((interval_.count - 1) % every_ != 0) return;
+    if ((interval_.count - 1) % every_ != 0) {
+      return;
+    }
   }
   pair_temperatures_degc_.push_back(temperature_degc);
   pair_intervals_ns_.push_back(interval_ns);
@@ -71,8 +80,11 @@ double TemperatureRelation::slope_ns_per_degc() const {
 std::vector<TemperatureBin> TemperatureRelation::bins() const {
   std::vector<TemperatureBin> result;
   for (const auto& [index, moments] : bins_) {
-    const double sd = moments.count > 1 ? std::sqrt(moments.squares / static_cast<double>(moments.count - 1)) : 0.0;
-    result.push_back({(static_cast<double>(index) + 0.5) * bin_degc_, moments.mean, sd, moments.count});
+    const double sd = moments.count > 1
+                          ? std::sqrt(moments.squares / static_cast<double>(moments.count - 1))
+                          : 0.0;
+    result.push_back(
+        {(static_cast<double>(index) + 0.5) * bin_degc_, moments.mean, sd, moments.count});
   }
   return result;
 }

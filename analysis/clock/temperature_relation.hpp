@@ -1,6 +1,7 @@
-// How the sample interval follows the temperature that the sensor reports (paper, section 4.2): correlation coefficient, slope of the
-// regression line, mean and standard deviation in bins of temperature, and a bounded sample of pairs for a scatter plot.
-// Bins start at 0.01 degC and double their width whenever there would be too many; of the pairs every 1st, 2nd, 4th ... is kept.
+// How the sample interval follows the temperature that the sensor reports (paper, section 4.2):
+// correlation coefficient, slope of the regression line, mean and standard deviation in bins of
+// temperature, and a bounded sample of pairs for a scatter plot. Bins start at 0.01 degC and double
+// their width whenever there would be too many; of the pairs every 1st, 2nd, 4th ... is kept.
 // Units: degC, ns. One thread.
 #pragma once
 
@@ -27,7 +28,9 @@ public:
   [[nodiscard]] double correlation() const;       // 0 where it is not defined
   [[nodiscard]] double slope_ns_per_degc() const; // 0 where it is not defined
   [[nodiscard]] std::vector<TemperatureBin> bins() const;
-  [[nodiscard]] const std::vector<double>& pair_temperatures_degc() const { return pair_temperatures_degc_; }
+  [[nodiscard]] const std::vector<double>& pair_temperatures_degc() const {
+    return pair_temperatures_degc_;
+  }
   [[nodiscard]] const std::vector<double>& pair_intervals_ns() const { return pair_intervals_ns_; }
 
 private:

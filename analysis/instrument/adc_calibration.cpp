@@ -18,7 +18,9 @@ tl::unexpected<Error> failure(ErrorCode code, std::string message) {
 std::string number(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
-  if (!text.empty() && text.back() == '.') text.pop_back();
+  if (!text.empty() && text.back() == '.') {
+    text.pop_back();
+  }
   return text;
 }
 
@@ -27,31 +29,43 @@ bool same(double a, double b) {
 }
 
 bool by_amplitude_and_frequency(const AdcCalibrationPoint& a, const AdcCalibrationPoint& b) {
-  if (!same(a.test_amplitude_vpp, b.test_amplitude_vpp)) return a.test_amplitude_vpp < b.test_amplitude_vpp;
+  if (!same(a.test_amplitude_vpp, b.test_amplitude_vpp)) {
+    return a.test_amplitude_vpp < b.test_amplitude_vpp;
+  }
   return a.frequency_hz < b.frequency_hz;
 }
 
-Expected<std::vector<AdcCalibrationPoint>> of_one_amplitude(std::span<const AdcCalibrationPoint> points, std::optional<double> wanted_vpp) {
-  if (points.empty()) return failure(ErrorCode::invalid_argument, "the ADC calibration has no points");
+Expected<std::vector<AdcCalibrationPoint>>
+of_one_amplitude(std::span<const AdcCalibrationPoint> points, std::optional<double> wanted_vpp) {
+  if (points.empty()) {
+    return failure(ErrorCode::invalid_argument, "the ADC calibration has no points");
+  }
   double chosen = points.front().test_amplitude_vpp;
   for (const AdcCalibrationPoint& point : points) {
-    if (!(point.frequency_hz > 0.0) || !(point.gain > 0.0) || !std::isfinite(point.phase_lag_rad))
-      return failure(ErrorCode::invalid_argument, "the ADC calibration has a point without frequency, gain or phase");
+    if (!(point.frequency_hz > 0.0) || !(point.gain > 0.0) || !std::isfinite(point.phase_lag_rad)) {
+      return failure(ErrorCode::invalid_argument,
+                     "the ADC calibration has a point without frequency, gain or phase");
+    }
     if (wanted_vpp) {
-      if (std::abs(std::log(point.test_amplitude_vpp / *wanted_vpp)) < std::abs(std::log(chosen / *wanted_vpp)))
+      if (std::abs(std::log(point.test_amplitude_vpp / *wanted_vpp)) <
+          std::abs(std::log(chosen / *wanted_vpp))) {
         chosen = point.test_amplitude_vpp;
+      }
     } else if (!same(point.test_amplitude_vpp, chosen)) {
-      return failure(ErrorCode::invalid_argument, "the ADC calibration has several test amplitudes (" + number(chosen) + " and " +
-                                                      number(point.test_amplitude_vpp) + " Vpp), choose one");
+      return failure(ErrorCode::invalid_argument,
+                     "the ADC calibration has several test amplitudes (" + number(chosen) +
+                         " and " + number(point.test_amplitude_vpp) + " Vpp), choose one");
     }
   }
   if (wanted_vpp && !(std::abs(std::log2(chosen / *wanted_vpp)) <= 1.0)) {
-    return failure(ErrorCode::out_of_calibration, "the ADC was not calibrated near " + number(*wanted_vpp) +
-                                                      " Vpp, the nearest test amplitude is " + number(chosen) + " Vpp");
+    return failure(ErrorCode::out_of_calibration,
+                   "the ADC was not calibrated near " + number(*wanted_vpp) +
+                       " Vpp, the nearest test amplitude is " + number(chosen) + " Vpp");
   }
   std::vector<AdcCalibrationPoint> result;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(result),
-               [&](const AdcCalibrationPoint& point) { return same(point.test_amplitude_vpp, chosen); });
+  std::copy_if(
+      points.begin(), points.end(), std::back_inserter(result),
+      [&](const AdcCalibrationPoint& point) { return same(point.test_amplitude_vpp, chosen); });
   std::sort(result.begin(), result.end(), by_amplitude_and_frequency);
   return result;
 }
@@ -61,8 +75,12 @@ struct FrontEnd { // g0 e^{-i w tau} / (1 + i f / fc); inverse_corner2 = 1 / fc^
   double delay_s = 0.0;
   double inverse_corner2 = 0.0;
 
-  [[nodiscard]] double log_gain_at(double f) const { return log_gain - 0.5 * std::log1p(inverse_corner2 * f * f); }
-  [[nodiscard]] double lag_at(double f) const { return 2.0 * pi * f * delay_s + std::atan(f * std::sqrt(inverse_corner2)); }
+  [[nodiscard]] double log_gain_at(double f) const {
+    return log_gain - 0.5 * std::log1p(inverse_corner2 * f * f);
+  }
+  [[nodiscard]] double lag_at(double f) const {
+    return 2.0 * pi * f * delay_s + std::atan(f * std::sqrt(inverse_corner2));
+  }
 };
 
 FrontEnd approximate(const std::vector<AdcCalibrationPoint>& points) {
@@ -102,8 +120,8 @@ struct Interpolated {
 };
 
 // Linear between points i and i + 1; values and their u over frequencies f.
-Interpolated interpolate(const std::vector<double>& f, const std::vector<double>& values, const std::vector<double>& u, std::size_t i,
-                         double at) {
+Interpolated interpolate(const std::vector<double>& f, const std::vector<double>& values,
+                         const std::vector<double>& u, std::size_t i, double at) {
   const double weight = (at - f[i]) / (f[i + 1] - f[i]);
   const auto second_difference = [&](std::size_t first) { // divided: half the curvature
     const double left = (values[first + 1] - values[first]) / (f[first + 1] - f[first]);
@@ -111,10 +129,15 @@ Interpolated interpolate(const std::vector<double>& f, const std::vector<double>
     return std::abs(right - left) / (f[first + 2] - f[first]);
   };
   double curvature = 0.0;
-  if (i > 0) curvature = second_difference(i - 1);
-  if (i + 2 < f.size()) curvature = std::max(curvature, second_difference(i));
+  if (i > 0) {
+    curvature = second_difference(i - 1);
+  }
+  if (i + 2 < f.size()) {
+    curvature = std::max(curvature, second_difference(i));
+  }
   const double missed = curvature * (at - f[i]) * (f[i + 1] - at) / std::sqrt(3.0);
-  return {values[i] + weight * (values[i + 1] - values[i]), std::hypot((1.0 - weight) * u[i] + weight * u[i + 1], missed)};
+  return {values[i] + weight * (values[i + 1] - values[i]),
+          std::hypot((1.0 - weight) * u[i] + weight * u[i + 1], missed)};
 }
 
 double median(std::span<const double> all) {
@@ -124,7 +147,8 @@ double median(std::span<const double> all) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Scatter differs by decades between 1 Hz and 100 kHz: each point takes it from this many points on either side.
+// Scatter differs by decades between 1 Hz and 100 kHz: each point takes it from this many points on
+// either side.
 constexpr std::size_t neighbours = 4;
 
 std::span<const double> around(const std::vector<double>& values, std::size_t i) {
@@ -132,13 +156,16 @@ std::span<const double> around(const std::vector<double>& values, std::size_t i)
   return std::span(values).subspan(begin, std::min(values.size(), i + neighbours + 1) - begin);
 }
 
-// Distances of single points from the line through their neighbours, in standard deviations' measure; 0 at the ends.
-std::vector<double> deviations_from_neighbours(const std::vector<double>& f, const std::vector<double>& values) {
+// Distances of single points from the line through their neighbours, in standard deviations'
+// measure; 0 at the ends.
+std::vector<double> deviations_from_neighbours(const std::vector<double>& f,
+                                               const std::vector<double>& values) {
   std::vector<double> deviations(f.size(), 0.0);
   for (std::size_t i = 1; i + 1 < f.size(); ++i) {
     const double weight = (f[i] - f[i - 1]) / (f[i + 1] - f[i - 1]);
     const double deviation = values[i] - (1.0 - weight) * values[i - 1] - weight * values[i + 1];
-    deviations[i] = std::abs(deviation) / std::sqrt(1.0 + weight * weight + (1.0 - weight) * (1.0 - weight));
+    deviations[i] =
+        std::abs(deviation) / std::sqrt(1.0 + weight * weight + (1.0 - weight) * (1.0 - weight));
   }
   return deviations;
 }
@@ -160,7 +187,8 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
       gain += sorted[end].gain;
       lag += sorted[end].phase_lag_rad;
       group.mean.u_gain = std::max(group.mean.u_gain, sorted[end].u_gain);
-      group.mean.u_phase_lag_rad = std::max(group.mean.u_phase_lag_rad, sorted[end].u_phase_lag_rad);
+      group.mean.u_phase_lag_rad =
+          std::max(group.mean.u_phase_lag_rad, sorted[end].u_phase_lag_rad);
       group.count += 1.0;
     }
     group.mean.gain = gain / group.count;
@@ -175,13 +203,15 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
   return groups;
 }
 
-std::vector<AdcCalibrationPoint> points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
+std::vector<AdcCalibrationPoint>
+points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
   const std::vector<Group> groups = gather(sorted);
   std::vector<AdcCalibrationPoint> points;
   points.reserve(groups.size());
   std::vector<double> f, freedom, gain_squares, phase_squares, gains, lags;
-  for (const Group& group : groups)
+  for (const Group& group : groups) {
     points.push_back(group.mean);
+  }
   const FrontEnd model = approximate(points);
   for (const Group& group : groups) {
     f.push_back(group.mean.frequency_hz);
@@ -191,34 +221,47 @@ std::vector<AdcCalibrationPoint> points_of_one_amplitude(std::span<const AdcCali
     gains.push_back(std::log(group.mean.gain) - model.log_gain_at(f.back()));
     lags.push_back(group.mean.phase_lag_rad - model.lag_at(f.back()));
   }
-  const auto sum = [](std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); };
+  const auto sum = [](std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+  };
   const bool repeated = sum(freedom) >= 1.0;
   const std::vector<double> gain_deviations = deviations_from_neighbours(f, gains);
   const std::vector<double> lag_deviations = deviations_from_neighbours(f, lags);
-  const auto scatter = [&](const std::vector<double>& squares, const std::vector<double>& deviations, std::size_t i) {
-    if (!repeated) return f.size() < 3 ? 0.0 : 1.4826 * median(around(deviations, i));
+  const auto scatter = [&](const std::vector<double>& squares,
+                           const std::vector<double>& deviations, std::size_t i) {
+    if (!repeated) {
+      return f.size() < 3 ? 0.0 : 1.4826 * median(around(deviations, i));
+    }
     const double local = sum(around(freedom, i));
-    return local >= 1.0 ? std::sqrt(sum(around(squares, i)) / local) : std::sqrt(sum(squares) / sum(freedom));
+    return local >= 1.0 ? std::sqrt(sum(around(squares, i)) / local)
+                        : std::sqrt(sum(squares) / sum(freedom));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double root = std::sqrt(groups[i].count);
-    points[i].u_gain = std::hypot(points[i].u_gain, points[i].gain * scatter(gain_squares, gain_deviations, i) / root);
-    points[i].u_phase_lag_rad = std::hypot(points[i].u_phase_lag_rad, scatter(phase_squares, lag_deviations, i) / root);
+    points[i].u_gain = std::hypot(
+        points[i].u_gain, points[i].gain * scatter(gain_squares, gain_deviations, i) / root);
+    points[i].u_phase_lag_rad =
+        std::hypot(points[i].u_phase_lag_rad, scatter(phase_squares, lag_deviations, i) / root);
   }
   return points;
 }
 
 } // namespace
 
-Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_points, double frequency_hz,
+Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_points,
+                                      double frequency_hz,
                                       std::optional<double> test_amplitude_vpp) {
   const auto points = of_one_amplitude(all_points, test_amplitude_vpp);
-  if (!points) return tl::unexpected(points.error());
+  if (!points) {
+    return tl::unexpected(points.error());
+  }
   const double lowest = points->front().frequency_hz;
   const double highest = points->back().frequency_hz;
   if (!(frequency_hz >= lowest * (1.0 - 1e-9) && frequency_hz <= highest * (1.0 + 1e-9))) {
-    return failure(ErrorCode::out_of_calibration, number(frequency_hz) + " Hz is outside the range in which the ADC was calibrated, " +
-                                                      number(lowest) + " Hz to " + number(highest) + " Hz");
+    return failure(ErrorCode::out_of_calibration,
+                   number(frequency_hz) +
+                       " Hz is outside the range in which the ADC was calibrated, " +
+                       number(lowest) + " Hz to " + number(highest) + " Hz");
   }
   if (points->size() == 1) {
     const AdcCalibrationPoint& only = points->front();
@@ -230,7 +273,8 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   for (const AdcCalibrationPoint& point : *points) {
     if (!f.empty() && same(point.frequency_hz, f.back())) {
       return failure(ErrorCode::invalid_argument,
-                     "the ADC calibration has " + number(point.frequency_hz) + " Hz twice, make one point of repeated measurements first");
+                     "the ADC calibration has " + number(point.frequency_hz) +
+                         " Hz twice, make one point of repeated measurements first");
     }
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));
@@ -240,7 +284,8 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   }
   const double at = std::clamp(frequency_hz, lowest, highest);
   const auto above = std::upper_bound(f.begin(), f.end() - 1, at);
-  const std::size_t i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - f.begin(), 1)) - 1;
+  const std::size_t i =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - f.begin(), 1)) - 1;
   const Interpolated gain = interpolate(f, gains, u_gains, i, at);
   const Interpolated lag = interpolate(f, lags, u_lags, i, at);
   AdcResponse response;
@@ -251,14 +296,17 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   return response;
 }
 
-std::vector<AdcCalibrationPoint> adc_calibration_points(std::span<const AdcCalibrationPoint> measurements) {
+std::vector<AdcCalibrationPoint>
+adc_calibration_points(std::span<const AdcCalibrationPoint> measurements) {
   std::vector<AdcCalibrationPoint> sorted(measurements.begin(), measurements.end());
   std::stable_sort(sorted.begin(), sorted.end(), by_amplitude_and_frequency);
   std::vector<AdcCalibrationPoint> result;
   for (std::size_t begin = 0; begin < sorted.size();) {
     std::size_t end = begin;
-    while (end < sorted.size() && same(sorted[end].test_amplitude_vpp, sorted[begin].test_amplitude_vpp))
+    while (end < sorted.size() &&
+           same(sorted[end].test_amplitude_vpp, sorted[begin].test_amplitude_vpp)) {
       ++end;
+    }
     const auto points = points_of_one_amplitude(std::span(sorted).subspan(begin, end - begin));
     result.insert(result.end(), points.begin(), points.end());
     begin = end;

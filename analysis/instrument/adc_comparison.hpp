@@ -1,23 +1,28 @@
-// The response of the DAU's sync ADC from one excitation step: the same sine recorded by the DAU and by an analogue system, in the
-// data-ready path, that is with the stamps and the sampling instants that calibrations use.
+// The response of the DAU's sync ADC from one excitation step: the same sine recorded by the DAU
+// and by an analogue system, in the data-ready path, that is with the stamps and the sampling
+// instants that calibrations use.
 //
-//   G = P_dau(t) / P_acs(t),   P(t) = P(t_ref) e^{i w (t - t_ref)},   gain = |G|,   phase lag = -arg G
+//   G = P_dau(t) / P_acs(t),   P(t) = P(t_ref) e^{i w (t - t_ref)},   gain = |G|,   phase lag =
+//   -arg G
 //
-// t is one instant of ONE time scale in which both systems stamp (UTC, say). This cannot be done without: a sine that both record links
-// two unrelated clocks only up to a delay, and a delay is what an ADC's phase is made of; nor does an event within the sync signal help,
-// for it comes through the same ADC. What brings in the time scale must reach the DAU past its ADC, as the pulses of a GPS receiver do.
-// The phasors are taken to the instant in the middle of their own reference instants, each at its own frequency.
-// The lag contains the instant of sampling after the stamp (data-ready to conversion): that belongs to the correction.
-// Uncertainty, noise of this step: fits, and their frequencies over the way to t. Common to steps: w u_time_scale and the analogue system's
-// own sync channel: its delay and its gain are taken as known within their uncertainties.
-// Fails: invalid_argument (a phasor without amplitude or frequency, or reference instants further apart than `max_apart_s`: then they
-// are not on one time scale, or not of one step). Any thread.
+// t is one instant of ONE time scale in which both systems stamp (UTC, say). This cannot be done
+// without: a sine that both record links two unrelated clocks only up to a delay, and a delay is
+// what an ADC's phase is made of; nor does an event within the sync signal help, for it comes
+// through the same ADC. What brings in the time scale must reach the DAU past its ADC, as the
+// pulses of a GPS receiver do. The phasors are taken to the instant in the middle of their own
+// reference instants, each at its own frequency. The lag contains the instant of sampling after the
+// stamp (data-ready to conversion): that belongs to the correction. Uncertainty, noise of this
+// step: fits, and their frequencies over the way to t. Common to steps: w u_time_scale and the
+// analogue system's own sync channel: its delay and its gain are taken as known within their
+// uncertainties. Fails: invalid_argument (a phasor without amplitude or frequency, or reference
+// instants further apart than `max_apart_s`: then they are not on one time scale, or not of one
+// step). Any thread.
 #pragma once
 
 #include <cstdint>
 
-#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/base/error.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 
 namespace dyncal::analysis {
 
@@ -38,13 +43,15 @@ struct AdcComparisonUncertainty { // standard uncertainties, common to all steps
 };
 
 struct AdcComparison {
-  AdcCalibrationPoint point; // u_ fields: common part, as adc_calibration_points() wants it of measurements
-  double noise_gain = 0.0;   // standard uncertainty of this step alone
+  AdcCalibrationPoint
+      point; // u_ fields: common part, as adc_calibration_points() wants it of measurements
+  double noise_gain = 0.0; // standard uncertainty of this step alone
   double noise_phase_rad = 0.0;
   double sync_vpp = 0.0; // as the analogue system saw it
 };
 
-[[nodiscard]] Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau, double max_apart_s,
+[[nodiscard]] Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor& dau,
+                                                       double max_apart_s,
                                                        const AdcComparisonUncertainty& uncertainty);
 
 } // namespace dyncal::analysis

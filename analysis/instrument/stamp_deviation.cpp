@@ -20,13 +20,16 @@ public:
   void take(const Pulse& pulse) {
     if (origin_ && pulse.second == origin_->second + 1) {
       figures_.push_back(static_cast<double>(pulse.ticks - origin_->ticks));
-      if (figures_.size() > figures_of_clock) figures_.pop_front();
+      if (figures_.size() > figures_of_clock) {
+        figures_.pop_front();
+      }
     }
     origin_ = pulse;
   }
   [[nodiscard]] bool trusted() const { return figures_.size() >= trusted_figures; }
   [[nodiscard]] double ticks_per_second() const {
-    return std::accumulate(figures_.begin(), figures_.end(), 0.0) / static_cast<double>(figures_.size());
+    return std::accumulate(figures_.begin(), figures_.end(), 0.0) /
+           static_cast<double>(figures_.size());
   }
   [[nodiscard]] const Pulse& origin() const { return *origin_; }
 
@@ -49,16 +52,18 @@ double mean_of(std::span<const double> values) {
 double sd_of(std::span<const double> values) {
   const double mean = mean_of(values);
   double squares = 0.0;
-  for (const double value : values)
+  for (const double value : values) {
     squares += (value - mean) * (value - mean);
+  }
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
 double u_mean_by_blocks(std::vector<double> blocks) {
   double u = sd_of(blocks) / std::sqrt(static_cast<double>(blocks.size()));
   while (blocks.size() / 2 >= min_blocks) {
-    for (std::size_t i = 0; i < blocks.size() / 2; ++i)
+    for (std::size_t i = 0; i < blocks.size() / 2; ++i) {
       blocks[i] = 0.5 * (blocks[2 * i] + blocks[2 * i + 1]);
+    }
     blocks.resize(blocks.size() / 2);
     u = std::max(u, sd_of(blocks) / std::sqrt(static_cast<double>(blocks.size())));
   }
@@ -67,8 +72,9 @@ double u_mean_by_blocks(std::vector<double> blocks) {
 
 double effective_count(const std::vector<double>& values, double u_mean) {
   const double sd = sd_of(values);
-  return u_mean > 0.0 ? std::clamp(sd * sd / (u_mean * u_mean), 1.0, static_cast<double>(values.size()))
-                      : static_cast<double>(values.size());
+  return u_mean > 0.0
+             ? std::clamp(sd * sd / (u_mean * u_mean), 1.0, static_cast<double>(values.size()))
+             : static_cast<double>(values.size());
 }
 
 // Between neighbours in order: R-7 of Hyndman and Fan.
@@ -80,31 +86,40 @@ double quantile(const std::vector<double>& sorted, double part) {
 }
 
 // Stamps of one session's reference edges, counted from the session's own first seconds.
-void stamp_session(const PulseSession& session, std::size_t number, double begin_s, double ticks_per_second, std::vector<Raw>& raws,
-                   std::size_t& untrusted) {
+void stamp_session(const PulseSession& session, std::size_t number, double begin_s,
+                   double ticks_per_second, std::vector<Raw>& raws, std::size_t& untrusted) {
   UnitClock clock;
   auto gps = session.gps.begin();
   for (const Pulse& pulse : session.reference) {
-    for (; gps != session.gps.end() && gps->ticks <= pulse.ticks; ++gps)
+    for (; gps != session.gps.end() && gps->ticks <= pulse.ticks; ++gps) {
       clock.take(*gps);
+    }
     if (!clock.trusted()) {
       ++untrusted;
       continue;
     }
-    const double since_origin_s = static_cast<double>(pulse.ticks - clock.origin().ticks) / clock.ticks_per_second();
+    const double since_origin_s =
+        static_cast<double>(pulse.ticks - clock.origin().ticks) / clock.ticks_per_second();
     const double time_s = begin_s + static_cast<double>(pulse.ticks) / ticks_per_second;
-    raws.push_back({{number, time_s, 0.0, pulse.edge}, clock.origin().second - pulse.second, since_origin_s, pulse.second});
+    raws.push_back({{number, time_s, 0.0, pulse.edge},
+                    clock.origin().second - pulse.second,
+                    since_origin_s,
+                    pulse.second});
   }
 }
 
 double length_s(const PulseSession& session, double ticks_per_second) {
   std::int64_t last = 0;
-  for (const auto* pulses : {&session.gps, &session.reference})
-    if (!pulses->empty()) last = std::max(last, pulses->back().ticks);
+  for (const auto* pulses : {&session.gps, &session.reference}) {
+    if (!pulses->empty()) {
+      last = std::max(last, pulses->back().ticks);
+    }
+  }
   return static_cast<double>(last) / ticks_per_second;
 }
 
-// Sessions number their seconds anew: whole seconds are taken off so that all lie within half a second of the offset, or of the first.
+// Sessions number their seconds anew: whole seconds are taken off so that all lie within half a
+// second of the offset, or of the first.
 void remove_whole_seconds(std::vector<Raw>& raws, std::optional<double> offset_s) {
   std::size_t session = 0;
   std::int64_t whole_s = 0;
@@ -112,7 +127,9 @@ void remove_whole_seconds(std::vector<Raw>& raws, std::optional<double> offset_s
   for (Raw& raw : raws) {
     if (&raw == &raws.front() || raw.at.session != session) {
       session = raw.at.session;
-      if (&raw == &raws.front()) near_s = offset_s.value_or(raw.rest_s - std::floor(raw.rest_s + 0.5));
+      if (&raw == &raws.front()) {
+        near_s = offset_s.value_or(raw.rest_s - std::floor(raw.rest_s + 0.5));
+      }
       whole_s = raw.whole_s + std::llround(raw.rest_s - near_s);
     }
     raw.rest_s += static_cast<double>(raw.whole_s - whole_s);
@@ -128,37 +145,50 @@ void add_drift(StampDeviationStatistics& statistics, const std::vector<double>& 
     means[one.session] += one.deviation_s;
   }
   double squares = 0.0, products = 0.0;
-  const auto centred_time = [&](const StampDeviation& one) { return one.time_s - times[one.session] / counts[one.session]; };
-  const auto centred_deviation = [&](const StampDeviation& one) { return one.deviation_s - means[one.session] / counts[one.session]; };
+  const auto centred_time = [&](const StampDeviation& one) {
+    return one.time_s - times[one.session] / counts[one.session];
+  };
+  const auto centred_deviation = [&](const StampDeviation& one) {
+    return one.deviation_s - means[one.session] / counts[one.session];
+  };
   for (const StampDeviation& one : statistics.deviations) {
     squares += centred_time(one) * centred_time(one);
     products += centred_time(one) * centred_deviation(one);
   }
-  if (!(squares > 0.0) || deviations_s.size() < 4) return;
+  if (!(squares > 0.0) || deviations_s.size() < 4) {
+    return;
+  }
   statistics.drift = products / squares;
   std::vector<double> residuals;
-  for (const StampDeviation& one : statistics.deviations)
+  for (const StampDeviation& one : statistics.deviations) {
     residuals.push_back(centred_deviation(one) - statistics.drift * centred_time(one));
-  const double inflation = static_cast<double>(residuals.size()) / effective_count(residuals, u_mean_by_blocks(residuals));
+  }
+  const double inflation = static_cast<double>(residuals.size()) /
+                           effective_count(residuals, u_mean_by_blocks(residuals));
   statistics.u_drift = sd_of(residuals) * std::sqrt(inflation / squares);
 }
 
 std::vector<AllanPoint> allan_of_max_stretch(const std::vector<Raw>& raws) {
   std::size_t max_begin = 0, longest = 0;
   for (std::size_t begin = 0, i = 0; i < raws.size(); ++i) {
-    const bool follows = i > begin && raws[i].at.session == raws[i - 1].at.session && raws[i].second == raws[i - 1].second + 1;
-    if (!follows) begin = i;
+    const bool follows = i > begin && raws[i].at.session == raws[i - 1].at.session &&
+                         raws[i].second == raws[i - 1].second + 1;
+    if (!follows) {
+      begin = i;
+    }
     if (i + 1 - begin > longest) {
       longest = i + 1 - begin;
       max_begin = begin;
     }
   }
   std::vector<double> phases_s;
-  for (std::size_t i = 0; i < longest; ++i)
+  for (std::size_t i = 0; i < longest; ++i) {
     phases_s.push_back(raws[max_begin + i].rest_s - raws[max_begin].rest_s);
+  }
   std::vector<AllanPoint> points;
-  for (std::size_t m = 1; phases_s.size() >= 2 * m + std::max(m, min_allan_terms); m *= 2)
+  for (std::size_t m = 1; phases_s.size() >= 2 * m + std::max(m, min_allan_terms); m *= 2) {
     points.push_back({static_cast<double>(m), overlapping_allan_deviation(phases_s, 1.0, m)});
+  }
   return points;
 }
 
@@ -177,27 +207,37 @@ std::optional<PulsePrediction> predict_gps_pulses(const SortedPulses& pulses) {
       clock.take(pulse);
     }
   }
-  if (predictions_s.size() < 2) return std::nullopt;
+  if (predictions_s.size() < 2) {
+    return std::nullopt;
+  }
   const auto [minimum, maximum] = std::minmax_element(predictions_s.begin(), predictions_s.end());
-  return PulsePrediction{predictions_s.size(), sd_of(predictions_s), *minimum, *maximum, mean_of(ticks), sd_of(ticks)};
+  return PulsePrediction{predictions_s.size(), sd_of(predictions_s), *minimum, *maximum,
+                         mean_of(ticks),       sd_of(ticks)};
 }
 
-Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses, const StampDeviationSettings& settings) {
-  if (!(settings.u_reference_s >= 0.0))
-    return tl::unexpected(Error{ErrorCode::invalid_argument, "the uncertainty of the reference pulse must not be negative"});
+Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
+                                                    const StampDeviationSettings& settings) {
+  if (!(settings.u_reference_s >= 0.0)) {
+    return tl::unexpected(Error{ErrorCode::invalid_argument,
+                                "the uncertainty of the reference pulse must not be negative"});
+  }
   StampDeviationStatistics statistics;
   std::vector<Raw> raws;
   double begin_s = 0.0;
   for (std::size_t i = 0; i < pulses.sessions.size(); ++i) {
-    stamp_session(pulses.sessions[i], i, begin_s, pulses.ticks_per_second, raws, statistics.untrusted);
+    stamp_session(pulses.sessions[i], i, begin_s, pulses.ticks_per_second, raws,
+                  statistics.untrusted);
     begin_s += length_s(pulses.sessions[i], pulses.ticks_per_second) + 1.0;
   }
-  if (raws.size() < 3)
-    return tl::unexpected(Error{ErrorCode::too_few_samples, "fewer than three edges of the reference pulse have a stamp"});
+  if (raws.size() < 3) {
+    return tl::unexpected(Error{ErrorCode::too_few_samples,
+                                "fewer than three edges of the reference pulse have a stamp"});
+  }
   remove_whole_seconds(raws, settings.reference_offset_s);
   std::vector<double> deviations_s;
-  for (const Raw& raw : raws)
+  for (const Raw& raw : raws) {
     deviations_s.push_back(raw.rest_s);
+  }
   statistics.reference_offset_s = settings.reference_offset_s.value_or(mean_of(deviations_s));
   for (std::size_t i = 0; i < raws.size(); ++i) {
     deviations_s[i] -= statistics.reference_offset_s;
@@ -209,7 +249,8 @@ Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses, 
   const double u_mean_s = u_mean_by_blocks(deviations_s);
   statistics.u_mean_s = std::hypot(u_mean_s, settings.u_reference_s);
   statistics.effective_count = effective_count(deviations_s, u_mean_s);
-  statistics.u_sd_s = statistics.sd_s / std::sqrt(2.0 * std::max(statistics.effective_count - 1.0, 1.0));
+  statistics.u_sd_s =
+      statistics.sd_s / std::sqrt(2.0 * std::max(statistics.effective_count - 1.0, 1.0));
   statistics.u_stamp_s = std::hypot(statistics.sd_s, statistics.u_mean_s);
   std::vector<double> sorted = deviations_s;
   std::sort(sorted.begin(), sorted.end());

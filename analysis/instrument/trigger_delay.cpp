@@ -17,7 +17,8 @@ tl::unexpected<Error> failure(ErrorCode code, std::string message) {
 }
 
 double quantile(std::vector<double> values, double part) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
@@ -51,21 +52,31 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
   const double low = quantile(all, 0.02);
   const double high = quantile(all, 0.98);
   const double height = high - low;
-  const auto no_edge = [] { return failure(ErrorCode::no_excitation, "the trace shows no rising edge"); };
+  const auto no_edge = [] {
+    return failure(ErrorCode::no_excitation, "the trace shows no rising edge");
+  };
   // The last sample below 20 % before the first one above 80 %.
-  const auto above = std::find_if(volts.begin(), volts.end(), [&](double v) { return v > low + 0.8 * height; });
-  if (!(height > 0.0) || above == volts.end()) return no_edge();
+  const auto above =
+      std::find_if(volts.begin(), volts.end(), [&](double v) { return v > low + 0.8 * height; });
+  if (!(height > 0.0) || above == volts.end()) {
+    return no_edge();
+  }
   const auto place_above = static_cast<std::size_t>(above - volts.begin());
   std::size_t begin = place_above;
   while (begin > 0 && volts[begin] > low + 0.2 * height) {
     --begin;
   }
-  if (begin == 0) return no_edge();
-  const auto low_again = std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
-  if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
-    return failure(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of them belongs to the trigger is unknown");
+  if (begin == 0) {
+    return no_edge();
   }
-  // Line through what lies between, both neighbours included when the edge is as steep as the sampling.
+  const auto low_again =
+      std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
+  if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
+    return failure(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of "
+                                             "them belongs to the trigger is unknown");
+  }
+  // Line through what lies between, both neighbours included when the edge is as steep as the
+  // sampling.
   double n = 0.0;
   double sum_t = 0.0;
   double sum_v = 0.0;
@@ -85,7 +96,9 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
     sum_tv += t * volts[i];
   }
   const double slope = (n * sum_tv - sum_t * sum_v) / (n * sum_tt - sum_t * sum_t);
-  if (!(slope > 0.0) || !std::isfinite(slope)) return no_edge();
+  if (!(slope > 0.0) || !std::isfinite(slope)) {
+    return no_edge();
+  }
   const double half = low + 0.5 * height;
   const double from_begin = (half - (sum_v - slope * sum_t) / n) / slope;
   return first_s + (static_cast<double>(begin) + from_begin) * interval_s;
@@ -108,7 +121,8 @@ Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& freq
   if (!out) {
     return failure(out.error().code, "trigger output: " + out.error().message);
   }
-  // Femtoseconds: oscilloscopes sample faster than whole nanoseconds can say. The frequency is in turns per femtosecond times 1e9.
+  // Femtoseconds: oscilloscopes sample faster than whole nanoseconds can say. The frequency is in
+  // turns per femtosecond times 1e9.
   std::vector<std::int64_t> stamps_fs(trace.sync.size());
   for (std::size_t i = 0; i < stamps_fs.size(); ++i) {
     stamps_fs[i] = std::llround((trace.first_s + static_cast<double>(i) * trace.interval_s) * 1e15);
@@ -128,21 +142,27 @@ Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, doub
   }
   const auto tau = [](const ShotDelay& shot) { return shot.output_delay_s; };
   const MeanAndScatter output = mean_and_scatter(shots, tau);
-  const MeanAndScatter whole = mean_and_scatter(shots, [](const ShotDelay& shot) { return shot.from_zero_crossing_s; });
+  const MeanAndScatter whole =
+      mean_and_scatter(shots, [](const ShotDelay& shot) { return shot.from_zero_crossing_s; });
   TriggerDelay result;
   result.shots = shots.size();
   result.delay_s = output.mean;
   result.scatter_s = output.scatter;
-  result.u_delay_s = std::hypot(output.scatter / std::sqrt(static_cast<double>(shots.size())), interval_s / std::sqrt(12.0));
+  result.u_delay_s = std::hypot(output.scatter / std::sqrt(static_cast<double>(shots.size())),
+                                interval_s / std::sqrt(12.0));
   result.from_zero_crossing_s = whole.mean;
   result.scatter_from_zero_crossing_s = whole.scatter;
-  const auto [least, most] = std::minmax_element(shots.begin(), shots.end(), [&](const auto& a, const auto& b) { return tau(a) < tau(b); });
-  const auto bins = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(shots.size()))));
+  const auto [least, most] = std::minmax_element(
+      shots.begin(), shots.end(), [&](const auto& a, const auto& b) { return tau(a) < tau(b); });
+  const auto bins =
+      static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(shots.size()))));
   result.histogram.first_s = tau(*least);
-  result.histogram.width_s = std::max((tau(*most) - tau(*least)) / static_cast<double>(bins), 1e-15);
+  result.histogram.width_s =
+      std::max((tau(*most) - tau(*least)) / static_cast<double>(bins), 1e-15);
   result.histogram.counts.resize(bins);
   for (const ShotDelay& shot : shots) {
-    const auto bin = static_cast<std::size_t>((tau(shot) - result.histogram.first_s) / result.histogram.width_s);
+    const auto bin =
+        static_cast<std::size_t>((tau(shot) - result.histogram.first_s) / result.histogram.width_s);
     ++result.histogram.counts[std::min(bin, bins - 1)];
   }
   return result;

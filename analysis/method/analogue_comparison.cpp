@@ -3,26 +3,31 @@
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
-#include "analysis/uncertainty/ratio_scatter.hpp"
-#include "analysis/method/recorded_system.hpp"
 #include "analysis/method/own_clock_channel.hpp"
+#include "analysis/method/recorded_system.hpp"
+#include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
-Budget systematic_rows(const RecordedSeries& reference, double w, const ComparisonUncertainty& systematic) {
+Budget systematic_rows(const RecordedSeries& reference, double w,
+                       const ComparisonUncertainty& systematic) {
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
   budget.add("delay between the channels", "normal", 0.0, 0.0, w * systematic.channel_delay_s);
-  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel, systematic.reference_phase_rad);
+  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel,
+             systematic.reference_phase_rad);
   return budget;
 }
 
 } // namespace
 
 Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
-  const auto system = evaluate_system(input.frequency, input.frequency_search_rel, input.stamps_ns, input.reference, input.dut);
-  if (!system) return tl::unexpected(system.error());
+  const auto system = evaluate_system(input.frequency, input.frequency_search_rel, input.stamps_ns,
+                                      input.reference, input.dut);
+  if (!system) {
+    return tl::unexpected(system.error());
+  }
   const RecordedSeries& reference = system->pilot;
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
@@ -33,7 +38,8 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
     add_sensor_rows(budget, dut, 0.0);
     budget.append(common);
     budget.add_excess("structure in the signals",
-                      ratio_scatter(reference.result.frequency, input.stamps_ns, dut.values(), reference.values()),
+                      ratio_scatter(reference.result.frequency, input.stamps_ns, dut.values(),
+                                    reference.values()),
                       budget.u_magnitude_rel(), budget.u_phase_rad());
     result.points.push_back(transfer_point(dut, link, budget));
   }
@@ -41,17 +47,24 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
 }
 
 Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input) {
-  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.reference_stamps_ns, input.reference, {});
-  if (!acs) return tl::unexpected(acs.error());
+  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel,
+                                   input.reference_stamps_ns, input.reference, {});
+  if (!acs) {
+    return tl::unexpected(acs.error());
+  }
   const RecordedSeries& reference = acs->pilot;
   ComparisonResult result{reference.result, {}};
   const double w = reference.result.frequency.angular();
   const Budget common = systematic_rows(reference, w, input.systematic);
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
-  const StampsApart stamps{.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = input.systematic.stamp_jitter_s};
+  const StampsApart stamps{.clock_offset_s = input.systematic.clock_offset_s,
+                           .stamp_jitter_s = input.systematic.stamp_jitter_s};
   for (const ChannelSamples& channel : input.dut) {
-    auto point = evaluate_stamped_apart(reference.result, link, common, input.dut_stamps_ns, channel, stamps);
-    if (!point) return tl::unexpected(point.error());
+    auto point = evaluate_stamped_apart(reference.result, link, common, input.dut_stamps_ns,
+                                        channel, stamps);
+    if (!point) {
+      return tl::unexpected(point.error());
+    }
     result.points.push_back(std::move(*point));
   }
   return result;

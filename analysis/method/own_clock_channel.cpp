@@ -8,29 +8,40 @@
 namespace dyncal::analysis {
 namespace {
 
-// White stamp noise of one channel alone: multiplicative, so phase and amplitude take unequal shares.
+// White stamp noise of one channel alone: multiplicative, so phase and amplitude take unequal
+// shares.
 void add_jitter(Budget& budget, double w, double jitter_s, double samples) {
   const double angle = w * jitter_s;
-  budget.add("jitter of the stamps", "normal", 0.0, std::hypot(std::sqrt(0.5 / samples) * angle, 0.5 * angle * angle),
+  budget.add("jitter of the stamps", "normal", 0.0,
+             std::hypot(std::sqrt(0.5 / samples) * angle, 0.5 * angle * angle),
              std::sqrt(1.5 / samples) * angle);
 }
 
 } // namespace
 
-Expected<TransferPoint> evaluate_stamped_apart(const SeriesFit& pilot, std::complex<double> link, const Budget& common,
-                                               std::span<const std::int64_t> dut_stamps_ns, const ChannelSamples& dut,
+Expected<TransferPoint> evaluate_stamped_apart(const SeriesFit& pilot, std::complex<double> link,
+                                               const Budget& common,
+                                               std::span<const std::int64_t> dut_stamps_ns,
+                                               const ChannelSamples& dut,
                                                const StampsApart& stamps) {
   const auto sensor = evaluate_weak_series(pilot.frequency, dut_stamps_ns, dut);
-  if (!sensor) return tl::unexpected(sensor.error());
-  const double turns = pilot.frequency.reduced_turns(sensor->result.reference_ns - pilot.reference_ns);
+  if (!sensor) {
+    return tl::unexpected(sensor.error());
+  }
+  const double turns =
+      pilot.frequency.reduced_turns(sensor->result.reference_ns - pilot.reference_ns);
   Budget budget;
   add_sensor_rows(budget, *sensor, stamps.stamp_jitter_s);
-  add_jitter(budget, pilot.frequency.angular(), stamps.stamp_jitter_s, static_cast<double>(sensor->result.fit.samples));
-  // The middles of the two records are apart: an error of the frequency turns one against the other.
-  const double apart_s = static_cast<double>(sensor->result.reference_ns - pilot.reference_ns) * 1e-9;
+  add_jitter(budget, pilot.frequency.angular(), stamps.stamp_jitter_s,
+             static_cast<double>(sensor->result.fit.samples));
+  // The middles of the two records are apart: an error of the frequency turns one against the
+  // other.
+  const double apart_s =
+      static_cast<double>(sensor->result.reference_ns - pilot.reference_ns) * 1e-9;
   budget.add("frequency between the records", "normal", pilot.fit.degrees_of_freedom, 0.0,
              2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(apart_s));
-  budget.add("offset between the clocks", "normal", 0.0, 0.0, pilot.frequency.angular() * stamps.clock_offset_s);
+  budget.add("offset between the clocks", "normal", 0.0, 0.0,
+             pilot.frequency.angular() * stamps.clock_offset_s);
   budget.append(common);
   return transfer_point(*sensor, link * std::polar(1.0, -2.0 * std::numbers::pi * turns), budget);
 }

@@ -1,20 +1,23 @@
-// A channel of a sensor whose samples have stamps of their own, on the time scale of the record that links it to the reference:
+// A channel of a sensor whose samples have stamps of their own, on the time scale of the record
+// that links it to the reference:
 //
 //   H = P_dut * link * e^{-2 pi i f (t_dut - t_pilot)}
 //
-// The pilot is what that time scale has of the excitation: sync beside the sensor, or the reference where all clocks are on UTC. Its
-// frequency holds for the sensor too; t_pilot and t_dut are the middles of the two records, subtracted in whole nanoseconds. The budget
-// takes the sensor's noise and quantisation, jitter of its stamps, the frequency's uncertainty over the distance of the middles, and the
-// uncertainty of one clock against the other in full: w u(offset). Fails as recorded_system.hpp does. Any thread.
+// The pilot is what that time scale has of the excitation: sync beside the sensor, or the reference
+// where all clocks are on UTC. Its frequency holds for the sensor too; t_pilot and t_dut are the
+// middles of the two records, subtracted in whole nanoseconds. The budget takes the sensor's noise
+// and quantisation, jitter of its stamps, the frequency's uncertainty over the distance of the
+// middles, and the uncertainty of one clock against the other in full: w u(offset). Fails as
+// recorded_system.hpp does. Any thread.
 #pragma once
 
 #include <complex>
 #include <cstdint>
 #include <span>
 
-#include "analysis/uncertainty/budget.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/method/transfer_point.hpp"
+#include "analysis/uncertainty/budget.hpp"
 
 namespace dyncal::analysis {
 
@@ -23,8 +26,9 @@ struct StampsApart { // standard uncertainties
   double stamp_jitter_s = 0.0; // white noise of the sensor's stamps
 };
 
-[[nodiscard]] Expected<TransferPoint> evaluate_stamped_apart(const SeriesFit& pilot, std::complex<double> link, const Budget& common,
-                                                             std::span<const std::int64_t> dut_stamps_ns, const ChannelSamples& dut,
-                                                             const StampsApart& stamps);
+[[nodiscard]] Expected<TransferPoint>
+evaluate_stamped_apart(const SeriesFit& pilot, std::complex<double> link, const Budget& common,
+                       std::span<const std::int64_t> dut_stamps_ns, const ChannelSamples& dut,
+                       const StampsApart& stamps);
 
 } // namespace dyncal::analysis

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/sine/disturbances.hpp"
 #include "analysis/base/phasor.hpp"
+#include "analysis/sine/disturbances.hpp"
 #include "analysis/uncertainty/quantisation.hpp"
 
 namespace dyncal::analysis {
@@ -26,10 +26,12 @@ struct FitNoise {
 
 FitNoise fit_noise(const SeriesFit& series, double jitter_s) {
   const double variance = series.fit.residual_sd() * series.fit.residual_sd();
-  const double by_jitter = 0.5 * std::pow(series.frequency.angular() * series.fit.amplitude() * jitter_s, 2);
+  const double by_jitter =
+      0.5 * std::pow(series.frequency.angular() * series.fit.amplitude() * jitter_s, 2);
   const double kept = variance > 0.0 ? std::sqrt(std::max(0.0, 1.0 - by_jitter / variance)) : 1.0;
   // A series that is exactly constant has no direction to project the covariance on.
-  const double u_component = std::sqrt(std::max(series.fit.covariance[0], series.fit.covariance[3]));
+  const double u_component =
+      std::sqrt(std::max(series.fit.covariance[0], series.fit.covariance[3]));
   const double u_amplitude = series.fit.amplitude() > 0.0 ? series.fit.u_amplitude() : u_component;
   const double u_phase = series.fit.amplitude() > 0.0 ? series.fit.u_phase_rad() : 0.0;
   return {u_amplitude * kept, u_phase * kept};
@@ -37,7 +39,8 @@ FitNoise fit_noise(const SeriesFit& series, double jitter_s) {
 
 QuantisationUncertainty quantisation(const RecordedSeries& series) {
   const SineFit& fit = series.result.fit;
-  const double duration_s = static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
+  const double duration_s =
+      static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
   const double periods = std::max(1.0, series.result.frequency.hz() * duration_s);
   return quantisation_uncertainty(fit.amplitude(), fit.residual_sd(), series.samples.resolution,
                                   static_cast<double>(fit.samples) / periods);
@@ -51,10 +54,13 @@ struct SensorNoise {
 
   SensorNoise(const RecordedSeries& series, double jitter_s)
       : noise(fit_noise(series.result, jitter_s)), steps(quantisation(series)),
-        u_amplitude(std::hypot(noise.u_amplitude, steps.u_amplitude)), amplitude(std::max(series.amplitude(), 1e-6 * u_amplitude)) {}
+        u_amplitude(std::hypot(noise.u_amplitude, steps.u_amplitude)),
+        amplitude(std::max(series.amplitude(), 1e-6 * u_amplitude)) {}
 
   [[nodiscard]] double snr() const {
-    if (u_amplitude > 0.0) return amplitude / u_amplitude;
+    if (u_amplitude > 0.0) {
+      return amplitude / u_amplitude;
+    }
     return amplitude > 0.0 ? 1e12 : 0.0;
   }
 };
@@ -64,85 +70,124 @@ std::int64_t middle_ns(std::span<const std::int64_t> stamps_ns) {
 }
 
 // All channels of one stamp series at one frequency, about its middle.
-Expected<std::vector<RecordedSeries>> evaluate_series(const Frequency& frequency, double u_frequency_hz,
-                                                      std::span<const std::int64_t> stamps_ns, std::span<const ChannelSamples> all) {
+Expected<std::vector<RecordedSeries>> evaluate_series(const Frequency& frequency,
+                                                      double u_frequency_hz,
+                                                      std::span<const std::int64_t> stamps_ns,
+                                                      std::span<const ChannelSamples> all) {
   std::vector<std::span<const double>> channels;
   for (const ChannelSamples& channel : all) {
-    if (channel.values.size() != stamps_ns.size())
-      return of_series(channel.name, {ErrorCode::invalid_argument, "the numbers of stamps and values differ"});
+    if (channel.values.size() != stamps_ns.size()) {
+      return of_series(channel.name,
+                       {ErrorCode::invalid_argument, "the numbers of stamps and values differ"});
+    }
     channels.push_back(channel.values);
   }
-  const std::string who = all.size() > 1 ? all.front().name + " and the channels recorded with it" : all.front().name;
-  if (stamps_ns.empty()) return of_series(who, {ErrorCode::too_few_samples, "there are no samples in the window"});
+  const std::string who =
+      all.size() > 1 ? all.front().name + " and the channels recorded with it" : all.front().name;
+  if (stamps_ns.empty()) {
+    return of_series(who, {ErrorCode::too_few_samples, "there are no samples in the window"});
+  }
   auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, channels);
-  if (!fits) return of_series(who, fits.error());
+  if (!fits) {
+    return of_series(who, fits.error());
+  }
   std::vector<RecordedSeries> series;
   for (std::size_t i = 0; i < all.size(); ++i) {
     series.push_back(
-        {{all[i].name, frequency, u_frequency_hz, middle_ns(stamps_ns), (*fits)[i].fit}, std::move((*fits)[i].values), all[i], stamps_ns});
+        {{all[i].name, frequency, u_frequency_hz, middle_ns(stamps_ns), (*fits)[i].fit},
+         std::move((*fits)[i].values),
+         all[i],
+         stamps_ns});
   }
   return series;
 }
 
 } // namespace
 
-Expected<RecordedSystem> evaluate_system(const Frequency& nominal, double frequency_search_rel, std::span<const std::int64_t> stamps_ns,
-                                         const ChannelSamples& pilot, std::span<const ChannelSamples> others) {
+Expected<RecordedSystem> evaluate_system(const Frequency& nominal, double frequency_search_rel,
+                                         std::span<const std::int64_t> stamps_ns,
+                                         const ChannelSamples& pilot,
+                                         std::span<const ChannelSamples> others) {
   Frequency frequency = nominal;
   double u_frequency_hz = 0.0;
   if (frequency_search_rel > 0.0 && pilot.values.size() == stamps_ns.size() && !stamps_ns.empty()) {
     const std::array channels{pilot.values};
-    const auto refined = fit_sine_and_frequency(nominal, frequency_search_rel, middle_ns(stamps_ns), stamps_ns, channels);
-    if (!refined) return of_series(pilot.name, refined.error());
+    const auto refined = fit_sine_and_frequency(nominal, frequency_search_rel, middle_ns(stamps_ns),
+                                                stamps_ns, channels);
+    if (!refined) {
+      return of_series(pilot.name, refined.error());
+    }
     frequency = refined->frequency;
     u_frequency_hz = refined->u_frequency_hz;
   }
   std::vector<ChannelSamples> all{pilot};
   all.insert(all.end(), others.begin(), others.end());
   auto series = evaluate_series(frequency, u_frequency_hz, stamps_ns, all);
-  if (!series) return tl::unexpected(series.error());
-  if (const auto excited = require_excitation(series->front()); !excited) return tl::unexpected(excited.error());
+  if (!series) {
+    return tl::unexpected(series.error());
+  }
+  if (const auto excited = require_excitation(series->front()); !excited) {
+    return tl::unexpected(excited.error());
+  }
   RecordedSystem system{std::move(series->front()), {}};
-  system.others.assign(std::make_move_iterator(series->begin() + 1), std::make_move_iterator(series->end()));
+  system.others.assign(std::make_move_iterator(series->begin() + 1),
+                       std::make_move_iterator(series->end()));
   return system;
 }
 
-Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency,
+                                              std::span<const std::int64_t> stamps_ns,
                                               const ChannelSamples& channel) {
   auto series = evaluate_series(frequency, 0.0, stamps_ns, std::span(&channel, 1));
-  if (!series) return tl::unexpected(series.error());
+  if (!series) {
+    return tl::unexpected(series.error());
+  }
   return std::move(series->front());
 }
 
 Expected<void> require_excitation(const RecordedSeries& series) {
-  if (series.amplitude() > weakest_signal * series.result.fit.u_amplitude()) return {};
-  return of_series(series.result.series, {ErrorCode::no_excitation, "no sine of the excitation's frequency stands out of the noise"});
+  if (series.amplitude() > weakest_signal * series.result.fit.u_amplitude()) {
+    return {};
+  }
+  return of_series(
+      series.result.series,
+      {ErrorCode::no_excitation, "no sine of the excitation's frequency stands out of the noise"});
 }
 
-void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series, double jitter_s, CountsIn counts_in) {
+void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series,
+                     double jitter_s, CountsIn counts_in) {
   const FitNoise noise = fit_noise(series.result, jitter_s);
   const QuantisationUncertainty steps = quantisation(series);
   const double relative = counts_in == CountsIn::phase ? 0.0 : 1.0 / series.amplitude();
-  budget.add("noise of " + what, "normal", series.result.fit.degrees_of_freedom, noise.u_amplitude * relative, noise.u_phase_rad);
-  budget.add("quantisation of " + what, "rectangular", 0.0, steps.u_amplitude * relative, steps.u_phase_rad);
+  budget.add("noise of " + what, "normal", series.result.fit.degrees_of_freedom,
+             noise.u_amplitude * relative, noise.u_phase_rad);
+  budget.add("quantisation of " + what, "rectangular", 0.0, steps.u_amplitude * relative,
+             steps.u_phase_rad);
 }
 
 void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter_s) {
   const SensorNoise sensor(series, jitter_s);
   const bool weak = sensor.snr() < weak_phasor;
   const double relative = sensor.amplitude > 0.0 ? 1.0 / sensor.amplitude : 0.0;
-  budget.add("noise of the sensor", "normal", series.result.fit.degrees_of_freedom, sensor.noise.u_amplitude * relative,
+  budget.add("noise of the sensor", "normal", series.result.fit.degrees_of_freedom,
+             sensor.noise.u_amplitude * relative,
              weak ? phase_standard_uncertainty(sensor.snr()) : sensor.noise.u_phase_rad);
-  budget.add("quantisation of the sensor", "rectangular", 0.0, sensor.steps.u_amplitude * relative, weak ? 0.0 : sensor.steps.u_phase_rad);
-  if (weak) budget.add("magnitude of noise (Rice)", "normal", 0.0, 0.5 * std::pow(sensor.u_amplitude * relative, 2), 0.0);
+  budget.add("quantisation of the sensor", "rectangular", 0.0, sensor.steps.u_amplitude * relative,
+             weak ? 0.0 : sensor.steps.u_phase_rad);
+  if (weak) {
+    budget.add("magnitude of noise (Rice)", "normal", 0.0,
+               0.5 * std::pow(sensor.u_amplitude * relative, 2), 0.0);
+  }
 }
 
-TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link, const Budget& budget) {
+TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link,
+                             const Budget& budget) {
   const std::complex<double> h = dut.phasor() * link;
   return {.channel = dut.result.series,
           .h = h,
           .magnitude = std::abs(h),
-          .u_magnitude = SensorNoise(dut, 0.0).amplitude * std::abs(link) * budget.u_magnitude_rel(),
+          .u_magnitude =
+              SensorNoise(dut, 0.0).amplitude * std::abs(link) * budget.u_magnitude_rel(),
           .phase_rad = std::arg(h),
           .u_phase_rad = budget.u_phase_rad(),
           .budget = budget.rows(),

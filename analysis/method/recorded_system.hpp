@@ -1,12 +1,16 @@
-// The channels that one clock recorded during a step, and what their sine approximation says: the common part of all methods.
+// The channels that one clock recorded during a step, and what their sine approximation says: the
+// common part of all methods.
 //
-// The frequency is refined on the pilot channel (sync, or the reference where there is no sync) in this clock and serves all
-// channels, about the same reference instant, the middle of the record. Harmonics and hum are fitted beside the signal where they
-// stand out (disturbances.hpp). Rows of the budget:
-//   noise: covariance of the fit without the share of white stamp noise s_t, w^2 A^2 s_t^2 / 2 of s^2, which has rows of its own
-//   quantisation: quantisation.hpp, where the noise does not hide the steps
-//   Rice: u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its phase is that of phasor.hpp
-// Fails as sine_fit.hpp does; no_excitation when the pilot is not 8 u above the noise; the message names the series. Any thread.
+// The frequency is refined on the pilot channel (sync, or the reference where there is no sync) in
+// this clock and serves all channels, about the same reference instant, the middle of the record.
+// Harmonics and hum are fitted beside the signal where they stand out (disturbances.hpp). Rows of
+// the budget:
+//   noise: covariance of the fit without the share of white stamp noise s_t, w^2 A^2 s_t^2 / 2 of
+//   s^2, which has rows of its own quantisation: quantisation.hpp, where the noise does not hide
+//   the steps Rice: u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
+//   phase is that of phasor.hpp
+// Fails as sine_fit.hpp does; no_excitation when the pilot is not 8 u above the noise; the message
+// names the series. Any thread.
 #pragma once
 
 #include <complex>
@@ -15,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/uncertainty/budget.hpp"
 #include "analysis/base/error.hpp"
 #include "analysis/method/transfer_point.hpp"
+#include "analysis/uncertainty/budget.hpp"
 
 namespace dyncal::analysis {
 
@@ -27,7 +31,9 @@ struct RecordedSeries {
   ChannelSamples samples;
   std::span<const std::int64_t> stamps_ns;
 
-  [[nodiscard]] std::span<const double> values() const { return cleaned.empty() ? samples.values : std::span<const double>(cleaned); }
+  [[nodiscard]] std::span<const double> values() const {
+    return cleaned.empty() ? samples.values : std::span<const double>(cleaned);
+  }
   [[nodiscard]] std::complex<double> phasor() const { return {result.fit.sine, result.fit.cosine}; }
   [[nodiscard]] double amplitude() const { return result.fit.amplitude(); }
 };
@@ -37,12 +43,15 @@ struct RecordedSystem {
   std::vector<RecordedSeries> others;
 };
 
-[[nodiscard]] Expected<RecordedSystem> evaluate_system(const Frequency& frequency, double frequency_search_rel,
-                                                       std::span<const std::int64_t> stamps_ns, const ChannelSamples& pilot,
+[[nodiscard]] Expected<RecordedSystem> evaluate_system(const Frequency& frequency,
+                                                       double frequency_search_rel,
+                                                       std::span<const std::int64_t> stamps_ns,
+                                                       const ChannelSamples& pilot,
                                                        std::span<const ChannelSamples> others);
 
 // One channel at a frequency that is known already; it may be without excitation.
-[[nodiscard]] Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+[[nodiscard]] Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency,
+                                                            std::span<const std::int64_t> stamps_ns,
                                                             const ChannelSamples& channel);
 
 // no_excitation unless the series is 8 u above the noise.
@@ -50,13 +59,16 @@ struct RecordedSystem {
 
 enum class CountsIn { magnitude_and_phase, phase };
 
-// Noise and quantisation of a channel that is well above the noise; `what` completes "noise of ...".
-void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series, double jitter_s, CountsIn counts_in);
+// Noise and quantisation of a channel that is well above the noise; `what` completes "noise of
+// ...".
+void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series,
+                     double jitter_s, CountsIn counts_in);
 
 // Noise, quantisation and Rice's lengthening of a channel under calibration, however weak.
 void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter_s);
 
 // H = P_dut * link with the budget's uncertainty. |link| is 1 / the reference's amplitude.
-[[nodiscard]] TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link, const Budget& budget);
+[[nodiscard]] TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link,
+                                           const Budget& budget);
 
 } // namespace dyncal::analysis

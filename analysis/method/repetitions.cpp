@@ -4,15 +4,17 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/uncertainty/coverage.hpp"
 #include "analysis/base/phasor.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
 bool is_finite(const Repetition& repetition) {
-  return std::isfinite(repetition.h.real()) && std::isfinite(repetition.h.imag()) && std::isfinite(repetition.u_random_magnitude_rel) &&
-         std::isfinite(repetition.u_random_phase_rad) && std::isfinite(repetition.u_common_magnitude_rel) &&
+  return std::isfinite(repetition.h.real()) && std::isfinite(repetition.h.imag()) &&
+         std::isfinite(repetition.u_random_magnitude_rel) &&
+         std::isfinite(repetition.u_random_phase_rad) &&
+         std::isfinite(repetition.u_common_magnitude_rel) &&
          std::isfinite(repetition.u_common_phase_rad);
 }
 
@@ -23,22 +25,31 @@ struct Scatter {               // of one quantity over the repetitions
 };
 
 CombinedUncertainty combine(double u_random_mean, double random_freedom, double u_common) {
-  const std::array parts{UncertaintyPart{u_random_mean, random_freedom}, UncertaintyPart{u_common, 0.0}};
+  const std::array parts{UncertaintyPart{u_random_mean, random_freedom},
+                         UncertaintyPart{u_common, 0.0}};
   CombinedUncertainty result;
   result.u = std::hypot(u_random_mean, u_common);
-  if (!(result.u > 0.0)) return result;
+  if (!(result.u > 0.0)) {
+    return result;
+  }
   result.degrees_of_freedom = effective_degrees_of_freedom(parts);
   const double by_effective_freedom = coverage_factor(result.degrees_of_freedom);
-  const double by_parts = std::hypot(coverage_factor(random_freedom) * u_random_mean, coverage_factor(0.0) * u_common) / result.u;
+  const double by_parts =
+      std::hypot(coverage_factor(random_freedom) * u_random_mean, coverage_factor(0.0) * u_common) /
+      result.u;
   result.k = by_effective_freedom + (by_parts - by_effective_freedom) / 3.0;
   return result;
 }
 
 // Observed scatter against what the fits expect: the wider interval counts.
 CombinedUncertainty wider(const Scatter& scatter, double n, double u_common) {
-  const CombinedUncertainty expected = combine(std::sqrt(scatter.random_squares) / n, 0.0, u_common);
-  if (n < 2.0) return expected;
-  const CombinedUncertainty observed = combine(std::sqrt(scatter.squares / (n - 1.0) / n), n - 1.0, u_common);
+  const CombinedUncertainty expected =
+      combine(std::sqrt(scatter.random_squares) / n, 0.0, u_common);
+  if (n < 2.0) {
+    return expected;
+  }
+  const CombinedUncertainty observed =
+      combine(std::sqrt(scatter.squares / (n - 1.0) / n), n - 1.0, u_common);
   return observed.u * observed.k > expected.u * expected.k ? observed : expected;
 }
 
@@ -62,18 +73,25 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
 }
 
 Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions) {
-  if (repetitions.empty()) return tl::unexpected(Error{ErrorCode::invalid_argument, "there is no repetition to take the mean of"});
+  if (repetitions.empty()) {
+    return tl::unexpected(
+        Error{ErrorCode::invalid_argument, "there is no repetition to take the mean of"});
+  }
   const double n = static_cast<double>(repetitions.size());
   RepetitionMean result;
   result.repetitions = repetitions.size();
   for (const Repetition& repetition : repetitions) {
-    if (!is_finite(repetition)) return tl::unexpected(Error{ErrorCode::not_finite, "a repetition has a value that is no number"});
+    if (!is_finite(repetition)) {
+      return tl::unexpected(
+          Error{ErrorCode::not_finite, "a repetition has a value that is no number"});
+    }
     result.h += repetition.h / n;
   }
   result.magnitude = std::abs(result.h);
   result.phase_rad = std::arg(result.h);
 
-  // Uncertainties of single repetitions are relative to their own magnitude, those of the mean to the mean's.
+  // Uncertainties of single repetitions are relative to their own magnitude, those of the mean to
+  // the mean's.
   const double unit = result.magnitude > 0.0 ? result.magnitude : 1.0;
   const std::complex<double> direction = unit_phasor(result.h);
   Scatter magnitude, phase;
@@ -96,7 +114,8 @@ Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetit
   result.u_magnitude = unit * half_interval(result.magnitude_rel);
   result.u_phase_rad = half_interval(result.phase);
   result.u_independent_phase_rad = half_interval(wider(phase, n, 0.0));
-  if (const double snr = result.u_magnitude > 0.0 ? result.magnitude / result.u_magnitude : 1e12; snr < 10.0) {
+  if (const double snr = result.u_magnitude > 0.0 ? result.magnitude / result.u_magnitude : 1e12;
+      snr < 10.0) {
     const double weak = phase_standard_uncertainty(snr);
     result.u_phase_rad = std::hypot(weak, phase.common);
     result.u_independent_phase_rad = weak;

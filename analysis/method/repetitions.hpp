@@ -1,17 +1,18 @@
 // One transfer function value from repeated measurements at the same frequency.
 //
-// Mean: of the phasors, H = sum(H_i) / n. Scatter: e_i = H_i / H - 1, real part relative magnitude, imaginary part phase, sample
-// standard deviations s with n - 1 degrees of freedom.
-// Uncertainty: what is common to all repetitions (reference, ADC, delays) does not average out; the rest is taken twice and the
-// larger counts: (a) observed, s / sqrt(n) with n - 1 degrees of freedom, (b) expected from the fits, rms(u_random) / sqrt(n).
+// Mean: of the phasors, H = sum(H_i) / n. Scatter: e_i = H_i / H - 1, real part relative magnitude,
+// imaginary part phase, sample standard deviations s with n - 1 degrees of freedom. Uncertainty:
+// what is common to all repetitions (reference, ADC, delays) does not average out; the rest is
+// taken twice and the larger counts: (a) observed, s / sqrt(n) with n - 1 degrees of freedom, (b)
+// expected from the fits, rms(u_random) / sqrt(n).
 //   u_c^2 = u_a^2 + u_common^2, nu_eff by Welch-Satterthwaite, U = k u_c at 95.45 %
-// k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a common part of 0.2..0.5 u_a; expanding the parts one by one and
-// adding squares covers up to 98 %. k lies a third of the way between: 94.1..96.5 % for n = 3 and any common part (Monte Carlo),
-// exact without one (k = 4.53 for n = 3).
-// `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader applies covers 95.45 % although n is small;
-// u_c, nu_eff and k are given as well.
-// A mean that hardly stands out of its uncertainty (below 10 u) has the phase uncertainty of phasor.hpp.
-// Fails: invalid_argument (no repetition), not_finite. Any thread.
+// k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a common part of 0.2..0.5 u_a;
+// expanding the parts one by one and adding squares covers up to 98 %. k lies a third of the way
+// between: 94.1..96.5 % for n = 3 and any common part (Monte Carlo), exact without one (k = 4.53
+// for n = 3). `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader
+// applies covers 95.45 % although n is small; u_c, nu_eff and k are given as well. A mean that
+// hardly stands out of its uncertainty (below 10 u) has the phase uncertainty of phasor.hpp. Fails:
+// invalid_argument (no repetition), not_finite. Any thread.
 #pragma once
 
 #include <complex>
@@ -30,9 +31,10 @@ struct Repetition {
   double u_common_phase_rad = 0.0;
 };
 
-// Divides a budget: rows with finite degrees of freedom were estimated from this repetition's own samples and are random; the
-// others are taken as common to all repetitions.
-[[nodiscard]] Repetition make_repetition(std::complex<double> h, std::span<const Contribution> budget);
+// Divides a budget: rows with finite degrees of freedom were estimated from this repetition's own
+// samples and are random; the others are taken as common to all repetitions.
+[[nodiscard]] Repetition make_repetition(std::complex<double> h,
+                                         std::span<const Contribution> budget);
 
 struct CombinedUncertainty {
   double u = 0.0;                  // combined standard uncertainty u_c
@@ -43,11 +45,12 @@ struct CombinedUncertainty {
 struct RepetitionMean {
   std::complex<double> h;
   double magnitude = 0.0;
-  double u_magnitude = 0.0;             // U / 2
-  double phase_rad = 0.0;               // (-pi, pi]
-  double u_phase_rad = 0.0;             // U / 2
-  double u_independent_phase_rad = 0.0; // U / 2 without the common part: for the regression over frequency
-  double scatter_magnitude = 0.0;       // s of one repetition, in the unit of the magnitude; 0 for n = 1
+  double u_magnitude = 0.0; // U / 2
+  double phase_rad = 0.0;   // (-pi, pi]
+  double u_phase_rad = 0.0; // U / 2
+  double u_independent_phase_rad =
+      0.0; // U / 2 without the common part: for the regression over frequency
+  double scatter_magnitude = 0.0; // s of one repetition, in the unit of the magnitude; 0 for n = 1
   double scatter_phase_rad = 0.0;
   std::size_t repetitions = 0;
   CombinedUncertainty magnitude_rel;

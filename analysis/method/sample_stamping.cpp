@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
-#include "analysis/uncertainty/ratio_scatter.hpp"
-#include "analysis/method/recorded_system.hpp"
 #include "analysis/method/own_clock_channel.hpp"
+#include "analysis/method/recorded_system.hpp"
+#include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -16,7 +16,8 @@ double common_jitter_s(const SystematicUncertainty& systematic) {
 }
 
 // Rows of the reference side and of the corrections, the same for every channel of the sensor.
-Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs, const RecordedSeries& sync_dau) {
+Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs,
+                     const RecordedSeries& sync_dau) {
   const SystematicUncertainty& systematic = input.systematic;
   const RecordedSeries& reference = acs.others.front();
   const double w = input.frequency.angular();
@@ -24,39 +25,52 @@ Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
   budget.add_excess("structure in the reference",
-                    ratio_scatter(reference.result.frequency, input.acs_stamps_ns, reference.values(), acs.pilot.values()),
+                    ratio_scatter(reference.result.frequency, input.acs_stamps_ns,
+                                  reference.values(), acs.pilot.values()),
                     budget.u_magnitude_rel(), budget.u_phase_rad());
-  add_signal_rows(budget, "the DAU sync", sync_dau, std::hypot(systematic.sync_adc_jitter_s, common_jitter_s(systematic)), CountsIn::phase);
+  add_signal_rows(budget, "the DAU sync", sync_dau,
+                  std::hypot(systematic.sync_adc_jitter_s, common_jitter_s(systematic)),
+                  CountsIn::phase);
   budget.add("jitter of the DAU sync alone", "normal", 0.0, 0.0,
-             std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w * systematic.sync_adc_jitter_s);
+             std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
+                 systematic.sync_adc_jitter_s);
   budget.add("phase of the DAU sync ADC", "normal", 0.0, 0.0, input.adc.u_phase_lag_rad);
   budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * systematic.acs_delay_s);
-  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel, systematic.reference_phase_rad);
+  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel,
+             systematic.reference_phase_rad);
   return budget;
 }
 
-// Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two sines differ in phase.
-void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedSeries& dut, const RecordedSeries& sync_dau) {
+// Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
+// sines differ in phase.
+void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedSeries& dut,
+                     const RecordedSeries& sync_dau) {
   const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
-  const double rest_s = std::sqrt(std::max(0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
+  const double rest_s = std::sqrt(std::max(
+      0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
   const double n = static_cast<double>(dut.result.fit.samples);
-  const double across = std::abs(std::sin(dut.result.fit.phase_rad() - sync_dau.result.fit.phase_rad()));
+  const double across =
+      std::abs(std::sin(dut.result.fit.phase_rad() - sync_dau.result.fit.phase_rad()));
   const auto add = [&](const char* name, const char* distribution, double jitter_s) {
     const double angle = input.frequency.angular() * jitter_s;
-    budget.add(name, distribution, 0.0, std::hypot(std::sqrt(0.5 / n) * angle, 0.5 * angle * angle), std::sqrt(2.0 / n) * across * angle);
+    budget.add(name, distribution, 0.0, std::hypot(std::sqrt(0.5 / n) * angle, 0.5 * angle * angle),
+               std::sqrt(2.0 / n) * across * angle);
   };
   add("jitter of the DAU stamps", "normal", rest_s);
   add("tick of the DAU stamps", "rectangular", tick_s);
 }
 
-TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedSeries& dut, const RecordedSeries& sync_dau,
-                               std::complex<double> link, const Budget& common) {
+TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedSeries& dut,
+                               const RecordedSeries& sync_dau, std::complex<double> link,
+                               const Budget& common) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
   add_stamp_noise(budget, input, dut, sync_dau);
-  budget.add_excess("structure in the sensor's signal",
-                    ratio_scatter(dut.result.frequency, input.dau_stamps_ns, dut.values(), sync_dau.values()), budget.u_magnitude_rel(),
-                    std::hypot(budget.u_phase_rad(), sync_dau.result.fit.u_phase_rad()));
+  budget.add_excess(
+      "structure in the sensor's signal",
+      ratio_scatter(dut.result.frequency, input.dau_stamps_ns, dut.values(), sync_dau.values()),
+      budget.u_magnitude_rel(),
+      std::hypot(budget.u_phase_rad(), sync_dau.result.fit.u_phase_rad()));
   budget.append(common);
   return transfer_point(dut, link, budget);
 }
@@ -64,31 +78,47 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedS
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
-  const auto acs =
-      evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns, input.sync_acs, std::span(&input.reference, 1));
-  if (!acs) return tl::unexpected(acs.error());
+  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
+                                   input.sync_acs, std::span(&input.reference, 1));
+  if (!acs) {
+    return tl::unexpected(acs.error());
+  }
   const bool apart = !input.dut_stamps_ns.empty();
-  const auto dau = evaluate_system(input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
-                                   apart ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
-  if (!dau) return tl::unexpected(dau.error());
+  const auto dau = evaluate_system(
+      input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
+      apart ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
+  if (!dau) {
+    return tl::unexpected(dau.error());
+  }
   const RecordedSeries& reference = acs->others.front();
-  if (const auto excited = require_excitation(reference); !excited) return tl::unexpected(excited.error());
+  if (const auto excited = require_excitation(reference); !excited) {
+    return tl::unexpected(excited.error());
+  }
 
-  // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau / G.
+  // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
+  // G.
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
-  const std::complex<double> late = std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
-  const std::complex<double> link =
-      unit_phasor(acs->pilot.phasor()) / (unit_phasor(dau->pilot.phasor()) / adc) / (reference.phasor() * late);
+  const std::complex<double> late =
+      std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
+  const std::complex<double> link = unit_phasor(acs->pilot.phasor()) /
+                                    (unit_phasor(dau->pilot.phasor()) / adc) /
+                                    (reference.phasor() * late);
 
   const Budget common = common_budget(input, *acs, dau->pilot);
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};
-  for (const RecordedSeries& dut : dau->others)
+  for (const RecordedSeries& dut : dau->others) {
     result.points.push_back(evaluate_channel(input, dut, dau->pilot, link, common));
-  if (!apart) return result;
+  }
+  if (!apart) {
+    return result;
+  }
   for (const ChannelSamples& dut : input.dut) {
-    auto point = evaluate_stamped_apart(dau->pilot.result, link, common, input.dut_stamps_ns, dut,
-                                        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
-    if (!point) return tl::unexpected(point.error());
+    auto point = evaluate_stamped_apart(
+        dau->pilot.result, link, common, input.dut_stamps_ns, dut,
+        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
+    if (!point) {
+      return tl::unexpected(point.error());
+    }
     result.points.push_back(std::move(*point));
   }
   return result;

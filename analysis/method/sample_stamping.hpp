@@ -1,18 +1,20 @@
-// Sample time stamping: the complex transfer function of a digital output sensor from the four series of one excitation
-// step, paper eqs. (3) and (4) (section 2.3), in the project's convention
+// Sample time stamping: the complex transfer function of a digital output sensor from the four
+// series of one excitation step, paper eqs. (3) and (4) (section 2.3), in the project's convention
 //
 //   H = (P_dos / P_ref) * U(P_sync_acs) / U(P_sync_dau,true),   U(z) = z / |z|,   H = |H| e^{i psi}
 //
-// psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} = H (errata T1-T5).
-// arg P_sync_dau,true = arg P_sync_dau - arg G, G = gain e^{-i phase_lag} the response of the DAU's sync ADC: its amplitude
-// must not enter |H|. A known delay of the reference's channel against the ACS's sync is taken out: arg P_ref + w tau_ref.
-// In each system the frequency is refined on its sync channel in that system's own clock, and both of its channels are
-// evaluated at that frequency and the same reference instant, which removes unknown epochs and constant rate errors.
-// Harmonics and hum that stand out of the residuals are fitted beside the signal (disturbances.hpp); what else makes the residuals
-// other than white is found by block-wise scatter and has a row of its own (ratio_scatter.hpp). Rows with degrees of freedom
-// were estimated from this step's samples; 0 means infinite.
-// Fails as sine_fit.hpp does; the message names the series. no_excitation when reference or sync do not stand out of the noise;
-// a channel under calibration may be without excitation, its phase then has an uncertainty up to pi / sqrt(3).
+// psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} =
+// H (errata T1-T5). arg P_sync_dau,true = arg P_sync_dau - arg G, G = gain e^{-i phase_lag} the
+// response of the DAU's sync ADC: its amplitude must not enter |H|. A known delay of the
+// reference's channel against the ACS's sync is taken out: arg P_ref + w tau_ref. In each system
+// the frequency is refined on its sync channel in that system's own clock, and both of its channels
+// are evaluated at that frequency and the same reference instant, which removes unknown epochs and
+// constant rate errors. Harmonics and hum that stand out of the residuals are fitted beside the
+// signal (disturbances.hpp); what else makes the residuals other than white is found by block-wise
+// scatter and has a row of its own (ratio_scatter.hpp). Rows with degrees of freedom were estimated
+// from this step's samples; 0 means infinite. Fails as sine_fit.hpp does; the message names the
+// series. no_excitation when reference or sync do not stand out of the noise; a channel under
+// calibration may be without excitation, its phase then has an uncertainty up to pi / sqrt(3).
 #pragma once
 
 #include <cstdint>
@@ -38,21 +40,24 @@ struct SystematicUncertainty { // standard uncertainties that no residual shows
   double acs_delay_s = 0.0;       // residual delay between the ACS channels
   double dau_jitter_s = 0.0;      // white stamp noise common to sync and DOS (tick included)
   double dau_tick_s = 0.0;        // quantum of the DAU's stamps, 0: none
-  double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync, which its stamp does not show
+  double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync,
+                                  // which its stamp does not show
   double clock_offset_s = 0.0;    // of a sensor with stamps of its own: its clock against the DAU's
 };
 
 struct SampleStampingInput {
-  Frequency frequency;                // nominal
-  double frequency_search_rel = 1e-3; // 0: the frequency is known exactly in both clocks and not refined
+  Frequency frequency; // nominal
+  double frequency_search_rel =
+      1e-3; // 0: the frequency is known exactly in both clocks and not refined
   std::span<const std::int64_t> acs_stamps_ns{};
   ChannelSamples reference{};
   ChannelSamples sync_acs{};
   std::span<const std::int64_t> dau_stamps_ns{};
   ChannelSamples sync_dau{};
   std::vector<ChannelSamples> dut{}; // one result each
-  // Empty: the sensor has the stamps of the DAU. Otherwise it is stamped beside the DAU that records sync, on the same time scale
-  // (stamped_apart.hpp), with `clock_offset_s` between the two.
+  // Empty: the sensor has the stamps of the DAU. Otherwise it is stamped beside the DAU that
+  // records sync, on the same time scale (stamped_apart.hpp), with `clock_offset_s` between the
+  // two.
   std::span<const std::int64_t> dut_stamps_ns{};
   AdcResponse adc{};
   double reference_delay_s = 0.0; // tau_ref
@@ -66,6 +71,7 @@ struct SampleStampingResult {
   std::vector<TransferPoint> points; // in the order of `dut`
 };
 
-[[nodiscard]] Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input);
+[[nodiscard]] Expected<SampleStampingResult>
+evaluate_sample_stamping(const SampleStampingInput& input);
 
 } // namespace dyncal::analysis

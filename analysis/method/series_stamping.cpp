@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/sine/disturbances.hpp"
-#include "analysis/sine/equidistant_axis.hpp"
 #include "analysis/base/phasor.hpp"
 #include "analysis/method/recorded_system.hpp"
+#include "analysis/sine/disturbances.hpp"
+#include "analysis/sine/equidistant_axis.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -20,23 +20,34 @@ Error of_shot(std::size_t shot, const std::string& what, Error error) {
 }
 
 std::optional<Error> problem_with(const SeriesStampingInput& input) {
-  if (input.shots.empty() || input.channels.empty())
+  if (input.shots.empty() || input.channels.empty()) {
     return Error{ErrorCode::invalid_argument, "series time stamping needs a shot and a channel"};
-  if (!(input.nominal_rate_hz > 0.0)) return Error{ErrorCode::invalid_argument, "the nominal rate of the series must be positive"};
+  }
+  if (!(input.nominal_rate_hz > 0.0)) {
+    return Error{ErrorCode::invalid_argument, "the nominal rate of the series must be positive"};
+  }
   for (std::size_t j = 0; j < input.shots.size(); ++j) {
     const SeriesShot& shot = input.shots[j];
-    if (!(shot.dso_interval_s > 0.0))
-      return of_shot(j, "oscilloscope", {ErrorCode::invalid_argument, "its sample interval must be positive"});
-    if (shot.series.size() != input.channels.size()) return of_shot(j, "series", {ErrorCode::invalid_argument, "a channel is missing"});
+    if (!(shot.dso_interval_s > 0.0)) {
+      return of_shot(j, "oscilloscope",
+                     {ErrorCode::invalid_argument, "its sample interval must be positive"});
+    }
+    if (shot.series.size() != input.channels.size()) {
+      return of_shot(j, "series", {ErrorCode::invalid_argument, "a channel is missing"});
+    }
     for (const auto& samples : shot.series) {
-      if (samples.size() != input.shots.front().series.front().size())
-        return of_shot(j, "series", {ErrorCode::invalid_argument, "all series of a step must have the same length"});
+      if (samples.size() != input.shots.front().series.front().size()) {
+        return of_shot(
+            j, "series",
+            {ErrorCode::invalid_argument, "all series of a step must have the same length"});
+      }
     }
   }
   return std::nullopt;
 }
 
-// Sync as it is at the trigger point: fitted about the first sample and turned by what lies between.
+// Sync as it is at the trigger point: fitted about the first sample and turned by what lies
+// between.
 struct TriggerPhase {
   std::complex<double> sync;
   double u_rad = 0.0;
@@ -45,17 +56,23 @@ struct TriggerPhase {
 Expected<TriggerPhase> fit_trigger(const SeriesShot& shot, const Frequency& frequency) {
   const EquidistantAxis axis(shot.dso_interval_s);
   const std::array channels{shot.dso_sync};
-  const auto fits = fit_sine(axis.on_axis(frequency.hz()), 0, axis.stamps_ns(shot.dso_sync.size()), channels);
-  if (!fits) return tl::unexpected(fits.error());
+  const auto fits =
+      fit_sine(axis.on_axis(frequency.hz()), 0, axis.stamps_ns(shot.dso_sync.size()), channels);
+  if (!fits) {
+    return tl::unexpected(fits.error());
+  }
   const SineFit& fit = fits->front();
-  return TriggerPhase{std::complex<double>(fit.sine, fit.cosine) * std::polar(1.0, -frequency.angular() * shot.dso_first_s),
+  return TriggerPhase{std::complex<double>(fit.sine, fit.cosine) *
+                          std::polar(1.0, -frequency.angular() * shot.dso_first_s),
                       fit.u_phase_rad()};
 }
 
-std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput& input, std::size_t channel) {
+std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput& input,
+                                                      std::size_t channel) {
   std::vector<std::span<const double>> result;
-  for (const SeriesShot& shot : input.shots)
+  for (const SeriesShot& shot : input.shots) {
     result.push_back(shot.series[channel]);
+  }
   return result;
 }
 
@@ -65,30 +82,41 @@ Error of_channel(const std::string& channel, Error error) {
 }
 
 // The apparent frequency, shared by all shots, without what harmonics and hum do to it.
-Expected<FrequencyFit> fit_apparent_frequency(const SeriesStampingInput& input, const Frequency& start,
+Expected<FrequencyFit> fit_apparent_frequency(const SeriesStampingInput& input,
+                                              const Frequency& start,
                                               std::span<const std::int64_t> stamps) {
   auto series = shots_of_channel(input, 0);
   const auto raw = fit_sine_and_frequency(start, input.rate_tolerance_rel, 0, stamps, series);
-  if (!raw) return tl::unexpected(raw.error());
+  if (!raw) {
+    return tl::unexpected(raw.error());
+  }
   const auto undisturbed = fit_sine_beside_disturbances(raw->frequency, 0, stamps, series);
-  if (!undisturbed) return tl::unexpected(undisturbed.error());
+  if (!undisturbed) {
+    return tl::unexpected(undisturbed.error());
+  }
   bool cleaned = false;
   for (std::size_t j = 0; j < series.size(); ++j) {
-    if ((*undisturbed)[j].values.empty()) continue;
+    if ((*undisturbed)[j].values.empty()) {
+      continue;
+    }
     series[j] = (*undisturbed)[j].values;
     cleaned = true;
   }
-  return cleaned ? fit_sine_and_frequency(raw->frequency, input.rate_tolerance_rel, 0, stamps, series) : raw;
+  return cleaned
+             ? fit_sine_and_frequency(raw->frequency, input.rate_tolerance_rel, 0, stamps, series)
+             : raw;
 }
 
 // One shot's H with what is random in it and what all shots share.
-Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool correct_trigger, std::complex<double> link,
-                       double u_phase_start, const Budget& common) {
+Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool correct_trigger,
+                       std::complex<double> link, double u_phase_start, const Budget& common) {
   const double u_amplitude = series.u_amplitude();
   const double snr = u_amplitude > 0.0 ? series.amplitude() / u_amplitude : 1e12;
   Repetition result;
   result.h = std::complex<double>(series.sine, series.cosine) * link;
-  if (correct_trigger) result.h /= unit_phasor(trigger.sync);
+  if (correct_trigger) {
+    result.h /= unit_phasor(trigger.sync);
+  }
   result.u_random_magnitude_rel = 1.0 / std::max(snr, 1e-6);
   const double u_series = snr < 10.0 ? phase_standard_uncertainty(snr) : series.u_phase_rad();
   result.u_random_phase_rad = std::hypot(std::hypot(u_series, trigger.u_rad), u_phase_start);
@@ -97,13 +125,16 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool 
   return result;
 }
 
-Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w, double u_phase_apparent) {
+Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w,
+                     double u_phase_apparent) {
   Budget budget;
   add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
-  budget.add("apparent frequency, from the middle of the series to sample 0", "normal", 0.0, 0.0, u_phase_apparent);
+  budget.add("apparent frequency, from the middle of the series to sample 0", "normal", 0.0, 0.0,
+             u_phase_apparent);
   budget.add("trigger delay of the oscilloscope", "normal", 0.0, 0.0, w * input.u_dso_delay_s);
-  budget.add("start of the series after the trigger", "normal", 0.0, 0.0, w * input.u_start_latency_s);
+  budget.add("start of the series after the trigger", "normal", 0.0, 0.0,
+             w * input.u_start_latency_s);
   budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * input.acs_delay_s);
   budget.add("reference", "normal", 0.0, input.reference_magnitude_rel, input.reference_phase_rad);
   return budget;
@@ -112,49 +143,72 @@ Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs
 } // namespace
 
 Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input) {
-  if (const auto problem = problem_with(input)) return tl::unexpected(*problem);
-  const auto acs =
-      evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns, input.sync_acs, std::span(&input.reference, 1));
-  if (!acs) return tl::unexpected(acs.error());
+  if (const auto problem = problem_with(input)) {
+    return tl::unexpected(*problem);
+  }
+  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
+                                   input.sync_acs, std::span(&input.reference, 1));
+  if (!acs) {
+    return tl::unexpected(acs.error());
+  }
   const RecordedSeries& reference = acs->others.front();
-  if (const auto excited = require_excitation(reference); !excited) return tl::unexpected(excited.error());
+  if (const auto excited = require_excitation(reference); !excited) {
+    return tl::unexpected(excited.error());
+  }
   const SeriesFit& sync = acs->pilot.result;
   const double w = sync.frequency.angular();
 
   std::vector<TriggerPhase> triggers;
   for (std::size_t j = 0; j < input.shots.size(); ++j) {
     const auto trigger = fit_trigger(input.shots[j], sync.frequency);
-    if (!trigger) return tl::unexpected(of_shot(j, "oscilloscope", trigger.error()));
+    if (!trigger) {
+      return tl::unexpected(of_shot(j, "oscilloscope", trigger.error()));
+    }
     triggers.push_back(*trigger);
   }
 
   const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
-  const std::vector<std::int64_t> stamps = axis.stamps_ns(input.shots.front().series.front().size());
+  const std::vector<std::int64_t> stamps =
+      axis.stamps_ns(input.shots.front().series.front().size());
   const auto pilot = fit_apparent_frequency(input, axis.on_axis(sync.frequency.hz()), stamps);
-  if (!pilot) return tl::unexpected(of_channel(input.channels.front(), pilot.error()));
-  const auto rate = real_rate_from_apparent_frequency(input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
-                                                      axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
-  if (!rate) return tl::unexpected(rate.error());
+  if (!pilot) {
+    return tl::unexpected(of_channel(input.channels.front(), pilot.error()));
+  }
+  const auto rate = real_rate_from_apparent_frequency(
+      input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
+      axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
+  if (!rate) {
+    return tl::unexpected(rate.error());
+  }
 
-  // Everything that is the same for all shots: the reference's phasor against sync, and the way from trigger point to sample 0.
-  const std::complex<double> link = unit_phasor(acs->pilot.phasor()) / reference.phasor() *
-                                    std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
-  const Budget common = common_budget(input, *acs, w, std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) * pilot->u_frequency_hz);
+  // Everything that is the same for all shots: the reference's phasor against sync, and the way
+  // from trigger point to sample 0.
+  const std::complex<double> link =
+      unit_phasor(acs->pilot.phasor()) / reference.phasor() *
+      std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
+  const Budget common = common_budget(input, *acs, w,
+                                      std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *
+                                          pilot->u_frequency_hz);
   SeriesStampingResult result{reference.result, sync, {}, {}, *rate, common.rows(), {}};
   for (const TriggerPhase& trigger : triggers) {
     result.trigger_phase_rad.push_back(std::arg(trigger.sync));
     result.u_trigger_phase_rad.push_back(trigger.u_rad);
   }
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
-    const auto fits = fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
-    if (!fits) return tl::unexpected(of_channel(input.channels[c], fits.error()));
+    const auto fits =
+        fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
+    if (!fits) {
+      return tl::unexpected(of_channel(input.channels[c], fits.error()));
+    }
     SeriesChannelResult channel{input.channels[c], {}, {}};
     for (std::size_t j = 0; j < fits->size(); ++j) {
-      channel.shots.push_back(
-          shot_result((*fits)[j].fit, triggers[j], input.correct_trigger_phase, link, w * input.start_scatter_s, common));
+      channel.shots.push_back(shot_result((*fits)[j].fit, triggers[j], input.correct_trigger_phase,
+                                          link, w * input.start_scatter_s, common));
     }
     const auto mean = mean_of_repetitions(channel.shots);
-    if (!mean) return tl::unexpected(mean.error());
+    if (!mean) {
+      return tl::unexpected(mean.error());
+    }
     channel.mean = *mean;
     result.channels.push_back(std::move(channel));
   }

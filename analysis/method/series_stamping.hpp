@@ -1,21 +1,25 @@
-// Series time stamping: the transfer function of a sensor that records a whole series after one trigger (TSS), paper section 2.4 and
-// eqs. (5) to (8), in the project's convention (phases lead, theta = atan2(B, A)):
+// Series time stamping: the transfer function of a sensor that records a whole series after one
+// trigger (TSS), paper section 2.4 and eqs. (5) to (8), in the project's convention (phases lead,
+// theta = atan2(B, A)):
 //
 //   |H_j| = A_TSS,j / A_ref (5)
 //   arg H_j = theta_TSS,j(n = 0) - w (tau_DSO + l) - beta_j - (theta_ref - theta_sync)_ACS
 //
-// Per shot j the oscilloscope records sync(u) = sin(w u + beta_j), u = 0 at its trigger point: beta_j is what the noise of the
-// trigger did (1 % noise without hysteresis is a bias of up to 20 mrad, so each trace is fitted). The trigger edge leaves tau_DSO
-// later, and sample 0 is taken l after the edge. Signs: the minus signs of (7) hold for leads; in the paper's lags the delay
-// term has a plus, and (8)'s e^{-i dphi} would be the conjugate (errata T7).
-// The sensor's samples lie on the time axis of its nominal rate; one apparent frequency w_TSS is shared by all shots (four-parameter
-// fit), theta_TSS is that of sample 0, and (6) gives the real rate f_nom w / w_TSS. No correction of the rate is needed at n = 0
-// (paper section 2.5), but what w_TSS is wrong by turns theta_0 of all shots alike by u(w_TSS) T / 2, beside the noise of each shot.
-// Harmonics and hum that stand out in a series are fitted beside the signal (disturbances.hpp).
-// A TSS that runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s / sqrt(12) (T9).
-// Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots and frequencies.
-// Channels are those of `channels`; the first must be excited.
-// Fails as recorded_system.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal length. Any thread.
+// Per shot j the oscilloscope records sync(u) = sin(w u + beta_j), u = 0 at its trigger point:
+// beta_j is what the noise of the trigger did (1 % noise without hysteresis is a bias of up to 20
+// mrad, so each trace is fitted). The trigger edge leaves tau_DSO later, and sample 0 is taken l
+// after the edge. Signs: the minus signs of (7) hold for leads; in the paper's lags the delay term
+// has a plus, and (8)'s e^{-i dphi} would be the conjugate (errata T7). The sensor's samples lie on
+// the time axis of its nominal rate; one apparent frequency w_TSS is shared by all shots
+// (four-parameter fit), theta_TSS is that of sample 0, and (6) gives the real rate f_nom w / w_TSS.
+// No correction of the rate is needed at n = 0 (paper section 2.5), but what w_TSS is wrong by
+// turns theta_0 of all shots alike by u(w_TSS) T / 2, beside the noise of each shot. Harmonics and
+// hum that stand out in a series are fitted beside the signal (disturbances.hpp). A TSS that runs
+// freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
+// sqrt(12) (T9). Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots
+// and frequencies. Channels are those of `channels`; the first must be excited. Fails as
+// recorded_system.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal length.
+// Any thread.
 #pragma once
 
 #include <cstdint>
@@ -51,12 +55,15 @@ struct SeriesStampingInput {
   double u_dso_delay_s = 0.0;
   double start_latency_s = 0.0; // l
   double u_start_latency_s = 0.0;
-  double start_scatter_s = 0.0; // standard deviation of l from shot to shot, as far as it is known beforehand
+  double start_scatter_s =
+      0.0; // standard deviation of l from shot to shot, as far as it is known beforehand
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
   double acs_delay_s = 0.0;
-  double reference_delay_s = 0.0;    // known delay of the reference's channel against the ACS's sync, taken out
-  bool correct_trigger_phase = true; // false: beta_j is taken as 0, to see what the correction is worth
+  double reference_delay_s =
+      0.0; // known delay of the reference's channel against the ACS's sync, taken out
+  bool correct_trigger_phase =
+      true; // false: beta_j is taken as 0, to see what the correction is worth
 };
 
 struct SeriesChannelResult {
@@ -75,6 +82,7 @@ struct SeriesStampingResult {
   std::vector<SeriesChannelResult> channels;
 };
 
-[[nodiscard]] Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input);
+[[nodiscard]] Expected<SeriesStampingResult>
+evaluate_series_stamping(const SeriesStampingInput& input);
 
 } // namespace dyncal::analysis

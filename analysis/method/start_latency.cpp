@@ -34,16 +34,19 @@ StartLatency judge_start_latency(std::span<const double> offsets_s, double u_s, 
   const auto [first, last] = std::minmax_element(offsets_s.begin(), offsets_s.end());
   const double centre = 0.5 * (*first + *last); // most likely place of the rectangle
   for (const double offset : offsets_s) {
-    const double fixed = -0.5 * std::pow((offset - mean) / u, 2) - std::log(u * std::sqrt(2.0 * std::numbers::pi));
+    const double fixed =
+        -0.5 * std::pow((offset - mean) / u, 2) - std::log(u * std::sqrt(2.0 * std::numbers::pi));
     const double from_centre = offset - centre;
-    const double density =
-        (normal_distribution((from_centre + 0.5 * sample_s) / u) - normal_distribution((from_centre - 0.5 * sample_s) / u)) / sample_s;
+    const double density = (normal_distribution((from_centre + 0.5 * sample_s) / u) -
+                            normal_distribution((from_centre - 0.5 * sample_s) / u)) /
+                           sample_s;
     result.log_likelihood_ratio += std::log(std::max(density, 1e-300)) - fixed;
   }
   const double uniform_s = sample_s / std::sqrt(12.0);
   if (result.log_likelihood_ratio < -evidence && result.scatter_s < 3.0 * u) {
     result.kind = StartKind::fixed;
-  } else if (result.log_likelihood_ratio > evidence && result.scatter_s > 0.3 * uniform_s && result.scatter_s < 2.0 * uniform_s) {
+  } else if (result.log_likelihood_ratio > evidence && result.scatter_s > 0.3 * uniform_s &&
+             result.scatter_s < 2.0 * uniform_s) {
     result.kind = StartKind::uniform;
   }
   return result;

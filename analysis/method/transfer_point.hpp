@@ -1,8 +1,9 @@
-// What goes into an evaluation and what comes out of it, the same for every method: recorded channels, fitted series, one value of the
-// transfer function with its uncertainty budget.
+// What goes into an evaluation and what comes out of it, the same for every method: recorded
+// channels, fitted series, one value of the transfer function with its uncertainty budget.
 //
-// H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties; those of a budget row are already
-// multiplied by their sensitivity, so that rows add in squares (what is correlated was combined before it became a row).
+// H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties;
+// those of a budget row are already multiplied by their sensitivity, so that rows add in squares
+// (what is correlated was combined before it became a row).
 #pragma once
 
 #include <complex>

@@ -1,8 +1,10 @@
-// Do two results agree? The normalised error of ISO/IEC 17043 and ISO 13528: E_n = (x - y) / sqrt(U_x^2 + U_y^2 - 2 cov), |E_n| <= 1 at
-// k = 2 means yes. What both have in common (the same reference, the same method) is given as a covariance of the standard
-// uncertainties and must not make the difference look more uncertain than it is.
-// For a complex result: chi^2 = d' V^-1 d of relative magnitude and phase (independent), 2 degrees of freedom; E_n of both parts.
-// Fails: invalid_argument (uncertainty not positive, or a covariance larger than the uncertainties allow). Any thread.
+// Do two results agree? The normalised error of ISO/IEC 17043 and ISO 13528: E_n = (x - y) /
+// sqrt(U_x^2 + U_y^2 - 2 cov), |E_n| <= 1 at k = 2 means yes. What both have in common (the same
+// reference, the same method) is given as a covariance of the standard uncertainties and must not
+// make the difference look more uncertain than it is. For a complex result: chi^2 = d' V^-1 d of
+// relative magnitude and phase (independent), 2 degrees of freedom; E_n of both parts. Fails:
+// invalid_argument (uncertainty not positive, or a covariance larger than the uncertainties allow).
+// Any thread.
 #pragma once
 
 #include "analysis/base/error.hpp"
@@ -10,7 +12,8 @@
 namespace dyncal::analysis {
 
 // Standard uncertainties; U = 2 u.
-[[nodiscard]] Expected<double> normalised_error(double x, double u_x, double y, double u_y, double covariance = 0.0);
+[[nodiscard]] Expected<double> normalised_error(double x, double u_x, double y, double u_y,
+                                                double covariance = 0.0);
 
 struct ComparedResult {
   double magnitude = 0.0;
@@ -31,7 +34,8 @@ struct ComplexComparison {
   double probability = 0.0; // that chance gives at least this difference, exp(-chi^2 / 2)
 };
 
-[[nodiscard]] Expected<ComplexComparison> compare_transfer(const ComparedResult& x, const ComparedResult& y,
+[[nodiscard]] Expected<ComplexComparison> compare_transfer(const ComparedResult& x,
+                                                           const ComparedResult& y,
                                                            const SharedUncertainty& shared = {});
 
 } // namespace dyncal::analysis

@@ -23,16 +23,23 @@ tl::unexpected<Error> failure(ErrorCode code, std::string message) {
 std::string hertz(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
+  if (text.back() == '.') {
+    text.pop_back();
+  }
   return text + " Hz";
 }
 
 std::optional<Error> problem_with(std::span<const PhasePoint> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!std::isfinite(points[i].phase_rad) || !(points[i].u_phase_rad > 0.0) || !std::isfinite(points[i].u_phase_rad))
-      return Error{ErrorCode::invalid_argument, "the phase at " + hertz(points[i].frequency_hz) + " has no value or no uncertainty"};
-    if (!(points[i].frequency_hz > (i == 0 ? 0.0 : points[i - 1].frequency_hz)))
-      return Error{ErrorCode::invalid_argument, "the frequencies of a phase response must be positive and rising"};
+    if (!std::isfinite(points[i].phase_rad) || !(points[i].u_phase_rad > 0.0) ||
+        !std::isfinite(points[i].u_phase_rad)) {
+      return Error{ErrorCode::invalid_argument, "the phase at " + hertz(points[i].frequency_hz) +
+                                                    " has no value or no uncertainty"};
+    }
+    if (!(points[i].frequency_hz > (i == 0 ? 0.0 : points[i - 1].frequency_hz))) {
+      return Error{ErrorCode::invalid_argument,
+                   "the frequencies of a phase response must be positive and rising"};
+    }
   }
   return std::nullopt;
 }
@@ -46,43 +53,58 @@ std::vector<PhasePoint> points_that_count(std::span<const PhasePoint> points) {
 
 double agreement(const std::vector<PhasePoint>& points, double delay_s) {
   std::complex<double> sum;
-  for (const PhasePoint& point : points)
+  for (const PhasePoint& point : points) {
     sum += std::polar(1.0, point.phase_rad + 2.0 * pi * point.frequency_hz * delay_s);
+  }
   return std::abs(sum) / static_cast<double>(points.size());
 }
 
-// The delay for which all phases agree best; empty when chance could do as well (once in a thousand).
+// The delay for which all phases agree best; empty when chance could do as well (once in a
+// thousand).
 std::optional<double> search_delay(const std::vector<PhasePoint>& points) {
-  if (points.size() < min_to_search) return std::nullopt;
+  if (points.size() < min_to_search) {
+    return std::nullopt;
+  }
   double spacing = points[1].frequency_hz - points[0].frequency_hz;
-  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     spacing = std::min(spacing, points[i + 1].frequency_hz - points[i].frequency_hz);
+  }
   const double range_s = 0.5 / spacing;
   const double span_hz = points.back().frequency_hz - points.front().frequency_hz;
   double step_s = 0.1 / span_hz;
-  if (range_s / step_s > 1e5) return std::nullopt;
+  if (range_s / step_s > 1e5) {
+    return std::nullopt;
+  }
   double best_delay = 0.0, best = 0.0;
-  for (double delay = 0.0; delay <= range_s; delay += step_s)
-    for (const double candidate : {delay, -delay})
-      if (const double score = agreement(points, candidate); score > best * (1.0 + 1e-9)) { // of equals the shortest
+  for (double delay = 0.0; delay <= range_s; delay += step_s) {
+    for (const double candidate : {delay, -delay}) {
+      if (const double score = agreement(points, candidate);
+          score > best * (1.0 + 1e-9)) { // of equals the shortest
         best = score;
         best_delay = candidate;
       }
-  for (; step_s * span_hz > 1e-6; step_s *= 0.5)
-    for (const double candidate : {best_delay - step_s, best_delay + step_s})
+    }
+  }
+  for (; step_s * span_hz > 1e-6; step_s *= 0.5) {
+    for (const double candidate : {best_delay - step_s, best_delay + step_s}) {
       if (const double score = agreement(points, candidate); score > best) {
         best = score;
         best_delay = candidate;
       }
+    }
+  }
   const double trials = 2.0 * range_s * span_hz + 1.0;
   const double by_chance = trials * std::exp(-static_cast<double>(points.size()) * best * best);
   return by_chance < 1e-3 ? std::optional(best_delay) : std::nullopt;
 }
 
-// From point to point with the slope of the two before; `delay_s` is taken out first where it is known.
+// From point to point with the slope of the two before; `delay_s` is taken out first where it is
+// known.
 Expected<std::vector<double>> unwrap_points_that_count(const std::vector<PhasePoint>& points) {
   const std::optional<double> delay_s = search_delay(points);
-  const auto turned = [&](const PhasePoint& point) { return 2.0 * pi * point.frequency_hz * delay_s.value_or(0.0); };
+  const auto turned = [&](const PhasePoint& point) {
+    return 2.0 * pi * point.frequency_hz * delay_s.value_or(0.0);
+  };
   std::vector<double> unwrapped;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double phase = points[i].phase_rad + turned(points[i]);
@@ -92,18 +114,23 @@ Expected<std::vector<double>> unwrap_points_that_count(const std::vector<PhasePo
     }
     double predicted = unwrapped[i - 1];
     if (!delay_s && i >= 2) {
-      const double slope = (unwrapped[i - 1] - unwrapped[i - 2]) / (points[i - 1].frequency_hz - points[i - 2].frequency_hz);
+      const double slope = (unwrapped[i - 1] - unwrapped[i - 2]) /
+                           (points[i - 1].frequency_hz - points[i - 2].frequency_hz);
       predicted += slope * (points[i].frequency_hz - points[i - 1].frequency_hz);
     }
     const double step = wrap_phase(phase - predicted);
     const double u = std::hypot(points[i].u_phase_rad, points[i - 1].u_phase_rad);
-    if (std::abs(step) >= pi - 3.0 * u)
-      return failure(ErrorCode::not_converged, "the phase cannot be unwrapped from " + hertz(points[i - 1].frequency_hz) + " to " +
-                                                   hertz(points[i].frequency_hz) + ", measure at closer frequencies");
+    if (std::abs(step) >= pi - 3.0 * u) {
+      return failure(ErrorCode::not_converged, "the phase cannot be unwrapped from " +
+                                                   hertz(points[i - 1].frequency_hz) + " to " +
+                                                   hertz(points[i].frequency_hz) +
+                                                   ", measure at closer frequencies");
+    }
     unwrapped.push_back(predicted + step);
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < points.size(); ++i) {
     unwrapped[i] -= turned(points[i]);
+  }
   return unwrapped;
 }
 
@@ -115,11 +142,14 @@ struct Line {
   double covariance = 0.0;
   double chi_squared = 0.0;
 
-  [[nodiscard]] double at(double frequency_hz) const { return intercept_rad - 2.0 * pi * frequency_hz * delay_s; }
+  [[nodiscard]] double at(double frequency_hz) const {
+    return intercept_rad - 2.0 * pi * frequency_hz * delay_s;
+  }
 };
 
-// Generalised least squares. Errors in common lie in the space of the model, so they change neither estimate nor residuals and
-// only add to the covariance: weights of the independent parts alone give the GLS estimate.
+// Generalised least squares. Errors in common lie in the space of the model, so they change neither
+// estimate nor residuals and only add to the covariance: weights of the independent parts alone
+// give the GLS estimate.
 Line fit_line(const std::vector<PhasePoint>& points, const std::vector<double>& phases) {
   double weight_sum = 0.0, mean_w = 0.0, mean_phase = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -143,8 +173,10 @@ Line fit_line(const std::vector<PhasePoint>& points, const std::vector<double>& 
   line.variance_delay = 1.0 / ww;
   line.variance_intercept = 1.0 / weight_sum + mean_w * mean_w / ww;
   line.covariance = mean_w / ww;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    line.chi_squared += std::pow((phases[i] - line.at(points[i].frequency_hz)) / points[i].u_phase_rad, 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    line.chi_squared +=
+        std::pow((phases[i] - line.at(points[i].frequency_hz)) / points[i].u_phase_rad, 2);
+  }
   return line;
 }
 
@@ -154,39 +186,54 @@ double chi_squared_limit(double degrees_of_freedom) {
   return std::pow(1.0 - spread + 3.0902 * std::sqrt(spread), 3.0);
 }
 
-std::vector<double> covariance_of(std::span<const PhasePoint> points, const CommonPhaseUncertainty& common) {
+std::vector<double> covariance_of(std::span<const PhasePoint> points,
+                                  const CommonPhaseUncertainty& common) {
   std::vector<double> covariance;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < points.size(); ++j) {
       const double w_i = 2.0 * pi * points[i].frequency_hz;
       const double w_j = 2.0 * pi * points[j].frequency_hz;
-      const double shared = common.delay_s * common.delay_s * w_i * w_j + common.phase_rad * common.phase_rad;
+      const double shared =
+          common.delay_s * common.delay_s * w_i * w_j + common.phase_rad * common.phase_rad;
       covariance.push_back(shared + (i == j ? points[i].u_phase_rad * points[i].u_phase_rad : 0.0));
     }
+  }
   return covariance;
 }
 
-// Points that do not count follow the line; all are moved by whole turns so that the line starts within (-pi, pi].
-std::vector<double> place_on_line(std::span<const PhasePoint> points, const std::vector<double>& counted, const Line& line, double shift) {
+// Points that do not count follow the line; all are moved by whole turns so that the line starts
+// within (-pi, pi].
+std::vector<double> place_on_line(std::span<const PhasePoint> points,
+                                  const std::vector<double>& counted, const Line& line,
+                                  double shift) {
   std::vector<double> result;
   std::size_t next = 0;
   for (const PhasePoint& point : points) {
     const bool counts = point.u_phase_rad <= weakest_phase_rad;
     const double on_line = line.at(point.frequency_hz);
-    result.push_back((counts ? counted[next++] : on_line + wrap_phase(point.phase_rad - on_line)) + shift);
+    result.push_back((counts ? counted[next++] : on_line + wrap_phase(point.phase_rad - on_line)) +
+                     shift);
   }
   return result;
 }
 
 } // namespace
 
-Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points, const CommonPhaseUncertainty& common) {
-  if (const auto problem = problem_with(points)) return tl::unexpected(*problem);
+Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
+                                          const CommonPhaseUncertainty& common) {
+  if (const auto problem = problem_with(points)) {
+    return tl::unexpected(*problem);
+  }
   const std::vector<PhasePoint> counted = points_that_count(points);
-  if (counted.size() < 2)
-    return failure(ErrorCode::too_few_samples, "a group delay needs the phase at two frequencies with an uncertainty below 0.5 rad");
+  if (counted.size() < 2) {
+    return failure(
+        ErrorCode::too_few_samples,
+        "a group delay needs the phase at two frequencies with an uncertainty below 0.5 rad");
+  }
   const auto phases = unwrap_points_that_count(counted);
-  if (!phases) return tl::unexpected(phases.error());
+  if (!phases) {
+    return tl::unexpected(phases.error());
+  }
 
   const Line line = fit_line(counted, *phases);
   GroupDelay result;
@@ -195,19 +242,25 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points, co
   result.polarity_inverted = std::abs(result.intercept_rad) > 0.5 * pi;
   result.chi_squared = line.chi_squared;
   result.degrees_of_freedom = static_cast<double>(counted.size()) - 2.0;
-  const double ratio = result.degrees_of_freedom > 0.0 ? result.chi_squared / result.degrees_of_freedom : 0.0;
-  const double birge = ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom)) ? ratio : 1.0;
+  const double ratio =
+      result.degrees_of_freedom > 0.0 ? result.chi_squared / result.degrees_of_freedom : 0.0;
+  const double birge =
+      ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom)) ? ratio : 1.0;
   result.u_delay_s = std::sqrt(birge * line.variance_delay + common.delay_s * common.delay_s);
-  result.u_intercept_rad = std::sqrt(birge * line.variance_intercept + common.phase_rad * common.phase_rad);
+  result.u_intercept_rad =
+      std::sqrt(birge * line.variance_intercept + common.phase_rad * common.phase_rad);
   result.cov_delay_intercept = birge * line.covariance;
-  result.unwrapped_rad = place_on_line(points, *phases, line, result.intercept_rad - line.intercept_rad);
+  result.unwrapped_rad =
+      place_on_line(points, *phases, line, result.intercept_rad - line.intercept_rad);
   result.phase_covariance = covariance_of(points, common);
   return result;
 }
 
 Expected<std::vector<double>> unwrap_phase(std::span<const PhasePoint> points) {
   const auto result = evaluate_group_delay(points);
-  if (!result) return tl::unexpected(result.error());
+  if (!result) {
+    return tl::unexpected(result.error());
+  }
   return result->unwrapped_rad;
 }
 

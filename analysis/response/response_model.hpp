@@ -2,14 +2,17 @@
 //
 //   H(f) = +-g e^{-i 2 pi f tau} [1 / (1 + i f / fc)] [1 / (1 - (f / f0)^2 + 2 i zeta f / f0)]
 //
-// Brackets are chosen by the kind: a pure delay; a first-order low pass (the front end of an ADC); a second-order system
-// (seismic transducer, the digital low-pass filter of a MEMS sensor); both. psi = arg H is lead, tau > 0 a delay, the sign of g the
-// polarity. Residuals: (ln|H_i| - ln|H|) / u_rel and the phase difference modulo 2 pi / u_phase, whitened with
-//   V = diag(u_i^2) + what is common: u_gain to all magnitudes, u_delay w and u_phase to all phases.
-// The search starts from the group delay and a few corner frequencies; the best end is taken. A robust loss (Huber, Tukey) acts on
-// the residuals without the common parts, which it therefore refuses. chi_squared / degrees_of_freedom far above 1 says that the
-// model is not the sensor's.
-// Fails: as least_squares.hpp and group_delay.hpp do; invalid_argument (uncertainties not positive). Any thread.
+// Brackets are chosen by the kind: a pure delay; a first-order low pass (the front end of an ADC);
+// a second-order system (seismic transducer, the digital low-pass filter of a MEMS sensor); both.
+// psi = arg H is lead, tau > 0 a delay, the sign of g the polarity. Residuals: (ln|H_i| - ln|H|) /
+// u_rel and the phase difference modulo 2 pi / u_phase, whitened with
+//   V = diag(u_i^2) + what is common: u_gain to all magnitudes, u_delay w and u_phase to all
+//   phases.
+// The search starts from the group delay and a few corner frequencies; the best end is taken. A
+// robust loss (Huber, Tukey) acts on the residuals without the common parts, which it therefore
+// refuses. chi_squared / degrees_of_freedom far above 1 says that the model is not the sensor's.
+// Fails: as least_squares.hpp and group_delay.hpp do; invalid_argument (uncertainties not
+// positive). Any thread.
 #pragma once
 
 #include <complex>
@@ -45,7 +48,8 @@ struct ResponseParameters {
   double damping = 0.0;
 };
 
-[[nodiscard]] std::complex<double> response_at(const ResponseParameters& parameters, double frequency_hz);
+[[nodiscard]] std::complex<double> response_at(const ResponseParameters& parameters,
+                                               double frequency_hz);
 
 struct FittedResponse {
   ResponseParameters parameters;
@@ -57,7 +61,9 @@ struct FittedResponse {
   double degrees_of_freedom = 0.0;
 };
 
-[[nodiscard]] Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const ResponsePoint> points,
-                                                    const CommonResponseUncertainty& common = {}, Loss loss = Loss::none);
+[[nodiscard]] Expected<FittedResponse> fit_response(ResponseKind kind,
+                                                    std::span<const ResponsePoint> points,
+                                                    const CommonResponseUncertainty& common = {},
+                                                    Loss loss = Loss::none);
 
 } // namespace dyncal::analysis

@@ -17,25 +17,34 @@ tl::unexpected<Error> failure(ErrorCode code, std::string message) {
 } // namespace
 
 Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation> excitations) {
-  if (excitations.size() < 3) return failure(ErrorCode::too_few_samples, "a 3x3 response needs excitations in three directions");
+  if (excitations.size() < 3) {
+    return failure(ErrorCode::too_few_samples,
+                   "a 3x3 response needs excitations in three directions");
+  }
   const auto n = static_cast<Eigen::Index>(excitations.size());
   Eigen::Matrix<std::complex<double>, 3, Eigen::Dynamic> motion(3, n), answer(3, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      motion(i, k) = excitations[static_cast<std::size_t>(k)].reference[static_cast<std::size_t>(i)];
+      motion(i, k) =
+          excitations[static_cast<std::size_t>(k)].reference[static_cast<std::size_t>(i)];
       answer(i, k) = excitations[static_cast<std::size_t>(k)].sensor[static_cast<std::size_t>(i)];
     }
   }
-  if (!motion.allFinite() || !answer.allFinite()) return failure(ErrorCode::not_finite, "a phasor of the three axes is no number");
+  if (!motion.allFinite() || !answer.allFinite()) {
+    return failure(ErrorCode::not_finite, "a phasor of the three axes is no number");
+  }
 
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition(motion, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition(motion,
+                                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
   const auto& singular = decomposition.singularValues();
   TriaxialResponse result;
   result.reciprocal_condition = singular(0) > 0.0 ? singular(2) / singular(0) : 0.0;
-  if (!(result.reciprocal_condition > min_reciprocal_condition))
-    return failure(ErrorCode::ill_conditioned, "the excitations do not move the sensor in three different directions");
-  const Eigen::MatrixXcd inverse =
-      decomposition.matrixV() * singular.cwiseInverse().asDiagonal() * decomposition.matrixU().adjoint(); // n x 3
+  if (!(result.reciprocal_condition > min_reciprocal_condition)) {
+    return failure(ErrorCode::ill_conditioned,
+                   "the excitations do not move the sensor in three different directions");
+  }
+  const Eigen::MatrixXcd inverse = decomposition.matrixV() * singular.cwiseInverse().asDiagonal() *
+                                   decomposition.matrixU().adjoint(); // n x 3
   const Eigen::Matrix3cd h = answer * inverse;
 
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -44,8 +53,10 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
       for (Eigen::Index k = 0; k < n; ++k) {
         const TriaxialExcitation& excitation = excitations[static_cast<std::size_t>(k)];
         double one = std::pow(excitation.u_sensor[static_cast<std::size_t>(i)], 2);
-        for (Eigen::Index l = 0; l < 3; ++l)
-          one += std::norm(h(i, l)) * std::pow(excitation.u_reference[static_cast<std::size_t>(l)], 2);
+        for (Eigen::Index l = 0; l < 3; ++l) {
+          one +=
+              std::norm(h(i, l)) * std::pow(excitation.u_reference[static_cast<std::size_t>(l)], 2);
+        }
         variance += std::norm(inverse(k, j)) * one;
       }
       result.h[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = h(i, j);
@@ -55,19 +66,26 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
   return result;
 }
 
-Expected<TransverseSensitivity> transverse_sensitivity(const Axes& column, const std::array<double, 3>& u_column, std::size_t axis,
-                                                       const std::array<double, 3>& own_response, double transverse_motion_rel) {
-  if (axis >= 3 || !(transverse_motion_rel >= 0.0))
+Expected<TransverseSensitivity>
+transverse_sensitivity(const Axes& column, const std::array<double, 3>& u_column, std::size_t axis,
+                       const std::array<double, 3>& own_response, double transverse_motion_rel) {
+  if (axis >= 3 || !(transverse_motion_rel >= 0.0)) {
     return failure(ErrorCode::invalid_argument, "an axis is 0, 1 or 2, and the bound not negative");
+  }
   const double main = std::abs(column[axis]);
-  if (!(main > 0.0)) return failure(ErrorCode::no_excitation, "the excited axis did not answer");
+  if (!(main > 0.0)) {
+    return failure(ErrorCode::no_excitation, "the excited axis did not answer");
+  }
   TransverseSensitivity result;
   result.ratio[axis] = 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (i == axis) continue;
+    if (i == axis) {
+      continue;
+    }
     const double unknown = transverse_motion_rel * own_response[i] / std::sqrt(3.0);
     result.ratio[i] = std::abs(column[i]) / main;
-    result.u_ratio[i] = std::hypot(std::hypot(u_column[i], unknown), result.ratio[i] * u_column[axis]) / main;
+    result.u_ratio[i] =
+        std::hypot(std::hypot(u_column[i], unknown), result.ratio[i] * u_column[axis]) / main;
     result.largest = std::max(result.largest, result.ratio[i]);
   }
   return result;

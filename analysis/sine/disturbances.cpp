@@ -17,7 +17,7 @@ constexpr int max_harmonic = 10;
 constexpr std::array mains_hz{50.0, 100.0, 150.0, 60.0, 120.0, 180.0};
 constexpr double usable_part_of_rate = 0.45;
 constexpr double min_distance = 1.5; // in 1 / T
-constexpr double significant = 4.5;    // standard uncertainties
+constexpr double significant = 4.5;  // standard uncertainties
 
 struct Candidate {
   Frequency frequency;
@@ -27,11 +27,14 @@ struct Candidate {
 std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, double duration_s) {
   std::vector<Candidate> result;
   const double f = frequency.hz();
-  for (int k = 2; k <= max_harmonic && k * f < usable_part_of_rate * rate_hz; ++k)
+  for (int k = 2; k <= max_harmonic && k * f < usable_part_of_rate * rate_hz; ++k) {
     result.push_back({frequency.shifted_by_hz((k - 1) * f), k});
+  }
   for (const double line : mains_hz) {
     const double distance = std::abs(line - f * std::max(1.0, std::round(line / f)));
-    if (line < usable_part_of_rate * rate_hz && distance * duration_s > min_distance) result.push_back({Frequency::from_hz(line), 0});
+    if (line < usable_part_of_rate * rate_hz && distance * duration_s > min_distance) {
+      result.push_back({Frequency::from_hz(line), 0});
+    }
   }
   return result;
 }
@@ -42,15 +45,17 @@ public:
   static constexpr std::size_t max_samples = 512;
 
   // About `origin_ns`. REQUIRES: at most `max_samples`.
-  void fill(const Frequency& frequency, std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns) {
+  void fill(const Frequency& frequency, std::int64_t origin_ns,
+            std::span<const std::int64_t> stamps_ns) {
     samples_ = stamps_ns.size();
     fill_sine_cosine(frequency, origin_ns, stamps_ns, sine_.data(), cosine_.data());
   }
 
   // Leaves in `to` the values less offset and line; they may be the same.
   void remove(std::complex<double> phasor, double offset, const double* values, double* to) const {
-    for (std::size_t i = 0; i < samples_; ++i)
+    for (std::size_t i = 0; i < samples_; ++i) {
       to[i] = values[i] - offset - phasor.real() * sine_[i] - phasor.imag() * cosine_[i];
+    }
   }
 
 private:
@@ -59,7 +64,8 @@ private:
 };
 
 // The phasor about another instant.
-std::complex<double> turned(const Frequency& frequency, std::complex<double> phasor, std::int64_t by_ns) {
+std::complex<double> turned(const Frequency& frequency, std::complex<double> phasor,
+                            std::int64_t by_ns) {
   const double angle = 2.0 * std::numbers::pi * frequency.reduced_turns(by_ns);
   return phasor * std::complex<double>(std::cos(angle), std::sin(angle));
 }
@@ -67,23 +73,29 @@ std::complex<double> turned(const Frequency& frequency, std::complex<double> pha
 // Calls with the first index of every stretch of samples that a SineBlock holds, and their number.
 template <class Visit>
 void for_each_block(std::size_t samples, Visit visit) {
-  for (std::size_t i = 0; i < samples; i += SineBlock::max_samples)
+  for (std::size_t i = 0; i < samples; i += SineBlock::max_samples) {
     visit(i, std::min(SineBlock::max_samples, samples - i));
+  }
 }
 
 // The channels without the sine that was fitted and the offset, one after the other.
-std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
-                                       std::span<const std::span<const double>> channels, const std::vector<SineFit>& fits) {
+std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t reference_ns,
+                                       std::span<const std::int64_t> stamps_ns,
+                                       std::span<const std::span<const double>> channels,
+                                       const std::vector<SineFit>& fits) {
   auto residuals = std::make_unique_for_overwrite<double[]>(channels.size() * stamps_ns.size());
   std::vector<std::complex<double>> phasors;
   phasors.reserve(fits.size());
-  for (const SineFit& fit : fits)
+  for (const SineFit& fit : fits) {
     phasors.push_back(turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - reference_ns));
+  }
   SineBlock block;
   for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
     block.fill(frequency, stamps_ns.front(), stamps_ns.subspan(first, n));
-    for (std::size_t j = 0; j < channels.size(); ++j)
-      block.remove(phasors[j], fits[j].offset, channels[j].data() + first, residuals.get() + j * stamps_ns.size() + first);
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      block.remove(phasors[j], fits[j].offset, channels[j].data() + first,
+                   residuals.get() + j * stamps_ns.size() + first);
+    }
   });
   return residuals;
 }
@@ -93,24 +105,34 @@ struct Disturbances { // of one channel
   [[nodiscard]] bool any() const { return basis.max_harmonic > 1 || !basis.lines.empty(); }
 };
 
-std::vector<Disturbances> search(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
-                                 std::span<const std::span<const double>> channels, const std::vector<SineFit>& fits) {
+std::vector<Disturbances> search(const Frequency& frequency, std::int64_t reference_ns,
+                                 std::span<const std::int64_t> stamps_ns,
+                                 std::span<const std::span<const double>> channels,
+                                 const std::vector<SineFit>& fits) {
   std::vector<Disturbances> found(channels.size());
   const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
   const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
   const std::vector<Candidate> tried = candidates(frequency, rate_hz, duration_s);
-  if (tried.empty()) return found;
-  const std::unique_ptr<double[]> residuals = residuals_of(frequency, reference_ns, stamps_ns, channels, fits);
+  if (tried.empty()) {
+    return found;
+  }
+  const std::unique_ptr<double[]> residuals =
+      residuals_of(frequency, reference_ns, stamps_ns, channels, fits);
   std::vector<std::span<const double>> residual_channels;
-  for (std::size_t j = 0; j < channels.size(); ++j)
+  for (std::size_t j = 0; j < channels.size(); ++j) {
     residual_channels.emplace_back(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
+  }
 
   for (const Candidate& candidate : tried) {
     const auto lines = fit_sine(candidate.frequency, reference_ns, stamps_ns, residual_channels);
-    if (!lines) continue; // such a line cannot be told from a constant in this record
+    if (!lines) {
+      continue; // such a line cannot be told from a constant in this record
+    }
     for (std::size_t j = 0; j < channels.size(); ++j) {
       const SineFit& line = (*lines)[j];
-      if (!(line.amplitude() > significant * line.u_amplitude())) continue;
+      if (!(line.amplitude() > significant * line.u_amplitude())) {
+        continue;
+      }
       if (candidate.harmonic > 0) {
         found[j].basis.max_harmonic = candidate.harmonic;
       } else {
@@ -121,39 +143,52 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
   return found;
 }
 
-void take_out(UndisturbedFit& result, const Frequency& frequency, const ExtendedFit& fit, std::int64_t reference_ns,
-              std::span<const std::int64_t> stamps_ns, std::span<const double> values) {
+void take_out(UndisturbedFit& result, const Frequency& frequency, const ExtendedFit& fit,
+              std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+              std::span<const double> values) {
   result.fit = fit.fundamental;
   result.values.assign(values.begin(), values.end());
   SineBlock block;
   const auto take = [&](const Frequency& line, const FurtherPhasor& phasor) {
-    const std::complex<double> about_first = turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - reference_ns);
+    const std::complex<double> about_first =
+        turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - reference_ns);
     for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
       block.fill(line, stamps_ns.front(), stamps_ns.subspan(first, n));
       block.remove(about_first, 0.0, result.values.data() + first, result.values.data() + first);
     });
     result.removed_hz.push_back(line.hz());
   };
-  for (std::size_t k = 0; k < fit.harmonics.size(); ++k)
+  for (std::size_t k = 0; k < fit.harmonics.size(); ++k) {
     take(frequency.shifted_by_hz(static_cast<double>(k + 1) * frequency.hz()), fit.harmonics[k]);
-  for (const FurtherPhasor& line : fit.lines)
+  }
+  for (const FurtherPhasor& line : fit.lines) {
     take(Frequency::from_hz(line.frequency_hz), line);
+  }
 }
 
 } // namespace
 
-Expected<std::vector<UndisturbedFit>> fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
-                                                                   std::span<const std::int64_t> stamps_ns,
-                                                                   std::span<const std::span<const double>> channels) {
+Expected<std::vector<UndisturbedFit>>
+fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
+                             std::span<const std::int64_t> stamps_ns,
+                             std::span<const std::span<const double>> channels) {
   const auto plain = fit_sine(frequency, reference_ns, stamps_ns, channels);
-  if (!plain) return tl::unexpected(plain.error());
-  const std::vector<Disturbances> found = search(frequency, reference_ns, stamps_ns, channels, *plain);
+  if (!plain) {
+    return tl::unexpected(plain.error());
+  }
+  const std::vector<Disturbances> found =
+      search(frequency, reference_ns, stamps_ns, channels, *plain);
   std::vector<UndisturbedFit> result(channels.size());
   for (std::size_t j = 0; j < channels.size(); ++j) {
     result[j].fit = (*plain)[j];
-    if (!found[j].any()) continue;
-    const auto fit = fit_sine_extended(frequency, found[j].basis, Weighting::none, reference_ns, stamps_ns, channels.subspan(j, 1));
-    if (fit) take_out(result[j], frequency, fit->front(), reference_ns, stamps_ns, channels[j]);
+    if (!found[j].any()) {
+      continue;
+    }
+    const auto fit = fit_sine_extended(frequency, found[j].basis, Weighting::none, reference_ns,
+                                       stamps_ns, channels.subspan(j, 1));
+    if (fit) {
+      take_out(result[j], frequency, fit->front(), reference_ns, stamps_ns, channels[j]);
+    }
   }
   return result;
 }

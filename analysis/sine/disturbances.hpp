@@ -1,11 +1,13 @@
-// Sine approximation that looks for disturbances first: harmonics of the exciter and mains hum, which are not white, leak into the
-// phasor by up to h / (pi |f - f_h| T) and are not paid for by the covariance of the residuals.
+// Sine approximation that looks for disturbances first: harmonics of the exciter and mains hum,
+// which are not white, leak into the phasor by up to h / (pi |f - f_h| T) and are not paid for by
+// the covariance of the residuals.
 //
-// Each channel is fitted with three parameters (paper eq. (1)). Its residuals are searched for harmonics 2..10 and for 50 Hz and
-// 60 Hz with their first multiples, below 0.45 of the mean sample rate and at least 1.5 / T away from the harmonics. What stands
-// out by 4.5 standard uncertainties (by chance: 4 in 100 000) is fitted beside the signal (sine_fit_extended.hpp). A clean channel
-// therefore keeps the plain three-parameter result, bit for bit; so does one whose disturbance cannot be told apart from the signal.
-// Fails as sine_fit.hpp does. Any thread.
+// Each channel is fitted with three parameters (paper eq. (1)). Its residuals are searched for
+// harmonics 2..10 and for 50 Hz and 60 Hz with their first multiples, below 0.45 of the mean sample
+// rate and at least 1.5 / T away from the harmonics. What stands out by 4.5 standard uncertainties
+// (by chance: 4 in 100 000) is fitted beside the signal (sine_fit_extended.hpp). A clean channel
+// therefore keeps the plain three-parameter result, bit for bit; so does one whose disturbance
+// cannot be told apart from the signal. Fails as sine_fit.hpp does. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +26,9 @@ struct UndisturbedFit {
   std::vector<double> values;     // the samples without it; empty when nothing was removed
 };
 
-[[nodiscard]] Expected<std::vector<UndisturbedFit>> fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
-                                                                                 std::span<const std::int64_t> stamps_ns,
-                                                                                 std::span<const std::span<const double>> channels);
+[[nodiscard]] Expected<std::vector<UndisturbedFit>>
+fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
+                             std::span<const std::int64_t> stamps_ns,
+                             std::span<const std::span<const double>> channels);
 
 } // namespace dyncal::analysis

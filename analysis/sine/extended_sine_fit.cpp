@@ -17,7 +17,8 @@ namespace {
 using namespace kernel;
 
 constexpr double min_rcond = 1e-10;
-constexpr int max_refinements = 2; // on the residuals; the first solution has the digits that the condition leaves
+constexpr int max_refinements =
+    2; // on the residuals; the first solution has the digits that the condition leaves
 constexpr int max_reweightings = 200;
 constexpr double settled = 1e-12; // change of the parameters against their size
 
@@ -28,35 +29,46 @@ struct System {
   double ee = 0.0; // unweighted
 };
 
-// Sums by the kernels, not by Eigen's products: those are cut into pieces by the sizes of the processor's caches, and so are their last
-// bits.
+// Sums by the kernels, not by Eigen's products: those are cut into pieces by the sizes of the
+// processor's caches, and so are their last bits.
 class Fitter {
 public:
   Fitter(const Record& record, SineBasis basis)
-      : record_(record), basis_(std::move(basis)), design_(basis_.columns() * block_samples), products_(basis_.columns()) {}
+      : record_(record), basis_(std::move(basis)), design_(basis_.columns() * block_samples),
+        products_(basis_.columns()) {}
 
   [[nodiscard]] SineBasis& basis() { return basis_; }
 
   // Sums about `coefficients`; weights may be empty. Residuals are stored when asked for.
-  Expected<System> pass(std::span<const double> values, const Eigen::VectorXd& coefficients, std::span<const double> weights,
-                        std::vector<double>* residuals, bool with_matrix) {
+  Expected<System> pass(std::span<const double> values, const Eigen::VectorXd& coefficients,
+                        std::span<const double> weights, std::vector<double>* residuals,
+                        bool with_matrix) {
     const auto columns = static_cast<Eigen::Index>(basis_.columns());
     System system{Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns), 0.0};
     std::array<double, block_samples> e;
     for (std::size_t i = 0; i < values.size(); i += block_samples) {
       const std::size_t n = std::min(block_samples, values.size() - i);
-      if (!basis_.fill(i, n, design_.data())) return tl::unexpected(record_.not_increasing());
+      if (!basis_.fill(i, n, design_.data())) {
+        return tl::unexpected(record_.not_increasing());
+      }
       double squares = 0.0;
-      kernel_.model_residuals(values.data() + i, n, design_.data(), basis_.columns(), coefficients.data(), e.data(), squares);
+      kernel_.model_residuals(values.data() + i, n, design_.data(), basis_.columns(),
+                              coefficients.data(), e.data(), squares);
       system.ee += squares;
-      if (residuals) std::copy_n(e.data(), n, residuals->data() + i);
-      add_products(weights.empty() ? design_ : weighted(weights.subspan(i, n)), n, e.data(), with_matrix, system);
+      if (residuals) {
+        std::copy_n(e.data(), n, residuals->data() + i);
+      }
+      add_products(weights.empty() ? design_ : weighted(weights.subspan(i, n)), n, e.data(),
+                   with_matrix, system);
     }
     for (Eigen::Index row = 0; row < columns; ++row) {
-      for (Eigen::Index column = 0; column < row; ++column)
+      for (Eigen::Index column = 0; column < row; ++column) {
         system.normal(row, column) = system.normal(column, row);
+      }
     }
-    if (!std::isfinite(system.ee)) return tl::unexpected(record_.not_finite());
+    if (!std::isfinite(system.ee)) {
+      return tl::unexpected(record_.not_finite());
+    }
     return system;
   }
 
@@ -66,21 +78,27 @@ private:
     weighted_ = design_;
     for (std::size_t k = 0; k < basis_.columns(); ++k) {
       double* const column = weighted_.data() + k * block_samples;
-      std::transform(weights.begin(), weights.end(), column, column, [](double w, double x) { return w * x; });
+      std::transform(weights.begin(), weights.end(), column, column,
+                     [](double w, double x) { return w * x; });
     }
     return weighted_;
   }
 
   // The upper triangle of the matrix only.
-  void add_products(const std::vector<double>& left, std::size_t n, const double* e, bool with_matrix, System& system) {
+  void add_products(const std::vector<double>& left, std::size_t n, const double* e,
+                    bool with_matrix, System& system) {
     const std::size_t columns = basis_.columns();
     kernel_.model_products(e, n, left.data(), columns, products_.data());
-    for (std::size_t k = 0; k < columns; ++k)
+    for (std::size_t k = 0; k < columns; ++k) {
       system.right[static_cast<Eigen::Index>(k)] += products_[k];
+    }
     for (std::size_t row = 0; with_matrix && row < columns; ++row) {
-      kernel_.model_products(left.data() + row * block_samples, n, design_.data() + row * block_samples, columns - row, products_.data());
-      for (std::size_t k = row; k < columns; ++k)
-        system.normal(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k)) += products_[k - row];
+      kernel_.model_products(left.data() + row * block_samples, n,
+                             design_.data() + row * block_samples, columns - row, products_.data());
+      for (std::size_t k = row; k < columns; ++k) {
+        system.normal(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k)) +=
+            products_[k - row];
+      }
     }
   }
 
@@ -94,12 +112,17 @@ private:
 // Solves with columns scaled to unit length; tells how well they can be told apart.
 class ScaledInverse {
 public:
-  explicit ScaledInverse(const Eigen::MatrixXd& normal) : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale_.asDiagonal() * normal * scale_.asDiagonal());
+  explicit ScaledInverse(const Eigen::MatrixXd& normal)
+      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale_.asDiagonal() * normal *
+                                                               scale_.asDiagonal());
     rcond_ = eigen.eigenvalues().minCoeff() / eigen.eigenvalues().maxCoeff();
-    if (!(rcond_ > min_rcond)) return;
-    inverse_ = scale_.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
-               eigen.eigenvectors().transpose() * scale_.asDiagonal();
+    if (!(rcond_ > min_rcond)) {
+      return;
+    }
+    inverse_ = scale_.asDiagonal() * eigen.eigenvectors() *
+               eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() *
+               scale_.asDiagonal();
   }
   [[nodiscard]] bool usable() const { return rcond_ > min_rcond; }
   [[nodiscard]] const Eigen::MatrixXd& matrix() const { return inverse_; }
@@ -120,8 +143,9 @@ struct ChannelSolution {
 };
 
 Error indistinct(const Frequency& frequency) {
-  return {ErrorCode::ill_conditioned, "the parts of the extended model near " + std::to_string(frequency.hz()) +
-                                          " Hz cannot be told apart in this record; leave some out or record longer"};
+  return {ErrorCode::ill_conditioned,
+          "the parts of the extended model near " + std::to_string(frequency.hz()) +
+              " Hz cannot be told apart in this record; leave some out or record longer"};
 }
 
 Eigen::VectorXd starting_level(std::size_t columns, double level) {
@@ -130,52 +154,74 @@ Eigen::VectorXd starting_level(std::size_t columns, double level) {
   return start;
 }
 
-Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequency, std::span<const double> values) {
+Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequency,
+                                        std::span<const double> values) {
   const std::size_t columns = fitter.basis().columns();
   ChannelSolution result;
   result.coefficients = starting_level(columns, values.front());
   const auto first = fitter.pass(values, result.coefficients, {}, nullptr, true);
-  if (!first) return tl::unexpected(first.error());
+  if (!first) {
+    return tl::unexpected(first.error());
+  }
   const ScaledInverse inverse(first->normal);
-  if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
+  if (!inverse.usable()) {
+    return tl::unexpected(indistinct(frequency));
+  }
   result.inverse = inverse.matrix();
   result.coefficients += result.inverse * first->right;
   for (int i = 0; i < max_refinements; ++i) {
     const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
-    if (!again) return tl::unexpected(again.error());
+    if (!again) {
+      return tl::unexpected(again.error());
+    }
     const Eigen::VectorXd step = result.inverse * again->right;
     result.coefficients += step;
     result.rss = std::max(0.0, again->ee - step.dot(again->right));
-    if (step.norm() < settled * result.coefficients.norm()) break; // what this one lacks is far below rounding
+    if (step.norm() < settled * result.coefficients.norm()) {
+      break; // what this one lacks is far below rounding
+    }
   }
-  result.variance = result.rss / (static_cast<double>(values.size()) - static_cast<double>(columns));
+  result.variance =
+      result.rss / (static_cast<double>(values.size()) - static_cast<double>(columns));
   return result;
 }
 
-double scale_of(const std::vector<double>& residuals, const Eigen::VectorXd& coefficients, std::vector<double>& work) {
-  std::transform(residuals.begin(), residuals.end(), work.begin(), [](double r) { return std::abs(r); });
-  return std::max(robust_scale(work), 1e-16 * coefficients.head(3).norm() + 1e-300); // rounding is noise too
+double scale_of(const std::vector<double>& residuals, const Eigen::VectorXd& coefficients,
+                std::vector<double>& work) {
+  std::transform(residuals.begin(), residuals.end(), work.begin(),
+                 [](double r) { return std::abs(r); });
+  return std::max(robust_scale(work),
+                  1e-16 * coefficients.head(3).norm() + 1e-300); // rounding is noise too
 }
 
 // Iterates the weights from `result` until the parameters stay.
-Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting weighting, std::span<const double> values,
-                        ChannelSolution& result) {
+Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting weighting,
+                        std::span<const double> values, ChannelSolution& result) {
   const std::size_t n = values.size();
   std::vector<double> residuals(n), weights(n), work(n);
   auto sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
-  if (!sums) return tl::unexpected(sums.error());
+  if (!sums) {
+    return tl::unexpected(sums.error());
+  }
   double scale = scale_of(residuals, result.coefficients, work);
   for (int iteration = 0; iteration < max_reweightings; ++iteration) {
-    std::transform(residuals.begin(), residuals.end(), weights.begin(), [&](double r) { return robust_weight(weighting, r, scale); });
+    std::transform(residuals.begin(), residuals.end(), weights.begin(),
+                   [&](double r) { return robust_weight(weighting, r, scale); });
     sums = fitter.pass(values, result.coefficients, weights, nullptr, true);
-    if (!sums) return tl::unexpected(sums.error());
+    if (!sums) {
+      return tl::unexpected(sums.error());
+    }
     const ScaledInverse inverse(sums->normal);
-    if (!inverse.usable()) return tl::unexpected(indistinct(frequency));
+    if (!inverse.usable()) {
+      return tl::unexpected(indistinct(frequency));
+    }
     const Eigen::VectorXd step = inverse.matrix() * sums->right;
     result.coefficients += step;
     ++result.iterations;
     sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
-    if (!sums) return tl::unexpected(sums.error());
+    if (!sums) {
+      return tl::unexpected(sums.error());
+    }
     result.rss = sums->ee;
     // Parameters that move by less than a millionth of their uncertainty stay.
     const double uncertainty = scale * std::sqrt(inverse.matrix().diagonal().maxCoeff());
@@ -190,15 +236,20 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
         result.outliers += w < 0.5 ? 1 : 0;
       }
       slope /= static_cast<double>(n);
-      result.variance = psi_square / (static_cast<double>(n) - static_cast<double>(fitter.basis().columns())) / (slope * slope);
+      result.variance = psi_square /
+                        (static_cast<double>(n) - static_cast<double>(fitter.basis().columns())) /
+                        (slope * slope);
       return {};
     }
     scale = scale_of(residuals, result.coefficients, work);
   }
-  return tl::unexpected(Error{ErrorCode::not_converged, "the robust weights did not settle; more than a few per cent of outliers?"});
+  return tl::unexpected(
+      Error{ErrorCode::not_converged,
+            "the robust weights did not settle; more than a few per cent of outliers?"});
 }
 
-FurtherPhasor further_phasor(const ChannelSolution& solution, std::size_t column, double hz, double turns) {
+FurtherPhasor further_phasor(const ChannelSolution& solution, std::size_t column, double hz,
+                             double turns) {
   const auto i = static_cast<Eigen::Index>(column);
   SineFit turned;
   turned.sine = solution.coefficients[i];
@@ -210,12 +261,15 @@ FurtherPhasor further_phasor(const ChannelSolution& solution, std::size_t column
                        0.0,
                        0.0};
   rotate(turned, turns);
-  return {hz, turned.sine, turned.cosine, std::sqrt(turned.covariance[0]), std::sqrt(turned.covariance[3])};
+  return {hz, turned.sine, turned.cosine, std::sqrt(turned.covariance[0]),
+          std::sqrt(turned.covariance[3])};
 }
 
-ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const ChannelSolution& solution, std::size_t samples,
-                     std::int64_t shift_ns) {
-  const auto turns = [&](std::size_t line) { return basis.frequencies()[line].reduced_turns(shift_ns); };
+ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted,
+                     const ChannelSolution& solution, std::size_t samples, std::int64_t shift_ns) {
+  const auto turns = [&](std::size_t line) {
+    return basis.frequencies()[line].reduced_turns(shift_ns);
+  };
   ExtendedFit fit;
   SineFit& f = fit.fundamental;
   f.sine = solution.coefficients[0];
@@ -226,8 +280,9 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const 
   f.degrees_of_freedom = static_cast<double>(samples) - static_cast<double>(basis.columns());
   std::size_t element = 0;
   for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index column = row; column < 3; ++column)
+    for (Eigen::Index column = row; column < 3; ++column) {
       f.covariance[element++] = solution.variance * solution.inverse(row, column);
+    }
   }
   rotate(f, turns(0));
   for (int k = 0; k < wanted.drift_order; ++k) {
@@ -236,11 +291,14 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const 
     fit.u_drift.push_back(std::sqrt(solution.variance * solution.inverse(i, i)));
   }
   for (std::size_t line = 1; line < basis.frequencies().size(); ++line) {
-    const FurtherPhasor phasor = further_phasor(solution, basis.sine_column(line), basis.frequencies()[line].hz(), turns(line));
-    (line < static_cast<std::size_t>(wanted.max_harmonic) ? fit.harmonics : fit.lines).push_back(phasor);
+    const FurtherPhasor phasor = further_phasor(solution, basis.sine_column(line),
+                                                basis.frequencies()[line].hz(), turns(line));
+    (line < static_cast<std::size_t>(wanted.max_harmonic) ? fit.harmonics : fit.lines)
+        .push_back(phasor);
   }
   if (wanted.drifting_phasor) {
-    fit.phasor_drift = further_phasor(solution, basis.phasor_drift_column(), basis.frequencies()[0].hz(), turns(0));
+    fit.phasor_drift = further_phasor(solution, basis.phasor_drift_column(),
+                                      basis.frequencies()[0].hz(), turns(0));
   }
   fit.outliers = solution.outliers;
   fit.iterations = solution.iterations;
@@ -249,34 +307,51 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted, const 
 
 } // namespace
 
-Expected<std::vector<ExtendedFit>> fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
-                                                     std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
-                                                     std::span<const std::span<const double>> channels) {
+Expected<std::vector<ExtendedFit>>
+fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
+                  std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                  std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
-  if (!record) return tl::unexpected(record.error());
+  if (!record) {
+    return tl::unexpected(record.error());
+  }
   auto columns = SineBasis::make(*record, frequency, basis);
-  if (!columns) return tl::unexpected(columns.error());
+  if (!columns) {
+    return tl::unexpected(columns.error());
+  }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_argument,
+              "the reference instant is more than 292 years away from the record"});
   }
   Fitter fitter(*record, std::move(*columns));
   std::vector<ExtendedFit> fits;
   for (const std::span<const double> values : channels) {
     auto solution = least_squares(fitter, frequency, values);
-    if (!solution) return tl::unexpected(solution.error());
+    if (!solution) {
+      return tl::unexpected(solution.error());
+    }
     // Tukey's weights have several solutions: they start from Huber's, which has one.
     if (weighting != Weighting::none) {
-      if (const auto done = reweight(fitter, frequency, Weighting::huber, values, *solution); !done) return tl::unexpected(done.error());
+      if (const auto done = reweight(fitter, frequency, Weighting::huber, values, *solution);
+          !done) {
+        return tl::unexpected(done.error());
+      }
     }
     if (weighting == Weighting::tukey) {
-      if (const auto done = reweight(fitter, frequency, weighting, values, *solution); !done) return tl::unexpected(done.error());
+      if (const auto done = reweight(fitter, frequency, weighting, values, *solution); !done) {
+        return tl::unexpected(done.error());
+      }
     }
     fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
   }
-  if (std::none_of(fits.begin(), fits.end(), [](const ExtendedFit& fit) { return stands_out(fit.fundamental); })) {
-    return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +
-                                                              " Hz stands out of the noise in any channel; check frequency and window"});
+  if (std::none_of(fits.begin(), fits.end(),
+                   [](const ExtendedFit& fit) { return stands_out(fit.fundamental); })) {
+    return tl::unexpected(
+        Error{ErrorCode::no_excitation,
+              "no sine of " + std::to_string(frequency.hz()) +
+                  " Hz stands out of the noise in any channel; check frequency and window"});
   }
   return fits;
 }

@@ -20,7 +20,8 @@ Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_n
     intervals.push_back(stamps_ns[i] - stamps_ns[i - 1]);
     if (intervals.back() <= 0) {
       return tl::unexpected(
-          Error{ErrorCode::stamps_not_increasing, "a stamp is not later than the one before it (sample " + std::to_string(i) + ")"});
+          Error{ErrorCode::stamps_not_increasing,
+                "a stamp is not later than the one before it (sample " + std::to_string(i) + ")"});
     }
   }
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
@@ -29,7 +30,8 @@ Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_n
 }
 
 // Hann-windowed and free of its mean; empty when the column is constant.
-std::vector<double> on_grid(std::span<const std::size_t> places, std::span<const double> values, std::size_t size) {
+std::vector<double> on_grid(std::span<const std::size_t> places, std::span<const double> values,
+                            std::size_t size) {
   double mean = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     mean += values[i] / static_cast<double>(places.size());
@@ -39,18 +41,22 @@ std::vector<double> on_grid(std::span<const std::size_t> places, std::span<const
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double deviation = values[i] - mean;
     power += deviation * deviation;
-    const double window = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(places[i]) + 0.5) / static_cast<double>(size));
+    const double window =
+        1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(places[i]) + 0.5) /
+                       static_cast<double>(size));
     grid[places[i]] = deviation * window;
   }
   if (!(power > 0.0)) {
     return {};
   }
   const double scale = 1.0 / std::sqrt(power);
-  std::transform(grid.begin(), grid.end(), grid.begin(), [&](double value) { return value * scale; });
+  std::transform(grid.begin(), grid.end(), grid.begin(),
+                 [&](double value) { return value * scale; });
   return grid;
 }
 
-// The line between bins: with a Hann window the two largest neighbours are in the ratio (1 + d) / (2 - d) of their distance d.
+// The line between bins: with a Hann window the two largest neighbours are in the ratio (1 + d) /
+// (2 - d) of their distance d.
 double interpolated_bin(const std::vector<double>& power, std::size_t peak) {
   const double left = std::sqrt(power[peak - 1]);
   const double right = peak + 1 < power.size() ? std::sqrt(power[peak + 1]) : 0.0;
@@ -61,9 +67,11 @@ double interpolated_bin(const std::vector<double>& power, std::size_t peak) {
 
 } // namespace
 
-Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> columns) {
+Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
+                                       std::span<const std::span<const double>> columns) {
   if (stamps_ns.size() < min_samples) {
-    return tl::unexpected(Error{ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency"});
+    return tl::unexpected(
+        Error{ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency"});
   }
   const auto interval_ns = median_interval_ns(stamps_ns);
   if (!interval_ns) {
@@ -71,7 +79,8 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, 
   }
   std::vector<std::size_t> places;
   for (const std::int64_t stamp : stamps_ns) {
-    const auto place = static_cast<std::size_t>((stamp - stamps_ns.front() + *interval_ns / 2) / *interval_ns);
+    const auto place =
+        static_cast<std::size_t>((stamp - stamps_ns.front() + *interval_ns / 2) / *interval_ns);
     if (place >= max_grid) {
       break;
     }
@@ -83,9 +92,11 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, 
   Eigen::FFT<double> transform;
   for (const std::span<const double> column : columns) {
     if (column.size() != stamps_ns.size()) {
-      return tl::unexpected(Error{ErrorCode::invalid_argument, "a column has not as many values as there are stamps"});
+      return tl::unexpected(Error{ErrorCode::invalid_argument,
+                                  "a column has not as many values as there are stamps"});
     }
-    if (!std::all_of(column.begin(), column.end(), [](double value) { return std::isfinite(value); })) {
+    if (!std::all_of(column.begin(), column.end(),
+                     [](double value) { return std::isfinite(value); })) {
       return tl::unexpected(Error{ErrorCode::not_finite, "a value is not a finite number"});
     }
     const std::vector<double> grid = on_grid(places, column, size);
@@ -100,11 +111,14 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns, 
     }
   }
   if (!excited) {
-    return tl::unexpected(Error{ErrorCode::no_excitation, "all values are the same: there is no sine to find"});
+    return tl::unexpected(
+        Error{ErrorCode::no_excitation, "all values are the same: there is no sine to find"});
   }
-  const auto peak = static_cast<std::size_t>(std::max_element(power.begin() + 1, power.end()) - power.begin());
+  const auto peak =
+      static_cast<std::size_t>(std::max_element(power.begin() + 1, power.end()) - power.begin());
   const double bin = std::max(interpolated_bin(power, peak), 0.5);
-  return Frequency::from_hz(bin * 1e9 / (static_cast<double>(size) * static_cast<double>(*interval_ns)));
+  return Frequency::from_hz(bin * 1e9 /
+                            (static_cast<double>(size) * static_cast<double>(*interval_ns)));
 }
 
 } // namespace dyncal::analysis

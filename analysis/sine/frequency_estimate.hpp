@@ -1,10 +1,12 @@
-// The frequency of a sine of which nothing is known, good enough to start the four-parameter fit (sine_fit.hpp).
+// The frequency of a sine of which nothing is known, good enough to start the four-parameter fit
+// (sine_fit.hpp).
 //
-// The samples are put on an even grid of the median sample interval (gaps stay empty), their mean is taken out, and the largest line of the
-// Hann-windowed discrete Fourier transform is interpolated (Grandke 1983). Several columns count by their power over their variance. At
-// most the first 2^20 grid points are used. Good to about 0.1 of a bin 1/T from three cycles on, to about a bin below. Fails:
-// too_few_samples (fewer than eight), not_finite, stamps_not_increasing, no_excitation (all columns constant), invalid_argument (sizes). No
-// state; any thread.
+// The samples are put on an even grid of the median sample interval (gaps stay empty), their mean
+// is taken out, and the largest line of the Hann-windowed discrete Fourier transform is
+// interpolated (Grandke 1983). Several columns count by their power over their variance. At most
+// the first 2^20 grid points are used. Good to about 0.1 of a bin 1/T from three cycles on, to
+// about a bin below. Fails: too_few_samples (fewer than eight), not_finite, stamps_not_increasing,
+// no_excitation (all columns constant), invalid_argument (sizes). No state; any thread.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +17,8 @@
 
 namespace dyncal::analysis {
 
-[[nodiscard]] Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
-                                                     std::span<const std::span<const double>> columns);
+[[nodiscard]] Expected<Frequency>
+estimate_frequency(std::span<const std::int64_t> stamps_ns,
+                   std::span<const std::span<const double>> columns);
 
 } // namespace dyncal::analysis

@@ -30,35 +30,46 @@ Selection part_of(std::size_t samples) {
   return samples > 2 * part_samples ? Selection{group, samples / groups} : Selection{};
 }
 
-Expected<std::vector<Parameters>> levels(const Record& record, const Frequency& frequency, Selection selection) {
+Expected<std::vector<Parameters>> levels(const Record& record, const Frequency& frequency,
+                                         Selection selection) {
   std::vector<Parameters> start;
-  for (const auto& channel : record.channels())
+  for (const auto& channel : record.channels()) {
     start.push_back({0.0, 0.0, channel.front()});
+  }
   const auto sums = accumulate(record, frequency, start, selection);
-  if (!sums) return tl::unexpected(sums.error());
-  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
-  for (std::size_t j = 0; j < start.size(); ++j)
+  if (!sums) {
+    return tl::unexpected(sums.error());
+  }
+  if (!all_finite(*sums)) {
+    return tl::unexpected(record.not_finite());
+  }
+  for (std::size_t j = 0; j < start.size(); ++j) {
     start[j].offset += sums->channels[j].e / sums->samples;
+  }
   return start;
 }
 
 struct GridPoint {
   double bins = 0.0;
   double misfit = std::numeric_limits<double>::infinity(); // sum of log rss
-  double significance = 0.0;                               // of the strongest channel: amplitude over its uncertainty
+  double significance = 0.0; // of the strongest channel: amplitude over its uncertainty
 };
 
 GridPoint misfit_of(const PassSums& sums, std::span<const Parameters> start, double bins) {
   GridPoint point;
   point.bins = bins;
   const NormalMatrix matrix(sums.samples, sums.design);
-  if (!matrix.well_conditioned()) return point;
+  if (!matrix.well_conditioned()) {
+    return point;
+  }
   point.misfit = 0.0;
   for (std::size_t j = 0; j < start.size(); ++j) {
     const Solution solution = solve(matrix, sums.channels[j], start[j]);
     const double scale = 1e-30 * solution.ee + std::numeric_limits<double>::min();
     point.misfit += std::log(solution.rss + scale);
-    point.significance = std::max(point.significance, std::sqrt((solution.ee - solution.rss) / (solution.rss + scale) * sums.samples));
+    point.significance =
+        std::max(point.significance,
+                 std::sqrt((solution.ee - solution.rss) / (solution.rss + scale) * sums.samples));
   }
   return point;
 }
@@ -70,7 +81,8 @@ public:
     const auto copy = [&](auto from, auto& to) {
       for (std::size_t i = 0; i < record.size(); i += selection.step) {
         to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i),
-                  from.begin() + static_cast<std::ptrdiff_t>(std::min(i + selection.length, record.size())));
+                  from.begin() +
+                      static_cast<std::ptrdiff_t>(std::min(i + selection.length, record.size())));
       }
     };
     copy(record.stamps(), stamps_);
@@ -88,19 +100,28 @@ private:
 };
 
 // `bin_hz`: of the whole record.
-Expected<GridPoint> search_grid(const Record& record, const Frequency& start, double half_range_bins, double bin_hz) {
+Expected<GridPoint> search_grid(const Record& record, const Frequency& start,
+                                double half_range_bins, double bin_hz) {
   const auto level = levels(record, start, {});
-  if (!level) return tl::unexpected(level.error());
+  if (!level) {
+    return tl::unexpected(level.error());
+  }
   const int half = static_cast<int>(std::ceil(half_range_bins / grid_step_bins));
   GridPoint best;
   for (int i = -half; i <= half; ++i) {
     const double bins = half_range_bins * i / std::max(half, 1);
     const Frequency frequency = start.shifted_by_hz(bins * bin_hz);
-    if (!(frequency.hz() > 0.0)) continue;
+    if (!(frequency.hz() > 0.0)) {
+      continue;
+    }
     const auto sums = accumulate(record, frequency, *level);
-    if (!sums) return tl::unexpected(sums.error());
+    if (!sums) {
+      return tl::unexpected(sums.error());
+    }
     const GridPoint point = misfit_of(*sums, *level, bins);
-    if (point.misfit < best.misfit) best = point;
+    if (point.misfit < best.misfit) {
+      best = point;
+    }
   }
   return best;
 }
@@ -110,22 +131,27 @@ void fourier_transform(std::vector<Complex>& data) {
   const std::size_t n = data.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
     std::size_t bit = n >> 1;
-    for (; j & bit; bit >>= 1)
+    for (; j & bit; bit >>= 1) {
       j ^= bit;
+    }
     j ^= bit;
-    if (i < j) std::swap(data[i], data[j]);
+    if (i < j) {
+      std::swap(data[i], data[j]);
+    }
   }
   for (std::size_t length = 2; length <= n; length *= 2) {
     const std::size_t half = length / 2;
     std::vector<Complex> turn(half);
     for (std::size_t k = 0; k < half; ++k) {
-      turn[k] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+      turn[k] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(k) /
+                                    static_cast<double>(length));
     }
     for (std::size_t i = 0; i < n; i += length) {
       for (std::size_t k = 0; k < half; ++k) {
         const Complex a = data[i + k];
         const Complex b = data[i + k + half];
-        const Complex turned{b.real() * turn[k].real() - b.imag() * turn[k].imag(), b.real() * turn[k].imag() + b.imag() * turn[k].real()};
+        const Complex turned{b.real() * turn[k].real() - b.imag() * turn[k].imag(),
+                             b.real() * turn[k].imag() + b.imag() * turn[k].real()};
         data[i + k] = a + turned;
         data[i + k + half] = a - turned;
       }
@@ -140,12 +166,14 @@ struct Cells {
 };
 
 // Phasors of cells of equal time, from groups short enough that a cell has several.
-Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, std::span<const Parameters> level, std::size_t count,
-                             bool whole) {
+Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency,
+                             std::span<const Parameters> level, std::size_t count, bool whole) {
   const std::size_t n = record.size();
   const std::size_t step = std::clamp<std::size_t>(n / (groups_a_cell * count), 1, block_samples);
   const std::size_t length =
-      whole ? step : std::clamp<std::size_t>(part_samples / (groups_a_cell * count), std::min<std::size_t>(step, lanes), step);
+      whole ? step
+            : std::clamp<std::size_t>(part_samples / (groups_a_cell * count),
+                                      std::min<std::size_t>(step, lanes), step);
   Cells cells;
   cells.phasors.assign(level.size(), std::vector<Complex>(padding * count));
   cells.square.assign(level.size(), 0.0);
@@ -156,11 +184,17 @@ Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, s
   for (std::size_t i = 0; i < n; i += step) {
     const std::size_t samples = std::min(length, n - i);
     DesignSums design;
-    if (!kernel.design(stamps + i, samples, axis, basis, design)) return tl::unexpected(record.not_increasing());
+    if (!kernel.design(stamps + i, samples, axis, basis, design)) {
+      return tl::unexpected(record.not_increasing());
+    }
     const std::int64_t middle_ns = stamps[i] + (stamps[i + samples - 1] - stamps[i]) / 2;
-    const double position = static_cast<double>(middle_ns - stamps[0]) / (2.0 * record.half_span_ns());
-    if (!(position >= 0.0 && position <= 1.0)) return tl::unexpected(record.not_increasing());
-    const std::size_t cell = std::min(count - 1, static_cast<std::size_t>(position * static_cast<double>(count)));
+    const double position =
+        static_cast<double>(middle_ns - stamps[0]) / (2.0 * record.half_span_ns());
+    if (!(position >= 0.0 && position <= 1.0)) {
+      return tl::unexpected(record.not_increasing());
+    }
+    const std::size_t cell =
+        std::min(count - 1, static_cast<std::size_t>(position * static_cast<double>(count)));
     for (std::size_t j = 0; j < level.size(); ++j) {
       ResidualSums sums;
       kernel.residuals(record.channels()[j].data() + i, samples, basis, level[j], sums);
@@ -172,37 +206,52 @@ Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency, s
   return cells;
 }
 
-Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start, double half_range_bins, bool whole) {
+Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start,
+                                    double half_range_bins, bool whole) {
   const auto level = levels(record, start, whole ? Selection{} : part_of(record.size()));
-  if (!level) return tl::unexpected(level.error());
+  if (!level) {
+    return tl::unexpected(level.error());
+  }
   const std::size_t count = std::bit_ceil(static_cast<std::size_t>(3.0 * half_range_bins));
   auto cells = cell_phasors(record, start, *level, count, whole);
-  if (!cells) return tl::unexpected(cells.error());
+  if (!cells) {
+    return tl::unexpected(cells.error());
+  }
   const std::size_t length = padding * count;
   std::vector<double> power(length, 0.0);
   for (std::size_t j = 0; j < level->size(); ++j) {
-    if (!std::isfinite(cells->square[j])) return tl::unexpected(record.not_finite());
+    if (!std::isfinite(cells->square[j])) {
+      return tl::unexpected(record.not_finite());
+    }
     fourier_transform(cells->phasors[j]);
-    // With the amplitude removed rss falls by 2 |Z|^2 / n; the sum of n log(rss) is what is to be smallest.
+    // With the amplitude removed rss falls by 2 |Z|^2 / n; the sum of n log(rss) is what is to be
+    // smallest.
     const double total = cells->square[j] + std::numeric_limits<double>::min();
     for (std::size_t k = 0; k < length; ++k) {
-      const double explained = std::min(2.0 * std::norm(cells->phasors[j][k]) / (cells->samples * total), 1.0 - 1e-12);
+      const double explained =
+          std::min(2.0 * std::norm(cells->phasors[j][k]) / (cells->samples * total), 1.0 - 1e-12);
       power[k] -= std::log1p(-explained);
     }
   }
-  const auto at = [&](std::ptrdiff_t k) { return power[static_cast<std::size_t>(k + static_cast<std::ptrdiff_t>(length)) % length]; };
+  const auto at = [&](std::ptrdiff_t k) {
+    return power[static_cast<std::size_t>(k + static_cast<std::ptrdiff_t>(length)) % length];
+  };
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(padding * half_range_bins));
   std::ptrdiff_t peak = -reach;
   for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
-    if (at(k) > at(peak)) peak = k;
+    if (at(k) > at(peak)) {
+      peak = k;
+    }
   }
-  // A parabola through the peak and its neighbours, of the explained part, hits to a few hundredths of a bin.
+  // A parabola through the peak and its neighbours, of the explained part, hits to a few hundredths
+  // of a bin.
   const double low = -std::expm1(-at(peak - 1));
   const double high = -std::expm1(-at(peak + 1));
   const double bend = 2.0 * -std::expm1(-at(peak)) - low - high;
   const double between = bend > 0.0 ? 0.5 * (high - low) / bend : 0.0;
   GridPoint best;
-  best.bins = (static_cast<double>(peak) + std::clamp(between, -0.5, 0.5)) / static_cast<double>(padding);
+  best.bins =
+      (static_cast<double>(peak) + std::clamp(between, -0.5, 0.5)) / static_cast<double>(padding);
   best.misfit = -at(peak);
   best.significance = std::sqrt(std::expm1(at(peak)) * cells->samples);
   return best;
@@ -210,24 +259,41 @@ Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start
 
 } // namespace
 
-Expected<Frequency> search_frequency(const Record& record, const Frequency& start, double search_rel) {
+Expected<Frequency> search_frequency(const Record& record, const Frequency& start,
+                                     double search_rel) {
   const double half_range_bins = search_rel * start.hz() * record.span_s();
-  if (half_range_bins <= basin_bins) return start;
-  const bool grid = half_range_bins < min_bins || start.hz() * (1.0 - search_rel) * record.span_s() < min_cycles;
+  if (half_range_bins <= basin_bins) {
+    return start;
+  }
+  const bool grid =
+      half_range_bins < min_bins || start.hz() * (1.0 - search_rel) * record.span_s() < min_cycles;
   const double bin_hz = 1.0 / record.span_s();
   const auto search = [&](bool whole) -> Expected<GridPoint> {
-    if (!grid) return search_spectrum(record, start, half_range_bins, whole);
-    if (whole) return search_grid(record, start, half_range_bins, bin_hz);
+    if (!grid) {
+      return search_spectrum(record, start, half_range_bins, whole);
+    }
+    if (whole) {
+      return search_grid(record, start, half_range_bins, bin_hz);
+    }
     const Excerpt excerpt(record, part_of(record.size()));
-    return excerpt.record().and_then([&](const Record& part) { return search_grid(part, start, half_range_bins, bin_hz); });
+    return excerpt.record().and_then(
+        [&](const Record& part) { return search_grid(part, start, half_range_bins, bin_hz); });
   };
   const Selection part = part_of(record.size());
   const bool long_record = part.length < part.step;
   auto found = search(!long_record);
-  if (found && found->significance < certain_amplitude && long_record) found = search(true);
-  if (!found && found.error().code == ErrorCode::stamps_not_increasing) return tl::unexpected(record.not_increasing());
-  if (!found && found.error().code == ErrorCode::not_finite) return tl::unexpected(record.not_finite());
-  if (!found) return tl::unexpected(found.error());
+  if (found && found->significance < certain_amplitude && long_record) {
+    found = search(true);
+  }
+  if (!found && found.error().code == ErrorCode::stamps_not_increasing) {
+    return tl::unexpected(record.not_increasing());
+  }
+  if (!found && found.error().code == ErrorCode::not_finite) {
+    return tl::unexpected(record.not_finite());
+  }
+  if (!found) {
+    return tl::unexpected(found.error());
+  }
   return start.shifted_by_hz(found->bins * bin_hz);
 }
 

@@ -49,8 +49,9 @@ struct Coefficients {
 template <class Moments>
 Complex dot(const Series& coefficients, const Moments& moments, std::size_t raised) {
   Complex sum = 0.0;
-  for (std::size_t m = 0; m + raised < moment_count; ++m)
+  for (std::size_t m = 0; m + raised < moment_count; ++m) {
     sum += times(coefficients[m], Complex(moments[m + raised]));
+  }
   return sum;
 }
 
@@ -87,7 +88,8 @@ void add_design(const DesignSeries& d, const Coefficients& k, ShiftedSums& resul
   slope.uusc -= 0.5 * xx[2].imag();
 }
 
-// What the change of the basis under fixed parameters adds to the residuals: p0's model at w0 less p0's model at the new frequency.
+// What the change of the basis under fixed parameters adds to the residuals: p0's model at w0 less
+// p0's model at the new frequency.
 struct DesignChange {
   Complex constant;              // sum x (1 - a)
   std::array<Complex, 3> direct; // sum u^j (1 - a)
@@ -95,8 +97,8 @@ struct DesignChange {
   Complex image_square;          // sum x^2 (1 - a)^2
 
   DesignChange(const DesignSeries& d, const Coefficients& k)
-      : constant(dot(k.loss, d.x, 0)), direct(weighted(k.loss, d.u, d.centre)), image(weighted(k.loss_times, d.xx, d.centre)),
-        image_square(dot(k.loss_square, d.xx, 0)) {}
+      : constant(dot(k.loss, d.x, 0)), direct(weighted(k.loss, d.u, d.centre)),
+        image(weighted(k.loss_times, d.xx, d.centre)), image_square(dot(k.loss_square, d.xx, 0)) {}
 
   // Sum of u^j (change) x_new.
   [[nodiscard]] Complex onto_basis(Complex p, std::size_t j) const {
@@ -104,12 +106,13 @@ struct DesignChange {
     return {-0.5 * sum.imag(), 0.5 * sum.real()}; // times i/2
   }
   [[nodiscard]] double squared(Complex p) const {
-    return std::norm(p) * direct[0].real() - 0.5 * times(times(p, p), std::conj(image_square)).real();
+    return std::norm(p) * direct[0].real() -
+           0.5 * times(times(p, p), std::conj(image_square)).real();
   }
 };
 
-void add_residuals(const Segment& segment, const Coefficients& k, const DesignChange& change, std::span<const Parameters> start,
-                   ShiftedSums& result) {
+void add_residuals(const Segment& segment, const Coefficients& k, const DesignChange& change,
+                   std::span<const Parameters> start, ShiftedSums& result) {
   for (std::size_t j = 0; j < start.size(); ++j) {
     const ResidualSeries& r = segment.channels[j];
     const Complex p{start[j].sine, start[j].cosine};
@@ -144,12 +147,14 @@ ResidualSeries residual_series(const ResidualMoments& moments) {
   ResidualSeries series;
   series.e = moments.e;
   series.ee = moments.ee;
-  for (std::size_t m = 0; m < moment_count; ++m)
+  for (std::size_t m = 0; m < moment_count; ++m) {
     series.ex[m] = {moments.uc[m], -moments.us[m]};
+  }
   return series;
 }
 
-void shift_sums(std::span<const Segment> segments, std::span<const Parameters> start, double delta, ShiftedSums& result) {
+void shift_sums(std::span<const Segment> segments, std::span<const Parameters> start, double delta,
+                ShiftedSums& result) {
   result.n = 0.0;
   result.design = {};
   result.slope = {};
@@ -158,11 +163,13 @@ void shift_sums(std::span<const Segment> segments, std::span<const Parameters> s
   for (const Segment& segment : segments) {
     const Coefficients coefficients(delta, segment.design->centre);
     add_design(*segment.design, coefficients, result);
-    add_residuals(segment, coefficients, DesignChange(*segment.design, coefficients), start, result);
+    add_residuals(segment, coefficients, DesignChange(*segment.design, coefficients), start,
+                  result);
   }
 }
 
-SlopeProfile profile_slope(const ShiftedSums& sums, const NormalMatrix& m, const Solution& solution, std::size_t channel) {
+SlopeProfile profile_slope(const ShiftedSums& sums, const NormalMatrix& m, const Solution& solution,
+                           std::size_t channel) {
   const SlopeSums& k = sums.slope;
   const ResidualSlopeSums& r = sums.residual_slopes[channel];
   const Parameters& p = solution.p;
@@ -177,15 +184,19 @@ SlopeProfile profile_slope(const ShiftedSums& sums, const NormalMatrix& m, const
   const double residual_cosine = r.euc - d.sine * k.usc - d.cosine * ucc - d.offset * k.uc;
   SlopeProfile profile;
   profile.gradient = p.sine * residual_cosine - p.cosine * residual_sine;
-  profile.whole = p.sine * p.sine * uucc - 2.0 * p.sine * p.cosine * k.uusc + p.cosine * p.cosine * k.uuss;
+  profile.whole =
+      p.sine * p.sine * uucc - 2.0 * p.sine * p.cosine * k.uusc + p.cosine * p.cosine * k.uuss;
   profile.coupling.sine = -(m.inverse_aa * with_sine + m.inverse_ab * with_cosine);
   profile.coupling.cosine = -(m.inverse_ab * with_sine + m.inverse_bb * with_cosine);
-  profile.coupling.offset = -with_one / m.n - profile.coupling.sine * m.s_mean - profile.coupling.cosine * m.c_mean;
-  profile.curvature = profile.whole - with_one * with_one / m.n + profile.coupling.sine * with_sine + profile.coupling.cosine * with_cosine;
+  profile.coupling.offset =
+      -with_one / m.n - profile.coupling.sine * m.s_mean - profile.coupling.cosine * m.c_mean;
+  profile.curvature = profile.whole - with_one * with_one / m.n +
+                      profile.coupling.sine * with_sine + profile.coupling.cosine * with_cosine;
   return profile;
 }
 
-FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<const Parameters> start, double delta, double limit,
+FrequencySolution solve_frequency(std::span<const Segment> segments,
+                                  std::span<const Parameters> start, double delta, double limit,
                                   double settled) {
   constexpr int max_steps = 60;
   FrequencySolution result;
@@ -203,18 +214,25 @@ FrequencySolution solve_frequency(std::span<const Segment> segments, std::span<c
       const Solution& solution = result.channels.back();
       result.slopes.push_back(profile_slope(sums, result.matrix, solution, j));
       // A channel without noise still has that of its rounding.
-      const double floor = 1e-32 * (std::norm(Complex(solution.p.sine, solution.p.cosine)) + solution.p.offset * solution.p.offset);
+      const double floor = 1e-32 * (std::norm(Complex(solution.p.sine, solution.p.cosine)) +
+                                    solution.p.offset * solution.p.offset);
       const double variance =
-          std::max(solution.rss / (sums.n - 3.0 - 1.0 / static_cast<double>(start.size())), floor + std::numeric_limits<double>::min());
+          std::max(solution.rss / (sums.n - 3.0 - 1.0 / static_cast<double>(start.size())),
+                   floor + std::numeric_limits<double>::min());
       gradient += result.slopes.back().gradient / variance;
       curvature += result.slopes.back().curvature / variance;
     }
-    result.u_delta = curvature > 0.0 ? 1.0 / std::sqrt(curvature) : std::numeric_limits<double>::infinity();
+    result.u_delta =
+        curvature > 0.0 ? 1.0 / std::sqrt(curvature) : std::numeric_limits<double>::infinity();
     result.last_step = curvature > 0.0 ? gradient / curvature : 0.0;
     result.settled = std::abs(result.last_step) < settled;
-    if (result.settled || !(curvature > 0.0)) break;
+    if (result.settled || !(curvature > 0.0)) {
+      break;
+    }
     const double next = std::clamp(result.delta + result.last_step, -limit, limit);
-    if (next == result.delta) break; // held at the limit
+    if (next == result.delta) {
+      break; // held at the limit
+    }
     result.delta = next;
   }
   return result;
@@ -230,18 +248,22 @@ SineFit channel_fit(const FrequencySolution& all, std::size_t channel, double sh
   fit.samples = static_cast<std::uint64_t>(all.matrix.n);
   fit.degrees_of_freedom = all.matrix.n - 3.0 - 1.0 / static_cast<double>(all.channels.size());
   fit.covariance = unit_covariance(all.matrix);
-  for (double& element : fit.covariance)
+  for (double& element : fit.covariance) {
     element *= fit.rss / fit.degrees_of_freedom;
+  }
   rotate(fit, turns);
-  // The estimated frequency moves the parameters: by the coupling at the origin, and by the turn to the reference.
+  // The estimated frequency moves the parameters: by the coupling at the origin, and by the turn to
+  // the reference.
   const auto [s, c] = sine_cosine_of_turns(turns);
   const Parameters& k = all.slopes[channel].coupling;
-  const double along[3] = {k.sine * c - k.cosine * s - shift * fit.cosine, k.sine * s + k.cosine * c + shift * fit.sine, k.offset};
+  const double along[3] = {k.sine * c - k.cosine * s - shift * fit.cosine,
+                           k.sine * s + k.cosine * c + shift * fit.sine, k.offset};
   const double variance = all.u_delta * all.u_delta;
   std::size_t element = 0;
   for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column)
+    for (int column = row; column < 3; ++column) {
       fit.covariance[element++] += along[row] * along[column] * variance;
+    }
   }
   return fit;
 }

@@ -41,7 +41,8 @@ double robust_slope(Weighting weighting, double residual, double scale) {
 }
 
 double robust_scale(std::span<double> absolute_residuals) {
-  const auto middle = absolute_residuals.begin() + static_cast<std::ptrdiff_t>(absolute_residuals.size() / 2);
+  const auto middle =
+      absolute_residuals.begin() + static_cast<std::ptrdiff_t>(absolute_residuals.size() / 2);
   std::nth_element(absolute_residuals.begin(), middle, absolute_residuals.end());
   return median_to_sd * *middle;
 }

@@ -14,12 +14,13 @@ namespace {
 
 using namespace kernel;
 
-// The start values come from groups of eight samples spread over the record; a short record is its own start.
+// The start values come from groups of eight samples spread over the record; a short record is its
+// own start.
 constexpr std::size_t pilot_groups = 16;
 constexpr std::size_t pilot_samples = pilot_groups * lanes;
 
-// Without start values for sine and cosine a pass is quicker, but the residual sum of squares is the difference of numbers this many
-// times as large: 10 digits of it are kept.
+// Without start values for sine and cosine a pass is quicker, but the residual sum of squares is
+// the difference of numbers this many times as large: 10 digits of it are kept.
 constexpr double max_cancellation = 1e6;
 
 struct Start {
@@ -30,31 +31,42 @@ struct Start {
 // Calls see(first, n) for every group.
 template <class See>
 void for_each_pilot_group(std::size_t samples, See see) {
-  for (std::size_t group = 0; group < pilot_groups; ++group)
+  for (std::size_t group = 0; group < pilot_groups; ++group) {
     see(group * (samples / pilot_groups), group * lanes);
+  }
 }
 
-Expected<PassSums> pilot_sums(const Record& record, const Frequency& frequency, std::span<const Parameters> start) {
-  if (record.size() < 2 * pilot_samples) return accumulate(record, frequency, start);
+Expected<PassSums> pilot_sums(const Record& record, const Frequency& frequency,
+                              std::span<const Parameters> start) {
+  if (record.size() < 2 * pilot_samples) {
+    return accumulate(record, frequency, start);
+  }
   std::array<std::int64_t, pilot_samples> stamps;
   std::vector<double> values(pilot_samples * start.size());
   for_each_pilot_group(record.size(), [&](std::size_t from, std::size_t to) {
     std::copy_n(record.stamps().data() + from, lanes, stamps.data() + to);
-    for (std::size_t j = 0; j < start.size(); ++j)
-      std::copy_n(record.channels()[j].data() + from, lanes, values.data() + j * pilot_samples + to);
+    for (std::size_t j = 0; j < start.size(); ++j) {
+      std::copy_n(record.channels()[j].data() + from, lanes,
+                  values.data() + j * pilot_samples + to);
+    }
   });
   return accumulate(record, frequency, start, stamps, values);
 }
 
-// Parameters that leave residuals of the size of the noise, or the plain level when the groups do not tell more or `plain_allowed`
-// and the noise is large enough for it.
+// Parameters that leave residuals of the size of the noise, or the plain level when the groups do
+// not tell more or `plain_allowed` and the noise is large enough for it.
 Expected<Start> pilot(const Record& record, const Frequency& frequency, bool plain_allowed) {
   Start start;
-  for (const auto& channel : record.channels())
+  for (const auto& channel : record.channels()) {
     start.parameters.push_back({0.0, 0.0, channel.front()});
+  }
   const auto sums = pilot_sums(record, frequency, start.parameters);
-  if (!sums) return tl::unexpected(sums.error());
-  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
+  if (!sums) {
+    return tl::unexpected(sums.error());
+  }
+  if (!all_finite(*sums)) {
+    return tl::unexpected(record.not_finite());
+  }
   const NormalMatrix matrix(sums->samples, sums->design);
   start.plain = plain_allowed && matrix.smallest > 0.1;
   for (std::size_t j = 0; j < start.parameters.size(); ++j) {
@@ -62,24 +74,28 @@ Expected<Start> pilot(const Record& record, const Frequency& frequency, bool pla
     if (matrix.smallest > 1e-2) {
       const Solution solution = solve(matrix, sums->channels[j], p);
       p = solution.p;
-      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples < max_cancellation * solution.rss;
+      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples <
+                     max_cancellation * solution.rss;
     } else {
       p.offset += sums->channels[j].e / sums->samples;
     }
   }
   if (start.plain) {
-    for (Parameters& p : start.parameters)
+    for (Parameters& p : start.parameters) {
       p.sine = p.cosine = 0.0;
+    }
   }
   return start;
 }
 
-// Another pass about the result is worth its time when the start was far off, so that the last digits of the sums matter.
+// Another pass about the result is worth its time when the start was far off, so that the last
+// digits of the sums matter.
 bool too_far(const NormalMatrix& matrix, const Solution& solution, double cancellation) {
   constexpr double rounding = 1e-15;
   const double step = std::hypot(solution.step.sine, solution.step.cosine);
   const double size = std::hypot(solution.p.sine, solution.p.cosine);
-  return solution.ee > cancellation * solution.rss + rounding * rounding * size * size * matrix.n || step * 1e-2 > matrix.smallest * size;
+  return solution.ee > cancellation * solution.rss + rounding * rounding * size * size * matrix.n ||
+         step * 1e-2 > matrix.smallest * size;
 }
 
 SineFit fit_from(const Record& record, const NormalMatrix& matrix, const Solution& solution) {
@@ -91,15 +107,17 @@ SineFit fit_from(const Record& record, const NormalMatrix& matrix, const Solutio
   fit.samples = record.size();
   fit.degrees_of_freedom = static_cast<double>(record.size()) - 3.0;
   fit.covariance = unit_covariance(matrix);
-  for (double& element : fit.covariance)
+  for (double& element : fit.covariance) {
     element *= solution.rss / fit.degrees_of_freedom;
+  }
   return fit;
 }
 
 Error ill_conditioned(const Record& record, const Frequency& frequency) {
-  return {ErrorCode::ill_conditioned, "sine, cosine and constant of " + std::to_string(frequency.hz()) +
-                                          " Hz cannot be told apart in this record of " + std::to_string(record.span_s()) +
-                                          " s; record more of a period, or at instants that differ in phase"};
+  return {ErrorCode::ill_conditioned,
+          "sine, cosine and constant of " + std::to_string(frequency.hz()) +
+              " Hz cannot be told apart in this record of " + std::to_string(record.span_s()) +
+              " s; record more of a period, or at instants that differ in phase"};
 }
 
 } // namespace
@@ -114,46 +132,69 @@ double SineFit::phase_rad() const {
 
 double SineFit::u_amplitude() const {
   const double size = amplitude();
-  if (size == 0.0) return std::sqrt(std::max(covariance[0], covariance[3]));
+  if (size == 0.0) {
+    return std::sqrt(std::max(covariance[0], covariance[3]));
+  }
   const double a = sine / size;
   const double b = cosine / size;
-  return std::sqrt(std::max(0.0, a * a * covariance[0] + 2.0 * a * b * covariance[1] + b * b * covariance[3]));
+  return std::sqrt(
+      std::max(0.0, a * a * covariance[0] + 2.0 * a * b * covariance[1] + b * b * covariance[3]));
 }
 
 double SineFit::u_phase_rad() const {
   const double size = amplitude();
-  if (size == 0.0) return std::numeric_limits<double>::infinity();
+  if (size == 0.0) {
+    return std::numeric_limits<double>::infinity();
+  }
   const double a = sine / size;
   const double b = cosine / size;
-  return std::sqrt(std::max(0.0, b * b * covariance[0] - 2.0 * a * b * covariance[1] + a * a * covariance[3])) / size;
+  return std::sqrt(std::max(0.0, b * b * covariance[0] - 2.0 * a * b * covariance[1] +
+                                     a * a * covariance[3])) /
+         size;
 }
 
 double SineFit::residual_sd() const {
   return degrees_of_freedom > 0.0 ? std::sqrt(rss / degrees_of_freedom) : 0.0;
 }
 
-Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t reference_ns,
+                                        std::span<const std::int64_t> stamps_ns,
                                         std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 3);
-  if (!record) return tl::unexpected(record.error());
-  if (const auto carried = record->carries(frequency); !carried) return tl::unexpected(carried.error());
+  if (!record) {
+    return tl::unexpected(record.error());
+  }
+  if (const auto carried = record->carries(frequency); !carried) {
+    return tl::unexpected(carried.error());
+  }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_argument,
+              "the reference instant is more than 292 years away from the record"});
   }
   record->fetch_beginning();
   const auto grid = sample_grid(record->stamps(), frequency);
   auto start = pilot(*record, frequency, grid.has_value());
-  if (!start) return tl::unexpected(start.error());
+  if (!start) {
+    return tl::unexpected(start.error());
+  }
 
   std::vector<SineFit> fits(channels.size());
   constexpr int max_passes = 3;
   for (int pass = 1; pass <= max_passes; ++pass) {
-    const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid) : accumulate(*record, frequency, start->parameters);
-    if (!sums) return tl::unexpected(sums.error());
-    if (!all_finite(*sums)) return tl::unexpected(record->not_finite());
+    const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid)
+                           : accumulate(*record, frequency, start->parameters);
+    if (!sums) {
+      return tl::unexpected(sums.error());
+    }
+    if (!all_finite(*sums)) {
+      return tl::unexpected(record->not_finite());
+    }
     const NormalMatrix matrix(sums->samples, sums->design);
-    if (!matrix.well_conditioned()) return tl::unexpected(ill_conditioned(*record, frequency));
+    if (!matrix.well_conditioned()) {
+      return tl::unexpected(ill_conditioned(*record, frequency));
+    }
     bool again = false;
     for (std::size_t j = 0; j < fits.size(); ++j) {
       const Solution solution = solve(matrix, sums->channels[j], start->parameters[j]);
@@ -161,16 +202,21 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
       start->parameters[j] = solution.p;
       again |= too_far(matrix, solution, start->plain ? 4.0 * max_cancellation : 4.0);
     }
-    if (!again) break;
+    if (!again) {
+      break;
+    }
     start->plain = false;
   }
   if (std::none_of(fits.begin(), fits.end(), [](const SineFit& fit) { return stands_out(fit); })) {
-    return tl::unexpected(Error{ErrorCode::no_excitation, "no sine of " + std::to_string(frequency.hz()) +
-                                                              " Hz stands out of the noise in any channel; check frequency and window"});
+    return tl::unexpected(
+        Error{ErrorCode::no_excitation,
+              "no sine of " + std::to_string(frequency.hz()) +
+                  " Hz stands out of the noise in any channel; check frequency and window"});
   }
   const double turns = frequency.reduced_turns(shift_ns);
-  for (SineFit& fit : fits)
+  for (SineFit& fit : fits) {
     rotate(fit, turns);
+  }
   return fits;
 }
 

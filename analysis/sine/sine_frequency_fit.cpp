@@ -1,14 +1,15 @@
-// Four parameters: search, then passes over the samples, each followed by the solution of the whole nonlinear problem in the
-// frequency on the series of that pass (sine_series.hpp). Long records take their first passes on an eighth of the samples;
-// one pass over all of them is then enough as a rule.
+// Four parameters: search, then passes over the samples, each followed by the solution of the whole
+// nonlinear problem in the frequency on the series of that pass (sine_series.hpp). Long records
+// take their first passes on an eighth of the samples; one pass over all of them is then enough as
+// a rule.
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/sine_pass.hpp"
 #include "analysis/sine/frequency_search.hpp"
 #include "analysis/sine/frequency_series.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_pass.hpp"
 #include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis {
@@ -18,8 +19,9 @@ using namespace kernel;
 
 constexpr int max_passes = 40;
 constexpr std::size_t long_record = 16 * block_samples; // its first passes look at a part of it
-constexpr double series_limit = 0.5;                    // rad over half the record that one series may be moved
-constexpr double allowed_error_rad = 1e-11;             // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
+constexpr double series_limit = 0.5; // rad over half the record that one series may be moved
+constexpr double allowed_error_rad =
+    1e-11; // of the phase at the ends of the record; the stop rule |dw| T < 1e-9 demands less
 
 struct Estimate {
   Frequency frequency; // expansion frequency of the pass
@@ -36,101 +38,151 @@ double radians_to_hz(const Record& record, double delta) {
   return delta / (3.141592653589793 * record.span_s());
 }
 
-// What the series left out, in radians: orders of the residual moments from u^2 on, of the design from u^3 on, and its end.
+// What the series left out, in radians: orders of the residual moments from u^2 on, of the design
+// from u^3 on, and its end.
 double series_error(const SeriesSums& sums, const FrequencySolution& solution) {
-  double residual = 0.0; // against the amplitude: noise averages out, what the start parameters miss does not
+  double residual =
+      0.0; // against the amplitude: noise averages out, what the start parameters miss does not
   for (const Solution& channel : solution.channels) {
     const double size = std::hypot(channel.p.sine, channel.p.cosine);
     const double n = solution.matrix.n;
-    const double left = std::sqrt(channel.rss) / n + std::sqrt(std::max(0.0, channel.ee - channel.rss) / n);
-    residual = std::max(residual, left < size ? left / size : 0.0); // a channel without the sine has no say in the frequency
+    const double left =
+        std::sqrt(channel.rss) / n + std::sqrt(std::max(0.0, channel.ee - channel.rss) / n);
+    residual = std::max(
+        residual,
+        left < size ? left / size : 0.0); // a channel without the sine has no say in the frequency
   }
   const double delta = std::abs(solution.delta);
   const double length = sums.block_half_length;
-  return 3.0 * residual * delta * length * length + std::pow(delta * length, 3) + std::pow(delta, 6) / 120.0;
+  return 3.0 * residual * delta * length * length + std::pow(delta * length, 3) +
+         std::pow(delta, 6) / 120.0;
 }
 
 Expected<void> pass(const Record& record, Selection selection, Estimate& estimate, double& error) {
   const auto sums = accumulate_series(record, estimate.frequency, estimate.start, selection);
-  if (!sums) return tl::unexpected(sums.error());
-  if (!all_finite(*sums)) return tl::unexpected(record.not_finite());
+  if (!sums) {
+    return tl::unexpected(sums.error());
+  }
+  if (!all_finite(*sums)) {
+    return tl::unexpected(record.not_finite());
+  }
   const Segment segment = sums->segment();
   estimate.solution = solve_frequency({&segment, 1}, estimate.start, 0.0, series_limit);
   ++estimate.passes;
   const FrequencySolution& solution = estimate.solution;
   if (!solution.matrix.well_conditioned() || !std::isfinite(solution.u_delta)) {
-    return fail(ErrorCode::ill_conditioned, "frequency, sine, cosine and constant near " + std::to_string(estimate.frequency.hz()) +
-                                                " Hz cannot be told apart in this record; record more periods");
+    return fail(ErrorCode::ill_conditioned,
+                "frequency, sine, cosine and constant near " +
+                    std::to_string(estimate.frequency.hz()) +
+                    " Hz cannot be told apart in this record; record more periods");
   }
   error = solution.settled ? series_error(*sums, solution) : series_limit;
   return {};
 }
 
 void move_on(const Record& record, Estimate& estimate) {
-  estimate.frequency = estimate.frequency.shifted_by_hz(radians_to_hz(record, estimate.solution.delta));
-  for (std::size_t j = 0; j < estimate.start.size(); ++j)
+  estimate.frequency =
+      estimate.frequency.shifted_by_hz(radians_to_hz(record, estimate.solution.delta));
+  for (std::size_t j = 0; j < estimate.start.size(); ++j) {
     estimate.start[j] = estimate.solution.channels[j].p;
+  }
 }
 
 // Passes over the selection until the error is allowed.
-Expected<void> iterate(const Record& record, Selection selection, double allowed, Estimate& estimate) {
+Expected<void> iterate(const Record& record, Selection selection, double allowed,
+                       Estimate& estimate) {
   while (estimate.passes < max_passes) {
     double error = 0.0;
-    if (auto done = pass(record, selection, estimate, error); !done) return done;
-    if (error < allowed) return {};
+    if (auto done = pass(record, selection, estimate, error); !done) {
+      return done;
+    }
+    if (error < allowed) {
+      return {};
+    }
     move_on(record, estimate);
-    if (!(estimate.frequency.hz() > 0.0)) break;
+    if (!(estimate.frequency.hz() > 0.0)) {
+      break;
+    }
   }
-  return fail(ErrorCode::not_converged,
-              "the frequency near " + std::to_string(estimate.frequency.hz()) + " Hz did not settle; check that one sine dominates");
+  return fail(ErrorCode::not_converged, "the frequency near " +
+                                            std::to_string(estimate.frequency.hz()) +
+                                            " Hz did not settle; check that one sine dominates");
 }
 
 Expected<void> check_arguments(const Record& record, const Frequency& start, double search_rel) {
   if (!(search_rel >= 0.0 && search_rel < 1.0)) {
-    return fail(ErrorCode::invalid_argument, "the search range of the frequency must be at least 0 and below 1, relative to the start");
+    return fail(
+        ErrorCode::invalid_argument,
+        "the search range of the frequency must be at least 0 and below 1, relative to the start");
   }
   return record.carries(start);
 }
 
 Expected<Estimate> estimate_of(const Record& record, const Frequency& start, double search_rel) {
   auto found = search_frequency(record, start, search_rel);
-  if (!found) return tl::unexpected(found.error());
+  if (!found) {
+    return tl::unexpected(found.error());
+  }
   Estimate estimate{*found, {}, {}, 0};
-  for (const auto& channel : record.channels())
+  for (const auto& channel : record.channels()) {
     estimate.start.push_back({0.0, 0.0, channel.front()});
+  }
   if (record.size() >= long_record) {
     constexpr double close_rad = 0.02;
-    const std::size_t length = std::clamp<std::size_t>(record.size() / 512, 64, grid_samples) / lanes * lanes;
+    const std::size_t length =
+        std::clamp<std::size_t>(record.size() / 512, 64, grid_samples) / lanes * lanes;
     const Selection part{length, (record.size() < 8 * long_record ? 8 : 16) * length};
     // A part that does not settle decides nothing; the whole record is tried all the same.
     const auto done = iterate(record, part, close_rad, estimate);
-    if (!done && done.error().code != ErrorCode::not_converged) return tl::unexpected(done.error());
-    if (!done) estimate.frequency = *found;
-    if (done) move_on(record, estimate);
+    if (!done && done.error().code != ErrorCode::not_converged) {
+      return tl::unexpected(done.error());
+    }
+    if (!done) {
+      estimate.frequency = *found;
+    }
+    if (done) {
+      move_on(record, estimate);
+    }
     estimate.passes = 0;
   }
   // Short blocks in short records: the series is exact up to the square of their length.
   const std::size_t wanted = std::clamp<std::size_t>(record.size() / 64, 64, grid_call_samples);
-  const std::size_t length = wanted / (wanted < grid_samples ? lanes : grid_samples) * (wanted < grid_samples ? lanes : grid_samples);
-  if (const auto done = iterate(record, {length, length}, allowed_error_rad, estimate); !done) return tl::unexpected(done.error());
+  const std::size_t length = wanted / (wanted < grid_samples ? lanes : grid_samples) *
+                             (wanted < grid_samples ? lanes : grid_samples);
+  if (const auto done = iterate(record, {length, length}, allowed_error_rad, estimate); !done) {
+    return tl::unexpected(done.error());
+  }
   return estimate;
 }
 
 } // namespace
 
-Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double search_rel, std::int64_t reference_ns,
-                                              std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
+Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double search_rel,
+                                              std::int64_t reference_ns,
+                                              std::span<const std::int64_t> stamps_ns,
+                                              std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 4);
-  if (!record) return tl::unexpected(record.error());
-  if (const auto checked = check_arguments(*record, start, search_rel); !checked) return tl::unexpected(checked.error());
+  if (!record) {
+    return tl::unexpected(record.error());
+  }
+  if (const auto checked = check_arguments(*record, start, search_rel); !checked) {
+    return tl::unexpected(checked.error());
+  }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
-    return fail(ErrorCode::invalid_argument, "the reference instant is more than 292 years away from the record");
+    return fail(ErrorCode::invalid_argument,
+                "the reference instant is more than 292 years away from the record");
   }
   const auto estimate = estimate_of(*record, start, search_rel);
-  if (!estimate) return tl::unexpected(estimate.error());
+  if (!estimate) {
+    return tl::unexpected(estimate.error());
+  }
 
-  FrequencyFit result{estimate->frequency.shifted_by_hz(radians_to_hz(*record, estimate->solution.delta)), 0.0, {}, estimate->passes};
+  FrequencyFit result{
+      estimate->frequency.shifted_by_hz(radians_to_hz(*record, estimate->solution.delta)),
+      0.0,
+      {},
+      estimate->passes};
   result.u_frequency_hz = radians_to_hz(*record, estimate->solution.u_delta);
   const double turns = result.frequency.reduced_turns(shift_ns);
   const double reference_shift = static_cast<double>(shift_ns) / record->half_span_ns();
@@ -142,14 +194,20 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
     result.channels.push_back(channel_fit(estimate->solution, j, reference_shift, turns));
   }
   if (!excited) {
-    return fail(ErrorCode::no_excitation, "no sine near " + std::to_string(start.hz()) +
-                                              " Hz stands out of the noise in any channel; check frequency, search range and window");
+    return fail(
+        ErrorCode::no_excitation,
+        "no sine near " + std::to_string(start.hz()) +
+            " Hz stands out of the noise in any channel; check frequency, search range and window");
   }
-  if (std::abs(result.frequency.hz() - start.hz()) > search_rel * start.hz() + 2.0 / record->span_s()) {
-    return fail(ErrorCode::not_converged, "the frequency moved to " + std::to_string(result.frequency.hz()) +
-                                              " Hz, outside of the search range; check the start frequency");
+  if (std::abs(result.frequency.hz() - start.hz()) >
+      search_rel * start.hz() + 2.0 / record->span_s()) {
+    return fail(ErrorCode::not_converged,
+                "the frequency moved to " + std::to_string(result.frequency.hz()) +
+                    " Hz, outside of the search range; check the start frequency");
   }
-  if (const auto carried = record->carries(result.frequency); !carried) return tl::unexpected(carried.error());
+  if (const auto carried = record->carries(result.frequency); !carried) {
+    return tl::unexpected(carried.error());
+  }
   return result;
 }
 

@@ -7,7 +7,8 @@
 
 namespace dyncal::analysis::kernel {
 
-NormalMatrix::NormalMatrix(double samples, const DesignSums& sums) : n(samples), s_mean(sums.s / samples), c_mean(sums.c / samples) {
+NormalMatrix::NormalMatrix(double samples, const DesignSums& sums)
+    : n(samples), s_mean(sums.s / samples), c_mean(sums.c / samples) {
   const double aa = sums.ss - sums.s * s_mean;
   const double ab = sums.sc - sums.s * c_mean;
   const double bb = (samples - sums.ss) - sums.c * c_mean;
@@ -30,11 +31,16 @@ Solution solve(const NormalMatrix& matrix, const ResidualSums& sums, const Param
   Solution result;
   result.step.sine = matrix.inverse_aa * u + matrix.inverse_ab * v;
   result.step.cosine = matrix.inverse_ab * u + matrix.inverse_bb * v;
-  result.step.offset = sums.e / matrix.n - result.step.sine * matrix.s_mean - result.step.cosine * matrix.c_mean;
-  result.p = {start.sine + result.step.sine, start.cosine + result.step.cosine, start.offset + result.step.offset};
+  result.step.offset =
+      sums.e / matrix.n - result.step.sine * matrix.s_mean - result.step.cosine * matrix.c_mean;
+  result.p = {start.sine + result.step.sine, start.cosine + result.step.cosine,
+              start.offset + result.step.offset};
   result.ee = sums.ee;
-  result.rss = std::max(0.0, sums.ee - sums.e * (sums.e / matrix.n) - result.step.sine * u - result.step.cosine * v);
-  if (!std::isfinite(sums.ee)) result.rss = sums.ee;
+  result.rss = std::max(0.0, sums.ee - sums.e * (sums.e / matrix.n) - result.step.sine * u -
+                                 result.step.cosine * v);
+  if (!std::isfinite(sums.ee)) {
+    result.rss = sums.ee;
+  }
   return result;
 }
 

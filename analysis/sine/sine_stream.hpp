@@ -1,17 +1,19 @@
 // Sine approximation while the samples arrive: the result is ready when the last sample is.
 //
-// Samples are reduced in blocks of 64, counted from the first: of each block its sums and its series in the frequency
-// (sine_series.hpp) are kept, the samples themselves are not. The state, and so every bit of a result, depends on the samples
-// alone and not on how they were cut into pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share
-// the stamps. Phases refer to the first stamp inside, results to the caller's reference instant.
+// Samples are reduced in blocks of 64, counted from the first: of each block its sums and its
+// series in the frequency (sine_series.hpp) are kept, the samples themselves are not. The state,
+// and so every bit of a result, depends on the samples alone and not on how they were cut into
+// pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share the stamps.
+// Phases refer to the first stamp inside, results to the caller's reference instant.
 //
-// fit() evaluates at the frequency given at the start, from running sums: with the push of the last sample it is there in well under a
-// microsecond, whatever that sample closes (the series of a full block is made while the next samples come).
-// fit_with_frequency() refines the frequency (shared by all channels, as fit_sine_and_frequency) on the kept series, without the
-// samples: exact while the refined frequency is within about 0.1 turns per block half length of the start, which is checked
-// (not_converged names it). Its residual sum of squares keeps 16 digits of the squared amplitude, not of the noise.
-// Memory: about 600 bytes a block and 250 a block and channel. A record spans at most 13 days.
-// One thread at a time; no locks.
+// fit() evaluates at the frequency given at the start, from running sums: with the push of the last
+// sample it is there in well under a microsecond, whatever that sample closes (the series of a full
+// block is made while the next samples come). fit_with_frequency() refines the frequency (shared by
+// all channels, as fit_sine_and_frequency) on the kept series, without the samples: exact while the
+// refined frequency is within about 0.1 turns per block half length of the start, which is checked
+// (not_converged names it). Its residual sum of squares keeps 16 digits of the squared amplitude,
+// not of the noise. Memory: about 600 bytes a block and 250 a block and channel. A record spans at
+// most 13 days. One thread at a time; no locks.
 #pragma once
 
 #include <cstddef>
@@ -37,17 +39,21 @@ public:
   // Another stream in the same state, to try how it would go on.
   [[nodiscard]] SineStream clone() const;
 
-  // Appends samples; every channel as many values as there are stamps. After a failure (stamps_not_increasing, not_finite,
-  // invalid_argument) nothing of this call counts and the stream is as before.
-  [[nodiscard]] Expected<void> push(std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels);
+  // Appends samples; every channel as many values as there are stamps. After a failure
+  // (stamps_not_increasing, not_finite, invalid_argument) nothing of this call counts and the
+  // stream is as before.
+  [[nodiscard]] Expected<void> push(std::span<const std::int64_t> stamps_ns,
+                                    std::span<const std::span<const double>> channels);
 
   [[nodiscard]] std::uint64_t samples() const;
 
-  // The fit of everything pushed so far, at the frequency of the start; more may be pushed afterwards.
+  // The fit of everything pushed so far, at the frequency of the start; more may be pushed
+  // afterwards.
   [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t reference_ns) const;
 
   // The same with the frequency refined within start * (1 +- search_rel).
-  [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel, std::int64_t reference_ns) const;
+  [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel,
+                                                          std::int64_t reference_ns) const;
 
 private:
   class State;

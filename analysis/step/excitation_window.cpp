@@ -13,15 +13,16 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::int64_t max_frame_ns = 100'000'000;
-constexpr double max_periods = 50.0;          // more, and a frequency 1e-3 off would fade within the frame
-constexpr std::size_t min_samples = 8;      // of a frame that can be judged
+constexpr double max_periods = 50.0;   // more, and a frequency 1e-3 off would fade within the frame
+constexpr std::size_t min_samples = 8; // of a frame that can be judged
 constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
 constexpr double phase_margin_rad = 0.15;
 constexpr double slice_s = 0.05;
 
 std::int64_t frame_length_ns(const Frequency& frequency) {
   const double period_ns = 1e9 / frequency.hz();
-  return std::llround(std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns)));
+  return std::llround(
+      std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns)));
 }
 
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
@@ -48,10 +49,12 @@ struct Design { // of one frame: sine and cosine of every sample, and their sums
 
 } // namespace
 
-ExcitationWindowFinder::ExcitationWindowFinder(const Frequency& frequency, const ExcitationWindowSettings& settings)
+ExcitationWindowFinder::ExcitationWindowFinder(const Frequency& frequency,
+                                               const ExcitationWindowSettings& settings)
     : frequency_(frequency), settings_(settings), frame_ns_(frame_length_ns(frequency)) {}
 
-void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) {
+void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns,
+                                  std::span<const double> sync) {
   assert(stamps_ns.size() == sync.size());
   for (std::size_t i = 0; i < stamps_ns.size() && !ended_;) {
     const std::size_t run = samples_of_open_frame(stamps_ns.subspan(i), sync.subspan(i));
@@ -70,13 +73,19 @@ void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns, std::
 }
 
 // How many of them, one after the other, belong to the frame that is open.
-std::size_t ExcitationWindowFinder::samples_of_open_frame(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) const {
-  if (!origin_ns_) return 0;
+std::size_t ExcitationWindowFinder::samples_of_open_frame(std::span<const std::int64_t> stamps_ns,
+                                                          std::span<const double> sync) const {
+  if (!origin_ns_) {
+    return 0;
+  }
   const std::int64_t end_ns = (open_index_ + 1) * frame_ns_;
   std::int64_t last_ns = last_stamp_ns_;
   std::size_t run = 0;
-  for (; run < stamps_ns.size() && stamps_ns[run] > last_ns && stamps_ns[run] < end_ns && std::isfinite(sync[run]); ++run)
+  for (; run < stamps_ns.size() && stamps_ns[run] > last_ns && stamps_ns[run] < end_ns &&
+         std::isfinite(sync[run]);
+       ++run) {
     last_ns = stamps_ns[run];
+  }
   return run;
 }
 
@@ -96,16 +105,22 @@ void ExcitationWindowFinder::begin_frame_or_ignore(std::int64_t stamp_ns, double
   if (index != open_index_) {
     close_frame();
     open_index_ = index;
-    if (ended_) return;
+    if (ended_) {
+      return;
+    }
   }
   stamps_ns_.push_back(stamp_ns);
   values_.push_back(sync);
 }
 
 void ExcitationWindowFinder::finish() {
-  if (ended_) return;
+  if (ended_) {
+    return;
+  }
   close_frame();
-  if (!ended_) close_run();
+  if (!ended_) {
+    close_run();
+  }
 }
 
 std::optional<ExcitationWindow> ExcitationWindowFinder::window() const {
@@ -116,7 +131,9 @@ void ExcitationWindowFinder::close_frame() {
   const Frame frame = approximate();
   stamps_ns_.clear();
   values_.clear();
-  if (frame.usable) take(frame);
+  if (frame.usable) {
+    take(frame);
+  }
 }
 
 // Three-parameter sine approximation about the mean, then the residuals.
@@ -124,7 +141,9 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   Frame frame;
   frame.index = open_index_;
   const std::size_t n = stamps_ns_.size();
-  if (n < min_samples || stamps_ns_.back() - stamps_ns_.front() < frame_ns_ / 2) return frame;
+  if (n < min_samples || stamps_ns_.back() - stamps_ns_.front() < frame_ns_ / 2) {
+    return frame;
+  }
 
   const std::int64_t centre_ns = open_index_ * frame_ns_ + frame_ns_ / 2;
   const double count = static_cast<double>(n);
@@ -154,11 +173,14 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
     yc += y * c;
   }
   const double determinant = ss * cc - sc * sc;
-  if (determinant < 1e-3 * count * count / 4.0) return frame; // sine and cosine look alike at these instants
+  if (determinant < 1e-3 * count * count / 4.0) {
+    return frame; // sine and cosine look alike at these instants
+  }
   const double sine = (cc * ys - sc * yc) / determinant;
   const double cosine = (ss * yc - sc * ys) / determinant;
 
-  const auto slices = static_cast<std::size_t>(std::max(10.0, std::ceil(static_cast<double>(frame_ns_) * 1e-9 / slice_s)));
+  const auto slices = static_cast<std::size_t>(
+      std::max(10.0, std::ceil(static_cast<double>(frame_ns_) * 1e-9 / slice_s)));
   const double slices_a_ns = static_cast<double>(slices) / static_cast<double>(frame_ns_);
   const auto slice_of = [&](std::int64_t stamp_ns) {
     const double place = static_cast<double>(stamp_ns - open_index_ * frame_ns_) * slices_a_ns;
@@ -167,12 +189,13 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   double power = 0.0;
   double before = 0.0;
   std::size_t i = 0;
-  for (std::size_t slice = 0; slice < slices; ++slice) { // stamps rise: the samples of a slice follow one another
+  for (std::size_t slice = 0; slice < slices;
+       ++slice) { // stamps rise: the samples of a slice follow one another
     const std::size_t first = i;
     double slice_power = 0.0;
     for (; i < n && slice_of(stamps_ns_[i]) == slice; ++i) {
-      const double residual =
-          values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) - cosine * (design.cosine[i] - design.mean_cosine);
+      const double residual = values_[i] - mean_value - sine * (design.sine[i] - design.mean_sine) -
+                              cosine * (design.cosine[i] - design.mean_cosine);
       power += residual * residual;
       slice_power += residual * residual;
       frame.max_residual = std::max(frame.max_residual, std::abs(residual));
@@ -184,41 +207,60 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   frame.amplitude = std::hypot(sine, cosine);
   frame.residual_rms = std::sqrt(power / (count - 3.0));
   frame.u_amplitude = frame.residual_rms * std::sqrt(0.5 * (ss + cc) / determinant);
-  frame.phase_rad = wrapped(std::atan2(cosine, sine) - 2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
+  frame.phase_rad = wrapped(std::atan2(cosine, sine) -
+                            2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
   frame.usable = true;
   return frame;
 }
 
 bool ExcitationWindowFinder::starts(const Frame& frame) const {
   const double residual_power = frame.residual_rms * frame.residual_rms;
-  return frame.amplitude > 0.0 && residual_power < max_residual_power * 0.5 * frame.amplitude * frame.amplitude;
+  return frame.amplitude > 0.0 &&
+         residual_power < max_residual_power * 0.5 * frame.amplitude * frame.amplitude;
 }
 
 double ExcitationWindowFinder::mean_advance_rad() const {
   constexpr std::size_t recent = 50;
   const Frame& last = run_.back();
   const Frame& first = run_[run_.size() > recent ? run_.size() - recent : 0];
-  return last.index == first.index ? 0.0 : (last.phase_rad - first.phase_rad) / static_cast<double>(last.index - first.index);
+  return last.index == first.index
+             ? 0.0
+             : (last.phase_rad - first.phase_rad) / static_cast<double>(last.index - first.index);
 }
 
 bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad) const {
   const Frame& last = run_.back();
   const double step = static_cast<double>(frame.index - last.index);
-  if ((step - 1.0) * static_cast<double>(frame_ns_) * 1e-9 > settings_.max_gap_s) return false;
-  if (static_cast<double>(frame.index - run_.front().index) * static_cast<double>(frame_ns_) * 1e-9 > settings_.max_duration_s) return false;
-  if (!starts(frame) || frame.amplitude < 0.5 * last.amplitude) return false;
+  if ((step - 1.0) * static_cast<double>(frame_ns_) * 1e-9 > settings_.max_gap_s) {
+    return false;
+  }
+  if (static_cast<double>(frame.index - run_.front().index) * static_cast<double>(frame_ns_) *
+          1e-9 >
+      settings_.max_duration_s) {
+    return false;
+  }
+  if (!starts(frame) || frame.amplitude < 0.5 * last.amplitude) {
+    return false;
+  }
   // An off-phase within a frame shows as neighbouring slices that the sine does not describe.
-  if (frame.max_neighbours_rms > std::max(0.1 * frame.amplitude, 4.0 * last.residual_rms)) return false;
+  if (frame.max_neighbours_rms > std::max(0.1 * frame.amplitude, 4.0 * last.residual_rms)) {
+    return false;
+  }
 
-  const double noise = 4.0 * std::hypot(frame.u_amplitude / frame.amplitude, last.u_amplitude / last.amplitude);
-  const double max_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 * settings_.frequency_tolerance_rel;
+  const double noise =
+      4.0 * std::hypot(frame.u_amplitude / frame.amplitude, last.u_amplitude / last.amplitude);
+  const double max_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 *
+                             settings_.frequency_tolerance_rel;
   const bool slope_known = run_.size() >= 3;
   const double advance = slope_known ? mean_advance_rad() : 0.0;
   const double span = static_cast<double>(last.index - run_.front().index);
   const double tolerance =
-      phase_margin_rad + noise + (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : max_advance * step);
+      phase_margin_rad + noise +
+      (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : max_advance * step);
   const double deviation = wrapped(frame.phase_rad - last.phase_rad - advance * step);
-  if (tolerance >= pi || std::abs(deviation) > tolerance) return false;
+  if (tolerance >= pi || std::abs(deviation) > tolerance) {
+    return false;
+  }
   unwrapped_rad = last.phase_rad + advance * step + deviation;
   const double frequency_margin = max_advance + (phase_margin_rad + noise) / (span + step);
   return std::abs(unwrapped_rad - run_.front().phase_rad) <= frequency_margin * (span + step);
@@ -226,7 +268,9 @@ bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad
 
 void ExcitationWindowFinder::take(const Frame& frame) {
   if (run_.empty()) {
-    if (starts(frame)) run_.push_back(frame);
+    if (starts(frame)) {
+      run_.push_back(frame);
+    }
     return;
   }
   double unwrapped_rad = 0.0;
@@ -236,43 +280,61 @@ void ExcitationWindowFinder::take(const Frame& frame) {
     return;
   }
   close_run();
-  if (!ended_ && starts(frame)) run_.push_back(frame);
+  if (!ended_ && starts(frame)) {
+    run_.push_back(frame);
+  }
 }
 
 // Keeps the run when it holds a step, forgets it otherwise.
 void ExcitationWindowFinder::close_run() {
   ended_ = steady_part().has_value();
-  if (!ended_) run_.clear();
+  if (!ended_) {
+    run_.clear();
+  }
 }
 
 std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
-  if (run_.size() < 2) return std::nullopt;
+  if (run_.size() < 2) {
+    return std::nullopt;
+  }
   std::vector<double> late_amplitudes;
-  for (std::size_t i = run_.size() / 2; i < run_.size(); ++i)
+  for (std::size_t i = run_.size() / 2; i < run_.size(); ++i) {
     late_amplitudes.push_back(run_[i].amplitude);
+  }
   const double plateau = median(std::move(late_amplitudes));
 
   std::size_t best_begin = 0, best_end = 0, begin = 0;
   for (std::size_t i = 0; i <= run_.size(); ++i) {
-    const bool steady =
-        i < run_.size() && std::abs(run_[i].amplitude - plateau) <= settings_.amplitude_tolerance_rel * plateau + 4.0 * run_[i].u_amplitude;
-    if (steady) continue;
+    const bool steady = i < run_.size() &&
+                        std::abs(run_[i].amplitude - plateau) <=
+                            settings_.amplitude_tolerance_rel * plateau + 4.0 * run_[i].u_amplitude;
+    if (steady) {
+      continue;
+    }
     if (i - begin > best_end - best_begin) {
       best_begin = begin;
       best_end = i;
     }
     begin = i + 1;
   }
-  if (best_end - best_begin < 2) return std::nullopt;
+  if (best_end - best_begin < 2) {
+    return std::nullopt;
+  }
 
-  // A frame at the edge that the sine fills only in part has residuals that its neighbours have not.
+  // A frame at the edge that the sine fills only in part has residuals that its neighbours have
+  // not.
   if (best_end - best_begin > 3) {
     std::vector<double> residuals;
-    for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i)
+    for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i) {
       residuals.push_back(run_[i].max_residual);
+    }
     const double usual = median(std::move(residuals));
-    if (run_[best_begin].max_residual > 1.6 * usual) ++best_begin;
-    if (run_[best_end - 1].max_residual > 1.6 * usual) --best_end;
+    if (run_[best_begin].max_residual > 1.6 * usual) {
+      ++best_begin;
+    }
+    if (run_[best_end - 1].max_residual > 1.6 * usual) {
+      --best_end;
+    }
   }
   ExcitationWindow window;
   window.begin_ns = std::max(first_stamp_ns_, run_[best_begin].index * frame_ns_);
@@ -283,9 +345,12 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
   window.amplitude = plateau;
   window.frequency_offset_rel =
       (run_[best_end - 1].phase_rad - run_[best_begin].phase_rad) /
-      (2.0 * pi * frequency_.hz() * static_cast<double>((run_[best_end - 1].index - run_[best_begin].index) * frame_ns_) * 1e-9);
+      (2.0 * pi * frequency_.hz() *
+       static_cast<double>((run_[best_end - 1].index - run_[best_begin].index) * frame_ns_) * 1e-9);
   window.frames = best_end - best_begin;
-  if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.min_duration_s) return std::nullopt;
+  if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.min_duration_s) {
+    return std::nullopt;
+  }
   return window;
 }
 

@@ -1,22 +1,25 @@
 // Where in a source's own clock an excitation step took place, found from its sync channel alone.
 //
-// The stream is cut into frames of length L = one period, or 100 ms if that is longer, but at most 50 periods. Frame k is
-// [k L, (k+1) L) of the device's own time, so the result depends on the samples only, never on how they were cut into
-// blocks. In each frame a sine of the nominal frequency is approximated (paper eq. (1)); frames belong to one excitation
-// while their residual is small, their amplitude stays and their phase goes on as a frequency within `frequency_tolerance_rel`
-// of the nominal one demands. A neighbouring frequency fails on its residual and its phase, an off-phase on its amplitude,
-// an off-phase shorter than a frame on the residual of the frame it lies in (it must be >= 0.2 s).
-// Of such a run of frames the steady part is the longest stretch whose amplitude is within `amplitude_tolerance_rel` of the
-// plateau; frames at its edges that are only partly excited are dropped, so that it holds nothing but the steady sine. It is
-// up to two frames at each end shorter than the excitation.
-// Lost samples leave frames thinner or empty; an excitation goes on across a gap when its phase does.
+// The stream is cut into frames of length L = one period, or 100 ms if that is longer, but at most
+// 50 periods. Frame k is [k L, (k+1) L) of the device's own time, so the result depends on the
+// samples only, never on how they were cut into blocks. In each frame a sine of the nominal
+// frequency is approximated (paper eq. (1)); frames belong to one excitation while their residual
+// is small, their amplitude stays and their phase goes on as a frequency within
+// `frequency_tolerance_rel` of the nominal one demands. A neighbouring frequency fails on its
+// residual and its phase, an off-phase on its amplitude, an off-phase shorter than a frame on the
+// residual of the frame it lies in (it must be >= 0.2 s). Of such a run of frames the steady part
+// is the longest stretch whose amplitude is within `amplitude_tolerance_rel` of the plateau; frames
+// at its edges that are only partly excited are dropped, so that it holds nothing but the steady
+// sine. It is up to two frames at each end shorter than the excitation. Lost samples leave frames
+// thinner or empty; an excitation goes on across a gap when its phase does.
 //
-// Units: stamps int64 ns of any epoch; the window is half-open. Cost: O(samples), about one sine and cosine a sample; memory:
-// the samples of one frame and some 80 bytes for each frame of the excitation (bounded by `max_duration_s`).
-// Samples that are not finite or not later than the one before are left out and counted.
-// Fails (no window): no stretch of at least two frames and `min_duration_s` was found; the frame holds fewer than eight samples or
-// cannot tell sine from cosine (frequency at a multiple of half the sample rate).
-// One thread; no state shared between objects.
+// Units: stamps int64 ns of any epoch; the window is half-open. Cost: O(samples), about one sine
+// and cosine a sample; memory: the samples of one frame and some 80 bytes for each frame of the
+// excitation (bounded by `max_duration_s`). Samples that are not finite or not later than the one
+// before are left out and counted. Fails (no window): no stretch of at least two frames and
+// `min_duration_s` was found; the frame holds fewer than eight samples or cannot tell sine from
+// cosine (frequency at a multiple of half the sample rate). One thread; no state shared between
+// objects.
 #pragma once
 
 #include <cstddef>
@@ -32,27 +35,30 @@ namespace dyncal::analysis {
 struct ExcitationWindowSettings {
   double frequency_tolerance_rel = 1.5e-3; // generator and both clocks together
   double amplitude_tolerance_rel = 0.03;   // of the steady part
-  double min_duration_s = 0.25;                // a shorter steady part is not a step
-  double max_gap_s = 1.0;              // missing samples longer than this end the excitation
-  double max_duration_s = 3600.0;               // an excitation that lasts longer is closed there
+  double min_duration_s = 0.25;            // a shorter steady part is not a step
+  double max_gap_s = 1.0;                  // missing samples longer than this end the excitation
+  double max_duration_s = 3600.0;          // an excitation that lasts longer is closed there
 };
 
 struct ExcitationWindow {
-  std::int64_t begin_ns = 0;         // steady sine from here ...
-  std::int64_t end_ns = 0;           // ... to here, exclusive
-  std::int64_t excited_begin_ns = 0; // start of the first frame that holds the sine, settling included
-  std::int64_t off_ns = 0;           // end of the last frame that holds it: where to look for the next step
-  bool ended = false;                // the excitation is over; otherwise all of this may still grow
-  double amplitude = 0.0;            // of the plateau, in the unit of the channel
+  std::int64_t begin_ns = 0; // steady sine from here ...
+  std::int64_t end_ns = 0;   // ... to here, exclusive
+  std::int64_t excited_begin_ns =
+      0;                   // start of the first frame that holds the sine, settling included
+  std::int64_t off_ns = 0; // end of the last frame that holds it: where to look for the next step
+  bool ended = false;      // the excitation is over; otherwise all of this may still grow
+  double amplitude = 0.0;  // of the plateau, in the unit of the channel
   double frequency_offset_rel = 0.0; // of the sine in this clock against the nominal frequency
   std::size_t frames = 0;            // of the steady part
 };
 
 class ExcitationWindowFinder {
 public:
-  explicit ExcitationWindowFinder(const Frequency& frequency, const ExcitationWindowSettings& settings = {});
+  explicit ExcitationWindowFinder(const Frequency& frequency,
+                                  const ExcitationWindowSettings& settings = {});
 
-  // The next samples of the stream, in order. REQUIRES: equal sizes. Ignored once the excitation has ended.
+  // The next samples of the stream, in order. REQUIRES: equal sizes. Ignored once the excitation
+  // has ended.
   void push(std::span<const std::int64_t> stamps_ns, std::span<const double> sync);
 
   // The stream is over: the open frame counts and the excitation, if there is one, has ended.
@@ -70,14 +76,16 @@ private:
     std::int64_t index = 0;
     double amplitude = 0.0;
     double u_amplitude = 0.0;
-    double phase_rad = 0.0; // against the nominal frequency from origin_ns_ on, at the frame's centre; unwrapped in a run
+    double phase_rad = 0.0; // against the nominal frequency from origin_ns_ on, at the frame's
+                            // centre; unwrapped in a run
     double residual_rms = 0.0;
     double max_residual = 0.0;
     double max_neighbours_rms = 0.0; // the larger of each two adjacent slices' smaller one
     bool usable = false;
   };
 
-  [[nodiscard]] std::size_t samples_of_open_frame(std::span<const std::int64_t> stamps_ns, std::span<const double> sync) const;
+  [[nodiscard]] std::size_t samples_of_open_frame(std::span<const std::int64_t> stamps_ns,
+                                                  std::span<const double> sync) const;
   void begin_frame_or_ignore(std::int64_t stamp_ns, double sync);
   void close_frame();
   [[nodiscard]] Frame approximate() const;

@@ -20,27 +20,38 @@ struct Block {
   std::complex<double> phasor;
 };
 
-Expected<std::vector<Block>> block_phasors(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+Expected<std::vector<Block>> block_phasors(const Frequency& frequency,
+                                           std::span<const std::int64_t> stamps_ns,
                                            std::span<const double> values) {
   const double period_ns = 1e9 / frequency.hz();
-  const double periods = std::floor(static_cast<double>(stamps_ns.back() - stamps_ns.front()) / period_ns);
+  const double periods =
+      std::floor(static_cast<double>(stamps_ns.back() - stamps_ns.front()) / period_ns);
   const double periods_per_block = std::max(1.0, std::ceil(periods / max_blocks));
   const double count = std::floor(periods / periods_per_block);
-  if (count < min_blocks)
-    return tl::unexpected(Error{ErrorCode::too_few_samples, "settling cannot be seen in fewer than eight periods"});
+  if (count < min_blocks) {
+    return tl::unexpected(
+        Error{ErrorCode::too_few_samples, "settling cannot be seen in fewer than eight periods"});
+  }
   const double block_ns = periods_per_block * period_ns;
   // Blocks end with the record, so that its end is what counts as settled.
-  const double start_ns = static_cast<double>(stamps_ns.back() - stamps_ns.front()) - count * block_ns;
+  const double start_ns =
+      static_cast<double>(stamps_ns.back() - stamps_ns.front()) - count * block_ns;
   std::vector<Block> blocks;
-  auto first = std::lower_bound(stamps_ns.begin(), stamps_ns.end(), stamps_ns.front() + std::llround(start_ns));
+  auto first = std::lower_bound(stamps_ns.begin(), stamps_ns.end(),
+                                stamps_ns.front() + std::llround(start_ns));
   for (double k = 1.0; k <= count; k += 1.0) {
     const auto last =
-        k == count ? stamps_ns.end() : std::lower_bound(first, stamps_ns.end(), stamps_ns.front() + std::llround(start_ns + k * block_ns));
+        k == count ? stamps_ns.end()
+                   : std::lower_bound(first, stamps_ns.end(),
+                                      stamps_ns.front() + std::llround(start_ns + k * block_ns));
     const auto begin = static_cast<std::size_t>(first - stamps_ns.begin());
     const auto size = static_cast<std::size_t>(last - first);
     const std::array channels{values.subspan(begin, size)};
-    const auto fit = fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels);
-    if (!fit) return tl::unexpected(fit.error());
+    const auto fit =
+        fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels);
+    if (!fit) {
+      return tl::unexpected(fit.error());
+    }
     blocks.push_back({stamps_ns[begin], {(*fit)[0].sine, (*fit)[0].cosine}});
     first = last;
   }
@@ -49,23 +60,35 @@ Expected<std::vector<Block>> block_phasors(const Frequency& frequency, std::span
 
 } // namespace
 
-Expected<Settling> find_settling(const Frequency& frequency, std::span<const std::int64_t> stamps_ns, std::span<const double> values,
-                                 const SettlingSettings& settings) {
-  if (stamps_ns.size() != values.size() || stamps_ns.size() < 2)
-    return tl::unexpected(Error{ErrorCode::invalid_argument, "settling needs as many stamps as values, and two at least"});
+Expected<Settling> find_settling(const Frequency& frequency,
+                                 std::span<const std::int64_t> stamps_ns,
+                                 std::span<const double> values, const SettlingSettings& settings) {
+  if (stamps_ns.size() != values.size() || stamps_ns.size() < 2) {
+    return tl::unexpected(Error{ErrorCode::invalid_argument,
+                                "settling needs as many stamps as values, and two at least"});
+  }
   const auto blocks = block_phasors(frequency, stamps_ns, values);
-  if (!blocks) return tl::unexpected(blocks.error());
+  if (!blocks) {
+    return tl::unexpected(blocks.error());
+  }
 
   const std::size_t settled = blocks->size() - blocks->size() / 3;
   std::complex<double> mean;
-  for (std::size_t k = settled; k < blocks->size(); ++k)
+  for (std::size_t k = settled; k < blocks->size(); ++k) {
     mean += (*blocks)[k].phasor / static_cast<double>(blocks->size() - settled);
+  }
   const double size = std::abs(mean);
-  if (!(size > 0.0)) return tl::unexpected(Error{ErrorCode::no_excitation, "there is no sine whose settling could be found"});
+  if (!(size > 0.0)) {
+    return tl::unexpected(
+        Error{ErrorCode::no_excitation, "there is no sine whose settling could be found"});
+  }
   std::vector<double> deviations;
-  for (std::size_t k = settled; k < blocks->size(); ++k)
+  for (std::size_t k = settled; k < blocks->size(); ++k) {
     deviations.push_back(std::abs((*blocks)[k].phasor - mean));
-  std::nth_element(deviations.begin(), deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2), deviations.end());
+  }
+  std::nth_element(deviations.begin(),
+                   deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2),
+                   deviations.end());
   // The median of the distance from the centre of a bivariate normal distribution is 1.1774 s.
   const double scatter = deviations[deviations.size() / 2] / 1.1774;
   const double limit = std::max(scatter_factor * scatter, settings.tolerance_rel * size);
@@ -75,9 +98,14 @@ Expected<Settling> find_settling(const Frequency& frequency, std::span<const std
   result.steady_scatter_rel = scatter / size;
   for (std::size_t k = 0; k < blocks->size(); ++k) {
     const double deviation = std::abs((*blocks)[k].phasor - mean);
-    if (deviation <= limit) continue;
-    if (k + 1 >= blocks->size() || 2 * k >= blocks->size())
-      return tl::unexpected(Error{ErrorCode::not_converged, "the excitation does not settle: less than half of the record is steady"});
+    if (deviation <= limit) {
+      continue;
+    }
+    if (k + 1 >= blocks->size() || 2 * k >= blocks->size()) {
+      return tl::unexpected(
+          Error{ErrorCode::not_converged,
+                "the excitation does not settle: less than half of the record is steady"});
+    }
     result.begin_ns = (*blocks)[k + 1].begin_ns;
     result.max_deviation = std::max(result.max_deviation, deviation / size);
   }

@@ -5,7 +5,8 @@
 namespace dyncal::analysis {
 namespace {
 
-// Continued fraction of the incomplete beta function (Lentz); converges fast for x < (a + 1) / (a + b + 2).
+// Continued fraction of the incomplete beta function (Lentz); converges fast for x < (a + 1) / (a +
+// b + 2).
 double beta_fraction(double a, double b, double x) {
   constexpr double tiny = 1e-300;
   const auto away_from_zero = [](double value) { return std::abs(value) < tiny ? tiny : value; };
@@ -22,35 +23,50 @@ double beta_fraction(double a, double b, double x) {
     d = 1.0 / away_from_zero(1.0 + odd * d);
     c = away_from_zero(1.0 + odd / c);
     result *= d * c;
-    if (std::abs(d * c - 1.0) < 1e-16) break;
+    if (std::abs(d * c - 1.0) < 1e-16) {
+      break;
+    }
   }
   return result;
 }
 
 double regularised_beta(double a, double b, double x) {
-  if (x <= 0.0) return 0.0;
-  if (x >= 1.0) return 1.0;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-  if (x < (a + 1.0) / (a + b + 2.0)) return front * beta_fraction(a, b, x) / a;
+  if (x <= 0.0) {
+    return 0.0;
+  }
+  if (x >= 1.0) {
+    return 1.0;
+  }
+  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
+                                a * std::log(x) + b * std::log1p(-x));
+  if (x < (a + 1.0) / (a + b + 2.0)) {
+    return front * beta_fraction(a, b, x) / a;
+  }
   return 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
 }
 
 double probability_outside(double t, double degrees_of_freedom) {
-  return regularised_beta(0.5 * degrees_of_freedom, 0.5, degrees_of_freedom / (degrees_of_freedom + t * t));
+  return regularised_beta(0.5 * degrees_of_freedom, 0.5,
+                          degrees_of_freedom / (degrees_of_freedom + t * t));
 }
 
 } // namespace
 
 double student_probability(double t, double degrees_of_freedom) {
-  if (!(degrees_of_freedom > 0.0) || std::isinf(degrees_of_freedom)) return 0.5 * std::erfc(-t / std::sqrt(2.0));
+  if (!(degrees_of_freedom > 0.0) || std::isinf(degrees_of_freedom)) {
+    return 0.5 * std::erfc(-t / std::sqrt(2.0));
+  }
   const double tail = 0.5 * probability_outside(t, degrees_of_freedom);
   return t > 0.0 ? 1.0 - tail : tail;
 }
 
 double coverage_factor(double degrees_of_freedom, double probability) {
-  // Beyond this the difference to the normal distribution is below the rounding of the incomplete beta function.
+  // Beyond this the difference to the normal distribution is below the rounding of the incomplete
+  // beta function.
   const bool infinite = !(degrees_of_freedom > 0.0) || degrees_of_freedom > 1e7;
-  const auto outside = [&](double t) { return infinite ? std::erfc(t / std::sqrt(2.0)) : probability_outside(t, degrees_of_freedom); };
+  const auto outside = [&](double t) {
+    return infinite ? std::erfc(t / std::sqrt(2.0)) : probability_outside(t, degrees_of_freedom);
+  };
   const double wanted = 1.0 - probability;
   double low = 0.0, high = 2.0;
   while (outside(high) > wanted && high < 1e12) {
@@ -68,7 +84,9 @@ double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts) {
   double variance = 0.0, weighted = 0.0;
   for (const UncertaintyPart& part : parts) {
     variance += part.u * part.u;
-    if (part.degrees_of_freedom > 0.0) weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
+    if (part.degrees_of_freedom > 0.0) {
+      weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
+    }
   }
   return weighted > 0.0 ? variance * variance / weighted : 0.0;
 }

@@ -1,5 +1,6 @@
-// From combined standard uncertainty to coverage interval: Student's t, Welch-Satterthwaite (GUM G.4).
-// Degrees of freedom are real numbers; 0 stands for infinite, as in a Contribution. Any thread.
+// From combined standard uncertainty to coverage interval: Student's t, Welch-Satterthwaite (GUM
+// G.4). Degrees of freedom are real numbers; 0 stands for infinite, as in a Contribution. Any
+// thread.
 #pragma once
 
 #include <span>
@@ -13,7 +14,8 @@ inline constexpr double two_sigma_probability = 0.95449973610364158;
 [[nodiscard]] double student_probability(double t, double degrees_of_freedom);
 
 // k so that |t| <= k with the given probability; 2 for infinite degrees of freedom.
-[[nodiscard]] double coverage_factor(double degrees_of_freedom, double probability = two_sigma_probability);
+[[nodiscard]] double coverage_factor(double degrees_of_freedom,
+                                     double probability = two_sigma_probability);
 
 struct UncertaintyPart {
   double u = 0.0;

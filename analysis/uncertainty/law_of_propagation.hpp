@@ -1,11 +1,14 @@
-// Law of propagation of uncertainty for a result with correlated inputs, and its coverage interval (GUM 5.2.2, G.4).
+// Law of propagation of uncertainty for a result with correlated inputs, and its coverage interval
+// (GUM 5.2.2, G.4).
 //
-//   u_c^2 = sum_i (c_i u_i)^2 + 2 sum_{i<j} c_i c_j u_i u_j r_ij,   nu_eff = u_c^4 / sum (c_i u_i)^4 / nu_i,   U = k(nu_eff) u_c
+//   u_c^2 = sum_i (c_i u_i)^2 + 2 sum_{i<j} c_i c_j u_i u_j r_ij,   nu_eff = u_c^4 / sum (c_i
+//   u_i)^4 / nu_i,   U = k(nu_eff) u_c
 //
-// u_i are standard uncertainties whatever the distribution; helpers turn half-widths into them. Inputs that are correlated should
-// have infinite degrees of freedom: Welch-Satterthwaite knows only independent ones.
-// Fails: invalid_argument (u negative or no number, |r| > 1, an index that does not exist, correlations that contradict each other so
-// that a variance would be negative). Any thread.
+// u_i are standard uncertainties whatever the distribution; helpers turn half-widths into them.
+// Inputs that are correlated should have infinite degrees of freedom: Welch-Satterthwaite knows
+// only independent ones. Fails: invalid_argument (u negative or no number, |r| > 1, an index that
+// does not exist, correlations that contradict each other so that a variance would be negative).
+// Any thread.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +48,8 @@ struct PropagatedUncertainty {
   std::vector<double> contributions; // c_i u_i
 };
 
-[[nodiscard]] Expected<PropagatedUncertainty> propagate_uncertainty(std::span<const InputQuantity> inputs,
-                                                                    std::span<const InputCorrelation> correlations = {});
+[[nodiscard]] Expected<PropagatedUncertainty>
+propagate_uncertainty(std::span<const InputQuantity> inputs,
+                      std::span<const InputCorrelation> correlations = {});
 
 } // namespace dyncal::analysis

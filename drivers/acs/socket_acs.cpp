@@ -13,10 +13,12 @@ constexpr std::size_t max_description = 65536;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
 constexpr std::uint32_t max_samples = 65536;
 constexpr milliseconds retry_interval{500};
-constexpr std::chrono::hours frame_limit{24 * 365}; // an instrument may be silent as long as it likes; who reads the status sees it
+constexpr std::chrono::hours frame_limit{
+    24 * 365}; // an instrument may be silent as long as it likes; who reads the status sees it
 constexpr double min_block_s = 0.02;
 
-static_assert(std::endian::native == std::endian::little, "frames are little-endian and read as they are");
+static_assert(std::endian::native == std::endian::little,
+              "frames are little-endian and read as they are");
 
 template <class T>
 T load(const char* bytes) {
@@ -26,7 +28,9 @@ T load(const char* bytes) {
 }
 
 std::int64_t host_utc_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 } // namespace
@@ -46,7 +50,8 @@ Expected<void> SocketAcs::connect(milliseconds limit) {
   }
   auto stream = parse_stream_description(*line);
   if (!stream) {
-    return tl::unexpected(Error{stream.error().code, settings_.address + ": " + stream.error().message});
+    return tl::unexpected(
+        Error{stream.error().code, settings_.address + ": " + stream.error().message});
   }
   stream_ = std::move(*stream);
   connection_.emplace(std::move(*connection));
@@ -61,8 +66,10 @@ Expected<SourceDescription> SocketAcs::describe() {
     if (connected) {
       return stream_.source;
     }
-    // An instrument that is just being switched on refuses; everything else will not get better by trying.
-    const bool later = connected.error().code == ErrorCode::refused || connected.error().code == ErrorCode::disconnected;
+    // An instrument that is just being switched on refuses; everything else will not get better by
+    // trying.
+    const bool later = connected.error().code == ErrorCode::refused ||
+                       connected.error().code == ErrorCode::disconnected;
     if (!later || left <= retry_interval || stop_.wait_for(retry_interval)) {
       return tl::unexpected(connected.error());
     }
@@ -118,15 +125,18 @@ Expected<void> SocketAcs::read_session(BlockSink& sink) {
     }
     if (frame->first_sample < next_sample) {
       hand_over();
-      return tl::unexpected(Error{ErrorCode::malformed, settings_.address + ": sample numbers go back from " + std::to_string(next_sample) +
-                                                            " to " + std::to_string(frame->first_sample) + " within a connection"});
+      return tl::unexpected(
+          Error{ErrorCode::malformed,
+                settings_.address + ": sample numbers go back from " + std::to_string(next_sample) +
+                    " to " + std::to_string(frame->first_sample) + " within a connection"});
     }
     if (frame->first_sample != next_sample) {
       hand_over();
     }
     next_sample = frame->first_sample + frame->samples;
     join(pending, std::move(*frame));
-    if (static_cast<double>(pending.samples) >= min_block_s * stream_.source.nominal_rate_hz || pending.samples >= max_samples) {
+    if (static_cast<double>(pending.samples) >= min_block_s * stream_.source.nominal_rate_hz ||
+        pending.samples >= max_samples) {
       hand_over();
     }
   }
@@ -141,7 +151,8 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   frame.samples = load<std::uint32_t>(header.data() + 4);
   frame.first_sample = load<std::uint64_t>(header.data() + 8);
   if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > max_samples) {
-    return tl::unexpected(Error{ErrorCode::malformed, settings_.address + ": what comes is not a frame of the ACS stream"});
+    return tl::unexpected(Error{
+        ErrorCode::malformed, settings_.address + ": what comes is not a frame of the ACS stream"});
   }
   const std::size_t channels = stream_.scale.size();
   const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);
@@ -154,7 +165,8 @@ Expected<SampleBlock> SocketAcs::read_frame() {
     for (std::size_t channel = 0; channel < channels; ++channel) {
       const char* raw = payload_.data() + (i * channels + channel) * width;
       frame.values[channel * frame.samples + i] =
-          stream_.float64 ? load<double>(raw) : static_cast<double>(load<std::int32_t>(raw)) * stream_.scale[channel];
+          stream_.float64 ? load<double>(raw)
+                          : static_cast<double>(load<std::int32_t>(raw)) * stream_.scale[channel];
     }
   }
   return frame;
@@ -171,7 +183,8 @@ void SocketAcs::join(SampleBlock& pending, SampleBlock frame) const {
   values.reserve(pending.values.size() + frame.values.size());
   for (std::size_t channel = 0; channel < channels; ++channel) {
     const auto append = [&](const SampleBlock& block) {
-      const auto begin = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+      const auto begin =
+          block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
       values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(block.samples));
     };
     append(pending);

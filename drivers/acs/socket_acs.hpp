@@ -1,9 +1,11 @@
-// The instrument's TCP stream, as drivers/acs/README.md defines it: a description line, then binary frames.
+// The instrument's TCP stream, as drivers/acs/README.md defines it: a description line, then binary
+// frames.
 //
-// A frame that holds 20 ms or more becomes a block; shorter frames that follow each other without a gap are joined to one.
-// When the instrument goes away, run() tries to reach it again every half second until stop(); each return is a new session,
-// because its sample numbers and its clock's origin are new. What cannot be understood ends run() with `malformed`: the stream has
-// no mark to find the next frame by.
+// A frame that holds 20 ms or more becomes a block; shorter frames that follow each other without a
+// gap are joined to one. When the instrument goes away, run() tries to reach it again every half
+// second until stop(); each return is a new session, because its sample numbers and its clock's
+// origin are new. What cannot be understood ends run() with `malformed`: the stream has no mark to
+// find the next frame by.
 #pragma once
 
 #include <optional>
@@ -20,7 +22,8 @@ struct SocketSettings {
   std::chrono::milliseconds connect_limit{5000}; // how long describe() tries
 };
 
-// What the description line says; values of int32 frames are counts, `scale` turns them into the unit.
+// What the description line says; values of int32 frames are counts, `scale` turns them into the
+// unit.
 struct StreamDescription {
   SourceDescription source;
   RegularClock clock;

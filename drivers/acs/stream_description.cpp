@@ -1,8 +1,8 @@
 // The description line of the instrument's stream.
 #include <nlohmann/json.hpp>
 
-#include "drivers/files/sample_rate.hpp"
 #include "drivers/acs/socket_acs.hpp"
+#include "drivers/files/sample_rate.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
@@ -12,7 +12,8 @@ using Json = nlohmann::json;
 // Reads members of one object; the first that is missing or of the wrong type is remembered.
 class Members {
 public:
-  Members(const Json& object, std::string where, std::string& problem) : object_(object), where_(std::move(where)), problem_(problem) {}
+  Members(const Json& object, std::string where, std::string& problem)
+      : object_(object), where_(std::move(where)), problem_(problem) {}
 
   template <class T>
   T required(const char* name) {
@@ -56,7 +57,8 @@ private:
   std::string& problem_;
 };
 
-ChannelDescription parse_channel(const Json& object, std::size_t index, bool float64, double& scale, std::string& problem) {
+ChannelDescription parse_channel(const Json& object, std::size_t index, bool float64, double& scale,
+                                 std::string& problem) {
   Members members(object, "channels[" + std::to_string(index) + "].", problem);
   ChannelDescription channel;
   channel.name = members.required<std::string>("name");
@@ -75,12 +77,16 @@ ChannelDescription parse_channel(const Json& object, std::size_t index, bool flo
   return channel;
 }
 
-RegularClock parse_clock(Members& root, const Json& object, StreamDescription& stream, std::string& problem) {
-  const Json rate_object = object.is_object() && object.contains("sample_rate_hz") ? object["sample_rate_hz"] : Json();
+RegularClock parse_clock(Members& root, const Json& object, StreamDescription& stream,
+                         std::string& problem) {
+  const Json rate_object =
+      object.is_object() && object.contains("sample_rate_hz") ? object["sample_rate_hz"] : Json();
   Members members(rate_object, "sample_rate_hz.", problem);
-  const SampleRate rate{members.required<std::int64_t>("numerator"), members.required<std::int64_t>("denominator")};
+  const SampleRate rate{members.required<std::int64_t>("numerator"),
+                        members.required<std::int64_t>("denominator")};
   if (rate.numerator <= 0 || rate.denominator <= 0 || rate.denominator > 1'000'000'000) {
-    members.note("numerator", "and denominator must be positive whole numbers, the denominator at most 1e9");
+    members.note("numerator",
+                 "and denominator must be positive whole numbers, the denominator at most 1e9");
     return {};
   }
   stream.source.nominal_rate_hz = rate.hz();
@@ -90,7 +96,8 @@ RegularClock parse_clock(Members& root, const Json& object, StreamDescription& s
 StreamDescription parse_members(const Json& object, std::string& problem) {
   StreamDescription stream;
   Members root(object, "", problem);
-  if (root.required<std::string>("protocol") != "dyncal-acs-stream" || root.required<int>("version") != 1) {
+  if (root.required<std::string>("protocol") != "dyncal-acs-stream" ||
+      root.required<int>("version") != 1) {
     root.note("protocol", "must be \"dyncal-acs-stream\", version 1");
   }
   stream.source.device = root.optional<std::string>("device", "");
@@ -108,7 +115,8 @@ StreamDescription parse_members(const Json& object, std::string& problem) {
     root.note("time_base", "must be \"utc\" or \"local\"");
   }
   stream.clock = parse_clock(root, object, stream, problem);
-  const Json channels = object.is_object() && object.contains("channels") ? object["channels"] : Json();
+  const Json channels =
+      object.is_object() && object.contains("channels") ? object["channels"] : Json();
   if (!channels.is_array() || channels.empty() || channels.size() > 64) {
     root.note("channels", "must list 1 to 64 channels");
     return stream;
@@ -131,7 +139,8 @@ Expected<StreamDescription> parse_stream_description(const std::string& line) {
   }
   StreamDescription stream = problem.empty() ? parse_members(object, problem) : StreamDescription{};
   if (!problem.empty()) {
-    return tl::unexpected(Error{ErrorCode::malformed, "the instrument's description line: " + problem});
+    return tl::unexpected(
+        Error{ErrorCode::malformed, "the instrument's description line: " + problem});
   }
   return stream;
 }

@@ -1,8 +1,10 @@
-// Which message of a DBC file a frame is, and the kernel filters that let just those frames through.
+// Which message of a DBC file a frame is, and the kernel filters that let just those frames
+// through.
 //
-// Ordinary messages match by their whole id. J1939 messages match by their parameter group number alone: priority and source address are
-// left out, and of PDU1 groups (PF < 240) the destination too. Where several messages have one id the first counts.
-// Immutable after it was made: any thread.
+// Ordinary messages match by their whole id. J1939 messages match by their parameter group number
+// alone: priority and source address are left out, and of PDU1 groups (PF < 240) the destination
+// too. Where several messages have one id the first counts. Immutable after it was made: any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +16,16 @@
 
 namespace dyncal::drivers::can {
 
-// Lets a frame through when (id ^ frame's id) & mask is 0; both without flag bits. Frames of the other id length never match.
+// Lets a frame through when (id ^ frame's id) & mask is 0; both without flag bits. Frames of the
+// other id length never match.
 struct FrameFilter {
   std::uint32_t id = 0;
   std::uint32_t mask = 0;
   bool extended = false;
 
-  [[nodiscard]] bool passes(const CanFrame& frame) const { return frame.extended == extended && ((frame.id ^ id) & mask) == 0; }
+  [[nodiscard]] bool passes(const CanFrame& frame) const {
+    return frame.extended == extended && ((frame.id ^ id) & mask) == 0;
+  }
   friend bool operator==(const FrameFilter&, const FrameFilter&) = default;
 };
 

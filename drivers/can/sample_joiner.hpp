@@ -1,8 +1,10 @@
-// Joins the frames that make up one sample by what stands in them (a counter or a time field), never by when they came.
+// Joins the frames that make up one sample by what stands in them (a counter or a time field),
+// never by when they came.
 //
-// A sample of one message is complete with its frame. A sample of several is complete when each message has come once with the same key. Up
-// to `max_open` samples may be open at a time, since frames of neighbouring samples may overtake each other; the oldest is given up when
-// one more begins. Samples leave in the order in which their keys were first seen. Belongs to one thread.
+// A sample of one message is complete with its frame. A sample of several is complete when each
+// message has come once with the same key. Up to `max_open` samples may be open at a time, since
+// frames of neighbouring samples may overtake each other; the oldest is given up when one more
+// begins. Samples leave in the order in which their keys were first seen. Belongs to one thread.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +34,8 @@ public:
   explicit SampleJoiner(std::size_t messages) : messages_(messages) {}
 
   // `message` counts from 0; `key` is not looked at when there is one message only.
-  [[nodiscard]] std::optional<JoinedSample> add(std::size_t message, std::uint64_t key, const CanFrame& frame);
+  [[nodiscard]] std::optional<JoinedSample> add(std::size_t message, std::uint64_t key,
+                                                const CanFrame& frame);
   // What is open will not be completed: frames were lost.
   void give_up_open();
 

@@ -18,7 +18,8 @@ constexpr std::size_t max_causes = 32;
 constexpr std::uint8_t trusted = 0;
 constexpr std::uint8_t untimed = stamp_no_uncertainty;
 
-// A sensor's own oscillator, against its nominal rate: a counter follows the sampling rate of the element, a time field a timer.
+// A sensor's own oscillator, against its nominal rate: a counter follows the sampling rate of the
+// element, a time field a timer.
 ClockLineOptions key_line_options(bool key_is_time) {
   ClockLineOptions options;
   options.max_rate = key_is_time ? 0.02 : 0.2;
@@ -33,37 +34,54 @@ SensorStream::SensorStream(SensorSettings settings, DbcFile dbc)
 Expected<std::unique_ptr<SensorStream>> SensorStream::create(SensorSettings settings, DbcFile dbc) {
   std::unique_ptr<SensorStream> stream(new SensorStream(std::move(settings), std::move(dbc)));
   auto layout = lay_out(stream->settings_, *stream->dbc_);
-  if (!layout) return tl::make_unexpected(layout.error());
+  if (!layout) {
+    return tl::make_unexpected(layout.error());
+  }
   stream->layout_ = std::move(*layout);
   stream->index_.emplace(stream->layout_.messages);
   stream->joiner_ = SampleJoiner(stream->layout_.messages.size());
-  if (!stream->layout_.keys.empty()) stream->counter_.emplace(stream->layout_.keys.front()->length_bits, stream->layout_.key_rate_hz);
+  if (!stream->layout_.keys.empty()) {
+    stream->counter_.emplace(stream->layout_.keys.front()->length_bits,
+                             stream->layout_.key_rate_hz);
+  }
   stream->key_line_ = ClockLine(key_line_options(stream->layout_.key_is_time));
   return stream;
 }
 
 std::vector<FrameFilter> SensorStream::filters() const {
   std::vector<FrameFilter> filters = index_->filters();
-  if (settings_.time_source == TimeSource::canopen_sync) filters.push_back({settings_.sync_id, 0x7FF, false});
+  if (settings_.time_source == TimeSource::canopen_sync) {
+    filters.push_back({settings_.sync_id, 0x7FF, false});
+  }
   return filters;
 }
 
 Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
   link_ = link;
-  if (settings_.bit_rates.nominal_per_s <= 0.0) settings_.bit_rates.nominal_per_s = link.bit_rate_per_s;
-  if (settings_.bit_rates.data_per_s <= 0.0) settings_.bit_rates.data_per_s = link.data_bit_rate_per_s;
-  if (settings_.correct_frame_duration && settings_.bit_rates.nominal_per_s <= 0.0)
-    return tl::make_unexpected(
-        Error{ErrorCode::invalid_setting, "interface '" + link.name +
-                                              "' does not say its bit rate, which the duration of a frame follows from; give it with "
-                                              "'bit_rate_per_s'"});
+  if (settings_.bit_rates.nominal_per_s <= 0.0) {
+    settings_.bit_rates.nominal_per_s = link.bit_rate_per_s;
+  }
+  if (settings_.bit_rates.data_per_s <= 0.0) {
+    settings_.bit_rates.data_per_s = link.data_bit_rate_per_s;
+  }
+  if (settings_.correct_frame_duration && settings_.bit_rates.nominal_per_s <= 0.0) {
+    return tl::make_unexpected(Error{
+        ErrorCode::invalid_setting,
+        "interface '" + link.name +
+            "' does not say its bit rate, which the duration of a frame follows from; give it with "
+            "'bit_rate_per_s'"});
+  }
   timer_.emplace(settings_, link);
-  u_utc_s_ = settings_.time_base == TimeBase::local ? 0.0 : settings_.u_utc_s.value_or(system_clock_quality().u_s);
-  // Without a counter only the first frame tells whether the adapter stamps; until then the kernel's stamps are what there is.
-  if (settings_.time_source)
+  u_utc_s_ = settings_.time_base == TimeBase::local
+                 ? 0.0
+                 : settings_.u_utc_s.value_or(system_clock_quality().u_s);
+  // Without a counter only the first frame tells whether the adapter stamps; until then the
+  // kernel's stamps are what there is.
+  if (settings_.time_source) {
     time_source_ = *settings_.time_source;
-  else if (!layout_.keys.empty() && layout_.key_tick_s > 0.0)
+  } else if (!layout_.keys.empty() && layout_.key_tick_s > 0.0) {
     time_source_ = layout_.key_is_time ? TimeSource::payload_time : TimeSource::counter;
+  }
   describe(sink);
   return {};
 }
@@ -74,26 +92,35 @@ bool SensorStream::follows_sensor_clock() const {
 
 double SensorStream::u_stamp_s() const {
   double u_wait_s = 0.0;
-  const bool waits_count = time_source_ == TimeSource::kernel_stamp || time_source_ == TimeSource::hardware_stamp;
-  if (waits_count && settings_.bus_is_shared) // a longest frame of another device may have been on the bus: 0 ... that, one-sided
-    u_wait_s =
-        max_frame_s(link_.fd && settings_.bit_rates.data_per_s > 0.0, true, link_.fd ? 64 : 8, settings_.bit_rates) / std::sqrt(3.0);
+  const bool waits_count =
+      time_source_ == TimeSource::kernel_stamp || time_source_ == TimeSource::hardware_stamp;
+  if (waits_count && settings_.bus_is_shared) { // a longest frame of another device may have been
+                                                // on the bus: 0 ... that, one-sided
+    u_wait_s = max_frame_s(link_.fd && settings_.bit_rates.data_per_s > 0.0, true,
+                           link_.fd ? 64 : 8, settings_.bit_rates) /
+               std::sqrt(3.0);
+  }
   const double u_common_s = timer_->u_common_s();
   return std::sqrt(u_common_s * u_common_s + u_utc_s_ * u_utc_s_ + u_wait_s * u_wait_s);
 }
 
 SourceDescription SensorStream::description() const {
   SourceDescription description;
-  for (const DbcMessage* message : layout_.messages)
+  for (const DbcMessage* message : layout_.messages) {
     description.device += (description.device.empty() ? "" : ", ") + message->name;
+  }
   description.device += " of " + dbc_->path.filename().string();
   description.driver = "can " + link_.name + ", time by " + to_text(time_source_);
-  if (timer_->uses_hardware() && time_source_ != TimeSource::hardware_stamp) description.driver += " over hardware-stamp";
-  for (const ChannelLayout& channel : layout_.channels)
+  if (timer_->uses_hardware() && time_source_ != TimeSource::hardware_stamp) {
+    description.driver += " over hardware-stamp";
+  }
+  for (const ChannelLayout& channel : layout_.channels) {
     description.channels.push_back(channel.description);
+  }
   description.nominal_rate_hz = layout_.nominal_rate_hz;
   description.time_base = settings_.time_base;
-  description.stamp_instant = time_source_ == TimeSource::canopen_sync ? StampInstant::frame_end : StampInstant::frame_start;
+  description.stamp_instant = time_source_ == TimeSource::canopen_sync ? StampInstant::frame_end
+                                                                       : StampInstant::frame_start;
   description.tick_s = timer_->uses_hardware() ? settings_.hardware_tick_s : 0.0;
   description.stamp_uncertainty_s = u_stamp_s();
   return description;
@@ -104,25 +131,34 @@ void SensorStream::describe(SampleSink& sink) {
   sink.describe(description());
 }
 
-// A host that has just been started becomes synchronised while the service runs, and may lose it again: every sample carries what held for
-// it, the description the best so far.
+// A host that has just been started becomes synchronised while the service runs, and may lose it
+// again: every sample carries what held for it, the description the best so far.
 void SensorStream::refresh_utc(SampleSink& sink) {
   constexpr std::int64_t interval_ns = 1'000'000'000;
-  if (settings_.time_base == TimeBase::local || settings_.u_utc_s || std::abs(last_kernel_ns_ - utc_asked_ns_) < interval_ns) return;
+  if (settings_.time_base == TimeBase::local || settings_.u_utc_s ||
+      std::abs(last_kernel_ns_ - utc_asked_ns_) < interval_ns) {
+    return;
+  }
   utc_asked_ns_ = last_kernel_ns_;
   u_utc_s_ = system_clock_quality().u_s;
-  if (u_stamp_s() < described_u_s_ / 2.0) describe(sink);
+  if (u_stamp_s() < described_u_s_ / 2.0) {
+    describe(sink);
+  }
 }
 
 void SensorStream::choose_time_source(const CanFrame& first, SampleSink& sink) {
   time_source_known_ = true;
   const bool by_stamp = time_source_ == TimeSource::kernel_stamp && !settings_.time_source;
-  if (by_stamp && first.hardware_ns != 0) time_source_ = TimeSource::hardware_stamp;
+  if (by_stamp && first.hardware_ns != 0) {
+    time_source_ = TimeSource::hardware_stamp;
+  }
   describe(sink);
 }
 
 Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
-  if (const auto* frame = std::get_if<CanFrame>(&event)) return take_frame(*frame, sink);
+  if (const auto* frame = std::get_if<CanFrame>(&event)) {
+    return take_frame(*frame, sink);
+  }
   if (const auto* lost = std::get_if<FramesLost>(&event)) {
     counts_.dropped_frames += lost->frames;
     frames_dropped_since_ += lost->frames;
@@ -136,7 +172,9 @@ Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
 
 void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
   link_ = change.link;
-  if (!change.interrupted) return;
+  if (!change.interrupted) {
+    return;
+  }
   ++counts_.interruptions;
   interrupted_ = true;
   joiner_.give_up_open();
@@ -145,46 +183,66 @@ void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
   timer_->restart(); // drivers seed the adapter's clock anew when the link comes up
 }
 
-// The clock that would have told the time of what waits for it is gone; the next one knows nothing of it.
+// The clock that would have told the time of what waits for it is gone; the next one knows nothing
+// of it.
 void SensorStream::give_up_bus_time(SampleSink& sink) {
-  if (!for_bus_time_.empty()) resolve(sink, true);
+  if (!for_bus_time_.empty()) {
+    resolve(sink, true);
+  }
 }
 
 void SensorStream::take_fault(const BusFault& fault) {
-  if (fault.state != BusState::unknown) link_.bus = fault.state;
+  if (fault.state != BusState::unknown) {
+    link_.bus = fault.state;
+  }
   if (fault.transmit_errors) {
     link_.transmit_errors = fault.transmit_errors;
     link_.receive_errors = fault.receive_errors;
   }
-  if (counts_.faults.size() < max_causes || counts_.faults.contains(fault.cause)) ++counts_.faults[fault.cause];
+  if (counts_.faults.size() < max_causes || counts_.faults.contains(fault.cause)) {
+    ++counts_.faults[fault.cause];
+  }
   interrupted_ = interrupted_ || fault.frames_lost || fault.state == BusState::bus_off;
 }
 
 Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink) {
-  const bool is_sync = time_source_ == TimeSource::canopen_sync && !frame.extended && frame.id == settings_.sync_id;
+  const bool is_sync =
+      time_source_ == TimeSource::canopen_sync && !frame.extended && frame.id == settings_.sync_id;
   const DbcMessage* message = is_sync ? nullptr : index_->find(frame);
-  if (!is_sync && message == nullptr) return {};
-  if (settings_.correct_frame_duration && frame.bit_rate_switch && settings_.bit_rates.data_per_s <= 0.0)
+  if (!is_sync && message == nullptr) {
+    return {};
+  }
+  if (settings_.correct_frame_duration && frame.bit_rate_switch &&
+      settings_.bit_rates.data_per_s <= 0.0) {
     return tl::make_unexpected(
-        Error{ErrorCode::invalid_setting, link_.name + ": the sensor switches to a data bit rate, which the interface does not "
-                                                       "say; give it with 'data_bit_rate_per_s'"});
-  if (settings_.time_source == TimeSource::hardware_stamp && frame.hardware_ns == 0)
-    return tl::make_unexpected(Error{ErrorCode::invalid_setting,
-                                     link_.name + ": time source 'hardware-stamp' is asked for, but the adapter stamps no frames; leave "
-                                                  "'time_source' out or name 'kernel-stamp'"});
+        Error{ErrorCode::invalid_setting,
+              link_.name + ": the sensor switches to a data bit rate, which the interface does not "
+                           "say; give it with 'data_bit_rate_per_s'"});
+  }
+  if (settings_.time_source == TimeSource::hardware_stamp && frame.hardware_ns == 0) {
+    return tl::make_unexpected(Error{
+        ErrorCode::invalid_setting,
+        link_.name +
+            ": time source 'hardware-stamp' is asked for, but the adapter stamps no frames; leave "
+            "'time_source' out or name 'kernel-stamp'"});
+  }
   last_kernel_ns_ = frame.kernel_ns;
   if (!timer_->add(frame)) {
     ++counts_.clock_restarts;
     give_up_bus_time(sink);
   }
-  if (!time_source_known_) choose_time_source(frame, sink);
+  if (!time_source_known_) {
+    choose_time_source(frame, sink);
+  }
   if (is_sync) {
     sync_ = frame;
     sync_used_ = false;
     return {};
   }
   ++counts_.frames;
-  const auto at = static_cast<std::size_t>(std::find(layout_.messages.begin(), layout_.messages.end(), message) - layout_.messages.begin());
+  const auto at = static_cast<std::size_t>(
+      std::find(layout_.messages.begin(), layout_.messages.end(), message) -
+      layout_.messages.begin());
   std::uint64_t key = 0;
   if (!layout_.keys.empty()) {
     const auto bits = raw_bits(*layout_.keys[at], frame.payload());
@@ -194,7 +252,9 @@ Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink)
     }
     key = *bits;
   }
-  if (auto joined = joiner_.add(at, key, frame)) complete(std::move(*joined), sink);
+  if (auto joined = joiner_.add(at, key, frame)) {
+    complete(std::move(*joined), sink);
+  }
   return {};
 }
 
@@ -209,13 +269,19 @@ void SensorStream::complete(JoinedSample joined, SampleSink& sink) {
     sync_used_ = true;
   }
   const CanFrame head = sample.timed;
-  if (time_source_ == TimeSource::canopen_sync) sample.timed = *sync_;
+  if (time_source_ == TimeSource::canopen_sync) {
+    sample.timed = *sync_;
+  }
   if (!layout_.keys.empty()) {
-    if (!number_by_key(joined.key, head, sample, sink)) return;
+    if (!number_by_key(joined.key, head, sample, sink)) {
+      return;
+    }
   } else {
     number_by_arrival(head, sample);
   }
-  if (last_number_ && sample.number > *last_number_ + 1) counts_.lost += sample.number - *last_number_ - 1;
+  if (last_number_ && sample.number > *last_number_ + 1) {
+    counts_.lost += sample.number - *last_number_ - 1;
+  }
   last_number_ = sample.number;
   last_arrival_ns_ = head.kernel_ns;
   last_key_ = sample.key;
@@ -226,7 +292,8 @@ void SensorStream::complete(JoinedSample joined, SampleSink& sink) {
   resolve(sink, false);
 }
 
-bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample, SampleSink& sink) {
+bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample,
+                                 SampleSink& sink) {
   const auto reading = counter_->read(key, head.kernel_ns);
   if (reading.step == WrappingCounter::Step::repeated) {
     ++counts_.repeated;
@@ -246,33 +313,48 @@ bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waitin
     return true;
   }
   std::int64_t step = sample.key - last_key_;
-  if (layout_.key_is_time) // the numbers follow the nominal rate where there is one
-    step = layout_.nominal_rate_hz > 0.0 ? std::llround(static_cast<double>(step) * layout_.key_tick_s * layout_.nominal_rate_hz) : 1;
-  const std::int64_t least = layout_.key_is_time && layout_.nominal_rate_hz <= 0.0 && interrupted_ ? 2 : 1;
+  if (layout_.key_is_time) { // the numbers follow the nominal rate where there is one
+    step =
+        layout_.nominal_rate_hz > 0.0
+            ? std::llround(static_cast<double>(step) * layout_.key_tick_s * layout_.nominal_rate_hz)
+            : 1;
+  }
+  const std::int64_t least =
+      layout_.key_is_time && layout_.nominal_rate_hz <= 0.0 && interrupted_ ? 2 : 1;
   sample.number = *last_number_ + static_cast<std::uint64_t>(std::max(step, least));
   return true;
 }
 
 void SensorStream::number_by_arrival(const CanFrame& head, Waiting& sample) {
-  if (!last_number_) return;
+  if (!last_number_) {
+    return;
+  }
   std::uint64_t step = 1 + frames_dropped_since_ / layout_.messages.size();
   if (layout_.nominal_rate_hz > 0.0) {
     constexpr double gap_intervals = 1.5;
-    const double intervals = static_cast<double>(head.kernel_ns - last_arrival_ns_) * 1e-9 * layout_.nominal_rate_hz;
-    if (intervals > gap_intervals) step = std::max(step, static_cast<std::uint64_t>(std::llround(intervals)));
+    const double intervals =
+        static_cast<double>(head.kernel_ns - last_arrival_ns_) * 1e-9 * layout_.nominal_rate_hz;
+    if (intervals > gap_intervals) {
+      step = std::max(step, static_cast<std::uint64_t>(std::llround(intervals)));
+    }
   }
-  if (interrupted_) step = std::max<std::uint64_t>(step, 2); // how many were missed nobody knows; that some may have been must show
+  if (interrupted_) {
+    step = std::max<std::uint64_t>(
+        step, 2); // how many were missed nobody knows; that some may have been must show
+  }
   sample.number = *last_number_ + step;
 }
 
 void SensorStream::decode(const JoinedSample& joined, std::vector<double>& values) {
   for (const ChannelLayout& channel : layout_.channels) {
     const DbcMessage& message = *layout_.messages[channel.message];
-    const DecodedSignal decoded = decode_signal(message, message.signals[channel.signal], joined.frames[channel.message]->payload());
-    if (decoded.state == SignalState::truncated)
+    const DecodedSignal decoded = decode_signal(message, message.signals[channel.signal],
+                                                joined.frames[channel.message]->payload());
+    if (decoded.state == SignalState::truncated) {
       ++counts_.short_frames;
-    else if (decoded.state == SignalState::not_available || decoded.state == SignalState::error)
+    } else if (decoded.state == SignalState::not_available || decoded.state == SignalState::error) {
       ++counts_.no_value;
+    }
     values.push_back(decoded.value * channel.unit_factor);
   }
 }
@@ -285,9 +367,12 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
   while (!for_bus_time_.empty()) {
     Waiting& sample = for_bus_time_.front();
     const bool at_sync = time_source_ == TimeSource::canopen_sync;
-    auto base = at_sync ? timer_->end_of_frame_ns(sample.timed) : timer_->start_of_frame_ns(sample.timed);
+    auto base =
+        at_sync ? timer_->end_of_frame_ns(sample.timed) : timer_->start_of_frame_ns(sample.timed);
     const bool hopeless = !base && (at_any_rate || for_bus_time_.size() > max_waiting);
-    if (!base && !hopeless) break;
+    if (!base && !hopeless) {
+      break;
+    }
     sample.base_ns = base.value_or(timer_->kernel_start_of_frame_ns(sample.timed));
     Waiting resolved = std::move(sample);
     for_bus_time_.pop_front();
@@ -305,28 +390,41 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     }
     for_sensor_time_.push_back(std::move(resolved));
   }
-  while (!for_sensor_time_.empty() && (key_line_.ready() || at_any_rate || for_sensor_time_.size() > max_waiting)) {
+  while (!for_sensor_time_.empty() &&
+         (key_line_.ready() || at_any_rate || for_sensor_time_.size() > max_waiting)) {
     Waiting sample = std::move(for_sensor_time_.front());
     for_sensor_time_.pop_front();
-    const std::int64_t stamp_ns = key_line_.ready() ? key_line_.to_host(free_ns(sample.key)) : sample.base_ns;
+    const std::int64_t stamp_ns =
+        key_line_.ready() ? key_line_.to_host(free_ns(sample.key)) : sample.base_ns;
     give_on(std::move(sample), stamp_ns, key_line_.ready() ? trusted : untimed, sink);
   }
 }
 
-void SensorStream::give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink) {
+void SensorStream::give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags,
+                           SampleSink& sink) {
   const bool gap = block_.samples > 0 && sample.number != next_number_;
   const bool full = block_.samples > 0 && stamp_ns - block_.stamps_ns.front() >= block_span_ns;
-  if (gap || full) flush(sink);
-  if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) flags |= stamp_ns == *last_stamp_ns_ ? stamp_repeated : stamp_backwards;
-  if (flags != 0) ++counts_.not_trusted;
+  if (gap || full) {
+    flush(sink);
+  }
+  if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) {
+    flags |= stamp_ns == *last_stamp_ns_ ? stamp_repeated : stamp_backwards;
+  }
+  if (flags != 0) {
+    ++counts_.not_trusted;
+  }
   last_stamp_ns_ = stamp_ns;
-  if (block_.samples == 0) block_.first_sample = sample.number;
+  if (block_.samples == 0) {
+    block_.first_sample = sample.number;
+  }
   ++block_.samples;
   ++counts_.samples;
   block_.stamps_ns.push_back(stamp_ns);
-  const double u_line_s = std::hypot(timer_->u_line_s(), follows_sensor_clock() ? key_line_.u_s() : 0.0);
+  const double u_line_s =
+      std::hypot(timer_->u_line_s(), follows_sensor_clock() ? key_line_.u_s() : 0.0);
   const double u_ns = std::hypot(u_stamp_s(), u_line_s) * 1e9;
-  block_.stamp_uncertainty_ns.push_back(static_cast<std::uint32_t>(std::min(u_ns, double{std::numeric_limits<std::uint32_t>::max()})));
+  block_.stamp_uncertainty_ns.push_back(static_cast<std::uint32_t>(
+      std::min(u_ns, double{std::numeric_limits<std::uint32_t>::max()})));
   block_.flags.push_back(flags);
   block_.received_utc_ns = sample.timed.kernel_ns;
   rows_.insert(rows_.end(), sample.values.begin(), sample.values.end());
@@ -334,13 +432,17 @@ void SensorStream::give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t f
 }
 
 void SensorStream::flush(SampleSink& sink) {
-  if (block_.samples == 0) return;
+  if (block_.samples == 0) {
+    return;
+  }
   refresh_utc(sink);
   const std::size_t channels = layout_.channels.size();
   block_.values.resize(rows_.size());
-  for (std::size_t sample = 0; sample < block_.samples; ++sample)
-    for (std::size_t channel = 0; channel < channels; ++channel)
+  for (std::size_t sample = 0; sample < block_.samples; ++sample) {
+    for (std::size_t channel = 0; channel < channels; ++channel) {
       block_.values[channel * block_.samples + sample] = rows_[sample * channels + channel];
+    }
+  }
   rows_.clear();
   sink.take(std::exchange(block_, {}));
 }

@@ -1,11 +1,15 @@
-// From the events of a bus to the time-stamped samples of one sensor: decoding, joining, numbering, timing, gaps.
+// From the events of a bus to the time-stamped samples of one sensor: decoding, joining, numbering,
+// timing, gaps.
 //
-// Stamps are those of the host's clock (settings: as UTC, or as a clock of its own) and mark the start of the sample's first frame, for
-// canopen-sync the end of the SYNC frame. With a counter or a time field they are taken from the line between the sensor's clock and the
-// frames' starts, which leaves out what a frame had to wait for the bus. Samples wait until that line has settled. Numbers: by the counter
-// or time field where there is one, so that every lost sample shows as a gap of just its size; otherwise by arrival, with gaps by the
-// nominal rate where it is known and by the frames that the socket has dropped. After an interruption of the link there is always a gap.
-// Nothing is ever filled. A signal that a frame does not have gives NaN. Belongs to one thread; the DBC file is copied.
+// Stamps are those of the host's clock (settings: as UTC, or as a clock of its own) and mark the
+// start of the sample's first frame, for canopen-sync the end of the SYNC frame. With a counter or
+// a time field they are taken from the line between the sensor's clock and the frames' starts,
+// which leaves out what a frame had to wait for the bus. Samples wait until that line has settled.
+// Numbers: by the counter or time field where there is one, so that every lost sample shows as a
+// gap of just its size; otherwise by arrival, with gaps by the nominal rate where it is known and
+// by the frames that the socket has dropped. After an interruption of the link there is always a
+// gap. Nothing is ever filled. A signal that a frame does not have gives NaN. Belongs to one
+// thread; the DBC file is copied.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +20,13 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/frame_source.hpp"
-#include "drivers/can/time/frame_timer.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/message_index.hpp"
 #include "drivers/can/sample_joiner.hpp"
 #include "drivers/can/sensor_layout.hpp"
 #include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/time/frame_timer.hpp"
 #include "drivers/can/time/wrapping_counter.hpp"
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"
@@ -40,13 +44,14 @@ public:
 };
 
 struct SensorCounts {
-  std::uint64_t frames = 0;                    // of the sensor's messages
-  std::uint64_t samples = 0;                   // given on
-  std::uint64_t lost = 0;                      // samples that the numbers say are missing
-  std::uint64_t dropped_frames = 0;            // by the socket
-  std::uint64_t incomplete = 0;                // samples of which a frame did not come
-  std::uint64_t repeated = 0;                  // frames that came twice
-  std::uint64_t rejected = 0;                  // frames too short for their counter, of a rate that is not known, samples without SYNC
+  std::uint64_t frames = 0;         // of the sensor's messages
+  std::uint64_t samples = 0;        // given on
+  std::uint64_t lost = 0;           // samples that the numbers say are missing
+  std::uint64_t dropped_frames = 0; // by the socket
+  std::uint64_t incomplete = 0;     // samples of which a frame did not come
+  std::uint64_t repeated = 0;       // frames that came twice
+  std::uint64_t rejected =
+      0; // frames too short for their counter, of a rate that is not known, samples without SYNC
   std::uint64_t short_frames = 0;              // frames that lack a signal; its value is NaN
   std::uint64_t no_value = 0;                  // J1939 "not available" and "error"
   std::uint64_t not_trusted = 0;               // samples given on with a flag
@@ -59,7 +64,8 @@ struct SensorCounts {
 class SensorStream {
 public:
   // Fails when the settings do not fit the DBC file or the link (no bit rate is known).
-  [[nodiscard]] static Expected<std::unique_ptr<SensorStream>> create(SensorSettings settings, DbcFile dbc);
+  [[nodiscard]] static Expected<std::unique_ptr<SensorStream>> create(SensorSettings settings,
+                                                                      DbcFile dbc);
 
   [[nodiscard]] std::vector<FrameFilter> filters() const;
   // Once, before the first event.
@@ -68,7 +74,8 @@ public:
   [[nodiscard]] Expected<void> take(const BusEvent& event, SampleSink& sink);
   // Gives on the block that is being filled: when nothing has come for a while.
   void flush(SampleSink& sink);
-  // Also gives on the samples that wait for their time, with the flag that their stamp is not trusted. At the end.
+  // Also gives on the samples that wait for their time, with the flag that their stamp is not
+  // trusted. At the end.
   void finish(SampleSink& sink);
 
   [[nodiscard]] SensorCounts counts() const;
@@ -94,7 +101,8 @@ private:
   void refresh_utc(SampleSink& sink);
   void choose_time_source(const CanFrame& first, SampleSink& sink);
   void complete(JoinedSample joined, SampleSink& sink);
-  [[nodiscard]] bool number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample, SampleSink& sink);
+  [[nodiscard]] bool number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample,
+                                   SampleSink& sink);
   void number_by_arrival(const CanFrame& head, Waiting& sample);
   void decode(const JoinedSample& joined, std::vector<double>& values);
   void resolve(SampleSink& sink, bool at_any_rate);

@@ -17,11 +17,14 @@ constexpr double vertical_divisions = 8.0;
 constexpr milliseconds poll_interval{2};
 
 std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 bool same(const Acquisition& a, const Acquisition& b) {
-  return a.before_trigger_s == b.before_trigger_s && a.after_trigger_s == b.after_trigger_s && a.points == b.points;
+  return a.before_trigger_s == b.before_trigger_s && a.after_trigger_s == b.after_trigger_s &&
+         a.points == b.points;
 }
 
 std::size_t next_power_of_ten(std::size_t value) {
@@ -44,7 +47,8 @@ double next_scope_step(double value) {
   return 10.0 * decade;
 }
 
-Oscilloscope::Oscilloscope(OscilloscopeSettings settings, const StopSignal& stop) : settings_(std::move(settings)), stop_(stop) {}
+Oscilloscope::Oscilloscope(OscilloscopeSettings settings, const StopSignal& stop)
+    : settings_(std::move(settings)), stop_(stop) {}
 
 void Oscilloscope::give_up_connection() {
   connection_.reset();
@@ -52,7 +56,8 @@ void Oscilloscope::give_up_connection() {
 }
 
 Expected<void> Oscilloscope::connect() {
-  auto connection = ScpiConnection::connect("oscilloscope", settings_.address, settings_.answer_limit, stop_);
+  auto connection =
+      ScpiConnection::connect("oscilloscope", settings_.address, settings_.answer_limit, stop_);
   if (!connection) {
     return tl::unexpected(connection.error());
   }
@@ -64,7 +69,8 @@ Expected<void> Oscilloscope::connect() {
   if (!identity) {
     return tl::unexpected(identity.error());
   }
-  commands_ = settings_.family.empty() ? scope_by_identity(*identity) : scope_by_family(settings_.family);
+  commands_ =
+      settings_.family.empty() ? scope_by_identity(*identity) : scope_by_family(settings_.family);
   if (commands_ == nullptr) {
     std::string families;
     for (const ScopeCommands& scope : known_scopes()) {
@@ -72,7 +78,9 @@ Expected<void> Oscilloscope::connect() {
     }
     return tl::unexpected(
         Error{ErrorCode::refused,
-              message("'" + shown(*identity) + "' is none of the known oscilloscopes; name the family it follows (" + families + ")")});
+              message("'" + shown(*identity) +
+                      "' is none of the known oscilloscopes; name the family it follows (" +
+                      families + ")")});
   }
   for (const char* setting : commands_->set_up) {
     if (auto done = connection->command(setting); !done) {
@@ -86,9 +94,12 @@ Expected<void> Oscilloscope::connect() {
 }
 
 Expected<void> Oscilloscope::prepare(const Acquisition& acquisition) {
-  if (settings_.trigger_input >= settings_.inputs.size() || !(acquisition.before_trigger_s >= 0.0) ||
-      !(acquisition.after_trigger_s > 0.0) || acquisition.points == 0) {
-    return tl::unexpected(Error{ErrorCode::invalid_setting, message("there is no input to trigger on, or no window to record")});
+  if (settings_.trigger_input >= settings_.inputs.size() ||
+      !(acquisition.before_trigger_s >= 0.0) || !(acquisition.after_trigger_s > 0.0) ||
+      acquisition.points == 0) {
+    return tl::unexpected(
+        Error{ErrorCode::invalid_setting,
+              message("there is no input to trigger on, or no window to record")});
   }
   if (connection_ && connection_->lost()) {
     give_up_connection();
@@ -116,19 +127,25 @@ Expected<void> Oscilloscope::apply(const Acquisition& acquisition) {
     settings.push_back(for_input(commands_->input_on, input.input));
     settings.push_back(for_input(commands_->input_scale, input.input) + " " +
                        scpi_decimal(next_scope_step(input.range_v / vertical_divisions)));
-    settings.push_back(for_input(commands_->input_offset, input.input) + " " + scpi_decimal(centre_v));
+    settings.push_back(for_input(commands_->input_offset, input.input) + " " +
+                       scpi_decimal(centre_v));
   }
-  const double scale_s = next_scope_step((acquisition.before_trigger_s + acquisition.after_trigger_s) / horizontal_divisions);
+  const double scale_s = next_scope_step(
+      (acquisition.before_trigger_s + acquisition.after_trigger_s) / horizontal_divisions);
   settings.push_back(std::string(commands_->window_scale) + " " + scpi_decimal(scale_s));
-  settings.push_back(std::string(commands_->window_offset) + " " +
-                     scpi_decimal(scale_s * horizontal_divisions / 2.0 - acquisition.before_trigger_s));
+  settings.push_back(
+      std::string(commands_->window_offset) + " " +
+      scpi_decimal(scale_s * horizontal_divisions / 2.0 - acquisition.before_trigger_s));
   if (commands_->memory_depth != nullptr) {
-    settings.push_back(std::string(commands_->memory_depth) + " " + std::to_string(next_power_of_ten(acquisition.points)));
+    settings.push_back(std::string(commands_->memory_depth) + " " +
+                       std::to_string(next_power_of_ten(acquisition.points)));
   }
-  settings.push_back(std::string(commands_->trigger_source) + " " +
-                     for_input(commands_->input_name, settings_.inputs[settings_.trigger_input].input));
+  settings.push_back(
+      std::string(commands_->trigger_source) + " " +
+      for_input(commands_->input_name, settings_.inputs[settings_.trigger_input].input));
   settings.push_back(commands_->trigger_slope_rising);
-  settings.push_back(std::string(commands_->trigger_level) + " " + scpi_decimal(settings_.trigger_level_v));
+  settings.push_back(std::string(commands_->trigger_level) + " " +
+                     scpi_decimal(settings_.trigger_level_v));
   for (const std::string& setting : settings) {
     if (auto done = connection_->command(setting); !done) {
       return done;
@@ -165,16 +182,20 @@ Expected<std::int64_t> Oscilloscope::wait_for_trigger(milliseconds limit) {
     if (!state) {
       return tl::unexpected(state.error());
     }
-    if (std::any_of(commands_->finished.begin(), commands_->finished.end(), [&](const char* word) { return *state == word; })) {
+    if (std::any_of(commands_->finished.begin(), commands_->finished.end(),
+                    [&](const char* word) { return *state == word; })) {
       return utc_now_ns();
     }
     if (Clock::now() >= deadline) {
       if (auto stopped = connection_->command(commands_->stop); !stopped) {
         return tl::unexpected(stopped.error());
       }
-      return tl::unexpected(Error{
-          ErrorCode::timeout, message("no trigger within " + std::to_string(limit.count()) + " ms; is sync connected to input " +
-                                      std::to_string(settings_.inputs[settings_.trigger_input].input) + ", and does the generator run?")});
+      return tl::unexpected(
+          Error{ErrorCode::timeout,
+                message("no trigger within " + std::to_string(limit.count()) +
+                        " ms; is sync connected to input " +
+                        std::to_string(settings_.inputs[settings_.trigger_input].input) +
+                        ", and does the generator run?")});
     }
     if (stop_.wait_for(poll_interval)) {
       return tl::unexpected(Error{ErrorCode::disconnected, message("stopped")});
@@ -195,9 +216,11 @@ Expected<Shot> Oscilloscope::read_shot() {
       shot.first_sample_s = preamble.first_sample_s();
       shot.interval_s = preamble.x_increment_s;
       points = preamble.points;
-    } else if (preamble.points != points || preamble.first_sample_s() != shot.first_sample_s || preamble.x_increment_s != shot.interval_s) {
+    } else if (preamble.points != points || preamble.first_sample_s() != shot.first_sample_s ||
+               preamble.x_increment_s != shot.interval_s) {
       give_up_connection();
-      return tl::unexpected(Error{ErrorCode::malformed, message("the traces of one shot have different time axes")});
+      return tl::unexpected(
+          Error{ErrorCode::malformed, message("the traces of one shot have different time axes")});
     }
     shot.traces.push_back(std::move(*trace));
   }
@@ -205,7 +228,9 @@ Expected<Shot> Oscilloscope::read_shot() {
 }
 
 Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
-  if (auto done = connection_->command(":WAVeform:SOURce " + for_input(commands_->input_name, input.input)); !done) {
+  if (auto done =
+          connection_->command(":WAVeform:SOURce " + for_input(commands_->input_name, input.input));
+      !done) {
     return tl::unexpected(done.error());
   }
   // Read back: an instrument that is one answer behind betrays itself here.
@@ -215,12 +240,18 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
   }
   if (*source != for_input(commands_->input_name_short, input.input)) {
     give_up_connection();
-    return tl::unexpected(Error{ErrorCode::malformed, message("answers :WAVeform:SOURce? with '" + shown(*source) + "' instead of " +
-                                                              for_input(commands_->input_name_short, input.input))});
+    return tl::unexpected(
+        Error{ErrorCode::malformed,
+              message("answers :WAVeform:SOURce? with '" + shown(*source) + "' instead of " +
+                      for_input(commands_->input_name_short, input.input))});
   }
   if (commands_->points != nullptr) {
-    const std::size_t points = commands_->memory_depth != nullptr ? next_power_of_ten(prepared_->points) : prepared_->points;
-    if (auto done = connection_->command(std::string(commands_->points) + " " + std::to_string(points)); !done) {
+    const std::size_t points = commands_->memory_depth != nullptr
+                                   ? next_power_of_ten(prepared_->points)
+                                   : prepared_->points;
+    if (auto done =
+            connection_->command(std::string(commands_->points) + " " + std::to_string(points));
+        !done) {
       return tl::unexpected(done.error());
     }
   }
@@ -260,8 +291,10 @@ Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& p
     }
     if (codes->size() != wanted) {
       give_up_connection();
-      return tl::unexpected(Error{ErrorCode::malformed, message("a block of " + std::to_string(codes->size()) + " bytes where " +
-                                                                std::to_string(wanted) + " samples were asked for")});
+      return tl::unexpected(
+          Error{ErrorCode::malformed,
+                message("a block of " + std::to_string(codes->size()) + " bytes where " +
+                        std::to_string(wanted) + " samples were asked for")});
     }
     append_volts(preamble, commands_->voltage, *codes, trace.volts);
   }

@@ -1,11 +1,13 @@
-// An oscilloscope that triggers on sync, tells a time series sensor of it by its trigger output, and records what its inputs see.
+// An oscilloscope that triggers on sync, tells a time series sensor of it by its trigger output,
+// and records what its inputs see.
 //
-// acquire() takes one single shot: arm, wait for the trigger, read every input. Times are in seconds relative to the trigger point of the
-// instrument, all inputs of a shot on one axis. After anything that leaves question and answer apart (time-out, half an answer, garbage,
-// lost connection) the connection is given up, and the next call connects, identifies and sets up anew: an instrument that was switched off
-// comes back by itself. The shot that failed is not repeated here.
-// One thread; StopSignal ends waits from another.
-// Fails: refused (the instrument's own error, or an instrument that is in no table), timeout (also: no trigger came; the instrument is then
+// acquire() takes one single shot: arm, wait for the trigger, read every input. Times are in
+// seconds relative to the trigger point of the instrument, all inputs of a shot on one axis. After
+// anything that leaves question and answer apart (time-out, half an answer, garbage, lost
+// connection) the connection is given up, and the next call connects, identifies and sets up anew:
+// an instrument that was switched off comes back by itself. The shot that failed is not repeated
+// here. One thread; StopSignal ends waits from another. Fails: refused (the instrument's own error,
+// or an instrument that is in no table), timeout (also: no trigger came; the instrument is then
 // told to stop and the connection stays), malformed, disconnected, not_found, invalid_setting.
 #pragma once
 
@@ -55,7 +57,8 @@ struct Shot {
   double first_sample_s = 0.0; // relative to the trigger point
   double interval_s = 0.0;
   std::vector<Trace> traces;         // in the order of the inputs, all of the same length
-  std::int64_t triggered_utc_ns = 0; // host clock, when the instrument was first seen to have triggered: late by up to one answer
+  std::int64_t triggered_utc_ns = 0; // host clock, when the instrument was first seen to have
+                                     // triggered: late by up to one answer
 };
 
 class Oscilloscope {
@@ -63,7 +66,8 @@ public:
   // `stop` outlives the oscilloscope. Nothing is connected yet.
   Oscilloscope(OscilloscopeSettings settings, const StopSignal& stop);
 
-  // Connects when necessary and applies the settings. Repeated calls with the same acquisition cost nothing.
+  // Connects when necessary and applies the settings. Repeated calls with the same acquisition cost
+  // nothing.
   [[nodiscard]] Expected<void> prepare(const Acquisition& acquisition);
 
   // One shot of the prepared acquisition; the trigger may take `trigger_limit`.
@@ -81,7 +85,9 @@ private:
   Expected<Shot> read_shot();
   Expected<Trace> read_trace(const InputSettings& input, Preamble& preamble);
   Expected<Preamble> read_preamble(const InputSettings& input);
-  [[nodiscard]] std::string message(const std::string& text) const { return "oscilloscope " + settings_.address + ": " + text; }
+  [[nodiscard]] std::string message(const std::string& text) const {
+    return "oscilloscope " + settings_.address + ": " + text;
+  }
   void give_up_connection();
 
   const OscilloscopeSettings settings_;
@@ -94,7 +100,8 @@ private:
   std::uint64_t connections_ = 0;
 };
 
-// The smallest 1, 2 or 5 times a power of ten that is not below `value`: the steps that oscilloscopes have. REQUIRES: value > 0.
+// The smallest 1, 2 or 5 times a power of ten that is not below `value`: the steps that
+// oscilloscopes have. REQUIRES: value > 0.
 [[nodiscard]] double next_scope_step(double value);
 
 } // namespace dyncal::drivers::dso

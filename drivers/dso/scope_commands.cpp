@@ -7,8 +7,8 @@ const std::vector<ScopeCommands>& known_scopes() {
       {
           .family = "rigol-mso5000",
           .models = {"MSO5", "MSO7", "MSO8", "DS7", "DS8"},
-          .set_up = {":STOP", ":SYSTem:AOUTput TOUT", ":ACQuire:TYPE NORMal", ":TRIGger:MODE EDGE", ":TRIGger:COUPling DC",
-                     ":WAVeform:MODE RAW", ":WAVeform:FORMat BYTE"},
+          .set_up = {":STOP", ":SYSTem:AOUTput TOUT", ":ACQuire:TYPE NORMal", ":TRIGger:MODE EDGE",
+                     ":TRIGger:COUPling DC", ":WAVeform:MODE RAW", ":WAVeform:FORMat BYTE"},
           .input_on = ":CHANnel<n>:DISPlay ON",
           .input_scale = ":CHANnel<n>:SCALe",
           .input_offset = ":CHANnel<n>:OFFSet",
@@ -33,7 +33,8 @@ const std::vector<ScopeCommands>& known_scopes() {
       {
           .family = "rigol-ds1000z",
           .models = {"DS1", "MSO1"},
-          .set_up = {":STOP", ":ACQuire:TYPE NORMal", ":TRIGger:MODE EDGE", ":TRIGger:COUPling DC", ":WAVeform:MODE RAW",
+          .set_up = {":STOP", ":ACQuire:TYPE NORMal", ":TRIGger:MODE EDGE", ":TRIGger:COUPling DC",
+                     ":WAVeform:MODE RAW",
                      ":WAVeform:FORMat BYTE"}, // its trigger output is always on
           .input_on = ":CHANnel<n>:DISPlay ON",
           .input_scale = ":CHANnel<n>:SCALe",
@@ -59,8 +60,9 @@ const std::vector<ScopeCommands>& known_scopes() {
       {
           .family = "keysight-infiniivision",
           .models = {"DSO-X", "MSO-X", "DSOX", "MSOX"},
-          .set_up = {":STOP", ":CALibrate:OUTPut TRIGgers", ":ACQuire:TYPE NORMal", ":TRIGger:MODE EDGE", ":TRIGger:EDGE:COUPling DC",
-                     ":WAVeform:POINts:MODE RAW", ":WAVeform:FORMat BYTE", ":WAVeform:UNSigned ON"},
+          .set_up = {":STOP", ":CALibrate:OUTPut TRIGgers", ":ACQuire:TYPE NORMal",
+                     ":TRIGger:MODE EDGE", ":TRIGger:EDGE:COUPling DC", ":WAVeform:POINts:MODE RAW",
+                     ":WAVeform:FORMat BYTE", ":WAVeform:UNSigned ON"},
           .input_on = ":CHANnel<n>:DISPlay ON",
           .input_scale = ":CHANnel<n>:SCALe",
           .input_offset = ":CHANnel<n>:OFFSet",

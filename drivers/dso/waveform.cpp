@@ -18,7 +18,8 @@ bool whole_and_positive(double value) {
 
 Expected<Preamble> parse_preamble(std::string_view answer) {
   const auto malformed = [answer](const char* why) {
-    return tl::unexpected(Error{ErrorCode::malformed, "the preamble '" + shown(answer) + "' " + why});
+    return tl::unexpected(
+        Error{ErrorCode::malformed, "the preamble '" + shown(answer) + "' " + why});
   };
   const auto fields = parse_scpi_numbers(answer);
   if (!fields || fields->size() != field_count) {
@@ -44,11 +45,14 @@ Expected<Preamble> parse_preamble(std::string_view answer) {
   return preamble;
 }
 
-void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes, std::vector<double>& volts) {
+void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes,
+                  std::vector<double>& volts) {
   for (const char byte : codes) {
     const double code = static_cast<unsigned char>(byte);
-    volts.push_back(rule == VoltageRule::rigol ? (code - preamble.y_origin - preamble.y_reference) * preamble.y_increment_v
-                                               : (code - preamble.y_reference) * preamble.y_increment_v + preamble.y_origin);
+    volts.push_back(rule == VoltageRule::rigol
+                        ? (code - preamble.y_origin - preamble.y_reference) * preamble.y_increment_v
+                        : (code - preamble.y_reference) * preamble.y_increment_v +
+                              preamble.y_origin);
   }
 }
 

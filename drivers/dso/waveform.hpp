@@ -1,8 +1,10 @@
 // What :WAVeform:PREamble? and :WAVeform:DATA? say about one trace.
 //
-// Preamble: format,type,points,count,xincrement,xorigin,xreference,yincrement,yorigin,yreference. Time of sample i relative to the
-// trigger: (i - xreference) * xincrement + xorigin. Volts follow the family's VoltageRule. One byte a sample (format BYTE).
-// Fails: malformed when a field is missing or cannot be (no increment, more points than an oscilloscope holds, another format tha bytes).
+// Preamble: format,type,points,count,xincrement,xorigin,xreference,yincrement,yorigin,yreference.
+// Time of sample i relative to the trigger: (i - xreference) * xincrement + xorigin. Volts follow
+// the family's VoltageRule. One byte a sample (format BYTE). Fails: malformed when a field is
+// missing or cannot be (no increment, more points than an oscilloscope holds, another format tha
+// bytes).
 #pragma once
 
 #include <cstddef>
@@ -30,6 +32,7 @@ struct Preamble {
 [[nodiscard]] Expected<Preamble> parse_preamble(std::string_view answer);
 
 // Appends one value per byte.
-void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes, std::vector<double>& volts);
+void append_volts(const Preamble& preamble, VoltageRule rule, std::span<const char> codes,
+                  std::vector<double>& volts);
 
 } // namespace dyncal::drivers::dso

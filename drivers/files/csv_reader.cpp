@@ -13,8 +13,10 @@ constexpr std::size_t stretch_bytes = std::size_t{1} << 21U;
 
 // Takes the next stretch of whole lines off the front.
 std::string_view next_lines(std::string_view& rest) {
-  const std::size_t line_end = rest.size() > stretch_bytes ? rest.find('\n', stretch_bytes) : std::string_view::npos;
-  const std::string_view lines = rest.substr(0, line_end == std::string_view::npos ? line_end : line_end + 1);
+  const std::size_t line_end =
+      rest.size() > stretch_bytes ? rest.find('\n', stretch_bytes) : std::string_view::npos;
+  const std::string_view lines =
+      rest.substr(0, line_end == std::string_view::npos ? line_end : line_end + 1);
   rest.remove_prefix(lines.size());
   return lines;
 }
@@ -34,7 +36,8 @@ Expected<std::unique_ptr<CsvReader>> CsvReader::open(const FileSettings& setting
 }
 
 tl::unexpected<Error> CsvReader::malformed(std::size_t line, const std::string& problem) const {
-  return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ":" + std::to_string(line) + ": " + problem});
+  return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ":" +
+                                                        std::to_string(line) + ": " + problem});
 }
 
 Expected<void> CsvReader::read_header() {
@@ -54,8 +57,10 @@ Expected<void> CsvReader::read_header() {
   }
   layout_ = std::move(*layout);
   if (!layout_.has_time && !settings_.sample_rate) {
-    return tl::unexpected(Error{ErrorCode::invalid_setting,
-                                settings_.path.string() + ": no column t_ns and no sample_rate_hz; one of them must tell the time"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_setting,
+              settings_.path.string() +
+                  ": no column t_ns and no sample_rate_hz; one of them must tell the time"});
   }
   auto described = describe_file_channels(settings_, layout_.channels);
   if (!described) {
@@ -66,10 +71,13 @@ Expected<void> CsvReader::read_header() {
 }
 
 void CsvReader::read_ahead() {
-  // Twice as many as can run at once: there is always one to go on with while a finished one waits to be taken.
+  // Twice as many as can run at once: there is always one to go on with while a finished one waits
+  // to be taken.
   const std::size_t stretches = 2 * std::max<std::size_t>(1, std::thread::hardware_concurrency());
   while (ahead_.size() < stretches && !rest_.empty()) {
-    ahead_.push_back(std::async(std::launch::async, [this, lines = next_lines(rest_)] { return read_csv_rows(lines, layout_); }));
+    ahead_.push_back(std::async(std::launch::async, [this, lines = next_lines(rest_)] {
+      return read_csv_rows(lines, layout_);
+    }));
   }
 }
 
@@ -130,8 +138,10 @@ SampleBlock CsvReader::next_piece(std::size_t samples) {
     piece.stamps_ns.assign(first, first + static_cast<std::ptrdiff_t>(piece.samples));
   }
   for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
-    const auto first = whole.values.begin() + static_cast<std::ptrdiff_t>(channel * whole.samples + taken_);
-    piece.values.insert(piece.values.end(), first, first + static_cast<std::ptrdiff_t>(piece.samples));
+    const auto first =
+        whole.values.begin() + static_cast<std::ptrdiff_t>(channel * whole.samples + taken_);
+    piece.values.insert(piece.values.end(), first,
+                        first + static_cast<std::ptrdiff_t>(piece.samples));
   }
   taken_ += piece.samples;
   if (taken_ == whole.samples) {

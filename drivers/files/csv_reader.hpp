@@ -1,7 +1,9 @@
-// Reads the samples of a CSV file, a stretch at a time; README.md has the format, every error names file and line.
+// Reads the samples of a CSV file, a stretch at a time; README.md has the format, every error names
+// file and line.
 //
-// The file is mapped into memory; the next stretches of it are read by threads of their own while the current one is taken, two for each
-// processor, 2 MB of text each. Samples and errors come in the order of the file whatever thread meets them first.
+// The file is mapped into memory; the next stretches of it are read by threads of their own while
+// the current one is taken, two for each processor, 2 MB of text each. Samples and errors come in
+// the order of the file whatever thread meets them first.
 #pragma once
 
 #include <deque>
@@ -25,7 +27,8 @@ public:
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
 
 private:
-  CsvReader(const FileSettings& settings, MappedFile file) : settings_(settings), file_(std::move(file)), rest_(file_.text()) {}
+  CsvReader(const FileSettings& settings, MappedFile file)
+      : settings_(settings), file_(std::move(file)), rest_(file_.text()) {}
   Expected<void> read_header();
   void read_ahead();
   Expected<bool> next_stretch(); // into rows_; false: the end
@@ -39,7 +42,8 @@ private:
   std::string_view rest_; // not yet given to a thread
   CsvLayout layout_;
   SourceDescription description_;
-  std::deque<std::future<CsvRows>> ahead_; // their threads read file_ and layout_: they end before these go
+  std::deque<std::future<CsvRows>>
+      ahead_; // their threads read file_ and layout_: they end before these go
   CsvRows rows_;
   std::size_t block_ = 0;      // of rows_: read now
   std::size_t taken_ = 0;      // rows of that block

@@ -36,7 +36,8 @@ bool is_whole(std::string_view text, Number& value) {
 class RowReader {
 public:
   RowReader(std::string_view text, const CsvLayout& layout, CsvRows& rows)
-      : at_(text.data()), end_(text.data() + text.size()), layout_(layout), columns_(layout.meanings.size()), rows_(rows) {}
+      : at_(text.data()), end_(text.data() + text.size()), layout_(layout),
+        columns_(layout.meanings.size()), rows_(rows) {}
 
   // Until the end or the first problem.
   void read() {
@@ -52,7 +53,9 @@ public:
   }
 
 private:
-  [[nodiscard]] bool at_line_end() const { return at_ == end_ || *at_ == '\n' || (*at_ == '\r' && (at_ + 1 == end_ || at_[1] == '\n')); }
+  [[nodiscard]] bool at_line_end() const {
+    return at_ == end_ || *at_ == '\n' || (*at_ == '\r' && (at_ + 1 == end_ || at_[1] == '\n'));
+  }
 
   bool skip_blank_line() {
     const char* c = at_;
@@ -95,8 +98,10 @@ private:
       }
       const bool last = column + 1 == columns_;
       if (last != at_line_end()) {
-        problem_ = last ? "more fields than the first line has columns (" + std::to_string(columns_) + ")"
-                        : std::to_string(column + 1) + " fields, but the first line has " + std::to_string(columns_) + " columns";
+        problem_ =
+            last ? "more fields than the first line has columns (" + std::to_string(columns_) + ")"
+                 : std::to_string(column + 1) + " fields, but the first line has " +
+                       std::to_string(columns_) + " columns";
         return;
       }
       at_ += last ? 0 : 1;
@@ -136,7 +141,8 @@ private:
     if (is_whole(signless, value)) {
       return true;
     }
-    problem_ = "'" + std::string(field.substr(0, max_quote)) + "' in column " + layout_.columns[column] + " is not " +
+    problem_ = "'" + std::string(field.substr(0, max_quote)) + "' in column " +
+               layout_.columns[column] + " is not " +
                (std::is_integral_v<Number> ? "a whole number" : "a number");
     return false;
   }
@@ -156,7 +162,8 @@ private:
       const std::size_t row = filled_;
       close_block();
       for (std::size_t channel = 0; channel < layout_.channels.size(); ++channel) {
-        open_.values[channel * CsvRows::block_rows] = open_.values[channel * CsvRows::block_rows + row];
+        open_.values[channel * CsvRows::block_rows] =
+            open_.values[channel * CsvRows::block_rows + row];
       }
     }
     if (filled_ == 0) {
@@ -216,7 +223,8 @@ private:
 tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) {
   CsvLayout layout;
   for (const char candidate : {',', '\t', ';'}) {
-    layout.separator = first_line.find(candidate) != std::string_view::npos ? candidate : layout.separator;
+    layout.separator =
+        first_line.find(candidate) != std::string_view::npos ? candidate : layout.separator;
   }
   for (std::size_t begin = 0; begin <= first_line.size();) {
     const std::size_t end = std::min(first_line.find(layout.separator, begin), first_line.size());
@@ -227,7 +235,8 @@ tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) 
     }
     double number = 0.0;
     if (name.empty() || is_whole(name, number)) {
-      return tl::unexpected("column " + std::to_string(layout.columns.size() + 1) + " has no name; the first line must name the columns");
+      return tl::unexpected("column " + std::to_string(layout.columns.size() + 1) +
+                            " has no name; the first line must name the columns");
     }
     if (std::find(layout.columns.begin(), layout.columns.end(), name) != layout.columns.end()) {
       return tl::unexpected("two columns are called '" + std::string(name) + "'");
@@ -235,7 +244,9 @@ tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) 
     layout.columns.emplace_back(name);
     layout.has_time |= name == "t_ns";
     layout.has_number |= name == "sample_number";
-    layout.meanings.push_back(name == "t_ns" ? CsvMeaning::time : name == "sample_number" ? CsvMeaning::number : CsvMeaning::channel);
+    layout.meanings.push_back(name == "t_ns"            ? CsvMeaning::time
+                              : name == "sample_number" ? CsvMeaning::number
+                                                        : CsvMeaning::channel);
     if (layout.meanings.back() == CsvMeaning::channel) {
       layout.channels.emplace_back(name);
     }

@@ -1,5 +1,6 @@
-// Numbers out of a stretch of whole lines of a CSV file, without any state, so that stretches are read by several threads at once.
-// README.md has the format. Integers stay integers, decimals are rounded exactly (decimal.hpp): shortest ones come back bit for bit.
+// Numbers out of a stretch of whole lines of a CSV file, without any state, so that stretches are
+// read by several threads at once. README.md has the format. Integers stay integers, decimals are
+// rounded exactly (decimal.hpp): shortest ones come back bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +36,9 @@ struct CsvRows {
   };
   static constexpr std::size_t block_rows = 4096;
 
-  // Of up to `block_rows` rows; a gap in the sample numbers ends one. Stamps as they are in the file, none without a time column. Without
-  // a column of sample numbers `first_sample` counts from the beginning of the stretch.
+  // Of up to `block_rows` rows; a gap in the sample numbers ends one. Stamps as they are in the
+  // file, none without a time column. Without a column of sample numbers `first_sample` counts from
+  // the beginning of the stretch.
   std::vector<SampleBlock> blocks;
   std::size_t lines = 0;
   std::optional<Problem> problem;

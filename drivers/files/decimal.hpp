@@ -1,10 +1,12 @@
-// Numbers as std::from_chars reads them, bit for bit and with the same end, several times as fast for what instruments write: up to 19
-// digits, values below 1e19 in size with up to 54 decimals. Everything else is left to std::from_chars.
+// Numbers as std::from_chars reads them, bit for bit and with the same end, several times as fast
+// for what instruments write: up to 19 digits, values below 1e19 in size with up to 54 decimals.
+// Everything else is left to std::from_chars.
 //
-// A decimal w 10^q with q <= 0 is w 5^q 2^q. 5^q is known to 128 bits (rounded down), so the product with w is known to within two units of
-// its 128th bit. Whatever the truth between these two is, it is rounded to the same 53 bits, unless the product lies that close to the
-// middle of two numbers: then std::from_chars decides. So every number is rounded exactly.
-// No state; any thread.
+// A decimal w 10^q with q <= 0 is w 5^q 2^q. 5^q is known to 128 bits (rounded down), so the
+// product with w is known to within two units of its 128th bit. Whatever the truth between these
+// two is, it is rounded to the same 53 bits, unless the product lies that close to the middle of
+// two numbers: then std::from_chars decides. So every number is rounded exactly. No state; any
+// thread.
 #pragma once
 
 #include <array>
@@ -21,10 +23,12 @@ namespace decimal {
 
 __extension__ using Wide = unsigned __int128;
 
-inline constexpr int max_decimals = 54;                      // 5^54 is below 2^126: its remainder can be doubled in 128 bits
-inline constexpr int max_digits = 19;                        // hold in 64 bits
-inline constexpr std::ptrdiff_t taken_digits = 24;            // at most, in one go
-inline constexpr std::ptrdiff_t room = 3 * taken_digits + 16; // bytes read at most from the first one of a number on
+inline constexpr int max_decimals =
+    54; // 5^54 is below 2^126: its remainder can be doubled in 128 bits
+inline constexpr int max_digits = 19;              // hold in 64 bits
+inline constexpr std::ptrdiff_t taken_digits = 24; // at most, in one go
+inline constexpr std::ptrdiff_t room =
+    3 * taken_digits + 16; // bytes read at most from the first one of a number on
 
 struct ReciprocalPower {
   std::uint64_t high = 0; // of floor(2^shift / 5^k), which has 128 bits
@@ -50,13 +54,15 @@ constexpr std::array<ReciprocalPower, max_decimals + 1> reciprocal_powers_of_fiv
       }
       remainder <<= 1U;
     }
-    powers[static_cast<std::size_t>(k)] = {static_cast<std::uint64_t>(quotient >> 64U), static_cast<std::uint64_t>(quotient), shift};
+    powers[static_cast<std::size_t>(k)] = {static_cast<std::uint64_t>(quotient >> 64U),
+                                           static_cast<std::uint64_t>(quotient), shift};
   }
   return powers;
 }
 
 inline constexpr auto reciprocals = reciprocal_powers_of_five();
-inline constexpr std::array<std::uint64_t, 9> powers_of_ten{1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
+inline constexpr std::array<std::uint64_t, 9> powers_of_ten{
+    1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 
 // Eight bytes of text as the digits' values, for as many as are digits.
 inline std::uint64_t eight_bytes(const char* at) {
@@ -71,7 +77,8 @@ inline unsigned leading_digits(std::uint64_t bytes) {
   return static_cast<unsigned>(std::countr_zero(others)) / 8U;
 }
 
-// The first `count` of eight bytes appended to `number`, modulo 2^64. Neighbours are added side by side: 8 of 1, 4 of 2, 2 of 4 digits.
+// The first `count` of eight bytes appended to `number`, modulo 2^64. Neighbours are added side by
+// side: 8 of 1, 4 of 2, 2 of 4 digits.
 inline std::uint64_t appended(std::uint64_t number, std::uint64_t bytes, unsigned count) {
   const unsigned half_of_rest = 4U * (8U - count); // a shift by all 64 bits must be made of two
   bytes = bytes << half_of_rest << half_of_rest;
@@ -95,16 +102,19 @@ inline const char* read_digits(const char* at, std::uint64_t& number) {
   return at;
 }
 
-// w 10^-decimals, rounded to nearest. False: too close to the middle of two numbers to be told. REQUIRES: w > 0
+// w 10^-decimals, rounded to nearest. False: too close to the middle of two numbers to be told.
+// REQUIRES: w > 0
 inline bool scaled_down(std::uint64_t w, int decimals, double& value) {
   const ReciprocalPower& power = reciprocals[static_cast<std::size_t>(decimals)];
   const int leading = std::countl_zero(w);
   w <<= static_cast<unsigned>(leading);
   const auto below = static_cast<std::uint64_t>((static_cast<Wide>(w) * power.low) >> 64U);
-  const Wide product = static_cast<Wide>(w) * power.high + below; // the truth is in [product, product + 2)
+  const Wide product =
+      static_cast<Wide>(w) * power.high + below; // the truth is in [product, product + 2)
   const auto high = static_cast<std::uint64_t>(product >> 64U);
   const auto low = static_cast<std::uint64_t>(product);
-  const auto dropped = 10U + static_cast<unsigned>(high >> 63U); // of the bits of `high`, and all of `low`
+  const auto dropped =
+      10U + static_cast<unsigned>(high >> 63U); // of the bits of `high`, and all of `low`
   if (low + 1 <= 1) {
     const std::uint64_t half = std::uint64_t{1} << (dropped - 1);
     const std::uint64_t rest = high & (2 * half - 1);
@@ -114,12 +124,14 @@ inline bool scaled_down(std::uint64_t w, int decimals, double& value) {
   }
   const auto digits = static_cast<std::int64_t>((high >> dropped) + (high >> (dropped - 1) & 1U));
   const int exponent = static_cast<int>(dropped) - decimals - leading - power.shift + 128;
-  const auto power_of_two = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52U);
+  const auto power_of_two =
+      std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52U);
   value = static_cast<double>(digits) * power_of_two; // both factors and the product are exact
   return true;
 }
 
-// "e-5" and the like; leaves `at` and `exponent` alone where there is none. False: more digits than two.
+// "e-5" and the like; leaves `at` and `exponent` alone where there is none. False: more digits than
+// two.
 inline bool read_exponent(const char*& at, int& exponent) {
   if (*at != 'e' && *at != 'E') {
     return true;
@@ -143,9 +155,10 @@ struct Decimal {
   int decimals = 0;
 };
 
-// Digits with a point among the second to the eighth byte; null: something else. The point is taken out of the first word of digits, then
-// three words are read without a jump that depends on the number of digits: it varies as it pleases, and a jump that was guessed wrong
-// costs more than the work that it saves.
+// Digits with a point among the second to the eighth byte; null: something else. The point is taken
+// out of the first word of digits, then three words are read without a jump that depends on the
+// number of digits: it varies as it pleases, and a jump that was guessed wrong costs more than the
+// work that it saves.
 inline const char* read_with_point(const char* at, Decimal& decimal) {
   const std::uint64_t bytes = eight_bytes(at);
   const unsigned point = leading_digits(bytes);
@@ -189,10 +202,12 @@ inline const char* read_quickly(const char* at, double& value) {
   }
   const int scale = decimal.decimals - exponent;
   double size = 0.0;
-  if (decimal.w != 0 && (scale < 0 || scale > max_decimals || !scaled_down(decimal.w, scale, size))) {
+  if (decimal.w != 0 &&
+      (scale < 0 || scale > max_decimals || !scaled_down(decimal.w, scale, size))) {
     return nullptr;
   }
-  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) | (negative ? std::uint64_t{1} << 63U : 0));
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) |
+                                (negative ? std::uint64_t{1} << 63U : 0));
   return end;
 }
 
@@ -209,7 +224,8 @@ inline const char* read_quickly(const char* at, std::uint64_t& value) {
 inline const char* read_quickly(const char* at, std::int64_t& value) {
   std::uint64_t size = 0;
   const char* const end = read_quickly(at, size);
-  if (end == nullptr || size > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+  if (end == nullptr ||
+      size > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
     return nullptr;
   }
   value = static_cast<std::int64_t>(size);

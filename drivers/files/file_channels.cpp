@@ -13,15 +13,17 @@ std::string listed(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-tl::unexpected<Error> unknown(const FileSettings& settings, const char* what, const std::string& name,
-                              const std::vector<std::string>& known) {
-  return tl::unexpected(
-      Error{ErrorCode::not_found, settings.path.string() + ": no " + what + " '" + name + "'; the file has: " + listed(known)});
+tl::unexpected<Error> unknown(const FileSettings& settings, const char* what,
+                              const std::string& name, const std::vector<std::string>& known) {
+  return tl::unexpected(Error{ErrorCode::not_found, settings.path.string() + ": no " + what + " '" +
+                                                        name +
+                                                        "'; the file has: " + listed(known)});
 }
 
 } // namespace
 
-Expected<SourceDescription> describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names) {
+Expected<SourceDescription> describe_file_channels(const FileSettings& settings,
+                                                   const std::vector<std::string>& names) {
   for (const auto& [file_name, name] : settings.channels) {
     if (std::find(names.begin(), names.end(), file_name) == names.end()) {
       return unknown(settings, "channel", file_name, names);
@@ -38,7 +40,9 @@ Expected<SourceDescription> describe_file_channels(const FileSettings& settings,
     ChannelDescription channel;
     channel.name = renamed == settings.channels.end() ? name : renamed->second;
     if (std::find(ours.begin(), ours.end(), channel.name) != ours.end()) {
-      return tl::unexpected(Error{ErrorCode::invalid_setting, settings.path.string() + ": two channels are called '" + channel.name + "'"});
+      return tl::unexpected(
+          Error{ErrorCode::invalid_setting,
+                settings.path.string() + ": two channels are called '" + channel.name + "'"});
     }
     ours.push_back(channel.name);
     const auto unit = settings.units.find(channel.name);

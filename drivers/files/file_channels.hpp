@@ -1,4 +1,5 @@
-// The description of a source that is a file: its channels with the names and units that the settings give them.
+// The description of a source that is a file: its channels with the names and units that the
+// settings give them.
 #pragma once
 
 #include <string>
@@ -8,7 +9,9 @@
 
 namespace dyncal::drivers::acs {
 
-// `names` are those of the file. Fails (not_found) when the settings name a channel that the file has not.
-[[nodiscard]] Expected<SourceDescription> describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names);
+// `names` are those of the file. Fails (not_found) when the settings name a channel that the file
+// has not.
+[[nodiscard]] Expected<SourceDescription>
+describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names);
 
 } // namespace dyncal::drivers::acs

@@ -14,7 +14,9 @@ constexpr std::size_t max_block = 4096; // samples
 constexpr double paced_block_s = 0.05;
 
 std::int64_t host_utc_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 std::int64_t stamp_of(const SampleBlock& block, std::size_t i) {
@@ -32,7 +34,8 @@ Expected<std::unique_ptr<SampleReader>> open_as(const FileSettings& settings) {
 
 Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings) {
   std::string extension = settings.path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".wav") {
     return open_as<WavReader>(settings);
   }
@@ -47,13 +50,16 @@ Expected<SourceDescription> FileSource::describe() {
     return tl::unexpected(reader.error());
   }
   reader_ = std::move(*reader);
-  // Two samples tell the pace, and a file that is wrong from its first row on is refused before anything is announced.
+  // Two samples tell the pace, and a file that is wrong from its first row on is refused before
+  // anything is announced.
   auto first = reader_->read(2);
   if (!first) {
     return tl::unexpected(first.error());
   }
   if (first->samples == 0) {
-    return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ": no samples below the names of the columns"});
+    return tl::unexpected(
+        Error{ErrorCode::malformed,
+              settings_.path.string() + ": no samples below the names of the columns"});
   }
   first_ = std::move(*first);
   return reader_->description();
@@ -68,13 +74,16 @@ std::size_t FileSource::block_samples() const {
   return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(max_block)));
 }
 
-bool FileSource::wait_for_due_time(const SampleBlock& block, std::chrono::steady_clock::time_point started) const {
+bool FileSource::wait_for_due_time(const SampleBlock& block,
+                                   std::chrono::steady_clock::time_point started) const {
   if (settings_.speed <= 0.0) {
     return !stop_.raised();
   }
   const std::int64_t played_ns = stamp_of(block, block.samples - 1) - stamp_of(first_, 0);
-  const auto due = started + std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(played_ns) / settings_.speed));
-  return !stop_.wait_for(std::max(due - std::chrono::steady_clock::now(), std::chrono::steady_clock::duration::zero()));
+  const auto due = started + std::chrono::nanoseconds(static_cast<std::int64_t>(
+                                 static_cast<double>(played_ns) / settings_.speed));
+  return !stop_.wait_for(std::max(due - std::chrono::steady_clock::now(),
+                                  std::chrono::steady_clock::duration::zero()));
 }
 
 Expected<void> FileSource::run(BlockSink& sink) {

@@ -1,9 +1,11 @@
-// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy) or WAV, of any kind of instrument.
+// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy) or WAV, of
+// any kind of instrument.
 //
-// The file is read as it is played, never as a whole. Where the stamps of a block are exactly equidistant the block carries a
-// RegularClock, otherwise one stamp a sample; either way the stamps are those of the file. Pace: at once, in real time or x times
-// faster by the stamps. README.md has the formats.
-// Fails: not_found (file or column), malformed (with file and line), invalid_setting (no time column and no rate).
+// The file is read as it is played, never as a whole. Where the stamps of a block are exactly
+// equidistant the block carries a RegularClock, otherwise one stamp a sample; either way the stamps
+// are those of the file. Pace: at once, in real time or x times faster by the stamps. README.md has
+// the formats. Fails: not_found (file or column), malformed (with file and line), invalid_setting
+// (no time column and no rate).
 #pragma once
 
 #include <filesystem>
@@ -20,8 +22,9 @@ namespace dyncal::drivers::acs {
 
 struct FileSettings {
   std::filesystem::path path;
-  double speed = 0.0;                          // times real time; 0: at once
-  std::optional<SampleRate> sample_rate;       // needed when there is no time column; nominal rate otherwise
+  double speed = 0.0; // times real time; 0: at once
+  std::optional<SampleRate>
+      sample_rate; // needed when there is no time column; nominal rate otherwise
   std::map<std::string, std::string> channels; // name in the file -> name of the channel
   std::map<std::string, std::string> units;    // name of the channel -> D-SI
   TimeBase time_base = TimeBase::utc;
@@ -47,7 +50,8 @@ public:
 private:
   [[nodiscard]] std::size_t block_samples() const;
   // False when a stop was asked for.
-  [[nodiscard]] bool wait_for_due_time(const SampleBlock& block, std::chrono::steady_clock::time_point started) const;
+  [[nodiscard]] bool wait_for_due_time(const SampleBlock& block,
+                                       std::chrono::steady_clock::time_point started) const;
 
   FileSettings settings_;
   StopSignal stop_;

@@ -11,7 +11,9 @@ namespace {
 
 tl::unexpected<Error> unreadable(const std::filesystem::path& path) {
   return tl::unexpected(
-      Error{ErrorCode::not_found, path.string() + ": cannot read this file; does it exist, is it a file, and may you read it?"});
+      Error{ErrorCode::not_found,
+            path.string() +
+                ": cannot read this file; does it exist, is it a file, and may you read it?"});
 }
 
 } // namespace
@@ -39,7 +41,8 @@ Expected<MappedFile> MappedFile::open(const std::filesystem::path& path) {
   return file;
 }
 
-MappedFile::MappedFile(MappedFile&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
 
 MappedFile::~MappedFile() {
   if (data_ != nullptr) {

@@ -1,5 +1,5 @@
-// A regular file in memory, read only, for as long as the object lives. The file must not shrink meanwhile.
-// Any number of threads may read it.
+// A regular file in memory, read only, for as long as the object lives. The file must not shrink
+// meanwhile. Any number of threads may read it.
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,8 @@
 namespace dyncal::drivers::acs {
 namespace {
 
-// Reads the few forms of Python's literals that NumPy writes: {'descr': [('t_ns', '<i8'), ...], 'fortran_order': False, 'shape': (12,), }
+// Reads the few forms of Python's literals that NumPy writes: {'descr': [('t_ns', '<i8'), ...],
+// 'fortran_order': False, 'shape': (12,), }
 class LiteralReader {
 public:
   explicit LiteralReader(std::string_view text) : text_(text) {}
@@ -51,7 +52,9 @@ public:
   }
 
 private:
-  void skip_blanks() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size())); }
+  void skip_blanks() {
+    text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size()));
+  }
   std::string_view text_;
 };
 
@@ -60,30 +63,35 @@ bool read_type(std::string_view type, NpyField& field) {
     return false;
   }
   field.kind = type[1];
-  const auto [end, status] = std::from_chars(type.data() + 2, type.data() + type.size(), field.size);
+  const auto [end, status] =
+      std::from_chars(type.data() + 2, type.data() + type.size(), field.size);
   if (status != std::errc() || end != type.data() + type.size()) {
     return false;
   }
   const bool integer = field.kind == 'i' || field.kind == 'u';
-  const bool known_size = field.size == 8 || field.size == 4 || (integer && (field.size == 2 || field.size == 1));
+  const bool known_size =
+      field.size == 8 || field.size == 4 || (integer && (field.size == 2 || field.size == 1));
   return field.kind == 'V' || ((integer || field.kind == 'f') && known_size);
 }
 
 tl::expected<std::vector<NpyField>, std::string> read_fields(LiteralReader& reader) {
   if (!reader.take('[')) {
-    return tl::unexpected<std::string>("holds no structured array; its rows must have named fields, one of them t_ns");
+    return tl::unexpected<std::string>(
+        "holds no structured array; its rows must have named fields, one of them t_ns");
   }
   std::vector<NpyField> fields;
   std::size_t place = 0;
   while (reader.take('(')) {
     NpyField field;
     std::string type;
-    if (!reader.take_text(field.name) || !reader.take(',') || !reader.take_text(type) || !reader.take(')')) {
+    if (!reader.take_text(field.name) || !reader.take(',') || !reader.take_text(type) ||
+        !reader.take(')')) {
       return tl::unexpected("has a field '" + field.name + "' that is not a plain number");
     }
     if (!read_type(type, field)) {
-      return tl::unexpected("has a field '" + field.name + "' of type '" + type +
-                            "'; little-endian integers and floating-point numbers of up to 8 bytes can be read");
+      return tl::unexpected(
+          "has a field '" + field.name + "' of type '" + type +
+          "'; little-endian integers and floating-point numbers of up to 8 bytes can be read");
     }
     field.place = place;
     place += field.size;
@@ -104,13 +112,16 @@ bool read_shape(LiteralReader& reader, std::size_t& rows) {
 
 tl::expected<NpyHeader, std::string> NpyHeader::of(std::string_view file) {
   constexpr std::string_view magic = "\x93NUMPY";
-  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(file[i])); };
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::size_t>(static_cast<unsigned char>(file[i]));
+  };
   if (!file.starts_with(magic) || file.size() < 12 || byte(6) < 1 || byte(6) > 3) {
     return tl::unexpected<std::string>("is not a NumPy file");
   }
   const bool short_length = byte(6) == 1;
   const std::size_t begin = short_length ? 10 : 12;
-  const std::size_t length = byte(8) + (byte(9) << 8U) + (short_length ? 0 : (byte(10) << 16U) + (byte(11) << 24U));
+  const std::size_t length =
+      byte(8) + (byte(9) << 8U) + (short_length ? 0 : (byte(10) << 16U) + (byte(11) << 24U));
   if (length > file.size() - begin) {
     return tl::unexpected<std::string>("ends within its header");
   }

@@ -1,5 +1,5 @@
-// The header of a NumPy file (.npy, format 1 to 3) that holds a one-dimensional structured array: names and types of its fields, and
-// how many rows there are. numpy.lib.format documents it.
+// The header of a NumPy file (.npy, format 1 to 3) that holds a one-dimensional structured array:
+// names and types of its fields, and how many rows there are. numpy.lib.format documents it.
 #pragma once
 
 #include <cstddef>

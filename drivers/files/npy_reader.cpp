@@ -15,7 +15,8 @@ void copy_as(const char* from, std::size_t row_bytes, std::size_t rows, Number* 
   for (std::size_t i = 0; i < rows; ++i, from += row_bytes) {
     Stored value;
     std::memcpy(&value, from, sizeof(value));
-    to[i] = static_cast<Number>(value); // NOLINT(bugprone-signed-char-misuse): int8 is a number here
+    to[i] =
+        static_cast<Number>(value); // NOLINT(bugprone-signed-char-misuse): int8 is a number here
   }
 }
 
@@ -59,8 +60,10 @@ Expected<void> NpyReader::name_fields() {
     channels_.push_back(field);
   }
   if (!time_ && !settings_.sample_rate) {
-    return tl::unexpected(Error{ErrorCode::invalid_setting,
-                                settings_.path.string() + ": no field t_ns and no sample_rate_hz; one of them must tell the time"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_setting,
+              settings_.path.string() +
+                  ": no field t_ns and no sample_rate_hz; one of them must tell the time"});
   }
   auto described = describe_file_channels(settings_, names);
   if (!described) {
@@ -72,7 +75,8 @@ Expected<void> NpyReader::name_fields() {
 
 template <class Number>
 void NpyReader::copy(const NpyField& field, std::size_t rows, Number* to) const {
-  const char* const from = file_.text().data() + header_.header_bytes + row_ * header_.row_bytes + field.place;
+  const char* const from =
+      file_.text().data() + header_.header_bytes + row_ * header_.row_bytes + field.place;
   const auto as = [&]<class Stored>(Stored) { copy_as<Stored>(from, header_.row_bytes, rows, to); };
   const bool is_signed = field.kind == 'i';
   if (field.kind == 'f') {
@@ -88,7 +92,8 @@ void NpyReader::copy(const NpyField& field, std::size_t rows, Number* to) const 
   }
 }
 
-Expected<void> NpyReader::check_order(const std::vector<std::uint64_t>& numbers, const SampleBlock& block) const {
+Expected<void> NpyReader::check_order(const std::vector<std::uint64_t>& numbers,
+                                      const SampleBlock& block) const {
   const auto at_row = [&](std::size_t i, const std::string& problem) {
     return malformed("row " + std::to_string(row_ + i) + ": " + problem);
   };
@@ -101,9 +106,11 @@ Expected<void> NpyReader::check_order(const std::vector<std::uint64_t>& numbers,
   if (last_stamp_ns_ && block.stamps_ns.front() <= *last_stamp_ns_) {
     return at_row(0, not_rising(block.stamps_ns.front(), *last_stamp_ns_));
   }
-  const auto later = std::adjacent_find(block.stamps_ns.begin(), block.stamps_ns.end(), [](auto a, auto b) { return b <= a; });
+  const auto later = std::adjacent_find(block.stamps_ns.begin(), block.stamps_ns.end(),
+                                        [](auto a, auto b) { return b <= a; });
   if (later != block.stamps_ns.end()) {
-    return at_row(static_cast<std::size_t>(later - block.stamps_ns.begin()) + 1, not_rising(*(later + 1), *later));
+    return at_row(static_cast<std::size_t>(later - block.stamps_ns.begin()) + 1,
+                  not_rising(*(later + 1), *later));
   }
   return {};
 }
@@ -118,8 +125,10 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
   if (number_) {
     numbers.resize(block.samples);
     copy(*number_, block.samples, numbers.data());
-    const auto gap = std::adjacent_find(numbers.begin(), numbers.end(), [](auto a, auto b) { return b != a + 1; });
-    block.samples = gap == numbers.end() ? block.samples : static_cast<std::size_t>(gap - numbers.begin()) + 1;
+    const auto gap = std::adjacent_find(numbers.begin(), numbers.end(),
+                                        [](auto a, auto b) { return b != a + 1; });
+    block.samples =
+        gap == numbers.end() ? block.samples : static_cast<std::size_t>(gap - numbers.begin()) + 1;
   }
   block.first_sample = number_ ? numbers.front() : next_sample_;
   if (time_) {

@@ -1,6 +1,8 @@
-// Reads the samples of a NumPy file with a structured array (numpy.save of rows with named fields); README.md has the format.
+// Reads the samples of a NumPy file with a structured array (numpy.save of rows with named fields);
+// README.md has the format.
 //
-// The file is mapped into memory and its numbers are copied as they are, so it is read as fast as the disk or the memory delivers it.
+// The file is mapped into memory and its numbers are copied as they are, so it is read as fast as
+// the disk or the memory delivers it.
 #pragma once
 
 #include <memory>
@@ -23,12 +25,14 @@ public:
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
 
 private:
-  NpyReader(const FileSettings& settings, MappedFile file) : settings_(settings), file_(std::move(file)) {}
+  NpyReader(const FileSettings& settings, MappedFile file)
+      : settings_(settings), file_(std::move(file)) {}
   Expected<void> name_fields();
   [[nodiscard]] tl::unexpected<Error> malformed(const std::string& problem) const;
   template <class Number>
   void copy(const NpyField& field, std::size_t rows, Number* to) const;
-  [[nodiscard]] Expected<void> check_order(const std::vector<std::uint64_t>& numbers, const SampleBlock& block) const;
+  [[nodiscard]] Expected<void> check_order(const std::vector<std::uint64_t>& numbers,
+                                           const SampleBlock& block) const;
 
   FileSettings settings_;
   MappedFile file_;

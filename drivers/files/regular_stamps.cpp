@@ -23,11 +23,13 @@ void make_regular(SampleBlock& block) {
 }
 
 std::string not_rising(std::int64_t stamp_ns, std::int64_t before_ns) {
-  return "t_ns " + std::to_string(stamp_ns) + " after " + std::to_string(before_ns) + "; the stamps must rise";
+  return "t_ns " + std::to_string(stamp_ns) + " after " + std::to_string(before_ns) +
+         "; the stamps must rise";
 }
 
 std::string not_rising(std::uint64_t sample, std::uint64_t before) {
-  return "sample_number " + std::to_string(sample) + " after " + std::to_string(before) + "; it must rise";
+  return "sample_number " + std::to_string(sample) + " after " + std::to_string(before) +
+         "; it must rise";
 }
 
 } // namespace dyncal::drivers::acs

@@ -32,12 +32,15 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   std::unique_ptr<WavReader> reader(new WavReader());
   reader->path_ = settings.path.string();
   if (!std::filesystem::is_regular_file(settings.path)) {
-    return tl::unexpected(Error{ErrorCode::not_found, reader->path_ + ": cannot read this file; does it exist, and may you read it?"});
+    return tl::unexpected(
+        Error{ErrorCode::not_found,
+              reader->path_ + ": cannot read this file; does it exist, and may you read it?"});
   }
   SF_INFO info{};
   reader->file_.reset(sf_open(reader->path_.c_str(), SFM_READ, &info));
   if (!reader->file_) {
-    return tl::unexpected(Error{ErrorCode::malformed, reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")"});
+    return tl::unexpected(Error{ErrorCode::malformed, reader->path_ + ": cannot be read as WAV (" +
+                                                          sf_strerror(nullptr) + ")"});
   }
   std::vector<std::string> names;
   for (int channel = 1; channel <= info.channels; ++channel) {
@@ -61,10 +64,12 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
 Expected<SampleBlock> WavReader::read(std::size_t samples) {
   const std::size_t channels = description_.channels.size();
   frames_.resize(samples * channels);
-  const sf_count_t count = sf_readf_double(file_.get(), frames_.data(), static_cast<sf_count_t>(samples));
+  const sf_count_t count =
+      sf_readf_double(file_.get(), frames_.data(), static_cast<sf_count_t>(samples));
   if (sf_error(file_.get()) != SF_ERR_NO_ERROR) {
-    return tl::unexpected(
-        Error{ErrorCode::malformed, path_ + ": sample " + std::to_string(next_sample_) + ": " + sf_strerror(file_.get())});
+    return tl::unexpected(Error{ErrorCode::malformed, path_ + ": sample " +
+                                                          std::to_string(next_sample_) + ": " +
+                                                          sf_strerror(file_.get())});
   }
   SampleBlock block;
   block.first_sample = next_sample_;

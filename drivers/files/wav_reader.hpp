@@ -1,4 +1,5 @@
-// Reads the samples of a WAV file (16, 24, 32 bit or float) through libsndfile; values are -1..1 of full scale.
+// Reads the samples of a WAV file (16, 24, 32 bit or float) through libsndfile; values are -1..1 of
+// full scale.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,8 @@ namespace dyncal::drivers::acs {
 
 class WavReader : public SampleReader {
 public:
-  // Fails (not_found) when there is no such file or channel, (malformed) when libsndfile cannot read it.
+  // Fails (not_found) when there is no such file or channel, (malformed) when libsndfile cannot
+  // read it.
   [[nodiscard]] static Expected<std::unique_ptr<WavReader>> open(const FileSettings& settings);
 
   [[nodiscard]] const SourceDescription& description() const override { return description_; }

@@ -54,7 +54,8 @@ Expected<void> ByHandGenerator::set_amplitude_v(double amplitude_v) {
 Expected<void> ByHandGenerator::set_output(bool on) {
   if (on) {
     on_ = true; // from now on it may be
-    ask("generator: with the output off set sine, " + frequency_hz_ + " Hz, " + amplitude(amplitude_v_) + "; switch the output on");
+    ask("generator: with the output off set sine, " + frequency_hz_ + " Hz, " +
+        amplitude(amplitude_v_) + "; switch the output on");
   } else if (on_) {
     on_ = false;
     ask("generator: switch the output off");
@@ -76,7 +77,9 @@ Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit)
       return false; // the rest of the line is still to come
     }
     if (read(input_, &byte, 1) != 1) {
-      return tl::unexpected(Error{ErrorCode::disconnected, "generator by hand: standard input has ended, nobody can confirm the settings"});
+      return tl::unexpected(
+          Error{ErrorCode::disconnected,
+                "generator by hand: standard input has ended, nobody can confirm the settings"});
     }
     if (byte == '\n') {
       asked_ = false;

@@ -1,10 +1,13 @@
-// A generator that a person sets: says what to set, and takes a line (Enter) as the word that it is done.
+// A generator that a person sets: says what to set, and takes a line (Enter) as the word that it is
+// done.
 //
-// set_frequency() and set_amplitude_v() are remembered; set_output(true) shows all of it with the order of the work (values first, output
-// last), set_output(false) asks to switch the output off, and a new amplitude while it is on asks for that alone. Nothing waits for the
-// person but wait_for_effect(), so that the caller can do other things meanwhile. Confirmations are lines of a descriptor, a terminal or
-// not. On a terminal what was typed before the question does not count. Destruction asks to switch the output off when it is, or may be,
-// on. Bench time is the host's. Fails: disconnected (the descriptor has ended). One thread.
+// set_frequency() and set_amplitude_v() are remembered; set_output(true) shows all of it with the
+// order of the work (values first, output last), set_output(false) asks to switch the output off,
+// and a new amplitude while it is on asks for that alone. Nothing waits for the person but
+// wait_for_effect(), so that the caller can do other things meanwhile. Confirmations are lines of a
+// descriptor, a terminal or not. On a terminal what was typed before the question does not count.
+// Destruction asks to switch the output off when it is, or may be, on. Bench time is the host's.
+// Fails: disconnected (the descriptor has ended). One thread.
 #pragma once
 
 #include <functional>
@@ -17,7 +20,8 @@ namespace dyncal::drivers::generator {
 
 class ByHandGenerator : public Generator {
 public:
-  using Show = std::function<void(const std::string&)>; // one request to the person, without line end
+  using Show =
+      std::function<void(const std::string&)>; // one request to the person, without line end
 
   // Reads confirmations from `input`, which stays open and stays the caller's.
   ByHandGenerator(int input, Show show) : input_(input), show_(std::move(show)) {}
@@ -31,7 +35,9 @@ public:
   [[nodiscard]] Expected<void> set_output(bool on) override;
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds limit) override;
   [[nodiscard]] Expected<double> clock_now_s() override { return clock_.now_s(); }
-  [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override { return clock_.wait_until_s(time_s, stop); }
+  [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override {
+    return clock_.wait_until_s(time_s, stop);
+  }
 
 private:
   void ask(const std::string& what);

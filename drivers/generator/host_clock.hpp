@@ -1,4 +1,5 @@
-// Bench time of a bench without a time of its own: the host's monotonic clock, from when the object was made. Any thread.
+// Bench time of a bench without a time of its own: the host's monotonic clock, from when the object
+// was made. Any thread.
 #pragma once
 
 #include <chrono>

@@ -26,13 +26,15 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
 
 ScpiGenerator::~ScpiGenerator() {
   if (connection_) {
-    // Nothing can be done about a failure here: whoever needs to know has called set_output(false) before.
+    // Nothing can be done about a failure here: whoever needs to know has called set_output(false)
+    // before.
     static_cast<void>(command(":OUTPut1 OFF"));
   }
 }
 
 void ScpiGenerator::choose_clock() {
-  // Only a virtual bench has a time of its own; an instrument that does not know the query says nothing or reports an error.
+  // Only a virtual bench has a time of its own; an instrument that does not know the query says
+  // nothing or reports an error.
   has_bench_clock_ = identity_.find("dyncal virtual bench") != std::string::npos;
 }
 
@@ -47,7 +49,8 @@ Expected<void> ScpiGenerator::reconnect() {
   }
   identity_ = *identity;
   // An instrument that was switched off in between has forgotten all of this.
-  for (const char* setting : {":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP"}) {
+  for (const char* setting : {":OUTPut1 OFF", ":OUTPut1:LOAD INFinity",
+                              ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP"}) {
     if (auto done = connection->command(setting); !done) {
       return done;
     }
@@ -81,7 +84,8 @@ Expected<void> ScpiGenerator::set_frequency(const std::string& decimal_hz) {
 Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
   if (!(amplitude_v >= 0.0 && amplitude_v <= 1000.0)) {
     return tl::unexpected(
-        Error{ErrorCode::invalid_setting, "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set"});
+        Error{ErrorCode::invalid_setting,
+              "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set"});
   }
   return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }
@@ -100,9 +104,11 @@ Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
     return tl::unexpected(answer.error());
   }
   double time_s = 0.0;
-  const auto [end, status] = std::from_chars(answer->data(), answer->data() + answer->size(), time_s);
+  const auto [end, status] =
+      std::from_chars(answer->data(), answer->data() + answer->size(), time_s);
   if (status != std::errc()) {
-    return tl::unexpected(Error{ErrorCode::malformed, "generator " + address_ + " answers " + text + " with '" + *answer + "'"});
+    return tl::unexpected(Error{ErrorCode::malformed, "generator " + address_ + " answers " + text +
+                                                          " with '" + *answer + "'"});
   }
   return time_s;
 }
@@ -119,7 +125,8 @@ Expected<double> ScpiGenerator::wait_until_s(double time_s, std::stop_token stop
     return host_clock_.wait_until_s(time_s, stop);
   }
   for (;;) {
-    // The virtual bench answers :BENCh:WAIT? when the time has come, at the latest after half a second of the host.
+    // The virtual bench answers :BENCh:WAIT? when the time has come, at the latest after half a
+    // second of the host.
     auto now_s = query_bench_time(":BENCh:WAIT? " + scpi_decimal(time_s));
     if (!now_s || *now_s >= time_s || stop.stop_requested()) {
       return now_s;

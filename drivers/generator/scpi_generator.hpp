@@ -1,10 +1,12 @@
-// A function generator over TCP that speaks SCPI as the Rigol DG4000 series does (channel 1, load set to high impedance).
+// A function generator over TCP that speaks SCPI as the Rigol DG4000 series does (channel 1, load
+// set to high impedance).
 //
-// Commands: *IDN?, :SOURce1:FUNCtion, :SOURce1:VOLTage (peak to peak), :SOURce1:FREQuency, :OUTPut1, each followed by
-// :SYSTem:ERRor?; an error that the instrument reports is passed on word for word (refused). An answer may take 2 s (timeout); after that
-// the connection is given up, and the next call connects anew.
-// `:BENCh:TIME?` and `:BENCh:WAIT?` are understood by the virtual bench only; an instrument that does not know them leaves the
-// host's monotonic clock as bench time.
+// Commands: *IDN?, :SOURce1:FUNCtion, :SOURce1:VOLTage (peak to peak), :SOURce1:FREQuency,
+// :OUTPut1, each followed by :SYSTem:ERRor?; an error that the instrument reports is passed on word
+// for word (refused). An answer may take 2 s (timeout); after that the connection is given up, and
+// the next call connects anew.
+// `:BENCh:TIME?` and `:BENCh:WAIT?` are understood by the virtual bench only; an instrument that
+// does not know them leaves the host's monotonic clock as bench time.
 #pragma once
 
 #include <memory>
@@ -29,7 +31,8 @@ public:
   [[nodiscard]] Expected<void> set_frequency(const std::string& decimal_hz) override;
   [[nodiscard]] Expected<void> set_amplitude_v(double amplitude_v) override;
   [[nodiscard]] Expected<void> set_output(bool on) override;
-  // A rectangle in place of the sine, until the next connection: for the calibration of trigger delays.
+  // A rectangle in place of the sine, until the next connection: for the calibration of trigger
+  // delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
   [[nodiscard]] Expected<double> clock_now_s() override;

@@ -27,7 +27,8 @@ Expected<double> parse_scpi_number(std::string_view answer) {
   }
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || text.starts_with('+')) {
+  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value) ||
+      text.starts_with('+')) {
     return malformed("'" + shown(answer) + "' is not a number");
   }
   return value;
@@ -71,7 +72,8 @@ Expected<InstrumentError> parse_instrument_error(std::string_view answer) {
 }
 
 Expected<std::size_t> parse_block_digit_count(std::string_view hash_and_digit) {
-  if (hash_and_digit.size() != 2 || hash_and_digit[0] != '#' || hash_and_digit[1] < '1' || hash_and_digit[1] > '9') {
+  if (hash_and_digit.size() != 2 || hash_and_digit[0] != '#' || hash_and_digit[1] < '1' ||
+      hash_and_digit[1] > '9') {
     return malformed("'" + shown(hash_and_digit) + "' does not begin a block of definite length");
   }
   return static_cast<std::size_t>(hash_and_digit[1] - '0');
@@ -88,7 +90,8 @@ Expected<std::size_t> parse_block_length(std::string_view digits) {
 
 std::string scpi_decimal(double value) {
   char text[400]; // the longest finite double in fixed notation has 327 characters
-  const auto [end, status] = std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed);
+  const auto [end, status] =
+      std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed);
   return status == std::errc() ? std::string(text, end) : std::string("0");
 }
 

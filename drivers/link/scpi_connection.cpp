@@ -12,18 +12,23 @@ constexpr std::size_t max_line = 4096;
 
 } // namespace
 
-Expected<ScpiConnection> ScpiConnection::connect(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+Expected<ScpiConnection> ScpiConnection::connect(std::string instrument, std::string address,
+                                                 std::chrono::milliseconds answer_limit,
                                                  const StopSignal& stop) {
   auto transport = connect_scpi_transport(address, connect_limit, stop);
   if (!transport) {
-    return tl::unexpected(Error{transport.error().code, instrument + " " + transport.error().message});
+    return tl::unexpected(
+        Error{transport.error().code, instrument + " " + transport.error().message});
   }
-  return ScpiConnection(std::move(instrument), std::move(address), answer_limit, std::move(*transport));
+  return ScpiConnection(std::move(instrument), std::move(address), answer_limit,
+                        std::move(*transport));
 }
 
-ScpiConnection::ScpiConnection(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+ScpiConnection::ScpiConnection(std::string instrument, std::string address,
+                               std::chrono::milliseconds answer_limit,
                                std::unique_ptr<ScpiTransport> transport)
-    : instrument_(std::move(instrument)), address_(std::move(address)), answer_limit_(answer_limit), transport_(std::move(transport)) {}
+    : instrument_(std::move(instrument)), address_(std::move(address)), answer_limit_(answer_limit),
+      transport_(std::move(transport)) {}
 
 // The transport's errors begin with the address.
 tl::unexpected<Error> ScpiConnection::failure(const Error& error, const std::string& text) {
@@ -47,7 +52,9 @@ Expected<void> ScpiConnection::send(const std::string& text) {
 
 Expected<std::string> ScpiConnection::query(const std::string& text) {
   if (transport_->has_unread()) {
-    return misunderstood(Error{ErrorCode::malformed, "the instrument has answered something that was not asked"}, text);
+    return misunderstood(
+        Error{ErrorCode::malformed, "the instrument has answered something that was not asked"},
+        text);
   }
   if (auto sent = send(text); !sent) {
     return tl::unexpected(sent.error());
@@ -86,12 +93,16 @@ Expected<void> ScpiConnection::command(const std::string& text) {
   if (error->code == 0) {
     return {};
   }
-  return tl::unexpected(Error{ErrorCode::refused, instrument_ + " " + address_ + " refuses " + text + ": " + shown(*answer)});
+  return tl::unexpected(Error{ErrorCode::refused, instrument_ + " " + address_ + " refuses " +
+                                                      text + ": " + shown(*answer)});
 }
 
-Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text, std::size_t longest) {
+Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
+                                                        std::size_t longest) {
   if (transport_->has_unread()) {
-    return misunderstood(Error{ErrorCode::malformed, "the instrument has answered something that was not asked"}, text);
+    return misunderstood(
+        Error{ErrorCode::malformed, "the instrument has answered something that was not asked"},
+        text);
   }
   if (auto sent = send(text); !sent) {
     return tl::unexpected(sent.error());
@@ -124,7 +135,8 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
     return malformed(length.error().message);
   }
   if (*length > longest) {
-    return malformed("a block of " + std::to_string(*length) + " bytes where at most " + std::to_string(longest) + " can be");
+    return malformed("a block of " + std::to_string(*length) + " bytes where at most " +
+                     std::to_string(longest) + " can be");
   }
   std::vector<char> block(*length);
   if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
@@ -135,7 +147,8 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
     return tl::unexpected(end.error());
   }
   if (!end->empty()) {
-    return malformed("a block is longer than the " + std::to_string(*length) + " bytes it announces");
+    return malformed("a block is longer than the " + std::to_string(*length) +
+                     " bytes it announces");
   }
   return block;
 }

@@ -1,10 +1,12 @@
-// A conversation with one instrument in SCPI: commands that are asked for their outcome, queries, blocks of definite length.
+// A conversation with one instrument in SCPI: commands that are asked for their outcome, queries,
+// blocks of definite length.
 //
-// Messages name the instrument ("oscilloscope 10.0.0.7:5555") and the command. An error that the instrument reports (:SYSTem:ERRor?) is
-// passed on word for word (refused). An answer that nobody asked for, a block of another length than it says, or a query without an answer
-// mean that question and answer no longer belong together: such a connection says so (malformed, timeout), and lost() is true from then on.
-// Whoever holds it connects again; talking on would mistake one answer for another.
-// One thread at a time.
+// Messages name the instrument ("oscilloscope 10.0.0.7:5555") and the command. An error that the
+// instrument reports (:SYSTem:ERRor?) is passed on word for word (refused). An answer that nobody
+// asked for, a block of another length than it says, or a query without an answer mean that
+// question and answer no longer belong together: such a connection says so (malformed, timeout),
+// and lost() is true from then on. Whoever holds it connects again; talking on would mistake one
+// answer for another. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -19,19 +21,23 @@ namespace dyncal::drivers {
 
 class ScpiConnection {
 public:
-  // `instrument`: "oscilloscope", "generator"; `answer_limit`: the longest time one answer may take. `stop` outlives the connection.
-  [[nodiscard]] static Expected<ScpiConnection> connect(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+  // `instrument`: "oscilloscope", "generator"; `answer_limit`: the longest time one answer may
+  // take. `stop` outlives the connection.
+  [[nodiscard]] static Expected<ScpiConnection> connect(std::string instrument, std::string address,
+                                                        std::chrono::milliseconds answer_limit,
                                                         const StopSignal& stop);
-  ScpiConnection(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
-                 std::unique_ptr<ScpiTransport> transport);
+  ScpiConnection(std::string instrument, std::string address,
+                 std::chrono::milliseconds answer_limit, std::unique_ptr<ScpiTransport> transport);
 
   // Sends the command and asks for its outcome: refused when the instrument reports an error.
   [[nodiscard]] Expected<void> command(const std::string& text);
   [[nodiscard]] Expected<std::string> query(const std::string& text);
   [[nodiscard]] Expected<double> query_number(const std::string& text);
   // Bytes of the block that answers; longer than `longest` is malformed.
-  [[nodiscard]] Expected<std::vector<char>> query_block(const std::string& text, std::size_t longest);
-  // Nothing is asked: for commands before the instrument is known to listen, or that end an activity.
+  [[nodiscard]] Expected<std::vector<char>> query_block(const std::string& text,
+                                                        std::size_t longest);
+  // Nothing is asked: for commands before the instrument is known to listen, or that end an
+  // activity.
   [[nodiscard]] Expected<void> send(const std::string& text);
 
   [[nodiscard]] bool lost() const { return lost_; }

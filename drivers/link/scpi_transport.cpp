@@ -8,7 +8,9 @@ namespace {
 class SocketTransport : public ScpiTransport {
 public:
   explicit SocketTransport(TcpConnection connection) : connection_(std::move(connection)) {}
-  Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override { return connection_.send_all(message, limit); }
+  Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override {
+    return connection_.send_all(message, limit);
+  }
   Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
     return connection_.read_line(longest, limit);
   }
@@ -23,7 +25,8 @@ private:
 
 } // namespace
 
-Expected<std::unique_ptr<ScpiTransport>> connect_scpi_transport(const std::string& address, std::chrono::milliseconds limit,
+Expected<std::unique_ptr<ScpiTransport>> connect_scpi_transport(const std::string& address,
+                                                                std::chrono::milliseconds limit,
                                                                 const StopSignal& stop) {
   if (address.starts_with("vxi11:")) {
     return connect_vxi11_transport(address, limit);

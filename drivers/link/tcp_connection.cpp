@@ -30,7 +30,8 @@ int milliseconds_until(Clock::time_point deadline) {
 
 enum class Ready { yes, stopped, timed_out };
 
-Ready wait_for_events(int descriptor, short events, int stop_descriptor, Clock::time_point deadline) {
+Ready wait_for_events(int descriptor, short events, int stop_descriptor,
+                      Clock::time_point deadline) {
   for (;;) {
     pollfd watched[2] = {{descriptor, events, 0}, {stop_descriptor, POLLIN, 0}};
     const int count = poll(watched, 2, milliseconds_until(deadline));
@@ -54,16 +55,21 @@ Expected<std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>> resolve(const Addre
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  const int status = getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
+  const int status =
+      getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
   if (status != 0) {
-    return failure(ErrorCode::not_found, address.text() + ": no host of this name (" + gai_strerror(status) + ")");
+    return failure(ErrorCode::not_found,
+                   address.text() + ": no host of this name (" + gai_strerror(status) + ")");
   }
   return std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>(found, &freeaddrinfo);
 }
 
-// Commands leave at once; an instrument that is switched off without a farewell is noticed within about ten seconds.
+// Commands leave at once; an instrument that is switched off without a farewell is noticed within
+// about ten seconds.
 void set_options(int socket) {
-  const auto set = [socket](int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof(value)); };
+  const auto set = [socket](int level, int option, int value) {
+    setsockopt(socket, level, option, &value, sizeof(value));
+  };
   set(IPPROTO_TCP, TCP_NODELAY, 1);
   set(SOL_SOCKET, SO_KEEPALIVE, 1);
   set(IPPROTO_TCP, TCP_KEEPIDLE, 4);
@@ -72,7 +78,8 @@ void set_options(int socket) {
 }
 
 // The outcome of one non-blocking connect: 0, or an errno value.
-int connect_once(int socket, const addrinfo& target, int stop_descriptor, Clock::time_point deadline) {
+int connect_once(int socket, const addrinfo& target, int stop_descriptor,
+                 Clock::time_point deadline) {
   if (::connect(socket, target.ai_addr, target.ai_addrlen) == 0) {
     return 0;
   }
@@ -105,7 +112,9 @@ Expected<Address> parse_address(std::string_view text) {
     whole = status == std::errc() && rest == end;
   }
   if (!whole) {
-    return failure(ErrorCode::malformed, "\"" + std::string(text) + "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
+    return failure(ErrorCode::malformed,
+                   "\"" + std::string(text) +
+                       "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
   }
   std::string_view host = text.substr(0, colon);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
@@ -150,7 +159,9 @@ bool StopSignal::wait_for(std::chrono::nanoseconds limit) const {
   }
 }
 
-Expected<TcpConnection> TcpConnection::connect(const Address& address, std::chrono::milliseconds limit, const StopSignal& stop) {
+Expected<TcpConnection> TcpConnection::connect(const Address& address,
+                                               std::chrono::milliseconds limit,
+                                               const StopSignal& stop) {
   const auto deadline = Clock::now() + limit;
   auto targets = resolve(address);
   if (!targets) {
@@ -173,9 +184,12 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address, std::chro
     return failure(ErrorCode::disconnected, address.text() + ": stopped while connecting");
   }
   if (status == ETIMEDOUT) {
-    return failure(ErrorCode::timeout, address.text() + ": no answer; is the instrument switched on and in this network?");
+    return failure(ErrorCode::timeout,
+                   address.text() +
+                       ": no answer; is the instrument switched on and in this network?");
   }
-  return failure(ErrorCode::refused, address.text() + ": " + std::strerror(status) + "; is the instrument switched on?");
+  return failure(ErrorCode::refused, address.text() + ": " + std::strerror(status) +
+                                         "; is the instrument switched on?");
 }
 
 Expected<void> TcpConnection::wait(short events, Clock::time_point deadline) {
@@ -201,7 +215,8 @@ Expected<void> TcpConnection::send_all(std::string_view bytes, std::chrono::mill
         return ready;
       }
     } else if (errno != EINTR) {
-      return failure(ErrorCode::disconnected, address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+      return failure(ErrorCode::disconnected,
+                     address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
     }
   }
   return {};
@@ -214,19 +229,22 @@ Expected<std::size_t> TcpConnection::receive(std::span<char> bytes, Clock::time_
       return static_cast<std::size_t>(count);
     }
     if (count == 0) {
-      return failure(ErrorCode::disconnected, address_.text() + ": the instrument has closed the connection");
+      return failure(ErrorCode::disconnected,
+                     address_.text() + ": the instrument has closed the connection");
     }
     if (errno == EAGAIN || errno == EWOULDBLOCK) {
       if (auto ready = wait(POLLIN, deadline); !ready) {
         return tl::unexpected(ready.error());
       }
     } else if (errno != EINTR) {
-      return failure(ErrorCode::disconnected, address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+      return failure(ErrorCode::disconnected,
+                     address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
     }
   }
 }
 
-Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono::milliseconds limit) {
+Expected<std::string> TcpConnection::read_line(std::size_t longest,
+                                               std::chrono::milliseconds limit) {
   const auto deadline = Clock::now() + limit;
   std::size_t searched = 0;
   for (;;) {
@@ -240,7 +258,8 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest, std::chrono:
       return line;
     }
     if (received_.size() > longest) {
-      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " + std::to_string(longest) + " bytes");
+      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " +
+                                               std::to_string(longest) + " bytes");
     }
     searched = received_.size();
     char chunk[4096];

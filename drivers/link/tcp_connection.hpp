@@ -1,8 +1,10 @@
-// A TCP connection to an instrument, seen from our side: every wait has a limit and can be ended from another thread.
+// A TCP connection to an instrument, seen from our side: every wait has a limit and can be ended
+// from another thread.
 //
-// A connection belongs to one thread at a time. StopSignal may be raised from any thread; it ends the wait that runs and every
-// later one at once, with ErrorCode::disconnected.
-// Fails: malformed (an address that is not HOST:PORT), not_found (no such host), refused (nobody listens), timeout, disconnected.
+// A connection belongs to one thread at a time. StopSignal may be raised from any thread; it ends
+// the wait that runs and every later one at once, with ErrorCode::disconnected. Fails: malformed
+// (an address that is not HOST:PORT), not_found (no such host), refused (nobody listens), timeout,
+// disconnected.
 #pragma once
 
 #include <chrono>
@@ -59,11 +61,13 @@ private:
 class TcpConnection {
 public:
   // `stop` must outlive the connection.
-  [[nodiscard]] static Expected<TcpConnection> connect(const Address& address, std::chrono::milliseconds limit, const StopSignal& stop);
+  [[nodiscard]] static Expected<TcpConnection>
+  connect(const Address& address, std::chrono::milliseconds limit, const StopSignal& stop);
 
   [[nodiscard]] Expected<void> send_all(std::string_view bytes, std::chrono::milliseconds limit);
   // Without its line end ("\n" or "\r\n"). A longer line than `longest` is malformed.
-  [[nodiscard]] Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit);
+  [[nodiscard]] Expected<std::string> read_line(std::size_t longest,
+                                                std::chrono::milliseconds limit);
   [[nodiscard]] Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit);
   // Bytes have come that nobody has read. Does not wait.
   [[nodiscard]] bool has_unread() const;
@@ -72,7 +76,8 @@ private:
   TcpConnection(Descriptor socket, Address address, const StopSignal& stop)
       : socket_(std::move(socket)), address_(std::move(address)), stop_(&stop) {}
   Expected<void> wait(short events, std::chrono::steady_clock::time_point deadline);
-  Expected<std::size_t> receive(std::span<char> bytes, std::chrono::steady_clock::time_point deadline);
+  Expected<std::size_t> receive(std::span<char> bytes,
+                                std::chrono::steady_clock::time_point deadline);
 
   Descriptor socket_;
   Address address_;

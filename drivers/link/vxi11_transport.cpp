@@ -1,5 +1,6 @@
-// VXI-11 (TCP/IP instrument protocol, VXIbus consortium 1995) through liblxi. A device_read of liblxi collects the whole answer up to its
-// END mark, so an answer longer than the buffer cannot be read in parts: the buffer holds the longest that any driver asks for.
+// VXI-11 (TCP/IP instrument protocol, VXIbus consortium 1995) through liblxi. A device_read of
+// liblxi collects the whole answer up to its END mark, so an answer longer than the buffer cannot
+// be read in parts: the buffer holds the longest that any driver asks for.
 #include "drivers/link/scpi_transport.hpp"
 
 #include <algorithm>
@@ -24,7 +25,8 @@ public:
   Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override {
     const int size = static_cast<int>(message.size());
     if (lxi_send(device_, message.data(), size, static_cast<int>(limit.count())) != size) {
-      return tl::unexpected(Error{ErrorCode::disconnected, address_ + ": the instrument does not take what is sent to it"});
+      return tl::unexpected(Error{ErrorCode::disconnected,
+                                  address_ + ": the instrument does not take what is sent to it"});
     }
     return {};
   }
@@ -32,11 +34,13 @@ public:
   Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
     const auto deadline = Clock::now() + limit;
     for (;;) {
-      const auto end = std::find(received_.begin() + static_cast<std::ptrdiff_t>(taken_), received_.end(), '\n');
+      const auto end =
+          std::find(received_.begin() + static_cast<std::ptrdiff_t>(taken_), received_.end(), '\n');
       const std::size_t size = static_cast<std::size_t>(end - received_.begin()) - taken_;
       if (size > longest) {
-        return tl::unexpected(
-            Error{ErrorCode::malformed, address_ + ": a line without an end after " + std::to_string(longest) + " bytes"});
+        return tl::unexpected(Error{ErrorCode::malformed, address_ +
+                                                              ": a line without an end after " +
+                                                              std::to_string(longest) + " bytes"});
       }
       if (end != received_.end()) {
         std::string line(received_.data() + taken_, size);
@@ -73,16 +77,19 @@ private:
   Expected<void> receive(Clock::time_point deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) {
-      return tl::unexpected(Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
+      return tl::unexpected(
+          Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
     }
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(taken_));
     taken_ = 0;
     const std::size_t held = received_.size();
     received_.resize(held + max_answer);
-    const int count = lxi_receive(device_, received_.data() + held, static_cast<int>(max_answer), static_cast<int>(left));
+    const int count = lxi_receive(device_, received_.data() + held, static_cast<int>(max_answer),
+                                  static_cast<int>(left));
     received_.resize(held + static_cast<std::size_t>(std::max(count, 0)));
     if (count <= 0) {
-      return tl::unexpected(Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
+      return tl::unexpected(
+          Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
     }
     return {};
   }
@@ -95,7 +102,8 @@ private:
 
 } // namespace
 
-Expected<std::unique_ptr<ScpiTransport>> connect_vxi11_transport(const std::string& address, std::chrono::milliseconds limit) {
+Expected<std::unique_ptr<ScpiTransport>> connect_vxi11_transport(const std::string& address,
+                                                                 std::chrono::milliseconds limit) {
   std::string host = address.starts_with(scheme) ? address.substr(scheme.size()) : std::string();
   std::string device = "inst0";
   if (const std::size_t slash = host.find('/'); slash != std::string::npos) {
@@ -103,14 +111,19 @@ Expected<std::unique_ptr<ScpiTransport>> connect_vxi11_transport(const std::stri
     host.resize(slash);
   }
   if (host.empty() || device.empty()) {
-    return tl::unexpected(Error{ErrorCode::malformed, "\"" + address + "\" is not a VXI-11 address: write vxi11:HOST or vxi11:HOST/inst0"});
+    return tl::unexpected(
+        Error{ErrorCode::malformed,
+              "\"" + address + "\" is not a VXI-11 address: write vxi11:HOST or vxi11:HOST/inst0"});
   }
   static std::once_flag once;
   std::call_once(once, [] { lxi_init(); });
-  const int number = lxi_connect(host.c_str(), 0, device.c_str(), static_cast<int>(limit.count()), VXI11);
+  const int number =
+      lxi_connect(host.c_str(), 0, device.c_str(), static_cast<int>(limit.count()), VXI11);
   if (number < 0) {
-    return tl::unexpected(
-        Error{ErrorCode::refused, address + ": no VXI-11 instrument answers; is it switched on, and does it offer VXI-11 (LXI)?"});
+    return tl::unexpected(Error{
+        ErrorCode::refused,
+        address +
+            ": no VXI-11 instrument answers; is it switched on, and does it offer VXI-11 (LXI)?"});
   }
   return std::make_unique<Vxi11Transport>(number, address);
 }

@@ -1,6 +1,6 @@
-// Cuts the samples of one sensor into blocks: about 50 ms each; a gap, new columns or the end of a numbering end a block early, and a slow
-// sensor's block is handed over when time has passed. Where a block is cut changes nothing but the cut.
-// One thread at a time; never fails.
+// Cuts the samples of one sensor into blocks: about 50 ms each; a gap, new columns or the end of a
+// numbering end a block early, and a slow sensor's block is handed over when time has passed. Where
+// a block is cut changes nothing but the cut. One thread at a time; never fails.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,15 @@ class BlockAssembly {
 public:
   explicit BlockAssembly(std::int64_t block_ns) : block_ns_(block_ns) {}
 
-  // The columns of the next block to be handed over, with all that is held for it; a channel of a row that is not among them is left out, a
-  // column that a row lacks is NaN.
+  // The columns of the next block to be handed over, with all that is held for it; a channel of a
+  // row that is not among them is left out, a column that a row lacks is NaN.
   void set_columns(Columns columns) { columns_ = columns; }
   [[nodiscard]] Columns columns() const { return columns_; }
 
-  // Adds a row. Returns a block that has become ready by it: the one before when there is a gap, or the one that is full with it.
-  // `period_ns` 0: not known, the block is cut by arrival.
-  [[nodiscard]] std::optional<SampleBlock> add(const SampleRow& row, double period_ns, HostTime arrival);
+  // Adds a row. Returns a block that has become ready by it: the one before when there is a gap, or
+  // the one that is full with it. `period_ns` 0: not known, the block is cut by arrival.
+  [[nodiscard]] std::optional<SampleBlock> add(const SampleRow& row, double period_ns,
+                                               HostTime arrival);
 
   // The block that has waited for longer than two block durations, or any (`now` absent).
   [[nodiscard]] std::optional<SampleBlock> flush(std::optional<HostTime> now = std::nullopt);

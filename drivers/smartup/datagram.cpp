@@ -21,7 +21,9 @@ struct Tag {
 
 bool read_tag(WireReader& reader, Tag& tag) {
   std::uint64_t value = 0;
-  if (!reader.varint(value) || value > UINT32_MAX) return false;
+  if (!reader.varint(value) || value > UINT32_MAX) {
+    return false;
+  }
   tag = {static_cast<std::uint32_t>(value >> 3U), static_cast<WireType>(value & 7U)};
   return tag.field != 0;
 }
@@ -29,14 +31,18 @@ bool read_tag(WireReader& reader, Tag& tag) {
 // Numbers of 32 bits are sent as varints; more bits than that are cut off, as the format says.
 bool read_u32(WireReader& reader, std::uint32_t& value) {
   std::uint64_t wide = 0;
-  if (!reader.varint(wide)) return false;
+  if (!reader.varint(wide)) {
+    return false;
+  }
   value = static_cast<std::uint32_t>(wide);
   return true;
 }
 
 bool read_float(WireReader& reader, float& value) {
   std::uint32_t bits = 0;
-  if (!reader.fixed32(bits)) return false;
+  if (!reader.fixed32(bits)) {
+    return false;
+  }
   value = std::bit_cast<float>(bits);
   return true;
 }
@@ -55,25 +61,34 @@ public:
       seen_ |= 1U << tag.field;
       return read_u32(reader, header(tag.field));
     }
-    if (tag.type == WireType::fixed32 && tag.field >= first_value_field && tag.field < first_value_field + channels_of_unit) {
+    if (tag.type == WireType::fixed32 && tag.field >= first_value_field &&
+        tag.field < first_value_field + channels_of_unit) {
       const std::uint32_t channel = tag.field - first_value_field;
       message_.present = static_cast<std::uint16_t>(message_.present | (1U << channel));
       return read_float(reader, message_.values[channel]);
     }
     if (tag.type == WireType::varint && tag.field == time_ticks_field) {
       std::uint64_t ticks = 0;
-      if (!reader.varint(ticks)) return false;
+      if (!reader.varint(ticks)) {
+        return false;
+      }
       message_.time_ticks = ticks;
       return true;
     }
     return reader.skip(tag.type);
   }
 
-  [[nodiscard]] bool complete() const { return seen_ == all_required && (message_.present & 1U) != 0; }
+  [[nodiscard]] bool complete() const {
+    return seen_ == all_required && (message_.present & 1U) != 0;
+  }
   [[nodiscard]] RejectedMessage rejected(Rejection cause) const {
     RejectedMessage rejected{.cause = cause, .sensor = {}, .sample_number = {}};
-    if ((seen_ & (1U << 1U)) != 0) rejected.sensor = message_.sensor;
-    if ((seen_ & (1U << 2U)) != 0) rejected.sample_number = message_.sample_number;
+    if ((seen_ & (1U << 1U)) != 0) {
+      rejected.sensor = message_.sensor;
+    }
+    if ((seen_ & (1U << 2U)) != 0) {
+      rejected.sample_number = message_.sample_number;
+    }
     return rejected;
   }
   DataMessage& message() { return message_; }
@@ -81,7 +96,8 @@ public:
 private:
   static constexpr std::uint32_t first_value_field = 6;
   static constexpr std::uint32_t time_ticks_field = 22;
-  static constexpr std::uint32_t all_required = 0b111110; // fields 1 to 5; Data_01 shows in `present`
+  static constexpr std::uint32_t all_required =
+      0b111110; // fields 1 to 5; Data_01 shows in `present`
 
   std::uint32_t& header(std::uint32_t field) {
     switch (field) {
@@ -116,17 +132,22 @@ void decode_data(Bytes bytes, std::size_t framed_bytes, Datagram& datagram) {
     datagram.rejected.push_back(fields.rejected(Rejection::missing_field));
     return;
   }
-  fields.message().bytes = static_cast<std::uint16_t>(std::min<std::size_t>(framed_bytes, UINT16_MAX));
+  fields.message().bytes =
+      static_cast<std::uint16_t>(std::min<std::size_t>(framed_bytes, UINT16_MAX));
   datagram.data.push_back(fields.message());
 }
 
 class DescriptionFields {
 public:
   bool read(WireReader& reader, Tag tag) {
-    if (tag.type == WireType::varint) return read_number(reader, tag);
+    if (tag.type == WireType::varint) {
+      return read_number(reader, tag);
+    }
     if (tag.type == WireType::bytes) {
       Bytes text;
-      if (!reader.delimited(text)) return false;
+      if (!reader.delimited(text)) {
+        return false;
+      }
       if (tag.field == name) {
         message_.sensor_name = text_of(text);
         has_name_ = true;
@@ -135,9 +156,12 @@ public:
       }
       return true;
     }
-    if (tag.type == WireType::fixed32 && tag.field >= first_number_field && tag.field < first_number_field + channels_of_unit) {
+    if (tag.type == WireType::fixed32 && tag.field >= first_number_field &&
+        tag.field < first_number_field + channels_of_unit) {
       float value = 0.0F;
-      if (!read_float(reader, value)) return false;
+      if (!read_float(reader, value)) {
+        return false;
+      }
       message_.numbers[tag.field - first_number_field] = value;
       return true;
     }
@@ -146,13 +170,19 @@ public:
 
   // Nothing when the message is whole.
   [[nodiscard]] std::optional<Rejection> problem() const {
-    if (!has_sensor_ || !has_name_ || !type_) return Rejection::missing_field;
-    if (*type_ >= description_types) return Rejection::unknown_type;
+    if (!has_sensor_ || !has_name_ || !type_) {
+      return Rejection::missing_field;
+    }
+    if (*type_ >= description_types) {
+      return Rejection::unknown_type;
+    }
     return std::nullopt;
   }
   [[nodiscard]] RejectedMessage rejected(Rejection cause) const {
     RejectedMessage rejected{.cause = cause, .sensor = {}, .sample_number = {}};
-    if (has_sensor_) rejected.sensor = message_.sensor;
+    if (has_sensor_) {
+      rejected.sensor = message_.sensor;
+    }
     return rejected;
   }
   DescriptionMessage take() {
@@ -170,7 +200,9 @@ private:
 
   bool read_number(WireReader& reader, Tag tag) {
     std::uint64_t value = 0;
-    if (!reader.varint(value)) return false;
+    if (!reader.varint(value)) {
+      return false;
+    }
     if (tag.field == sensor_field) {
       message_.sensor = static_cast<std::uint32_t>(value);
       has_sensor_ = true;

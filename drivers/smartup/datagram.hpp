@@ -1,11 +1,13 @@
-// Decodes one datagram of a SmartUp Unit: the keyword DATA or DSCP, then [varint length][message] to its end (schema: smartup.proto).
+// Decodes one datagram of a SmartUp Unit: the keyword DATA or DSCP, then [varint length][message]
+// to its end (schema: smartup.proto).
 //
-// What cannot be a message is named with its cause and changes nothing else: a message without a required field is left out and the
-// following one is read; from a broken frame on (length not a varint, or longer than what is left) nothing more can be read, and
-// what came before it is kept.
-// Presence is kept: an absent channel was not measured, and 0.0 is a value. Unknown fields are skipped; field 36 of a description
-// (required by newer firmware, unknown to older) is optional here, or every older unit would be refused.
-// Any thread; nothing is allocated for data once a Datagram has been used before.
+// What cannot be a message is named with its cause and changes nothing else: a message without a
+// required field is left out and the following one is read; from a broken frame on (length not a
+// varint, or longer than what is left) nothing more can be read, and what came before it is kept.
+// Presence is kept: an absent channel was not measured, and 0.0 is a value. Unknown fields are
+// skipped; field 36 of a description (required by newer firmware, unknown to older) is optional
+// here, or every older unit would be refused. Any thread; nothing is allocated for data once a
+// Datagram has been used before.
 #pragma once
 
 #include <array>
@@ -43,7 +45,9 @@ struct DataMessage {
   std::array<float, channels_of_unit> values{};
   std::optional<std::uint64_t> time_ticks;
 
-  [[nodiscard]] std::int64_t stamp_ns() const { return std::int64_t{unix_time_s} * 1'000'000'000 + nanoseconds; }
+  [[nodiscard]] std::int64_t stamp_ns() const {
+    return std::int64_t{unix_time_s} * 1'000'000'000 + nanoseconds;
+  }
 };
 
 enum class DescriptionType {

@@ -11,7 +11,7 @@ namespace dyncal::drivers::smartup {
 namespace {
 
 constexpr std::uint32_t types_to_come = 0b1111011; // all but UNCERTAINTY_TYPE, which no unit sends
-constexpr std::size_t first_adc_channel = 10;             // Data_11..13 of the calibration firmware
+constexpr std::size_t first_adc_channel = 10;      // Data_11..13 of the calibration firmware
 constexpr std::size_t last_adc_channel = 12;
 
 struct Place {
@@ -21,11 +21,16 @@ struct Place {
 
 Place place_of(const std::string& hierarchy) {
   const auto slash = hierarchy.find('/');
-  if (slash == std::string::npos) return {hierarchy, std::nullopt};
+  if (slash == std::string::npos) {
+    return {hierarchy, std::nullopt};
+  }
   const std::string index = hierarchy.substr(slash + 1);
   const bool digits =
-      !index.empty() && index.size() <= 2 && std::ranges::all_of(index, [](unsigned char c) { return std::isdigit(c) != 0; });
-  if (!digits) return {hierarchy.substr(0, slash), std::nullopt};
+      !index.empty() && index.size() <= 2 &&
+      std::ranges::all_of(index, [](unsigned char c) { return std::isdigit(c) != 0; });
+  if (!digits) {
+    return {hierarchy.substr(0, slash), std::nullopt};
+  }
   return {hierarchy.substr(0, slash), std::stoul(index)};
 }
 
@@ -40,8 +45,9 @@ std::string identifier(const std::string& text) {
       name += '_';
     }
   }
-  while (!name.empty() && name.back() == '_')
+  while (!name.empty() && name.back() == '_') {
     name.pop_back();
+  }
   return name;
 }
 
@@ -54,29 +60,38 @@ std::string data_name(std::size_t channel) {
 }
 
 std::optional<double> finite(const std::optional<float>& value) {
-  if (!value || !std::isfinite(*value)) return std::nullopt;
+  if (!value || !std::isfinite(*value)) {
+    return std::nullopt;
+  }
   return static_cast<double>(*value);
 }
 
 std::string in_lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
-const std::string* configured_name(const ChannelNaming& naming, std::initializer_list<std::string> keys) {
+const std::string* configured_name(const ChannelNaming& naming,
+                                   std::initializer_list<std::string> keys) {
   for (const auto& key : keys) {
     for (const auto& [device_name, ours] : naming.names) {
-      if (!key.empty() && in_lower_case(device_name) == in_lower_case(key)) return &ours;
+      if (!key.empty() && in_lower_case(device_name) == in_lower_case(key)) {
+        return &ours;
+      }
     }
   }
   return nullptr;
 }
 
-void make_names_unique(std::vector<ChannelDescription>& channels, const std::vector<std::size_t>& numbers) {
+void make_names_unique(std::vector<ChannelDescription>& channels,
+                       const std::vector<std::size_t>& numbers) {
   for (std::size_t i = 1; i < channels.size(); ++i) {
     const auto end = channels.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find_if(channels.begin(), end, [&](const auto& other) { return other.name == channels[i].name; }) != end)
+    if (std::find_if(channels.begin(), end,
+                     [&](const auto& other) { return other.name == channels[i].name; }) != end) {
       channels[i].name.append("_").append(two_digits(numbers[i] + 1));
+    }
   }
 }
 
@@ -84,7 +99,10 @@ void make_names_unique(std::vector<ChannelDescription>& channels, const std::vec
 
 std::string d_si_unit(const std::string& text) {
   static const std::map<std::string, std::string> known_wrong = {
-      {"\\seconds", "\\second"}, {"\\nanoseconds", "\\nano\\second"}, {"\\A.U.", "\\one"}, {"/hertz", "\\hertz"}};
+      {"\\seconds", "\\second"},
+      {"\\nanoseconds", "\\nano\\second"},
+      {"\\A.U.", "\\one"},
+      {"/hertz", "\\hertz"}};
   const auto known = known_wrong.find(text);
   return known == known_wrong.end() ? text : known->second;
 }
@@ -96,7 +114,9 @@ bool DescriptionAssembly::add(const DescriptionMessage& message) {
   is_new = is_new || (types_seen_ & type) == 0;
   types_seen_ |= type;
   const auto update = [&](auto& kept, auto said) {
-    if (kept == said) return;
+    if (kept == said) {
+      return;
+    }
     kept = std::move(said);
     is_new = true;
   };
@@ -135,35 +155,52 @@ bool DescriptionAssembly::complete() const {
 std::string DescriptionAssembly::declared_name(std::size_t channel) const {
   const Place place = place_of(declared_[channel].hierarchy);
   std::string group = identifier(place.group);
-  if (group.empty() || !place.index) return group;
+  if (group.empty() || !place.index) {
+    return group;
+  }
   std::uint32_t indices = 0;
   int members = 0;
   for (const Declared& other : declared_) {
     const Place other_place = place_of(other.hierarchy);
-    if (other_place.group != place.group) continue;
+    if (other_place.group != place.group) {
+      continue;
+    }
     ++members;
-    if (other_place.index && *other_place.index < 3) indices |= 1U << *other_place.index;
+    if (other_place.index && *other_place.index < 3) {
+      indices |= 1U << *other_place.index;
+    }
   }
-  if (members == 1) return group;
-  if (members == 3 && indices == 0b111 && group != "voltage") return group + "_" + "xyz"[*place.index];
+  if (members == 1) {
+    return group;
+  }
+  if (members == 3 && indices == 0b111 && group != "voltage") {
+    return group + "_" + "xyz"[*place.index];
+  }
   return group + "_" + std::to_string(*place.index);
 }
 
-std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t columns, const ChannelNaming& naming,
+std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t columns,
+                                                              const ChannelNaming& naming,
                                                               const std::string& prefix) const {
   std::vector<ChannelDescription> channels;
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < channels_of_unit; ++i) {
-    if ((columns & (1U << i)) == 0) continue;
+    if ((columns & (1U << i)) == 0) {
+      continue;
+    }
     const Declared& declared = declared_[i];
     ChannelDescription channel;
     const std::string name = declared_name(i);
     channel.name = name.empty() ? prefix + in_lower_case(data_name(i)) : name;
-    if (const auto* ours = configured_name(naming, {prefix + data_name(i), prefix.empty() ? declared.hierarchy : "", channel.name}))
+    if (const auto* ours =
+            configured_name(naming, {prefix + data_name(i),
+                                     prefix.empty() ? declared.hierarchy : "", channel.name})) {
       channel.name = *ours;
+    }
     channel.quantity = declared.quantity;
     channel.unit = d_si_unit(declared.unit);
-    const bool undeclared = declared.quantity.empty() && declared.unit.empty() && declared.hierarchy.empty();
+    const bool undeclared =
+        declared.quantity.empty() && declared.unit.empty() && declared.hierarchy.empty();
     if (undeclared && i >= first_adc_channel && i <= last_adc_channel) {
       channel.quantity = "Voltage";
       channel.unit = "\\volt";
@@ -171,14 +208,18 @@ std::vector<ChannelDescription> DescriptionAssembly::channels(std::uint16_t colu
     if (declared.minimum && declared.maximum) {
       channel.minimum = *declared.minimum;
       channel.maximum = *declared.maximum;
-      if (declared.steps && *declared.steps > 0.0) channel.resolution = (channel.maximum - channel.minimum) / *declared.steps;
+      if (declared.steps && *declared.steps > 0.0) {
+        channel.resolution = (channel.maximum - channel.minimum) / *declared.steps;
+      }
     }
     channels.push_back(std::move(channel));
     numbers.push_back(i);
   }
   make_names_unique(channels, numbers);
   for (auto& channel : channels) {
-    if (const auto unit = naming.units.find(channel.name); unit != naming.units.end()) channel.unit = unit->second;
+    if (const auto unit = naming.units.find(channel.name); unit != naming.units.end()) {
+      channel.unit = unit->second;
+    }
   }
   return channels;
 }
@@ -187,10 +228,13 @@ std::vector<std::string> DescriptionAssembly::warnings() const {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < channels_of_unit; ++i) {
     const Declared& declared = declared_[i];
-    if (!declared.hierarchy.empty() && !place_of(declared.hierarchy).index)
+    if (!declared.hierarchy.empty() && !place_of(declared.hierarchy).index) {
       warnings.push_back(data_name(i) + ": hierarchy without index: '" + declared.hierarchy + "'");
-    if (const std::string unit = d_si_unit(declared.unit); unit != declared.unit)
-      warnings.push_back(data_name(i) + ": unit '" + declared.unit + "' is not D-SI and is taken as '" + unit + "'");
+    }
+    if (const std::string unit = d_si_unit(declared.unit); unit != declared.unit) {
+      warnings.push_back(data_name(i) + ": unit '" + declared.unit +
+                         "' is not D-SI and is taken as '" + unit + "'");
+    }
   }
   return warnings;
 }

@@ -1,12 +1,15 @@
 // Who lost the samples that are missing: the unit itself, or the way from it.
 //
-// The unit numbers samples, not datagrams, so the loss of a datagram must be recognised by its shape: at one place of the stream, between
-// two datagrams, the sensors of the unit miss samples that together fill at least one datagram; and no sensor that is in every datagram
-// goes on there without a gap. Anything else was lost inside the unit: a gap in the middle of a datagram, or of a few samples of one
-// sensor. A slow sensor notices only later: its gap is on the way when a datagram was found lost since the sensor was seen last. Limit of
-// the method: a burst of one sensor lost in a unit that has no other sensor looks like a datagram.
+// The unit numbers samples, not datagrams, so the loss of a datagram must be recognised by its
+// shape: at one place of the stream, between two datagrams, the sensors of the unit miss samples
+// that together fill at least one datagram; and no sensor that is in every datagram goes on there
+// without a gap. Anything else was lost inside the unit: a gap in the middle of a datagram, or of a
+// few samples of one sensor. A slow sensor notices only later: its gap is on the way when a
+// datagram was found lost since the sensor was seen last. Limit of the method: a burst of one
+// sensor lost in a unit that has no other sensor looks like a datagram.
 //
-// For each datagram with data, in the order of arrival: begin(), message() for each sample that is taken, end(). One thread at a time.
+// For each datagram with data, in the order of arrival: begin(), message() for each sample that is
+// taken, end(). One thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -55,9 +58,11 @@ private:
   std::size_t datagram_bytes_ = 0;
   double usual_bytes_ = 0.0;
   std::vector<SensorTrace> traces_;
-  std::vector<std::uint32_t> without_gap_; // sensors of this datagram whose first sample follows its predecessor
+  std::vector<std::uint32_t>
+      without_gap_; // sensors of this datagram whose first sample follows its predecessor
   std::vector<Gap> gaps_;
-  std::deque<std::uint64_t> losses_; // numbers of the datagrams before which one was lost, the most recent
+  std::deque<std::uint64_t>
+      losses_; // numbers of the datagrams before which one was lost, the most recent
   std::uint64_t datagrams_lost_ = 0;
   std::vector<AttributedLoss> attributed_;
 };

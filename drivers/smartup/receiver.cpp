@@ -18,7 +18,7 @@ namespace dyncal::drivers::smartup {
 
 namespace {
 
-constexpr std::size_t batch_size = 64;             // datagrams per recvmmsg
+constexpr std::size_t batch_size = 64;     // datagrams per recvmmsg
 constexpr std::size_t max_datagram = 2048; // a unit sends 1000 bytes at most
 constexpr int tick_ms = 25;
 constexpr int rest_ms = 2;
@@ -26,7 +26,8 @@ constexpr std::size_t rest_worthwhile = 2; // datagrams at one wake-up, from whi
 
 template <class Clock>
 std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+      .count();
 }
 
 HostTime host_time() {
@@ -48,9 +49,15 @@ sockaddr* generic(sockaddr_in& address) {
 
 Error cannot_listen(const std::string& listen, int error) {
   std::string reason = std::strerror(error);
-  if (error == EADDRINUSE) reason = "another program uses this port already: stop it, or give this source another port";
-  if (error == EADDRNOTAVAIL) reason = "this host has no such address: use one of its own, or 0.0.0.0 for all";
-  if (error == EACCES) reason = "not permitted: use a port above 1023, or run with the right to use lower ones";
+  if (error == EADDRINUSE) {
+    reason = "another program uses this port already: stop it, or give this source another port";
+  }
+  if (error == EADDRNOTAVAIL) {
+    reason = "this host has no such address: use one of its own, or 0.0.0.0 for all";
+  }
+  if (error == EACCES) {
+    reason = "not permitted: use a port above 1023, or run with the right to use lower ones";
+  }
   return {ErrorCode::refused, "cannot listen at UDP " + listen + ": " + reason};
 }
 
@@ -59,17 +66,27 @@ Error cannot_listen(const std::string& listen, int error) {
 Expected<ListenAddress> parse_listen_address(const std::string& text) {
   const auto colon = text.rfind(':');
   const auto bad = [&] {
-    return tl::unexpected(Error{ErrorCode::invalid_setting, "cannot listen at '" + text + "': write IPV4-ADDRESS:PORT, e.g. 0.0.0.0:7654"});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_setting,
+              "cannot listen at '" + text + "': write IPV4-ADDRESS:PORT, e.g. 0.0.0.0:7654"});
   };
-  if (colon == std::string::npos) return bad();
+  if (colon == std::string::npos) {
+    return bad();
+  }
   ListenAddress listen;
   const char* begin = text.data() + colon + 1;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(begin, end, listen.port);
-  if (error != std::errc() || rest != end || begin == end) return bad();
-  if (colon == 0) return listen;
+  if (error != std::errc() || rest != end || begin == end) {
+    return bad();
+  }
+  if (colon == 0) {
+    return listen;
+  }
   in_addr address{};
-  if (inet_pton(AF_INET, text.substr(0, colon).c_str(), &address) != 1) return bad();
+  if (inet_pton(AF_INET, text.substr(0, colon).c_str(), &address) != 1) {
+    return bad();
+  }
   listen.address = ntohl(address.s_addr);
   return listen;
 }
@@ -100,13 +117,21 @@ public:
   [[nodiscard]] std::span<const std::uint8_t> datagram(std::size_t i) const {
     return {bytes_.data() + i * max_datagram, headers_[i].msg_len};
   }
-  [[nodiscard]] bool cut_off(std::size_t i) const { return (headers_[i].msg_hdr.msg_flags & MSG_TRUNC) != 0; }
-  [[nodiscard]] Sender sender(std::size_t i) const { return {ntohl(senders_[i].sin_addr.s_addr), ntohs(senders_[i].sin_port)}; }
+  [[nodiscard]] bool cut_off(std::size_t i) const {
+    return (headers_[i].msg_hdr.msg_flags & MSG_TRUNC) != 0;
+  }
+  [[nodiscard]] Sender sender(std::size_t i) const {
+    return {ntohl(senders_[i].sin_addr.s_addr), ntohs(senders_[i].sin_port)};
+  }
 
-  // The socket's own count of datagrams that did not fit its buffer, as it was when this one came (32 bits, wraps).
+  // The socket's own count of datagrams that did not fit its buffer, as it was when this one came
+  // (32 bits, wraps).
   [[nodiscard]] std::optional<std::uint32_t> dropped(std::size_t i) {
-    for (cmsghdr* part = CMSG_FIRSTHDR(&headers_[i].msg_hdr); part != nullptr; part = CMSG_NXTHDR(&headers_[i].msg_hdr, part)) {
-      if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_RXQ_OVFL) continue;
+    for (cmsghdr* part = CMSG_FIRSTHDR(&headers_[i].msg_hdr); part != nullptr;
+         part = CMSG_NXTHDR(&headers_[i].msg_hdr, part)) {
+      if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_RXQ_OVFL) {
+        continue;
+      }
       std::uint32_t count = 0;
       std::memcpy(&count, CMSG_DATA(part), sizeof count);
       return count;
@@ -126,18 +151,26 @@ class Receiver::Socket {
 public:
   static Expected<std::unique_ptr<Socket>> open(Endpoint endpoint) {
     auto listen = parse_listen_address(endpoint.listen);
-    if (!listen) return tl::unexpected(listen.error());
+    if (!listen) {
+      return tl::unexpected(listen.error());
+    }
     const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    if (descriptor < 0) return tl::unexpected(cannot_listen(endpoint.listen, errno));
-    auto opened = std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.sink));
+    if (descriptor < 0) {
+      return tl::unexpected(cannot_listen(endpoint.listen, errno));
+    }
+    auto opened =
+        std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.sink));
     const int wanted = endpoint.receive_buffer_bytes;
     const int on = 1;
     // The first needs a privilege and passes the system's limit, the second is capped by it.
-    if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0)
+    if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0) {
       setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+    }
     setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
     sockaddr_in address = socket_address(*listen);
-    if (bind(descriptor, generic(address), sizeof address) != 0) return tl::unexpected(cannot_listen(endpoint.listen, errno));
+    if (bind(descriptor, generic(address), sizeof address) != 0) {
+      return tl::unexpected(cannot_listen(endpoint.listen, errno));
+    }
     return opened;
   }
 
@@ -150,7 +183,8 @@ public:
   [[nodiscard]] std::uint16_t port() const {
     sockaddr_in address{};
     socklen_t length = sizeof address;
-    return getsockname(descriptor_, generic(address), &length) == 0 ? ntohs(address.sin_port) : std::uint16_t{0};
+    return getsockname(descriptor_, generic(address), &length) == 0 ? ntohs(address.sin_port)
+                                                                    : std::uint16_t{0};
   }
 
   [[nodiscard]] int receive_buffer_bytes() const {
@@ -167,8 +201,9 @@ public:
     for (int round = 0; round < rounds && count == batch_size; ++round) {
       count = batch.receive(descriptor_);
       const HostTime now = host_time();
-      for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t i = 0; i < count; ++i) {
         take(batch, i, now);
+      }
       total += count;
     }
     return total;
@@ -207,18 +242,25 @@ Expected<std::unique_ptr<Receiver>> Receiver::create(std::vector<Endpoint> endpo
   auto receiver = std::unique_ptr<Receiver>(new Receiver());
   for (auto& endpoint : endpoints) {
     auto opened = Socket::open(std::move(endpoint));
-    if (!opened) return tl::unexpected(opened.error());
+    if (!opened) {
+      return tl::unexpected(opened.error());
+    }
     receiver->sockets_.push_back(std::move(*opened));
   }
   receiver->stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (receiver->stop_event_ < 0)
-    return tl::unexpected(Error{ErrorCode::refused, std::string("cannot make an event to stop the receiver: ") + std::strerror(errno)});
+  if (receiver->stop_event_ < 0) {
+    return tl::unexpected(
+        Error{ErrorCode::refused,
+              std::string("cannot make an event to stop the receiver: ") + std::strerror(errno)});
+  }
   return receiver;
 }
 
 Receiver::~Receiver() {
   stop();
-  if (stop_event_ >= 0) close(stop_event_);
+  if (stop_event_ >= 0) {
+    close(stop_event_);
+  }
 }
 
 std::uint16_t Receiver::port(std::size_t endpoint) const {
@@ -230,11 +272,15 @@ int Receiver::receive_buffer_bytes(std::size_t endpoint) const {
 }
 
 void Receiver::start() {
-  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  if (!thread_.joinable()) {
+    thread_ = std::thread([this] { run(); });
+  }
 }
 
 void Receiver::stop() {
-  if (!thread_.joinable()) return;
+  if (!thread_.joinable()) {
+    return;
+  }
   const std::uint64_t one = 1;
   // Only fails when the counter is full, and then the event is set.
   [[maybe_unused]] const auto written = write(stop_event_, &one, sizeof one);
@@ -244,25 +290,33 @@ void Receiver::stop() {
 void Receiver::run() {
   Batch batch;
   std::vector<pollfd> events{{stop_event_, POLLIN, 0}};
-  for (const auto& socket : sockets_)
+  for (const auto& socket : sockets_) {
     events.push_back({socket->descriptor(), POLLIN, 0});
+  }
   std::int64_t next_tick_ns = 0;
   while (true) {
     poll(events.data(), events.size(), tick_ms);
     std::size_t received = 0;
-    for (auto& socket : sockets_)
+    for (auto& socket : sockets_) {
       received += socket->drain(batch);
+    }
     const HostTime now = host_time();
     if (now.monotonic_ns >= next_tick_ns) {
-      for (auto& socket : sockets_)
+      for (auto& socket : sockets_) {
         socket->reception().tick(now);
+      }
       next_tick_ns = now.monotonic_ns + tick_ms * std::int64_t{1'000'000};
     }
-    if (received >= rest_worthwhile) poll(events.data(), 1, rest_ms); // the stop event alone
-    if ((events[0].revents & POLLIN) != 0) break;
+    if (received >= rest_worthwhile) {
+      poll(events.data(), 1, rest_ms); // the stop event alone
+    }
+    if ((events[0].revents & POLLIN) != 0) {
+      break;
+    }
   }
-  for (auto& socket : sockets_)
+  for (auto& socket : sockets_) {
     socket->reception().finish(host_time());
+  }
 }
 
 } // namespace dyncal::drivers::smartup

@@ -1,10 +1,13 @@
-// Receives the datagrams of SmartUp Units at one or more UDP addresses on one thread, which does nothing that could wait: batches by
-// recvmmsg, a receive buffer as large as the system allows, the kernel's count of what did not fit.
+// Receives the datagrams of SmartUp Units at one or more UDP addresses on one thread, which does
+// nothing that could wait: batches by recvmmsg, a receive buffer as large as the system allows, the
+// kernel's count of what did not fit.
 //
-// At high rates the thread rests two milliseconds after it has emptied the sockets, so that datagrams come in batches: the buffer holds
-// far more than that, and a core is spared the wake-ups.
+// At high rates the thread rests two milliseconds after it has emptied the sockets, so that
+// datagrams come in batches: the buffer holds far more than that, and a core is spared the
+// wake-ups.
 //
-// Threads: create, start and stop from one thread; the sinks are called on the receiver's thread. The destructor stops.
+// Threads: create, start and stop from one thread; the sinks are called on the receiver's thread.
+// The destructor stops.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +39,8 @@ public:
     int receive_buffer_bytes = 32 << 20; // asked for; the system may give less
   };
 
-  // Opens the sockets. Fails (invalid_setting) on a bad address, (refused) when it is in use, not of this host, or not permitted.
+  // Opens the sockets. Fails (invalid_setting) on a bad address, (refused) when it is in use, not
+  // of this host, or not permitted.
   [[nodiscard]] static Expected<std::unique_ptr<Receiver>> create(std::vector<Endpoint> endpoints);
   ~Receiver();
 

@@ -23,19 +23,29 @@ std::string Sender::text() const {
 Reception::Reception(std::vector<SensorSettings> wanted, SampleSink& sink) : sink_(sink) {
   for (auto& settings : wanted) {
     const std::uint32_t sensor = settings.sensor;
-    sensors_.emplace(sensor, std::make_unique<Entry>(Entry{.sensor = Sensor(sensor, settings, sink_), .sender = {}}));
+    sensors_.emplace(sensor, std::make_unique<Entry>(
+                                 Entry{.sensor = Sensor(sensor, settings, sink_), .sender = {}}));
   }
   for (const auto& settings : wanted) {
-    if (!settings.sync_sensor) continue;
-    if (Entry* sync = entry_of(*settings.sync_sensor)) sync->sensor.give_sync_to(sensors_.at(settings.sensor)->sensor);
+    if (!settings.sync_sensor) {
+      continue;
+    }
+    if (Entry* sync = entry_of(*settings.sync_sensor)) {
+      sync->sensor.give_sync_to(sensors_.at(settings.sensor)->sensor);
+    }
   }
 }
 
 // Nothing when there are too many.
 Reception::Entry* Reception::entry_of(std::uint32_t sensor) {
-  if (const auto found = sensors_.find(sensor); found != sensors_.end()) return found->second.get();
-  if (sensors_.size() >= max_sensors) return nullptr;
-  auto entry = std::make_unique<Entry>(Entry{.sensor = Sensor(sensor, std::nullopt, sink_), .sender = {}});
+  if (const auto found = sensors_.find(sensor); found != sensors_.end()) {
+    return found->second.get();
+  }
+  if (sensors_.size() >= max_sensors) {
+    return nullptr;
+  }
+  auto entry =
+      std::make_unique<Entry>(Entry{.sensor = Sensor(sensor, std::nullopt, sink_), .sender = {}});
   return sensors_.emplace(sensor, std::move(entry)).first->second.get();
 }
 
@@ -45,7 +55,8 @@ Reception::Entry* Reception::entry_from(std::uint32_t sensor, Sender sender, Hos
     ++counts_.refused;
     return nullptr;
   }
-  if (entry->received && entry->sender != sender && now.monotonic_ns - entry->last_ns < sender_silent_ns) {
+  if (entry->received && entry->sender != sender &&
+      now.monotonic_ns - entry->last_ns < sender_silent_ns) {
     entry->sensor.add_other_sender();
     return nullptr;
   }
@@ -56,8 +67,12 @@ Reception::Entry* Reception::entry_from(std::uint32_t sensor, Sender sender, Hos
 }
 
 Reception::Unit* Reception::unit_of(Sender sender) {
-  if (const auto found = units_.find(sender); found != units_.end()) return &found->second;
-  if (units_.size() >= max_units) return nullptr;
+  if (const auto found = units_.find(sender); found != units_.end()) {
+    return &found->second;
+  }
+  if (units_.size() >= max_units) {
+    return nullptr;
+  }
   return &units_[sender];
 }
 
@@ -65,16 +80,25 @@ void Reception::take_data(std::size_t datagram_bytes, Unit& unit, Sender sender,
   bool begun = false;
   for (const DataMessage& message : datagram_.data) {
     Entry* entry = entry_from(message.sensor, sender, now);
-    if (entry == nullptr) continue;
+    if (entry == nullptr) {
+      continue;
+    }
     const auto missing = entry->sensor.take(message, now);
-    if (!missing) continue;
-    if (!std::exchange(begun, true)) unit.losses.begin(datagram_bytes);
+    if (!missing) {
+      continue;
+    }
+    if (!std::exchange(begun, true)) {
+      unit.losses.begin(datagram_bytes);
+    }
     unit.losses.message(message.sensor, *missing, message.bytes);
   }
-  if (!begun) return;
+  if (!begun) {
+    return;
+  }
   const std::uint64_t lost_before = unit.losses.datagrams_lost();
-  for (const AttributedLoss& loss : unit.losses.end())
+  for (const AttributedLoss& loss : unit.losses.end()) {
     entry_of(loss.sensor)->sensor.add_loss(loss.in_unit, loss.on_way);
+  }
   counts_.found_lost += unit.losses.datagrams_lost() - lost_before;
 }
 
@@ -87,7 +111,9 @@ void Reception::take_rejected() {
       known->second->sensor.reject(rejected);
     }
   }
-  if (datagram_.broken) ++counts_.rejected[static_cast<std::size_t>(*datagram_.broken)];
+  if (datagram_.broken) {
+    ++counts_.rejected[static_cast<std::size_t>(*datagram_.broken)];
+  }
 }
 
 void Reception::take(std::span<const std::uint8_t> bytes, Sender sender, HostTime now) {
@@ -105,29 +131,39 @@ void Reception::take(std::span<const std::uint8_t> bytes, Sender sender, HostTim
   take_rejected();
   take_data(bytes.size(), *unit, sender, now);
   for (const DescriptionMessage& description : datagram_.descriptions) {
-    if (Entry* entry = entry_from(description.sensor, sender, now)) entry->sensor.take(description, now);
+    if (Entry* entry = entry_from(description.sensor, sender, now)) {
+      entry->sensor.take(description, now);
+    }
   }
 }
 
 void Reception::report() {
   for (const auto& [sensor, entry] : sensors_) {
-    if (entry->received) sink_.on_report(entry->sensor.report(entry->sender.text()));
+    if (entry->received) {
+      sink_.on_report(entry->sensor.report(entry->sender.text()));
+    }
   }
   sink_.on_report(counts_);
 }
 
 void Reception::tick(HostTime now) {
   for (auto& [sensor, entry] : sensors_) {
-    if (entry->received) entry->sensor.tick(now);
+    if (entry->received) {
+      entry->sensor.tick(now);
+    }
   }
-  if (now.monotonic_ns - last_report_ns_ < report_interval_ns) return;
+  if (now.monotonic_ns - last_report_ns_ < report_interval_ns) {
+    return;
+  }
   last_report_ns_ = now.monotonic_ns;
   report();
 }
 
 void Reception::finish(HostTime now) {
   for (auto& [sensor, entry] : sensors_) {
-    if (entry->received) entry->sensor.finish(now);
+    if (entry->received) {
+      entry->sensor.finish(now);
+    }
   }
   report();
 }

@@ -1,9 +1,11 @@
-// Everything that arrives at one address: several units, told apart by their sender, each with several sensors, told apart by their id.
+// Everything that arrives at one address: several units, told apart by their sender, each with
+// several sensors, told apart by their id.
 //
-// A sensor belongs to the sender it was first received from; the same id from a second sender at the same time (two boards with one
-// checksum) is counted and not mixed in. When the first sender has been silent for two seconds, the second one is taken for the same unit
-// with a new address. Senders and sensors that are kept apart are limited (max_units, max_sensors), so that nobody can fill the memory.
-// No sockets here. One thread at a time; never fails.
+// A sensor belongs to the sender it was first received from; the same id from a second sender at
+// the same time (two boards with one checksum) is counted and not mixed in. When the first sender
+// has been silent for two seconds, the second one is taken for the same unit with a new address.
+// Senders and sensors that are kept apart are limited (max_units, max_sensors), so that nobody can
+// fill the memory. No sockets here. One thread at a time; never fails.
 #pragma once
 
 #include <array>
@@ -25,7 +27,8 @@ struct Sender {
   std::uint32_t address = 0;
   std::uint16_t port = 0;
 
-  friend auto operator<=>(const Sender&, const Sender&) = default; // NOLINT(modernize-use-nullptr): clang-tidy 14 errs here
+  friend auto operator<=>(const Sender&, const Sender&) =
+      default; // NOLINT(modernize-use-nullptr): clang-tidy 14 errs here
   [[nodiscard]] std::string text() const;
 };
 
@@ -41,7 +44,8 @@ public:
   void add_too_long() { ++counts_.too_long; }
   void set_dropped_by_kernel(std::uint64_t datagrams) { counts_.dropped_by_kernel = datagrams; }
 
-  // To be called at least every 50 ms: hands over what has waited long enough, and reports when that is due.
+  // To be called at least every 50 ms: hands over what has waited long enough, and reports when
+  // that is due.
   void tick(HostTime now);
   // Reception ends: hands over and reports everything.
   void finish(HostTime now);

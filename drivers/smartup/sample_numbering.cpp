@@ -7,7 +7,8 @@ void SampleNumbering::forget() {
   odd_in_a_row_ = 0;
 }
 
-Place SampleNumbering::accept(Arrival arrival, std::uint32_t number, std::int64_t stamp_ns, std::uint64_t sample, std::uint64_t missing) {
+Place SampleNumbering::accept(Arrival arrival, std::uint32_t number, std::int64_t stamp_ns,
+                              std::uint64_t sample, std::uint64_t missing) {
   started_ = true;
   last_number_ = number;
   last_stamp_ns_ = stamp_ns;
@@ -17,7 +18,8 @@ Place SampleNumbering::accept(Arrival arrival, std::uint32_t number, std::int64_
   return {arrival, sample, missing};
 }
 
-// A number that does not fit: `stale`, unless enough of them have come in a row to be a numbering of their own.
+// A number that does not fit: `stale`, unless enough of them have come in a row to be a numbering
+// of their own.
 Arrival SampleNumbering::unless_it_continues(std::uint32_t number) {
   odd_in_a_row_ = number == next_odd_number_ ? odd_in_a_row_ + 1 : 1;
   next_odd_number_ = number + 1;
@@ -27,17 +29,27 @@ Arrival SampleNumbering::unless_it_continues(std::uint32_t number) {
 Arrival SampleNumbering::look_back(std::uint32_t number, std::int64_t stamp_ns) {
   const Seen& seen = seen_[number % remembered];
   const bool known = seen.valid && seen.number == number;
-  if (known && seen.stamp_ns == stamp_ns) return Arrival::duplicate;
+  if (known && seen.stamp_ns == stamp_ns) {
+    return Arrival::duplicate;
+  }
   const std::uint32_t back = last_number_ - number;
-  if (!known && back < remembered && stamp_ns < last_stamp_ns_) return Arrival::late;
-  if (number == 1 || stamp_ns > last_stamp_ns_) return Arrival::restart;
+  if (!known && back < remembered && stamp_ns < last_stamp_ns_) {
+    return Arrival::late;
+  }
+  if (number == 1 || stamp_ns > last_stamp_ns_) {
+    return Arrival::restart;
+  }
   return unless_it_continues(number);
 }
 
 Place SampleNumbering::place(std::uint32_t number, std::int64_t stamp_ns) {
-  if (!started_) return accept(Arrival::next, number, stamp_ns, number, 0);
+  if (!started_) {
+    return accept(Arrival::next, number, stamp_ns, number, 0);
+  }
   const std::uint32_t ahead = number - last_number_;
-  if (ahead == 1) return accept(Arrival::next, number, stamp_ns, last_sample_ + 1, 0);
+  if (ahead == 1) {
+    return accept(Arrival::next, number, stamp_ns, last_sample_ + 1, 0);
+  }
   Arrival arrival = Arrival::after_gap;
   if (ahead == 0 || ahead > UINT32_MAX / 2) {
     arrival = look_back(number, stamp_ns);
@@ -47,7 +59,9 @@ Place SampleNumbering::place(std::uint32_t number, std::int64_t stamp_ns) {
     arrival = unless_it_continues(number);
   }
 
-  if (arrival == Arrival::after_gap) return accept(arrival, number, stamp_ns, last_sample_ + ahead, ahead - 1);
+  if (arrival == Arrival::after_gap) {
+    return accept(arrival, number, stamp_ns, last_sample_ + ahead, ahead - 1);
+  }
   if (arrival == Arrival::restart) {
     forget();
     return accept(arrival, number, stamp_ns, number, 0);
@@ -56,7 +70,9 @@ Place SampleNumbering::place(std::uint32_t number, std::int64_t stamp_ns) {
 }
 
 bool SampleNumbering::skip(std::uint32_t number) {
-  if (!started_ || number - last_number_ != 1) return false;
+  if (!started_ || number - last_number_ != 1) {
+    return false;
+  }
   last_number_ = number;
   ++last_sample_;
   return true;

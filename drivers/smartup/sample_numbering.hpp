@@ -1,10 +1,12 @@
-// Where a sample of one sensor stands in its stream: the 32-bit sample number of the unit unwrapped to 64 bits, and what each arrival is.
+// Where a sample of one sensor stands in its stream: the 32-bit sample number of the unit unwrapped
+// to 64 bits, and what each arrival is.
 //
-// The unit counts every sample, sent or not, so a jump of the number is the only sign of a loss. The number starts at 1 when the sensor is
-// initialised, and wraps at 2^32. A number that does not lie ahead is a copy of what came before (same number and stamp), a datagram that
-// overtook or was overtaken (its place was counted as lost, and stays lost), something old that the unit had kept, or the beginning of a
-// new numbering; the stamp decides, and where stamps cannot be trusted the next numbers do: sixteen in a row are a new numbering. One
-// thread at a time; never fails.
+// The unit counts every sample, sent or not, so a jump of the number is the only sign of a loss.
+// The number starts at 1 when the sensor is initialised, and wraps at 2^32. A number that does not
+// lie ahead is a copy of what came before (same number and stamp), a datagram that overtook or was
+// overtaken (its place was counted as lost, and stays lost), something old that the unit had kept,
+// or the beginning of a new numbering; the stamp decides, and where stamps cannot be trusted the
+// next numbers do: sixteen in a row are a new numbering. One thread at a time; never fails.
 #pragma once
 
 #include <array>
@@ -31,7 +33,8 @@ class SampleNumbering {
 public:
   [[nodiscard]] Place place(std::uint32_t number, std::int64_t stamp_ns);
 
-  // A sample that came but could not be used is not missing: the next number is expected behind it. False when it did not lie right ahead.
+  // A sample that came but could not be used is not missing: the next number is expected behind it.
+  // False when it did not lie right ahead.
   bool skip(std::uint32_t number);
 
 private:
@@ -40,15 +43,19 @@ private:
     std::int64_t stamp_ns = 0;
     bool valid = false;
   };
-  static constexpr std::size_t remembered = 256;                   // samples: two dozen datagrams
-  static constexpr std::uint32_t max_gap = 1U << 24U;           // hours at 1 kS/s; beyond that it is another numbering
-  static constexpr std::uint32_t plain_gap = 64;                    // up to here a gap is believed whatever the stamp says
-  static constexpr std::int64_t clearly_earlier_ns = 1'500'000'000; // more than a second that is mislabelled
+  static constexpr std::size_t remembered = 256; // samples: two dozen datagrams
+  static constexpr std::uint32_t max_gap =
+      1U << 24U; // hours at 1 kS/s; beyond that it is another numbering
+  static constexpr std::uint32_t plain_gap =
+      64; // up to here a gap is believed whatever the stamp says
+  static constexpr std::int64_t clearly_earlier_ns =
+      1'500'000'000; // more than a second that is mislabelled
   static constexpr std::uint32_t new_numbering_proof = 16;
 
   [[nodiscard]] Arrival look_back(std::uint32_t number, std::int64_t stamp_ns);
   [[nodiscard]] Arrival unless_it_continues(std::uint32_t number);
-  Place accept(Arrival arrival, std::uint32_t number, std::int64_t stamp_ns, std::uint64_t sample, std::uint64_t missing);
+  Place accept(Arrival arrival, std::uint32_t number, std::int64_t stamp_ns, std::uint64_t sample,
+               std::uint64_t missing);
   void forget();
 
   bool started_ = false;

@@ -21,7 +21,8 @@ struct SampleRow {
   std::uint8_t flags = 0;                 // StampFlag bits
   std::uint16_t present = 0;
   std::array<float, channels_of_unit> values{};
-  std::uint16_t sync_present = 0; // of the sync sensor, when the unit sends its ADCs as a sensor of their own
+  std::uint16_t sync_present =
+      0; // of the sync sensor, when the unit sends its ADCs as a sensor of their own
   std::array<float, channels_of_unit> sync_values{};
 };
 

@@ -1,6 +1,8 @@
-// Where a receiver of SmartUp Units puts what it has received: implemented by whoever wants the samples.
+// Where a receiver of SmartUp Units puts what it has received: implemented by whoever wants the
+// samples.
 //
-// All functions are called on the receiver's thread, one after the other, and must not block: the socket waits meanwhile.
+// All functions are called on the receiver's thread, one after the other, and must not block: the
+// socket waits meanwhile.
 #pragma once
 
 #include <array>
@@ -13,7 +15,8 @@
 
 namespace dyncal::drivers::smartup {
 
-// Of one sensor since the receiver started. Every sample number that was passed is received, lost or rejected.
+// Of one sensor since the receiver started. Every sample number that was passed is received, lost
+// or rejected.
 struct SensorCounts {
   std::uint64_t received = 0;
   std::uint64_t lost_in_unit = 0;
@@ -27,8 +30,9 @@ struct SensorCounts {
   std::uint64_t without_sync = 0; // samples whose partner of the sync sensor never came
   std::array<std::uint64_t, rejections> rejected{};
   std::array<std::uint64_t, stamp_flag_count> stamp_flags{};
-  std::uint64_t stamps_not_trusted = 0;   // samples with at least one flag
-  std::uint32_t stamp_uncertainty_ns = 0; // standard uncertainty of the newest stamp in the unit's clock; 0: it does not know
+  std::uint64_t stamps_not_trusted = 0; // samples with at least one flag
+  std::uint32_t stamp_uncertainty_ns =
+      0; // standard uncertainty of the newest stamp in the unit's clock; 0: it does not know
 };
 
 struct SensorReport {
@@ -42,10 +46,11 @@ struct SensorReport {
 // Of one address that is listened to.
 struct ReceptionCounts {
   std::uint64_t datagrams = 0;
-  std::uint64_t dropped_by_kernel = 0;               // datagrams: the receive buffer was full
-  std::uint64_t found_lost = 0;                      // datagrams that never came, as far as whole ones can be told
-  std::uint64_t too_long = 0;                        // datagrams longer than any of a unit
-  std::uint64_t refused = 0;                         // datagrams or messages of more units or sensors than can be kept apart
+  std::uint64_t dropped_by_kernel = 0; // datagrams: the receive buffer was full
+  std::uint64_t found_lost = 0; // datagrams that never came, as far as whole ones can be told
+  std::uint64_t too_long = 0;   // datagrams longer than any of a unit
+  std::uint64_t refused =
+      0; // datagrams or messages of more units or sensors than can be kept apart
   std::array<std::uint64_t, rejections> rejected{}; // datagrams, and messages of no known sensor
 };
 
@@ -53,7 +58,8 @@ class SampleSink {
 public:
   virtual ~SampleSink() = default;
 
-  // Known, or changed: five seconds after the first sample at the latest. The columns of the blocks are its channels.
+  // Known, or changed: five seconds after the first sample at the latest. The columns of the blocks
+  // are its channels.
   virtual void on_description(std::uint32_t sensor, const SourceDescription& description) = 0;
   // Once for each oddity of what the sensor declares.
   virtual void on_warning(std::uint32_t sensor, const std::string& sentence) = 0;

@@ -10,11 +10,12 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t max_wait_for_description_ns = 5 * second_ns; // they come every 4 s
-constexpr std::uint64_t max_beginning = 16;                        // samples of one sensor in one datagram
+constexpr std::uint64_t max_beginning = 16; // samples of one sensor in one datagram
 constexpr std::int64_t pause_of_sensor_ns = 2 * second_ns;
 constexpr std::int64_t pause_in_steps = 10;
 constexpr double tick_of_unit_s = 1.0 / 108e6;
-constexpr double u_gps_pulse_s = 100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
+constexpr double u_gps_pulse_s =
+    100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
 
 // The unit sends four standard uncertainties.
 std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
@@ -24,27 +25,33 @@ std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
 } // namespace
 
 Sensor::Sensor(std::uint32_t sensor, std::optional<SensorSettings> settings, SampleSink& sink)
-    : sensor_(sensor), settings_(std::move(settings)), sink_(sink), blocks_(settings_ ? settings_->block_ns : SensorSettings{}.block_ns) {}
+    : sensor_(sensor), settings_(std::move(settings)), sink_(sink),
+      blocks_(settings_ ? settings_->block_ns : SensorSettings{}.block_ns) {}
 
 void Sensor::give_sync_to(Sensor& owner) {
   sync_of_ = &owner;
   owner.sync_ = this;
 }
 
-// Stale samples show when the first samples are followed by a pause that is long against the steps on its other side.
+// Stale samples show when the first samples are followed by a pause that is long against the steps
+// on its other side.
 bool Sensor::all_stale_before(const DataMessage& message, std::uint64_t missing) {
   const std::int64_t step_ns = message.stamp_ns() - beginning_.last_stamp_ns;
   const std::int64_t step_before_ns = std::exchange(beginning_.last_step_ns, step_ns);
   beginning_.last_stamp_ns = message.stamp_ns();
-  if (++beginning_.samples < 3 || beginning_.samples > max_beginning || missing > 0) return false;
+  if (++beginning_.samples < 3 || beginning_.samples > max_beginning || missing > 0) {
+    return false;
+  }
   const auto is_pause = [](std::int64_t pause_ns, std::int64_t other_ns) {
     return pause_ns > pause_of_sensor_ns && other_ns > 0 && pause_ns / pause_in_steps > other_ns;
   };
-  return is_pause(step_ns, step_before_ns) || (beginning_.samples == 3 && is_pause(step_before_ns, step_ns));
+  return is_pause(step_ns, step_before_ns) ||
+         (beginning_.samples == 3 && is_pause(step_before_ns, step_ns));
 }
 
 void Sensor::discard_stale() {
-  // The sample that showed the pause counts as one of the stale ones only if it lies before it: it is taken afterwards.
+  // The sample that showed the pause counts as one of the stale ones only if it lies before it: it
+  // is taken afterwards.
   const std::size_t waiting = join_.discard() + blocks_.discard();
   counts_.stale += waiting;
   counts_.received -= waiting;
@@ -66,7 +73,9 @@ void Sensor::begin_numbering(HostTime now) {
 }
 
 void Sensor::announce_new_session() {
-  if (session_has_blocks_) sink_.on_new_session(sensor_);
+  if (session_has_blocks_) {
+    sink_.on_new_session(sensor_);
+  }
   session_has_blocks_ = false;
 }
 
@@ -89,23 +98,35 @@ std::optional<std::uint64_t> Sensor::take(const DataMessage& message, HostTime n
   case Arrival::after_gap:
     break;
   }
-  if (!first_sample_ns_) first_sample_ns_ = now.monotonic_ns;
-  if (all_stale_before(message, place.missing) && !session_has_blocks_) discard_stale();
+  if (!first_sample_ns_) {
+    first_sample_ns_ = now.monotonic_ns;
+  }
+  if (all_stale_before(message, place.missing) && !session_has_blocks_) {
+    discard_stale();
+  }
 
   SampleRow row{.sample = place.sample,
                 .stamp_ns = message.stamp_ns(),
                 .stamp_uncertainty_ns = standard_uncertainty_ns(message.time_uncertainty_ns),
                 .present = message.present,
                 .values = message.values};
-  row.flags = stamps_.check({place.sample, row.stamp_ns, message.time_uncertainty_ns, message.unix_time_s == 0});
+  row.flags = stamps_.check(
+      {place.sample, row.stamp_ns, message.time_uncertainty_ns, message.unix_time_s == 0});
   ++counts_.received;
   counts_.stamp_uncertainty_ns = row.stamp_uncertainty_ns;
-  if (row.flags != 0) ++counts_.stamps_not_trusted;
-  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit)
+  if (row.flags != 0) {
+    ++counts_.stamps_not_trusted;
+  }
+  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit) {
     counts_.stamp_flags[bit] += (row.flags >> bit) & 1U;
+  }
 
-  if (sync_of_ != nullptr) sync_of_->take_sync(message, now);
-  if (!settings_) return place.missing;
+  if (sync_of_ != nullptr) {
+    sync_of_->take_sync(message, now);
+  }
+  if (!settings_) {
+    return place.missing;
+  }
   if (sync_ != nullptr) {
     join_.add(row);
     drain_join(now);
@@ -122,14 +143,16 @@ void Sensor::take_sync(const DataMessage& message, HostTime now) {
 
 void Sensor::drain_join(HostTime now) {
   SampleRow row;
-  while (join_.take(row))
+  while (join_.take(row)) {
     assemble(row, now);
+  }
   counts_.without_sync = join_.without_sync();
 }
 
 void Sensor::assemble(const SampleRow& row, HostTime now) {
   const Columns columns = blocks_.columns();
-  const Columns wider{static_cast<std::uint16_t>(columns.own | row.present), static_cast<std::uint16_t>(columns.sync | row.sync_present)};
+  const Columns wider{static_cast<std::uint16_t>(columns.own | row.present),
+                      static_cast<std::uint16_t>(columns.sync | row.sync_present)};
   if (wider != columns) {
     if (session_has_blocks_) {
       ++counts_.new_columns;
@@ -144,16 +167,22 @@ void Sensor::assemble(const SampleRow& row, HostTime now) {
 }
 
 void Sensor::hand_over(std::optional<SampleBlock> block) {
-  if (!block) return;
+  if (!block) {
+    return;
+  }
   session_has_blocks_ = true;
   sink_.on_block(sensor_, std::move(*block));
 }
 
 void Sensor::take(const DescriptionMessage& message, HostTime now) {
-  if (!declared_.add(message)) return;
+  if (!declared_.add(message)) {
+    return;
+  }
   description_changed_ = true;
   for (auto& warning : declared_.warnings()) {
-    if (warned_.insert(warning).second) sink_.on_warning(sensor_, warning);
+    if (warned_.insert(warning).second) {
+      sink_.on_warning(sensor_, warning);
+    }
   }
   if (sync_of_ != nullptr) {
     sync_of_->description_changed_ = true;
@@ -162,12 +191,18 @@ void Sensor::take(const DescriptionMessage& message, HostTime now) {
   describe(now);
 }
 
-// Says what is known as soon as it is whole, or when waiting for the rest has taken too long; later whenever it changes.
+// Says what is known as soon as it is whole, or when waiting for the rest has taken too long; later
+// whenever it changes.
 void Sensor::describe(HostTime now) {
-  if (!settings_ || !description_changed_ || blocks_.columns() == Columns{}) return;
+  if (!settings_ || !description_changed_ || blocks_.columns() == Columns{}) {
+    return;
+  }
   const bool whole = declared_.complete() && (sync_ == nullptr || sync_->declared_.complete());
-  const bool waited = first_sample_ns_ && now.monotonic_ns - *first_sample_ns_ >= max_wait_for_description_ns;
-  if (!described_ && !whole && !waited) return;
+  const bool waited =
+      first_sample_ns_ && now.monotonic_ns - *first_sample_ns_ >= max_wait_for_description_ns;
+  if (!described_ && !whole && !waited) {
+    return;
+  }
   described_ = true;
   description_changed_ = false;
   sink_.on_description(sensor_, description());
@@ -180,8 +215,10 @@ SourceDescription Sensor::description() const {
   description.driver = "smartup";
   description.channels = declared_.channels(blocks_.columns().own, settings_->naming);
   if (sync_ != nullptr) {
-    for (auto& channel : sync_->declared_.channels(blocks_.columns().sync, settings_->naming, "sync_"))
+    for (auto& channel :
+         sync_->declared_.channels(blocks_.columns().sync, settings_->naming, "sync_")) {
       description.channels.push_back(std::move(channel));
+    }
   }
   description.time_base = settings_->time_base;
   description.stamp_instant = StampInstant::data_ready_edge;
@@ -192,7 +229,9 @@ SourceDescription Sensor::description() const {
 
 void Sensor::reject(const RejectedMessage& message) {
   ++counts_.rejected[static_cast<std::size_t>(message.cause)];
-  if (message.sample_number) numbering_.skip(*message.sample_number);
+  if (message.sample_number) {
+    numbering_.skip(*message.sample_number);
+  }
 }
 
 void Sensor::add_loss(std::uint64_t in_unit, std::uint64_t on_way) {
@@ -212,7 +251,8 @@ void Sensor::finish(HostTime now) {
 }
 
 SensorReport Sensor::report(const std::string& sender) const {
-  return {sensor_, declared_.sensor_name(), sender, settings_.has_value() || sync_of_ != nullptr, counts_};
+  return {sensor_, declared_.sensor_name(), sender, settings_.has_value() || sync_of_ != nullptr,
+          counts_};
 }
 
 } // namespace dyncal::drivers::smartup

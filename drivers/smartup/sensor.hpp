@@ -1,9 +1,11 @@
-// One sensor of a SmartUp Unit: its numbering, its stamps, its description and its blocks, with an account of every sample.
+// One sensor of a SmartUp Unit: its numbering, its stamps, its description and its blocks, with an
+// account of every sample.
 //
-// A sensor that nobody wants (no settings) is accounted for and described, but its samples go nowhere. A sync sensor hands its samples to
-// the sensor that it belongs to. The unit keeps its last, partly filled datagram over a pause: samples at the very beginning of a numbering
-// that are followed by a jump in time or by a new numbering are stale; they are counted and not handed on. One thread at a time; never
-// fails.
+// A sensor that nobody wants (no settings) is accounted for and described, but its samples go
+// nowhere. A sync sensor hands its samples to the sensor that it belongs to. The unit keeps its
+// last, partly filled datagram over a pause: samples at the very beginning of a numbering that are
+// followed by a jump in time or by a new numbering are stale; they are counted and not handed on.
+// One thread at a time; never fails.
 #pragma once
 
 #include <array>

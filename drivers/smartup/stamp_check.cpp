@@ -14,7 +14,8 @@ constexpr double second_ns = 1e9;
 constexpr double ticks_per_second[] = {108e6, 100e6};
 constexpr double ticks_of_extension = 4294967296.0;
 constexpr double ticks_of_half = 65536.0;
-constexpr double crystal_error = 1e-4; // by which a number of ticks may differ from its nominal time
+constexpr double crystal_error =
+    1e-4; // by which a number of ticks may differ from its nominal time
 
 constexpr double phase_gain = 0.1;
 constexpr double period_gain = 0.004; // damping 0.8: it settles without ringing
@@ -23,7 +24,7 @@ constexpr double residual_memory = 1.0 / 64.0;
 constexpr double tolerance_in_periods = 0.25;
 constexpr double max_plain_tolerance_ns = 200e3;
 constexpr double tolerance_in_usual_residuals = 10.0;
-constexpr double period_drift = 2e-5;              // relative, while the model runs free
+constexpr double period_drift = 2e-5;            // relative, while the model runs free
 constexpr double max_tolerance_in_periods = 0.5; // more than that is no jitter
 constexpr double max_period_ns = 86400e9;
 
@@ -45,44 +46,55 @@ double median(Values& values) {
 
 const char* stamp_flag_name(std::size_t bit) {
   static constexpr const char* flag_names[stamp_flag_count] = {
-      "stamp: second slipped", "stamp: 2^32 ticks off", "stamp: 2^16 ticks off", "stamp: offset below a second",
-      "stamp: repeated",       "stamp: no uncertainty", "stamp: no fix",         "stamp: backwards"};
+      "stamp: second slipped", "stamp: 2^32 ticks off",
+      "stamp: 2^16 ticks off", "stamp: offset below a second",
+      "stamp: repeated",       "stamp: no uncertainty",
+      "stamp: no fix",         "stamp: backwards"};
   return bit < stamp_flag_count ? flag_names[bit] : "stamp";
 }
 
 double StampCheck::residual_ns(const Stamp& stamp) const {
-  const auto samples = static_cast<double>(static_cast<std::int64_t>(stamp.sample - origin_.sample));
+  const auto samples =
+      static_cast<double>(static_cast<std::int64_t>(stamp.sample - origin_.sample));
   return static_cast<double>(stamp.stamp_ns - origin_.stamp_ns) - phase_ns_ - samples * period_ns_;
 }
 
 double StampCheck::tolerance_ns(const Stamp& stamp) const {
   const double plain = std::min(tolerance_in_periods * period_ns_, max_plain_tolerance_ns);
   const double free_running_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
-  const double tolerance = std::max(plain, tolerance_in_usual_residuals * usual_residual_ns_) + period_drift * free_running_ns;
+  const double tolerance = std::max(plain, tolerance_in_usual_residuals * usual_residual_ns_) +
+                           period_drift * free_running_ns;
   return std::min(tolerance, max_tolerance_in_periods * period_ns_);
 }
 
-// The period is the median of the founders' steps and the phase the median of their distances from it, so that a fault among them does not
-// count.
+// The period is the median of the founders' steps and the phase the median of their distances from
+// it, so that a fault among them does not count.
 void StampCheck::found(const Stamp& stamp) {
   founders_[founder_count_++] = stamp;
-  if (founder_count_ < founder_count) return;
+  if (founder_count_ < founder_count) {
+    return;
+  }
   std::vector<double> periods;
   for (std::size_t i = 1; i < founder_count; ++i) {
     const auto samples = static_cast<double>(founders_[i].sample - founders_[i - 1].sample);
-    periods.push_back(static_cast<double>(founders_[i].stamp_ns - founders_[i - 1].stamp_ns) / samples);
+    periods.push_back(static_cast<double>(founders_[i].stamp_ns - founders_[i - 1].stamp_ns) /
+                      samples);
   }
   period_ns_ = median(periods);
   founder_count_ = 0;
-  if (!(period_ns_ > 0.0 && period_ns_ < max_period_ns)) return;
+  if (!(period_ns_ > 0.0 && period_ns_ < max_period_ns)) {
+    return;
+  }
   origin_ = stamp;
   phase_ns_ = 0.0;
   std::vector<double> residuals;
-  for (const Stamp& founder : founders_)
+  for (const Stamp& founder : founders_) {
     residuals.push_back(residual_ns(founder));
+  }
   phase_ns_ = median(residuals);
-  for (double& residual : residuals)
+  for (double& residual : residuals) {
     residual = std::abs(residual - phase_ns_);
+  }
   usual_residual_ns_ = median(residuals);
   distrusted_in_a_row_ = 0;
   founded_ = true;
@@ -92,12 +104,20 @@ std::uint8_t StampCheck::signature(double residual, double tolerance, const Stam
   const double seconds = std::round(std::abs(residual) / second_ns);
   for (const double rate : ticks_per_second) {
     const double extension_ns = ticks_of_extension / rate * second_ns;
-    if (is_close(residual, extension_ns, tolerance + crystal_error * extension_ns)) return stamp_counter_extension;
-    if (is_close(residual, ticks_of_half / rate * second_ns, std::min(tolerance, max_plain_tolerance_ns / 10)))
+    if (is_close(residual, extension_ns, tolerance + crystal_error * extension_ns)) {
+      return stamp_counter_extension;
+    }
+    if (is_close(residual, ticks_of_half / rate * second_ns,
+                 std::min(tolerance, max_plain_tolerance_ns / 10))) {
       return stamp_torn_counter;
+    }
   }
-  if (seconds >= 1.0 && is_close(residual, seconds * second_ns, tolerance)) return stamp_second_slip;
-  if (has_last_ && stamp.stamp_ns < last_.stamp_ns) return stamp_backwards;
+  if (seconds >= 1.0 && is_close(residual, seconds * second_ns, tolerance)) {
+    return stamp_second_slip;
+  }
+  if (has_last_ && stamp.stamp_ns < last_.stamp_ns) {
+    return stamp_backwards;
+  }
   return stamp_offset_below_second;
 }
 
@@ -106,7 +126,8 @@ bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
   return std::abs(static_cast<double>(stamp.stamp_ns - last_.stamp_ns) - expected_ns) <= tolerance;
 }
 
-// Whether stamps have been off for so long that the model must be wrong. The model is then founded anew from the stamps to come.
+// Whether stamps have been off for so long that the model must be wrong. The model is then founded
+// anew from the stamps to come.
 bool StampCheck::lasts(const Stamp& stamp) {
   ++distrusted_in_a_row_;
   const double since_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;
@@ -144,13 +165,17 @@ std::uint8_t StampCheck::check_against_model(const Stamp& stamp) {
   }
   const std::uint8_t flag = signature(residual, tolerance, stamp);
   last_was_jump_ = flag == stamp_offset_below_second && residual > second_ns;
-  if (lasts(stamp)) founded_ = false;
+  if (lasts(stamp)) {
+    founded_ = false;
+  }
   return flag;
 }
 
 std::uint8_t StampCheck::check(const Stamp& stamp) {
   unsigned flags = 0;
-  if (stamp.time_uncertainty_ns == 0) flags |= stamp_no_uncertainty;
+  if (stamp.time_uncertainty_ns == 0) {
+    flags |= stamp_no_uncertainty;
+  }
   if (stamp.no_fix) {
     flags |= stamp_no_fix; // its time says nothing about the model
   } else if (has_last_ && stamp.stamp_ns == last_.stamp_ns) {
@@ -158,7 +183,9 @@ std::uint8_t StampCheck::check(const Stamp& stamp) {
   } else if (founded_) {
     flags |= check_against_model(stamp);
   } else {
-    if (has_last_ && !last_.no_fix && stamp.stamp_ns < last_.stamp_ns) flags |= stamp_backwards;
+    if (has_last_ && !last_.no_fix && stamp.stamp_ns < last_.stamp_ns) {
+      flags |= stamp_backwards;
+    }
     found(stamp);
   }
   last_ = stamp;

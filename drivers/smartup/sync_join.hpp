@@ -1,8 +1,9 @@
-// Joins a sensor with the sync ADCs that later firmware sends as a sensor of its own: both carry the same stamps, taken at the same edge.
+// Joins a sensor with the sync ADCs that later firmware sends as a sensor of its own: both carry
+// the same stamps, taken at the same edge.
 //
-// Samples of the two streams belong together when their stamps are equal; order decides between equal ones. A sensor sample whose partner
-// never came goes on without it; a partner without a sample is left out and counted. At most max_wait samples wait.
-// One thread at a time; never fails.
+// Samples of the two streams belong together when their stamps are equal; order decides between
+// equal ones. A sensor sample whose partner never came goes on without it; a partner without a
+// sample is left out and counted. At most max_wait samples wait. One thread at a time; never fails.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@ public:
   static constexpr std::size_t max_wait = 1024;
 
   void add(const SampleRow& row);
-  void add_sync(std::int64_t stamp_ns, std::uint16_t present, const std::array<float, channels_of_unit>& values);
+  void add_sync(std::int64_t stamp_ns, std::uint16_t present,
+                const std::array<float, channels_of_unit>& values);
 
   // The next row that is ready, in order; false when there is none yet.
   bool take(SampleRow& row);

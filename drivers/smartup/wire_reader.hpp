@@ -1,6 +1,7 @@
-// Reads the primitives of Protocol Buffers (https://protobuf.dev/programming-guides/encoding) from bytes that nobody vouches for.
-// Every read checks what is left and returns false at the first thing that cannot be, and then has not moved.
-// A view: the bytes outlive the reader. One thread at a time.
+// Reads the primitives of Protocol Buffers (https://protobuf.dev/programming-guides/encoding) from
+// bytes that nobody vouches for. Every read checks what is left and returns false at the first
+// thing that cannot be, and then has not moved. A view: the bytes outlive the reader. One thread at
+// a time.
 #pragma once
 
 #include <bit>
@@ -37,14 +38,18 @@ public:
 
   bool fixed32(std::uint32_t& value) {
     static_assert(std::endian::native == std::endian::little, "the wire is little-endian");
-    if (left() < sizeof value) return false;
+    if (left() < sizeof value) {
+      return false;
+    }
     std::memcpy(&value, bytes_.data() + position_, sizeof value);
     position_ += sizeof value;
     return true;
   }
 
   bool bytes(std::uint64_t count, std::span<const std::uint8_t>& value) {
-    if (count > left()) return false;
+    if (count > left()) {
+      return false;
+    }
     value = bytes_.subspan(position_, static_cast<std::size_t>(count));
     position_ += static_cast<std::size_t>(count);
     return true;
@@ -53,12 +58,15 @@ public:
   bool delimited(std::span<const std::uint8_t>& value) {
     const std::size_t before = position_;
     std::uint64_t count = 0;
-    if (varint(count) && bytes(count, value)) return true;
+    if (varint(count) && bytes(count, value)) {
+      return true;
+    }
     position_ = before;
     return false;
   }
 
-  // A field that is of no interest. False as well for groups, which proto2 messages of the unit do not have.
+  // A field that is of no interest. False as well for groups, which proto2 messages of the unit do
+  // not have.
   bool skip(WireType type) {
     std::uint64_t number = 0;
     std::span<const std::uint8_t> ignored;

@@ -56,15 +56,18 @@ double value_at(ValueForm form, const char* bytes) {
 }
 
 std::optional<ValueForm> form_by_name(const std::string& name) {
-  static const std::map<std::string, ValueForm> forms = {
-      {"int16", ValueForm::int16}, {"int32", ValueForm::int32}, {"float32", ValueForm::float32}, {"float64", ValueForm::float64}};
+  static const std::map<std::string, ValueForm> forms = {{"int16", ValueForm::int16},
+                                                         {"int32", ValueForm::int32},
+                                                         {"float32", ValueForm::float32},
+                                                         {"float64", ValueForm::float64}};
   const auto found = forms.find(name);
   return found == forms.end() ? std::nullopt : std::optional(found->second);
 }
 
 // get() would make a number of -1 or 1.5 as well; at() on a number throws, as it shall.
 std::uint64_t whole(const nlohmann::json& number) {
-  return number.is_number_unsigned() ? number.get<std::uint64_t>() : number.at("a whole number").get<std::uint64_t>();
+  return number.is_number_unsigned() ? number.get<std::uint64_t>()
+                                     : number.at("a whole number").get<std::uint64_t>();
 }
 
 // nlohmann throws on a wrong type; caught in parse_series_header.
@@ -77,8 +80,9 @@ SeriesHeader header_from(const nlohmann::json& line) {
   series.nominal_rate_hz = line.at("nominal_rate_hz").get<double>();
   series.samples = whole(line.at("samples"));
   for (const auto& channel : line.at("channels")) {
-    series.channels.push_back({channel.at("name").get<std::string>(), channel.value("quantity", ""), channel.value("unit", ""),
-                               channel.value("minimum", 0.0), channel.value("maximum", 0.0), channel.value("scale", 0.0)});
+    series.channels.push_back({channel.at("name").get<std::string>(), channel.value("quantity", ""),
+                               channel.value("unit", ""), channel.value("minimum", 0.0),
+                               channel.value("maximum", 0.0), channel.value("scale", 0.0)});
     header.scales.push_back(channel.value("scale", 1.0));
   }
   return header;
@@ -149,7 +153,8 @@ Expected<void> take_key(std::string_view line, Series& series, std::string& unit
     series.nominal_rate_hz = *number;
   } else if (key == "first_sample_s" && number) {
     series.first_sample_s = *number;
-  } else if (key == "shot" && number && *number >= 0.0 && *number < 9e15 && *number == std::floor(*number)) {
+  } else if (key == "shot" && number && *number >= 0.0 && *number < 9e15 &&
+             *number == std::floor(*number)) {
     series.shot = static_cast<std::uint64_t>(*number);
   } else if (key == "shot" || key == "nominal_rate_hz" || key == "first_sample_s") {
     return malformed(std::string(key) + " = '" + shown(value) + "' is not possible");
@@ -179,7 +184,8 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
   try {
     const auto line = nlohmann::json::parse(json_line);
     if (line.value("protocol", "") != "dyncal-series" || line.value("version", 0) != 1) {
-      return malformed("'" + shown(json_line) + "' does not announce a series (protocol dyncal-series, version 1)");
+      return malformed("'" + shown(json_line) +
+                       "' does not announce a series (protocol dyncal-series, version 1)");
     }
     SeriesHeader header = header_from(line);
     const auto form = form_by_name(line.value("values", ""));
@@ -198,8 +204,8 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
 
 Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes) {
   if (bytes.size() != header.bytes()) {
-    return malformed("a series of " + std::to_string(bytes.size()) + " bytes where " + std::to_string(header.bytes()) +
-                     " were announced");
+    return malformed("a series of " + std::to_string(bytes.size()) + " bytes where " +
+                     std::to_string(header.bytes()) + " were announced");
   }
   Series series = std::move(header.series);
   const std::size_t channels = series.channels.size();
@@ -207,7 +213,9 @@ Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes)
   series.values.resize(series.samples * channels);
   for (std::size_t sample = 0; sample < series.samples; ++sample) {
     for (std::size_t channel = 0; channel < channels; ++channel) {
-      const double value = value_at(header.form, bytes.data() + (sample * channels + channel) * step) * header.scales[channel];
+      const double value =
+          value_at(header.form, bytes.data() + (sample * channels + channel) * step) *
+          header.scales[channel];
       if (!std::isfinite(value)) {
         return malformed("sample " + std::to_string(sample) + " of the series is not a number");
       }
@@ -235,7 +243,8 @@ Expected<Series> parse_series_csv(std::string_view text) {
     } else if (!trimmed(*line).empty()) {
       const auto fields = split(*line);
       if (fields.size() != columns.size()) {
-        return malformed(lines.where() + std::to_string(fields.size()) + " values for " + std::to_string(columns.size()) + " channels");
+        return malformed(lines.where() + std::to_string(fields.size()) + " values for " +
+                         std::to_string(columns.size()) + " channels");
       }
       for (std::size_t channel = 0; channel < fields.size(); ++channel) {
         const auto value = parse_scpi_number(fields[channel]);

@@ -1,9 +1,10 @@
-// One series of a sensor that records by itself after a trigger, as it comes from the device: over a socket or as a file
-// (drivers/tss/README.md).
+// One series of a sensor that records by itself after a trigger, as it comes from the device: over
+// a socket or as a file (drivers/tss/README.md).
 //
-// The instants of the samples are unknown; the device promises a nominal rate and counts its triggers (`shot`). Values are in the channel's
-// unit, channel after channel: values[channel * samples + sample]. Plain data; the parsers are pure functions. Fails: malformed, with what
-// is wrong.
+// The instants of the samples are unknown; the device promises a nominal rate and counts its
+// triggers (`shot`). Values are in the channel's unit, channel after channel: values[channel *
+// samples + sample]. Plain data; the parsers are pure functions. Fails: malformed, with what is
+// wrong.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +44,8 @@ struct SeriesHeader {
 
 [[nodiscard]] Expected<SeriesHeader> parse_series_header(std::string_view json_line);
 
-// Values of sample after sample, each with all channels, little endian. Fails when the size is not header.bytes() or a value is not
-// finite.
+// Values of sample after sample, each with all channels, little endian. Fails when the size is not
+// header.bytes() or a value is not finite.
 [[nodiscard]] Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes);
 
 // The CSV form: "# key = value" lines, a line of channel names, one line a sample.

@@ -14,7 +14,8 @@ constexpr milliseconds look_interval{20};
 
 class FolderSource : public SeriesSource {
 public:
-  FolderSource(std::filesystem::path folder, const StopSignal& stop) : folder_(std::move(folder)), stop_(stop) {}
+  FolderSource(std::filesystem::path folder, const StopSignal& stop)
+      : folder_(std::move(folder)), stop_(stop) {}
 
   Expected<void> discard_pending() override {
     auto names = csv_names();
@@ -44,7 +45,8 @@ public:
         }
       }
       if (Clock::now() >= deadline) {
-        return failure(ErrorCode::timeout, folder_.string() + ": no new series within " + std::to_string(limit.count()) + " ms");
+        return failure(ErrorCode::timeout, folder_.string() + ": no new series within " +
+                                               std::to_string(limit.count()) + " ms");
       }
       if (stop_.wait_for(look_interval)) {
         return failure(ErrorCode::disconnected, folder_.string() + ": stopped");
@@ -56,20 +58,23 @@ private:
   Expected<std::set<std::string>> csv_names() const {
     std::error_code problem;
     std::set<std::string> names;
-    for (std::filesystem::directory_iterator entry(folder_, problem), end; !problem && entry != end; entry.increment(problem)) {
+    for (std::filesystem::directory_iterator entry(folder_, problem), end; !problem && entry != end;
+         entry.increment(problem)) {
       if (entry->path().extension() == ".csv") {
         names.insert(entry->path().filename().string());
       }
     }
     if (problem) {
-      return failure(ErrorCode::not_found, folder_.string() + ": cannot be read (" + problem.message() + ")");
+      return failure(ErrorCode::not_found,
+                     folder_.string() + ": cannot be read (" + problem.message() + ")");
     }
     return names;
   }
 
   static Expected<Series> read(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const std::string text((std::istreambuf_iterator<char>(file)),
+                           std::istreambuf_iterator<char>());
     if (!file) {
       return failure(ErrorCode::not_found, path.string() + ": cannot be read");
     }
@@ -77,8 +82,9 @@ private:
     if (!series) {
       return failure(series.error().code, path.string() + ": " + series.error().message);
     }
-    series->received_utc_ns =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    series->received_utc_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                  std::chrono::system_clock::now().time_since_epoch())
+                                  .count();
     return series;
   }
 
@@ -94,7 +100,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder, const StopSignal& stop) {
+std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder,
+                                                 const StopSignal& stop) {
   return std::make_unique<FolderSource>(std::move(folder), stop);
 }
 

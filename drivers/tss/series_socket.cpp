@@ -16,14 +16,16 @@ constexpr std::size_t max_header = 65'536;
 
 class SocketSource : public SeriesSource {
 public:
-  SocketSource(std::string address, const StopSignal& stop) : address_(std::move(address)), stop_(stop) {}
+  SocketSource(std::string address, const StopSignal& stop)
+      : address_(std::move(address)), stop_(stop) {}
 
   Expected<void> discard_pending() override {
     if (auto connected = connect(); !connected) {
       return connected;
     }
     while (connection_ && connection_->has_unread()) {
-      if (auto old = next(leftover_limit); !old && old.error().code == ErrorCode::disconnected && stop_.raised()) {
+      if (auto old = next(leftover_limit);
+          !old && old.error().code == ErrorCode::disconnected && stop_.raised()) {
         return tl::unexpected(old.error());
       }
     }
@@ -37,7 +39,9 @@ public:
     auto line = connection_->read_line(max_header, limit);
     if (!line) {
       // Nothing has come yet: the connection is as good as before.
-      return line.error().code == ErrorCode::timeout && !connection_->has_unread() ? failure(line.error()) : give_up(line.error());
+      return line.error().code == ErrorCode::timeout && !connection_->has_unread()
+                 ? failure(line.error())
+                 : give_up(line.error());
     }
     auto header = parse_series_header(*line);
     if (!header) {
@@ -51,8 +55,9 @@ public:
     if (!series) {
       return give_up({series.error().code, address_ + ": " + series.error().message});
     }
-    series->received_utc_ns =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    series->received_utc_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                  std::chrono::system_clock::now().time_since_epoch())
+                                  .count();
     return series;
   }
 
@@ -88,8 +93,9 @@ private:
     }
     const auto length = parse_block_length({digits.data(), *count});
     if (!length || *length != wanted) {
-      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a block of '" + shown({digits.data(), *count}) +
-                                                            "' bytes where the series has " + std::to_string(wanted)});
+      return tl::unexpected(Error{ErrorCode::malformed,
+                                  address_ + ": a block of '" + shown({digits.data(), *count}) +
+                                      "' bytes where the series has " + std::to_string(wanted)});
     }
     std::vector<char> bytes(wanted);
     if (auto read = connection_->read_exactly(bytes, rest_limit); !read) {
@@ -100,7 +106,8 @@ private:
       return tl::unexpected(end.error());
     }
     if (!end->empty()) {
-      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": a series is longer than it announces"});
+      return tl::unexpected(
+          Error{ErrorCode::malformed, address_ + ": a series is longer than it announces"});
     }
     return bytes;
   }

@@ -1,9 +1,10 @@
-// Where the series of a time series sensor come from: its TCP port, or a folder into which it (or its own software) writes one file a shot.
+// Where the series of a time series sensor come from: its TCP port, or a folder into which it (or
+// its own software) writes one file a shot.
 //
-// A device sends when it has been triggered, not when it is asked. So before a trigger whatever is left of earlier ones is dropped
-// (discard_pending), and after it the next series is waited for.
-// One thread; StopSignal ends waits from another. Fails: timeout, malformed, disconnected, refused, not_found; after malformed or
-// disconnected a socket is given up, and the next call connects anew.
+// A device sends when it has been triggered, not when it is asked. So before a trigger whatever is
+// left of earlier ones is dropped (discard_pending), and after it the next series is waited for.
+// One thread; StopSignal ends waits from another. Fails: timeout, malformed, disconnected, refused,
+// not_found; after malformed or disconnected a socket is given up, and the next call connects anew.
 #pragma once
 
 #include <chrono>
@@ -28,8 +29,11 @@ public:
 };
 
 // `stop` outlives the source.
-[[nodiscard]] std::unique_ptr<SeriesSource> series_from_socket(std::string address, const StopSignal& stop);
-// Files "*.csv" that appear in the folder; a device writes under another name and renames. Files that are there at the first call are old.
-[[nodiscard]] std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder, const StopSignal& stop);
+[[nodiscard]] std::unique_ptr<SeriesSource> series_from_socket(std::string address,
+                                                               const StopSignal& stop);
+// Files "*.csv" that appear in the folder; a device writes under another name and renames. Files
+// that are there at the first call are old.
+[[nodiscard]] std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder,
+                                                               const StopSignal& stop);
 
 } // namespace dyncal::drivers::tss

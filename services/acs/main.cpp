@@ -1,4 +1,5 @@
-// dyncal-acs: publishes analogue calibration systems (their TCP streams) and recorded series of any source.
+// dyncal-acs: publishes analogue calibration systems (their TCP streams) and recorded series of any
+// source.
 #include <chrono>
 #include <cstdlib>
 #include <string>
@@ -21,7 +22,8 @@ constexpr std::chrono::seconds silent_after{2};
 
 using Sources = std::vector<RunnableSource<PlayedSource>>;
 
-Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions& network, const std::stop_token& stop) {
+Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions& network,
+                          const std::stop_token& stop) {
   Sources sources;
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
@@ -35,23 +37,28 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
       }
       auto source = PlayedSource::prepare(settings, stop);
       if (!source) {
-        return tl::unexpected(Error{source.error().code, fmt::format("{}: {}", file, source.error().message)});
+        return tl::unexpected(
+            Error{source.error().code, fmt::format("{}: {}", file, source.error().message)});
       }
       SourceOptions options;
       options.bench = bench->bench;
       options.source = settings.name;
       options.kind = acs::kind_of(bench->method, settings.name);
-      options.silent_after = settings.driver == SourceDriver::file ? std::chrono::seconds(0) : silent_after;
+      options.silent_after =
+          settings.driver == SourceDriver::file ? std::chrono::seconds(0) : silent_after;
       sources.push_back({std::move(*source), std::move(options)});
     }
   }
   if (sources.empty()) {
-    return tl::unexpected(Error{ErrorCode::bad_argument, "no source with driver \"socket\" or \"file\" in the bench files given"});
+    return tl::unexpected(
+        Error{ErrorCode::bad_argument,
+              "no source with driver \"socket\" or \"file\" in the bench files given"});
   }
   return sources;
 }
 
-Expected<void> run(const std::vector<std::string>& files, NetworkOptions network, const std::stop_token& stop) {
+Expected<void> run(const std::vector<std::string>& files, NetworkOptions network,
+                   const std::stop_token& stop) {
   auto sources = prepare(files, network, stop);
   if (!sources) {
     return tl::unexpected(sources.error());
@@ -62,7 +69,8 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
 } // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Publishes the sources of bench files whose driver is \"socket\" (an analogue calibration system's TCP stream) or \"file\" "
+  CLI::App app{"Publishes the sources of bench files whose driver is \"socket\" (an analogue "
+               "calibration system's TCP stream) or \"file\" "
                "(a recorded series)."};
   std::vector<std::string> files;
   NetworkOptions network;

@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/file_source.hpp"
 #include "drivers/acs/socket_acs.hpp"
+#include "drivers/files/file_source.hpp"
 
 namespace dyncal::services::acs {
 namespace {
@@ -14,18 +14,21 @@ Error named(const SourceSettings& settings, const drivers::Error& error) {
   ErrorCode code = ErrorCode::device;
   if (settings.driver == SourceDriver::file) {
     code = ErrorCode::bad_file;
-  } else if (error.code == drivers::ErrorCode::refused || error.code == drivers::ErrorCode::timeout) {
+  } else if (error.code == drivers::ErrorCode::refused ||
+             error.code == drivers::ErrorCode::timeout) {
     code = ErrorCode::no_source;
   }
   return {code, fmt::format("source '{}': {}", settings.name, error.message)};
 }
 
-Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver, const SourceSettings& settings,
+Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver,
+                                              const SourceSettings& settings,
                                               const std::stop_token& stop) {
   const std::stop_callback stop_driver(stop, [&driver] { driver.stop(); });
   auto description = driver.describe();
   if (stop.stop_requested()) {
-    return tl::unexpected(Error{ErrorCode::interrupted, fmt::format("stopped while opening source '{}'", settings.name)});
+    return tl::unexpected(Error{ErrorCode::interrupted,
+                                fmt::format("stopped while opening source '{}'", settings.name)});
   }
   if (!description) {
     return tl::unexpected(named(settings, description.error()));
@@ -34,7 +37,8 @@ Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver, c
 }
 
 // The names of the bench file over those of the instrument. A file does this itself.
-Expected<void> rename_channels(const SourceSettings& settings, drivers::SourceDescription& description) {
+Expected<void> rename_channels(const SourceSettings& settings,
+                               drivers::SourceDescription& description) {
   if (settings.driver == SourceDriver::file) {
     return {};
   }
@@ -42,16 +46,20 @@ Expected<void> rename_channels(const SourceSettings& settings, drivers::SourceDe
   for (const auto& [device_name, name] : settings.channels) {
     const auto found = std::ranges::find(channels, device_name, &drivers::ChannelDescription::name);
     if (found == channels.end()) {
-      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("source '{}': the instrument at {} has no channel '{}'",
-                                                                       settings.name, settings.address, device_name)});
+      return tl::unexpected(
+          Error{ErrorCode::bad_argument,
+                fmt::format("source '{}': the instrument at {} has no channel '{}'", settings.name,
+                            settings.address, device_name)});
     }
     found->name = name;
   }
   for (const auto& [name, unit] : settings.units) {
     const auto found = std::ranges::find(channels, name, &drivers::ChannelDescription::name);
     if (found == channels.end()) {
-      return tl::unexpected(Error{ErrorCode::bad_argument,
-                                  fmt::format("source '{}': a unit is given for '{}', which is no channel of it", settings.name, name)});
+      return tl::unexpected(
+          Error{ErrorCode::bad_argument,
+                fmt::format("source '{}': a unit is given for '{}', which is no channel of it",
+                            settings.name, name)});
     }
     found->unit = unit;
   }
@@ -68,7 +76,8 @@ public:
     next_sample_.reset();
     drivers::SourceDescription renamed = description;
     if (const auto done = rename_channels(settings_, renamed); !done) {
-      publisher_.say(done.error().message); // an instrument that came back with other channels: who needs them will miss them
+      publisher_.say(done.error().message); // an instrument that came back with other channels: who
+                                            // needs them will miss them
     }
     publisher_.describe(std::move(renamed));
   }
@@ -108,9 +117,11 @@ Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSetti
   if (settings.sample_rate_hz) {
     file.sample_rate = drivers::acs::sample_rate_from_hz(*settings.sample_rate_hz);
     if (!file.sample_rate) {
-      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
-                                                                       "1e-6 and 1e9 Hz with at most nine decimals",
-                                                                       settings.name, *settings.sample_rate_hz)});
+      return tl::unexpected(
+          Error{ErrorCode::bad_argument,
+                fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
+                            "1e-6 and 1e9 Hz with at most nine decimals",
+                            settings.name, *settings.sample_rate_hz)});
     }
   }
   return std::make_unique<drivers::acs::FileSource>(std::move(file));
@@ -120,11 +131,13 @@ SourceKind kind_of(const MethodSettings& method, const std::string& source) {
   if (source == method.reference.source || source == method.sync_acs.source) {
     return SourceKind::acs;
   }
-  const bool of_sensor = std::ranges::any_of(method.dut, [&](const ChannelName& channel) { return channel.source == source; });
+  const bool of_sensor = std::ranges::any_of(
+      method.dut, [&](const ChannelName& channel) { return channel.source == source; });
   return source == method.sync_dau.source || of_sensor ? SourceKind::dau : SourceKind::acs;
 }
 
-Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings, const std::stop_token& stop) {
+Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
+                                             const std::stop_token& stop) {
   auto driver = make_driver(settings);
   if (!driver) {
     return tl::unexpected(driver.error());
@@ -141,7 +154,8 @@ Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings, con
 
 Expected<void> PlayedSource::run(SourcePublisher& publisher, const std::stop_token& stop) {
   publisher.describe(description_);
-  auto done = settings_.driver == SourceDriver::file ? play_for_every_run(publisher, stop) : play(publisher, stop);
+  auto done = settings_.driver == SourceDriver::file ? play_for_every_run(publisher, stop)
+                                                     : play(publisher, stop);
   if (!done) {
     publisher.fail(done.error().message);
   }
@@ -158,7 +172,8 @@ Expected<void> PlayedSource::play(SourcePublisher& publisher, const std::stop_to
   return {};
 }
 
-Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher, const std::stop_token& stop) {
+Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
+                                                const std::stop_token& stop) {
   while (publisher.wait_for_run(stop)) {
     if (auto played = play(publisher, stop); !played || stop.stop_requested()) {
       return played;
@@ -170,7 +185,8 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher, cons
     }
     driver_ = std::move(*driver);
     if (auto described = describe(*driver_, settings_, stop); !described) {
-      return stop.stop_requested() ? Expected<void>() : tl::unexpected(described.error()); // a stop is no failure
+      return stop.stop_requested() ? Expected<void>()
+                                   : tl::unexpected(described.error()); // a stop is no failure
     }
     publisher.start_session();
   }

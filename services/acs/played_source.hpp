@@ -1,8 +1,10 @@
-// One source of a bench file whose driver is "socket" or "file", from its settings to its publisher.
+// One source of a bench file whose driver is "socket" or "file", from its settings to its
+// publisher.
 //
-// An instrument's stream is published as it comes. A file waits until a measurement of its bench is RUNNING, is played, ends its stream,
-// and waits for the next one. Both wait for room in the publisher's ring instead of losing samples. prepare() from one thread; run() in a
-// thread of the source's own.
+// An instrument's stream is published as it comes. A file waits until a measurement of its bench is
+// RUNNING, is played, ends its stream, and waits for the next one. Both wait for room in the
+// publisher's ring instead of losing samples. prepare() from one thread; run() in a thread of the
+// source's own.
 #pragma once
 
 #include <memory>
@@ -17,18 +19,22 @@ namespace dyncal::services::acs {
 
 class PlayedSource {
 public:
-  // Opens the file, or connects to the instrument (tries for five seconds). Fails (bad_file, bad_argument, no_source, device, interrupted)
-  // with a sentence that names the source.
-  [[nodiscard]] static Expected<PlayedSource> prepare(const SourceSettings& settings, const std::stop_token& stop);
+  // Opens the file, or connects to the instrument (tries for five seconds). Fails (bad_file,
+  // bad_argument, no_source, device, interrupted) with a sentence that names the source.
+  [[nodiscard]] static Expected<PlayedSource> prepare(const SourceSettings& settings,
+                                                      const std::stop_token& stop);
 
-  // Until `stop`, or the end of an instrument's stream; what goes wrong is also the publisher's last message.
+  // Until `stop`, or the end of an instrument's stream; what goes wrong is also the publisher's
+  // last message.
   [[nodiscard]] Expected<void> run(SourcePublisher& publisher, const std::stop_token& stop);
 
   [[nodiscard]] const SourceSettings& settings() const { return settings_; }
 
 private:
-  PlayedSource(SourceSettings settings, std::unique_ptr<drivers::acs::AcsDriver> driver, drivers::SourceDescription description)
-      : settings_(std::move(settings)), driver_(std::move(driver)), description_(std::move(description)) {}
+  PlayedSource(SourceSettings settings, std::unique_ptr<drivers::acs::AcsDriver> driver,
+               drivers::SourceDescription description)
+      : settings_(std::move(settings)), driver_(std::move(driver)),
+        description_(std::move(description)) {}
   Expected<void> play(SourcePublisher& publisher, const std::stop_token& stop);
   Expected<void> play_for_every_run(SourcePublisher& publisher, const std::stop_token& stop);
 
@@ -37,11 +43,13 @@ private:
   drivers::SourceDescription description_;
 };
 
-// The driver of a source of a bench file whose driver is "socket" or "file", not opened yet. Fails (bad_argument) with settings that cannot
-// be.
-[[nodiscard]] Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSettings& settings);
+// The driver of a source of a bench file whose driver is "socket" or "file", not opened yet. Fails
+// (bad_argument) with settings that cannot be.
+[[nodiscard]] Expected<std::unique_ptr<drivers::acs::AcsDriver>>
+make_driver(const SourceSettings& settings);
 
-// DAU for the source of the role sync_dau (and of the sensor's channels where there is no such role), ACS for the others.
+// DAU for the source of the role sync_dau (and of the sensor's channels where there is no such
+// role), ACS for the others.
 [[nodiscard]] SourceKind kind_of(const MethodSettings& method, const std::string& source);
 
 } // namespace dyncal::services::acs

@@ -15,10 +15,13 @@ constexpr std::chrono::milliseconds max_wait{100};
 } // namespace
 
 AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity identity)
-    : participant_(std::move(participant)), identity_(std::move(identity)), wake_up_(std::make_shared<bus::WakeUp>()) {}
+    : participant_(std::move(participant)), identity_(std::move(identity)),
+      wake_up_(std::make_shared<bus::WakeUp>()) {}
 
-Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Participant participant, AnalysisIdentity identity) {
-  std::unique_ptr<AnalysisService> service(new AnalysisService(std::move(participant), std::move(identity)));
+Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Participant participant,
+                                                                   AnalysisIdentity identity) {
+  std::unique_ptr<AnalysisService> service(
+      new AnalysisService(std::move(participant), std::move(identity)));
   if (auto opened = service->open_readers(); !opened) {
     return tl::unexpected(opened.error());
   }
@@ -26,18 +29,23 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
 }
 
 Expected<void> AnalysisService::open_readers() {
-  auto measurement = participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state, all_benches, wake_up_);
-  auto excitation = participant_.reader<Excitation>(bus::topics::excitation, bus::Profile::state, all_benches, wake_up_);
-  auto description = participant_.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, all_benches, wake_up_);
-  auto status = participant_.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, all_benches, wake_up_);
-  for (const Error* error : {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
-                             description ? nullptr : &description.error(), status ? nullptr : &status.error()}) {
+  auto measurement = participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state,
+                                                      all_benches, wake_up_);
+  auto excitation = participant_.reader<Excitation>(bus::topics::excitation, bus::Profile::state,
+                                                    all_benches, wake_up_);
+  auto description = participant_.reader<SourceDescription>(
+      bus::topics::source_description, bus::Profile::state, all_benches, wake_up_);
+  auto status = participant_.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
+                                                  all_benches, wake_up_);
+  for (const Error* error :
+       {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
+        description ? nullptr : &description.error(), status ? nullptr : &status.error()}) {
     if (error != nullptr) {
       return tl::unexpected(*error);
     }
   }
-  readers_ =
-      std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation), std::move(*description), std::move(*status)});
+  readers_ = std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation),
+                                               std::move(*description), std::move(*status)});
   return {};
 }
 
@@ -53,11 +61,13 @@ void AnalysisService::serve(const std::stop_token& stop) {
 }
 
 void AnalysisService::take_messages() {
-  readers_->description.take([&](const SourceDescription& description, const bus::SampleInfo& info) {
-    if (info.valid) {
-      benches_[description.bench().to_string()][description.source().to_string()].description = description;
-    }
-  });
+  readers_->description.take(
+      [&](const SourceDescription& description, const bus::SampleInfo& info) {
+        if (info.valid) {
+          benches_[description.bench().to_string()][description.source().to_string()].description =
+              description;
+        }
+      });
   readers_->status.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
     if (info.valid) {
       benches_[status.bench().to_string()][status.source().to_string()].status = status;
@@ -86,10 +96,12 @@ void AnalysisService::take_measurement(const Measurement& measurement) {
     return;
   }
   if (measurement.state() != MEASUREMENT_PLANNED) {
-    // Its first samples are gone, and so are the results of another instance that may have died: what came of it would look complete
-    // and not be. The run ends by itself when nobody else evaluates it.
+    // Its first samples are gone, and so are the results of another instance that may have died:
+    // what came of it would look complete and not be. The run ends by itself when nobody else
+    // evaluates it.
     if (ignored_.insert(key).second && measurement.state() == MEASUREMENT_RUNNING) {
-      spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first, key.second);
+      spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first,
+                   key.second);
     }
     return;
   }
@@ -105,7 +117,8 @@ void AnalysisService::take_measurement(const Measurement& measurement) {
 
 void AnalysisService::drop_old_runs(const std::string& bench) {
   const auto of_bench = [&](const RunKey& key) { return key.first == bench; };
-  while (static_cast<std::size_t>(std::count_if(order_.begin(), order_.end(), of_bench)) >= kept_runs) {
+  while (static_cast<std::size_t>(std::count_if(order_.begin(), order_.end(), of_bench)) >=
+         kept_runs) {
     const auto oldest = std::find_if(order_.begin(), order_.end(), of_bench);
     runs_.erase(*oldest);
     order_.erase(oldest);

@@ -1,7 +1,8 @@
-// The analysis service: learns benches, sources and recipes from DDS alone and keeps one RunSession for every run it hears of.
+// The analysis service: learns benches, sources and recipes from DDS alone and keeps one RunSession
+// for every run it hears of.
 //
-// serve() runs in the caller's thread until `stop` is requested; nothing else of it may be called meanwhile. Finished runs are kept for
-// late joiners, the newest `kept_runs` of every bench.
+// serve() runs in the caller's thread until `stop` is requested; nothing else of it may be called
+// meanwhile. Finished runs are kept for late joiners, the newest `kept_runs` of every bench.
 #pragma once
 
 #include <map>
@@ -20,7 +21,8 @@ class AnalysisService {
 public:
   static constexpr std::size_t kept_runs = 10;
 
-  [[nodiscard]] static Expected<std::unique_ptr<AnalysisService>> create(bus::Participant participant, AnalysisIdentity identity);
+  [[nodiscard]] static Expected<std::unique_ptr<AnalysisService>>
+  create(bus::Participant participant, AnalysisIdentity identity);
 
   void serve(const std::stop_token& stop);
 

@@ -1,4 +1,5 @@
-// dyncal-analysis: computes transfer functions from the samples that sources publish, and publishes the results.
+// dyncal-analysis: computes transfer functions from the samples that sources publish, and publishes
+// the results.
 #include <unistd.h>
 
 #include <array>
@@ -12,7 +13,8 @@
 
 int main(int argc, char** argv) {
   using namespace dyncal;
-  CLI::App app{"Computes the complex transfer function of digital sensors from samples on DDS and publishes it."};
+  CLI::App app{"Computes the complex transfer function of digital sensors from samples on DDS and "
+               "publishes it."};
   services::NetworkOptions network;
   services::add_network_options(app, network);
   CLI11_PARSE(app, argc, argv);
@@ -28,7 +30,8 @@ int main(int argc, char** argv) {
   services::AnalysisIdentity identity;
   identity.host = host.data();
   identity.process_id = static_cast<std::uint32_t>(getpid());
-  identity.service = fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);
+  identity.service =
+      fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);
   identity.dds = network.dds;
   auto service = services::AnalysisService::create(std::move(*participant), std::move(identity));
   if (!service) {

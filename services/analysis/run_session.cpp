@@ -6,8 +6,8 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
+#include "services/contract/topics.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -38,10 +38,13 @@ std::string why(const KnownSource* source) {
 
 } // namespace
 
-Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                                                         const AnalysisIdentity& identity, const Measurement& measurement,
+Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& participant,
+                                                         std::shared_ptr<bus::WakeUp> wake_up,
+                                                         const AnalysisIdentity& identity,
+                                                         const Measurement& measurement,
                                                          Clock::time_point now) {
-  std::unique_ptr<RunSession> session(new RunSession(participant, std::move(wake_up), identity, measurement, now));
+  std::unique_ptr<RunSession> session(
+      new RunSession(participant, std::move(wake_up), identity, measurement, now));
   if (auto opened = session->open_writers(); !opened) {
     return tl::unexpected(opened.error());
   }
@@ -54,15 +57,18 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& parti
     session->links_.emplace(source, SourceLink{});
   }
   session->evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe));
-  spdlog::info("bench {}, run {}: {} steps planned, waiting for its sources", session->bench_, session->run_, measurement.steps().size());
+  spdlog::info("bench {}, run {}: {} steps planned, waiting for its sources", session->bench_,
+               session->run_, measurement.steps().size());
   session->publish_status();
   return session;
 }
 
-RunSession::RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up, const AnalysisIdentity& identity,
-                       const Measurement& measurement, Clock::time_point now)
-    : participant_(participant), wake_up_(std::move(wake_up)), identity_(identity), bench_(measurement.bench().to_string()),
-      run_(measurement.run().to_string()), state_(measurement.state()), created_(now), last_heard_of_run_(now), last_progress_(now),
+RunSession::RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
+                       const AnalysisIdentity& identity, const Measurement& measurement,
+                       Clock::time_point now)
+    : participant_(participant), wake_up_(std::move(wake_up)), identity_(identity),
+      bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
+      state_(measurement.state()), created_(now), last_heard_of_run_(now), last_progress_(now),
       next_command_(now), next_status_(now + status_interval) {}
 
 Expected<void> RunSession::open_writers() {
@@ -77,9 +83,15 @@ Expected<void> RunSession::open_writers() {
   };
   return open(status_writer_, bus::topics::service_status, bus::Profile::state)
       .and_then([&] { return open(command_writer_, bus::topics::command, bus::Profile::command); })
-      .and_then([&] { return open(result_writer_, bus::topics::calibration_result, bus::Profile::results); })
-      .and_then([&] { return open(transfer_writer_, bus::topics::transfer_function, bus::Profile::results); })
-      .and_then([&] { return open(clock_writer_, bus::topics::sample_clock_report, bus::Profile::results); });
+      .and_then([&] {
+        return open(result_writer_, bus::topics::calibration_result, bus::Profile::results);
+      })
+      .and_then([&] {
+        return open(transfer_writer_, bus::topics::transfer_function, bus::Profile::results);
+      })
+      .and_then([&] {
+        return open(clock_writer_, bus::topics::sample_clock_report, bus::Profile::results);
+      });
 }
 
 void RunSession::update(const Measurement& measurement, Clock::time_point now) {
@@ -89,7 +101,8 @@ void RunSession::update(const Measurement& measurement, Clock::time_point now) {
   }
   state_ = measurement.state();
   if (evaluator_ && (state_ == MEASUREMENT_DONE || state_ == MEASUREMENT_ABORTED)) {
-    spdlog::info("bench {}, run {}: {}", bench_, run_, state_ == MEASUREMENT_DONE ? "excitation done" : "broken off");
+    spdlog::info("bench {}, run {}: {}", bench_, run_,
+                 state_ == MEASUREMENT_DONE ? "excitation done" : "broken off");
     evaluator_->end_of_excitation(state_ == MEASUREMENT_ABORTED);
     if (health_ == HEALTH_FAILED) {
       evaluator_->finish_now(); // a source is gone: nothing more will come
@@ -127,11 +140,13 @@ void RunSession::work(const KnownSources& sources, Clock::time_point now) {
 void RunSession::take_descriptions(const KnownSources& sources) {
   for (auto& [name, link] : links_) {
     const auto known = sources.find(name);
-    if (known == sources.end() || !known->second.description || known->second.description == link.description) {
+    if (known == sources.end() || !known->second.description ||
+        known->second.description == link.description) {
       continue;
     }
     const SourceDescription& description = *known->second.description;
-    const bool only_told_more = link.description && link.description->session() == description.session() && !link.triggered;
+    const bool only_told_more =
+        link.description && link.description->session() == description.session() && !link.triggered;
     link.description = description;
     if (only_told_more) {
       continue; // what its samples mean was known from the beginning
@@ -154,7 +169,8 @@ void RunSession::open_reader(SourceKind kind) {
   if (readers_.contains(kind)) {
     return;
   }
-  auto reader = participant_.reader<SampleBlock>(samples_topic(kind), bus::Profile::samples, bench_, wake_up_);
+  auto reader = participant_.reader<SampleBlock>(samples_topic(kind), bus::Profile::samples, bench_,
+                                                 wake_up_);
   if (!reader) {
     refuse(reader.error().message);
     return;
@@ -167,7 +183,8 @@ void RunSession::open_record_reader(SourceKind kind) {
     return;
   }
   const char* topic = kind == SOURCE_DSO ? bus::topics::dso_record : bus::topics::tss_record;
-  auto reader = participant_.reader<TriggeredRecord>(topic, bus::Profile::samples, bench_, wake_up_);
+  auto reader =
+      participant_.reader<TriggeredRecord>(topic, bus::Profile::samples, bench_, wake_up_);
   if (!reader) {
     refuse(reader.error().message);
     return;
@@ -185,7 +202,8 @@ void RunSession::take_samples(Clock::time_point now) {
   }
   for (auto& entry : record_readers_) {
     entry.second.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
-      SourceLink* link = info.valid ? link_of(record.source().to_string(), record.answers_run()) : nullptr;
+      SourceLink* link =
+          info.valid ? link_of(record.source().to_string(), record.answers_run()) : nullptr;
       if (link != nullptr) {
         link->last_block = now;
         link->ended = record.end_of_stream();
@@ -196,7 +214,8 @@ void RunSession::take_samples(Clock::time_point now) {
 }
 
 // Nothing when the source is not of this run, or has not answered yet.
-RunSession::SourceLink* RunSession::link_of(const std::string& source, const std::string& answers_run) {
+RunSession::SourceLink* RunSession::link_of(const std::string& source,
+                                            const std::string& answers_run) {
   const auto link = links_.find(source);
   if (link == links_.end()) {
     return nullptr;
@@ -245,35 +264,41 @@ std::string RunSession::what_is_missing(const KnownSources& sources) const {
     const auto known = sources.find(name);
     const KnownSource* source = known == sources.end() ? nullptr : &known->second;
     if (source == nullptr) {
-      return fmt::format(
-          "source '{}' of bench '{}' is not on the network; is its service running with this bench file, in the same DDS domain?", name,
-          bench_);
+      return fmt::format("source '{}' of bench '{}' is not on the network; is its service running "
+                         "with this bench file, in the same DDS domain?",
+                         name, bench_);
     }
-    const bool silent = source->status && (source->status->state() == SOURCE_SILENT || source->status->state() == SOURCE_FAILED);
+    const bool silent = source->status && (source->status->state() == SOURCE_SILENT ||
+                                           source->status->state() == SOURCE_FAILED);
     if (silent) {
       return fmt::format("source '{}' of bench '{}' is silent{}", name, bench_, why(source));
     }
     if (!link.described) {
-      return fmt::format("source '{}' of bench '{}' has not described its channels yet{}", name, bench_, why(source));
+      return fmt::format("source '{}' of bench '{}' has not described its channels yet{}", name,
+                         bench_, why(source));
     }
     if (!link.answered) {
-      return fmt::format(
-          "source '{}' of bench '{}' does not answer in its sample stream; do samples get through from its host to this one?", name,
-          bench_);
+      return fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
+                         "samples get through from its host to this one?",
+                         name, bench_);
     }
   }
   return "";
 }
 
 void RunSession::watch_sources(Clock::time_point now) {
-  if (state_ != MEASUREMENT_RUNNING || health_ != HEALTH_OK || now - last_heard_of_run_ > runner_limit) {
+  if (state_ != MEASUREMENT_RUNNING || health_ != HEALTH_OK ||
+      now - last_heard_of_run_ > runner_limit) {
     return;
   }
   for (const auto& [name, link] : links_) {
     if (link.ended && excited_by_steps_) {
-      report_failure(fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_));
-    } else if (!link.ended && !link.triggered && now - std::max(link.last_block, last_progress_) > silence_limit) {
-      report_failure(fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name, bench_, silence_limit.count()));
+      report_failure(
+          fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_));
+    } else if (!link.ended && !link.triggered &&
+               now - std::max(link.last_block, last_progress_) > silence_limit) {
+      report_failure(fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name,
+                                 bench_, silence_limit.count()));
     }
   }
 }
@@ -293,7 +318,8 @@ void RunSession::evaluate(Clock::time_point now) {
   for (const CalibrationResult& result : output.results) {
     last_progress_ = now;
     if (!result.valid()) {
-      spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step(), result.channel().c_str(), result.problem());
+      spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step(),
+                   result.channel().c_str(), result.problem());
     }
     write(result_writer_, result);
     ++results_published_;
@@ -319,7 +345,9 @@ void RunSession::evaluate(Clock::time_point now) {
   const bool runner_gone = now - last_heard_of_run_ > runner_limit;
   if ((over && now - last_progress_ > quiet_limit) || runner_gone) {
     if (runner_gone) {
-      spdlog::warn("bench {}, run {}: nothing heard of the run for {} s; it ends with what there is", bench_, run_, runner_limit.count());
+      spdlog::warn(
+          "bench {}, run {}: nothing heard of the run for {} s; it ends with what there is", bench_,
+          run_, runner_limit.count());
     }
     evaluator_->end_of_excitation(runner_gone);
     evaluator_->finish_now();

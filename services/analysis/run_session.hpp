@@ -1,11 +1,14 @@
-// One run at the analysis service: from the Measurement message over the armed handshake to the last result.
+// One run at the analysis service: from the Measurement message over the armed handshake to the
+// last result.
 //
-// Armed means: every source of the recipe has described itself with the channels needed, is not silent, and has answered the ARM command in
-// its own sample stream, so commands arrive there and samples arrive here (idl/README.md, "The run protocol"). Samples before a source's
-// answer are not of this run. A run that cannot be armed within `arm_limit` is refused with one sentence. While the run is on, a live
-// source that has sent nothing for `silence_limit` fails it. When the excitation is done and nothing moves any more for `quiet_limit`, the
-// run ends with what there is. Results stay readable for late joiners as long as the session lives. Belongs to the service's one thread;
-// ends with its destruction.
+// Armed means: every source of the recipe has described itself with the channels needed, is not
+// silent, and has answered the ARM command in its own sample stream, so commands arrive there and
+// samples arrive here (idl/README.md, "The run protocol"). Samples before a source's answer are not
+// of this run. A run that cannot be armed within `arm_limit` is refused with one sentence. While
+// the run is on, a live source that has sent nothing for `silence_limit` fails it. When the
+// excitation is done and nothing moves any more for `quiet_limit`, the run ends with what there is.
+// Results stay readable for late joiners as long as the session lives. Belongs to the service's one
+// thread; ends with its destruction.
 #pragma once
 
 #include <chrono>
@@ -44,9 +47,9 @@ public:
   static constexpr std::chrono::seconds quiet_limit{8};
   static constexpr std::chrono::seconds runner_limit{15};
 
-  [[nodiscard]] static Expected<std::unique_ptr<RunSession>> create(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                                                                    const AnalysisIdentity& identity, const Measurement& measurement,
-                                                                    Clock::time_point now);
+  [[nodiscard]] static Expected<std::unique_ptr<RunSession>>
+  create(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
+         const AnalysisIdentity& identity, const Measurement& measurement, Clock::time_point now);
 
   [[nodiscard]] const std::string& bench() const { return bench_; }
   [[nodiscard]] const std::string& run() const { return run_; }
@@ -62,13 +65,14 @@ private:
     bool described = false;
     bool answered = false;
     bool ended = false;
-    bool triggered = false;                       // sends records when there is a shot, and may be silent else
+    bool triggered = false; // sends records when there is a shot, and may be silent else
     std::optional<SourceDescription> description; // as the evaluation knows it
     Clock::time_point last_block;
   };
 
-  RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up, const AnalysisIdentity& identity,
-             const Measurement& measurement, Clock::time_point now);
+  RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
+             const AnalysisIdentity& identity, const Measurement& measurement,
+             Clock::time_point now);
   Expected<void> open_writers();
   void take_descriptions(const KnownSources& sources);
   void open_reader(SourceKind kind);
@@ -98,7 +102,8 @@ private:
   std::uint64_t results_published_ = 0;
   std::uint64_t transfer_functions_published_ = 0;
   std::uint64_t clock_reports_published_ = 0;
-  bool excited_by_steps_ = false; // a generator is announced; files and hand-made excitation are not
+  bool excited_by_steps_ =
+      false; // a generator is announced; files and hand-made excitation are not
   std::unique_ptr<RunEvaluator> evaluator_;
   std::map<std::string, SourceLink> links_;
   std::map<SourceKind, bus::Reader<SampleBlock>> readers_;

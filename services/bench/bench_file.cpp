@@ -9,11 +9,11 @@
 #include <fmt/ranges.h>
 
 #include "services/bench/can_source.hpp"
-#include "services/contract/digest.hpp"
 #include "services/bench/excitation_table.hpp"
 #include "services/bench/generator_table.hpp"
 #include "services/bench/toml_table.hpp"
 #include "services/bench/triggered_source.hpp"
+#include "services/contract/digest.hpp"
 #include "services/contract/unit.hpp"
 
 namespace dyncal::services {
@@ -22,10 +22,14 @@ namespace {
 constexpr std::size_t max_key = 64; // of the contract's key strings
 
 void check_name(TomlTable& table, const std::string& key, const std::string& name) {
-  const bool plain =
-      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; });
+  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  });
   if (!plain || name.size() > max_key) {
-    table.refuse(key, fmt::format("is \"{}\" but a name may hold letters, digits, '-', '_' and '.', {} at the most", name, max_key));
+    table.refuse(
+        key, fmt::format(
+                 "is \"{}\" but a name may hold letters, digits, '-', '_' and '.', {} at the most",
+                 name, max_key));
   }
 }
 
@@ -46,9 +50,11 @@ std::optional<std::uint32_t> read_sensor_id(TomlTable& table, const std::string&
   std::uint32_t id = 0;
   const bool prefixed = text.starts_with("0x") || text.starts_with("0X");
   const char* begin = text.data() + (prefixed ? 2 : 0);
-  const auto [end, status] = std::from_chars(begin, text.data() + text.size(), id, prefixed ? 16 : 10);
+  const auto [end, status] =
+      std::from_chars(begin, text.data() + text.size(), id, prefixed ? 16 : 10);
   if (status != std::errc{} || end != text.data() + text.size()) {
-    table.refuse(key, fmt::format("is \"{}\" but must be a sensor id such as \"0xbccb0100\"", text));
+    table.refuse(key,
+                 fmt::format("is \"{}\" but must be a sensor id such as \"0xbccb0100\"", text));
     return std::nullopt;
   }
   return id;
@@ -66,7 +72,8 @@ void read_play(TomlTable& table, SourceSettings& source) {
     }
     return;
   }
-  source.play_speed = table.one_of("play", {"at-once", "real-time"}, "at-once") == "real-time" ? 1.0 : 0.0;
+  source.play_speed =
+      table.one_of("play", {"at-once", "real-time"}, "at-once") == "real-time" ? 1.0 : 0.0;
 }
 
 void read_units(TomlTable& table, SourceSettings& source) {
@@ -74,10 +81,9 @@ void read_units(TomlTable& table, SourceSettings& source) {
     if (const auto d_si = to_d_si(unit)) {
       source.units.emplace(channel, *d_si);
     } else {
-      table.refuse(
-          "units",
-          fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI nor a known short form such as \"m/s^2\" or \"V\"",
-                      channel, unit));
+      table.refuse("units", fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI "
+                                        "nor a known short form such as \"m/s^2\" or \"V\"",
+                                        channel, unit));
     }
   }
 }
@@ -92,12 +98,14 @@ void read_smartup(TomlTable& table, SourceSettings& source) {
   source.sync_sensor = read_sensor_id(table, "sync_sensor");
 }
 
-void read_file_source(TomlTable& table, const std::filesystem::path& folder, SourceSettings& source) {
+void read_file_source(TomlTable& table, const std::filesystem::path& folder,
+                      SourceSettings& source) {
   source.driver = SourceDriver::file;
   const std::string path = table.required_text("path");
   source.path = std::filesystem::absolute(folder / path).lexically_normal();
   if (!path.empty() && !std::filesystem::is_regular_file(source.path)) {
-    table.refuse("path", fmt::format("names {}, which does not exist or is not a file", source.path.string()));
+    table.refuse("path", fmt::format("names {}, which does not exist or is not a file",
+                                     source.path.string()));
   }
   read_play(table, source);
   source.sample_rate_hz = table.optional_number("sample_rate_hz", "Hz");
@@ -106,11 +114,13 @@ void read_file_source(TomlTable& table, const std::filesystem::path& folder, Sou
   }
 }
 
-SourceSettings read_source(TomlTable table, const std::string& name, const std::filesystem::path& folder) {
+SourceSettings read_source(TomlTable table, const std::string& name,
+                           const std::filesystem::path& folder) {
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  const std::string driver = table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
+  const std::string driver =
+      table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
   if (driver == "smartup") {
     read_smartup(table, source);
   } else if (driver == "socket") {
@@ -135,7 +145,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, const std::
     source.can->sensor.units = source.units;
   }
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
-  source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc" ? drivers::TimeBase::utc : drivers::TimeBase::local;
+  source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
+                         ? drivers::TimeBase::utc
+                         : drivers::TimeBase::local;
   if (source.can) {
     source.can->sensor.time_base = source.time_base;
   }
@@ -154,18 +166,23 @@ std::vector<SourceSettings> read_sources(TomlTable table, const std::filesystem:
   return sources;
 }
 
-ChannelName read_role(TomlTable& table, const std::string& key, const std::vector<SourceSettings>& sources, const std::string& text) {
+ChannelName read_role(TomlTable& table, const std::string& key,
+                      const std::vector<SourceSettings>& sources, const std::string& text) {
   const auto name = parse_channel_name(text);
   if (!name) {
-    table.refuse(key, fmt::format("is \"{}\" but must be \"source/channel\", for example \"acs/reference\"", text));
+    table.refuse(
+        key, fmt::format("is \"{}\" but must be \"source/channel\", for example \"acs/reference\"",
+                         text));
     return {};
   }
-  if (std::none_of(sources.begin(), sources.end(), [&](const SourceSettings& source) { return source.name == name->source; })) {
+  if (std::none_of(sources.begin(), sources.end(),
+                   [&](const SourceSettings& source) { return source.name == name->source; })) {
     std::vector<std::string> names;
     for (const SourceSettings& source : sources) {
       names.push_back(source.name);
     }
-    table.refuse(key, fmt::format("names source '{}', which [sources] does not have (it has: {})", name->source, fmt::join(names, ", ")));
+    table.refuse(key, fmt::format("names source '{}', which [sources] does not have (it has: {})",
+                                  name->source, fmt::join(names, ", ")));
   }
   return *name;
 }
@@ -177,12 +194,14 @@ EvaluationMethod method_of(const std::string& word) {
   if (word == "series-timestamping") {
     return EvaluationMethod::series_timestamping;
   }
-  return word == "absolute-time" ? EvaluationMethod::absolute_time : EvaluationMethod::sample_timestamping;
+  return word == "absolute-time" ? EvaluationMethod::absolute_time
+                                 : EvaluationMethod::sample_timestamping;
 }
 
 MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& sources) {
   MethodSettings method;
-  method.kind = method_of(table.one_of("kind", {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}, ""));
+  method.kind = method_of(table.one_of(
+      "kind", {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}, ""));
   method.reference = read_role(table, "reference", sources, table.required_text("reference"));
   const bool analogue = method.kind == EvaluationMethod::analogue;
   const bool without_sync = analogue || method.kind == EvaluationMethod::absolute_time;
@@ -195,36 +214,45 @@ MethodSettings read_method(TomlTable table, const std::vector<SourceSettings>& s
     const char* sync = stamped ? "sync_dau" : "sync_dso";
     method.sync_dau = read_role(table, sync, sources, table.required_text(sync));
     if (method.reference.source != method.sync_acs.source) {
-      table.refuse("sync_acs", "must be of the same source as the reference: the two share a clock");
+      table.refuse("sync_acs",
+                   "must be of the same source as the reference: the two share a clock");
     }
   }
   if (without_sync && table.texts("dut").empty()) {
-    table.refuse("dut", "is missing: the channels under calibration, for example [\"can/acceleration_z\"]");
+    table.refuse(
+        "dut", "is missing: the channels under calibration, for example [\"can/acceleration_z\"]");
   }
   for (const std::string& text : table.texts("dut")) {
     method.dut.push_back(read_role(table, "dut", sources, text));
     if (analogue && method.dut.back().source != method.reference.source) {
-      table.refuse("dut", fmt::format("names \"{}\", but the analogue method compares channels of one system: those of source '{}'", text,
-                                      method.reference.source));
+      table.refuse("dut", fmt::format("names \"{}\", but the analogue method compares channels of "
+                                      "one system: those of source '{}'",
+                                      text, method.reference.source));
     }
-    // A sensor beside the DAU has stamps of its own; they must be of the DAU's time scale, which the analysis sees to.
-    const auto beside = [&](const ChannelName& name) { return name.source != method.sync_dau.source; };
+    // A sensor beside the DAU has stamps of its own; they must be of the DAU's time scale, which
+    // the analysis sees to.
+    const auto beside = [&](const ChannelName& name) {
+      return name.source != method.sync_dau.source;
+    };
     if (stamped && beside(method.dut.back()) != beside(method.dut.front())) {
-      table.refuse("dut",
-                   fmt::format("names \"{}\" and \"{}\", but the channels must be either all of the source of sync_dau, whose stamps "
-                               "they share, or all of others",
-                               method.dut.front().text(), text));
+      table.refuse("dut", fmt::format("names \"{}\" and \"{}\", but the channels must be either "
+                                      "all of the source of sync_dau, whose stamps "
+                                      "they share, or all of others",
+                                      method.dut.front().text(), text));
     }
   }
   if (by_series) {
     read_shots(table, sources, method);
   }
   if (table.has("temperature")) {
-    method.temperature = read_role(table, "temperature", sources, table.required_text("temperature"));
+    method.temperature =
+        read_role(table, "temperature", sources, table.required_text("temperature"));
   }
-  method.frequency_search_rel = table.number("frequency_search_rel", method.frequency_search_rel, "parts of the frequency");
+  method.frequency_search_rel =
+      table.number("frequency_search_rel", method.frequency_search_rel, "parts of the frequency");
   if (method.frequency_search_rel < 0.0 || method.frequency_search_rel > 0.1) {
-    table.refuse("frequency_search_rel", "must be between 0 (the frequency is known exactly in every clock) and 0.1");
+    table.refuse("frequency_search_rel",
+                 "must be between 0 (the frequency is known exactly in every clock) and 0.1");
   }
   table.finish();
   return method;
@@ -237,10 +265,13 @@ CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path
     const std::string file = adc->required_text("file");
     settings.file = std::filesystem::absolute(folder / file).lexically_normal();
     if (!file.empty() && !std::filesystem::is_regular_file(settings.file)) {
-      adc->refuse("file", fmt::format("names {}, which does not exist or is not a file", settings.file.string()));
+      adc->refuse("file", fmt::format("names {}, which does not exist or is not a file",
+                                      settings.file.string()));
     }
     settings.channel = adc->required_text("channel");
-    settings.phase_sign = adc->one_of("phase_sign", {"lag", "lead"}, "lag") == "lag" ? PhaseSign::lag : PhaseSign::lead;
+    settings.phase_sign = adc->one_of("phase_sign", {"lag", "lead"}, "lag") == "lag"
+                              ? PhaseSign::lag
+                              : PhaseSign::lead;
     settings.test_amplitude_vpp = adc->optional_number("test_amplitude_vpp", "V peak to peak");
     adc->finish();
     corrections.adc = settings;
@@ -265,7 +296,8 @@ UncertaintySettings read_uncertainty(TomlTable table) {
   uncertainty.reference_magnitude_rel = read("reference_magnitude_rel", "parts of the magnitude");
   uncertainty.reference_phase_rad = read("reference_phase_rad", "rad");
   uncertainty.acs_delay_s = read("acs_delay_s", "seconds");
-  uncertainty.monte_carlo_trials = static_cast<std::uint64_t>(table.whole_number("monte_carlo_trials", 0, 0));
+  uncertainty.monte_carlo_trials =
+      static_cast<std::uint64_t>(table.whole_number("monte_carlo_trials", 0, 0));
   uncertainty.acs_rate_rel = read("acs_rate_rel", "parts of the rate");
   table.finish();
   return uncertainty;
@@ -281,7 +313,8 @@ TomlTable required_table(TomlTable& root, const std::string& key) {
   return TomlTable(nothing, key, "", ignored);
 }
 
-BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& path, std::string& problem) {
+BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& path,
+                      std::string& problem) {
   BenchFile file;
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   TomlTable root(parsed, "", path.string(), problem);
@@ -311,14 +344,17 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
 
 std::optional<ChannelName> parse_channel_name(const std::string& text) {
   const std::size_t slash = text.find('/');
-  if (slash == std::string::npos || slash == 0 || slash + 1 == text.size() || text.find('/', slash + 1) != std::string::npos) {
+  if (slash == std::string::npos || slash == 0 || slash + 1 == text.size() ||
+      text.find('/', slash + 1) != std::string::npos) {
     return std::nullopt;
   }
   return ChannelName{text.substr(0, slash), text.substr(slash + 1)};
 }
 
 const SourceSettings* BenchFile::source(const std::string& name) const {
-  const auto found = std::find_if(sources.begin(), sources.end(), [&](const SourceSettings& settings) { return settings.name == name; });
+  const auto found =
+      std::find_if(sources.begin(), sources.end(),
+                   [&](const SourceSettings& settings) { return settings.name == name; });
   return found == sources.end() ? nullptr : &*found;
 }
 
@@ -329,7 +365,8 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
     const toml::table parsed = toml::parse(text, path.string());
     file = read_tables(parsed, path, problem);
   } catch (const toml::parse_error& error) {
-    problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line, error.description());
+    problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
+                          error.description());
   }
   if (!problem.empty()) {
     return tl::unexpected(Error{ErrorCode::bad_file, problem});
@@ -344,7 +381,9 @@ Expected<BenchFile> read_bench_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
     return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot read this bench file; does it exist, and may you read it?", path.string())});
+        Error{ErrorCode::bad_file,
+              fmt::format("{}: cannot read this bench file; does it exist, and may you read it?",
+                          path.string())});
   }
   std::ostringstream text;
   text << stream.rdbuf();

@@ -1,10 +1,11 @@
-// The bench file: one TOML file that says what a bench consists of, what is excited, how it is evaluated, with which
-// corrections and uncertainties. The same file serves the source programs, `dyncal run` and `dyncal analyse`.
+// The bench file: one TOML file that says what a bench consists of, what is excited, how it is
+// evaluated, with which corrections and uncertainties. The same file serves the source programs,
+// `dyncal run` and `dyncal analyse`.
 //
-// Whatever cannot be meant is refused here, with file, line and key: unknown keys (with the nearest known one), wrong types, values that
-// are not possible, units that are not D-SI, roles that name no source, a file that a correction needs and that is not there.
-// Units are in the keys: _s, _hz, _rad, _ns; `level` is in m/s^2 (or the reference's unit).
-// Any thread; a BenchFile is plain data.
+// Whatever cannot be meant is refused here, with file, line and key: unknown keys (with the nearest
+// known one), wrong types, values that are not possible, units that are not D-SI, roles that name
+// no source, a file that a correction needs and that is not there. Units are in the keys: _s, _hz,
+// _rad, _ns; `level` is in m/s^2 (or the reference's unit). Any thread; a BenchFile is plain data.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +46,8 @@ struct ExcitationSettings {
   double settling_s = 1.0;
   double duration_s = 3.0;
   bool settling_from_data = false; // settling_s is the longest that may be left out
-  bool whole_record = false;       // evaluate each record as a whole: one step, nothing searched, nothing left out
+  bool whole_record =
+      false; // evaluate each record as a whole: one step, nothing searched, nothing left out
 };
 
 struct GeneratorSettings {
@@ -77,12 +79,13 @@ struct OscilloscopeSourceSettings {
 struct SourceSettings {
   std::string name;
   SourceDriver driver = SourceDriver::file;
-  std::string listen;                          // smartup
-  std::optional<std::uint32_t> sensor;         // smartup
-  std::optional<std::uint32_t> sync_sensor;    // smartup: sensor id that carries the sync ADC of later firmware
-  std::string address;                         // socket, oscilloscope, series
-  std::filesystem::path path;                  // file; series: the folder; absolute
-  double play_speed = 0.0;                     // file, log of can: times real time; 0: at once
+  std::string listen;                  // smartup
+  std::optional<std::uint32_t> sensor; // smartup
+  std::optional<std::uint32_t>
+      sync_sensor;            // smartup: sensor id that carries the sync ADC of later firmware
+  std::string address;        // socket, oscilloscope, series
+  std::filesystem::path path; // file; series: the folder; absolute
+  double play_speed = 0.0;    // file, log of can: times real time; 0: at once
   std::optional<double> sample_rate_hz;        // file without a time column
   std::optional<CanSourceSettings> can;        // can
   OscilloscopeSourceSettings oscilloscope;     // oscilloscope
@@ -98,12 +101,14 @@ struct MethodSettings {
   EvaluationMethod kind = EvaluationMethod::sample_timestamping;
   ChannelName reference;
   ChannelName sync_acs;
-  ChannelName sync_dau;                 // series time stamping: the oscilloscope's sync
-  int shots = 5;                        // series time stamping: per step
-  bool trigger_phase_correction = true; // series time stamping; false shows what the correction of every shot is worth
-  std::vector<ChannelName> dut;         // empty: all channels of the DAU but sync and temperature
+  ChannelName sync_dau; // series time stamping: the oscilloscope's sync
+  int shots = 5;        // series time stamping: per step
+  bool trigger_phase_correction =
+      true; // series time stamping; false shows what the correction of every shot is worth
+  std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
-  double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency; 0: exactly there in both clocks
+  double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency;
+                                      // 0: exactly there in both clocks
 };
 
 enum class PhaseSign { lag, lead };
@@ -149,7 +154,9 @@ struct BenchFile {
 // Fails (bad_file) with one sentence that begins "FILE:LINE: key 'table.key' ...".
 [[nodiscard]] Expected<BenchFile> read_bench_file(const std::filesystem::path& path);
 
-// The same from text that did not come from a file; `path` is for messages and as the folder of relative paths.
-[[nodiscard]] Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path);
+// The same from text that did not come from a file; `path` is for messages and as the folder of
+// relative paths.
+[[nodiscard]] Expected<BenchFile> parse_bench_file(const std::string& text,
+                                                   const std::filesystem::path& path);
 
 } // namespace dyncal::services

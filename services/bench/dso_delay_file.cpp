@@ -17,7 +17,8 @@ Expected<DsoDelay> read_dso_delay_file(const std::filesystem::path& path) {
     return refused("cannot be read; \"dyncal calibrate dso-delay\" writes such a file");
   }
   const auto json = nlohmann::json::parse(stream, nullptr, false);
-  if (!json.is_object() || !json.contains("value_s") || !json.contains("u_s") || !json["value_s"].is_number() || !json["u_s"].is_number()) {
+  if (!json.is_object() || !json.contains("value_s") || !json.contains("u_s") ||
+      !json["value_s"].is_number() || !json["u_s"].is_number()) {
     return refused("is no JSON object with the numbers value_s and u_s");
   }
   const DsoDelay delay{json["value_s"].get<double>(), json["u_s"].get<double>()};

@@ -15,24 +15,29 @@ void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
     excitation.levels_m_s2.resize(frequencies, excitation.levels_m_s2.front());
   }
   if (excitation.levels_m_s2.size() != frequencies) {
-    table.refuse("level", fmt::format("lists {} levels for {} frequencies", excitation.levels_m_s2.size(), frequencies));
+    table.refuse("level", fmt::format("lists {} levels for {} frequencies",
+                                      excitation.levels_m_s2.size(), frequencies));
   }
-  if (std::any_of(excitation.levels_m_s2.begin(), excitation.levels_m_s2.end(), [](double level) { return level <= 0.0; })) {
+  if (std::any_of(excitation.levels_m_s2.begin(), excitation.levels_m_s2.end(),
+                  [](double level) { return level <= 0.0; })) {
     table.refuse("level", "must be positive, in m/s^2");
   }
 }
 
 void read_window(TomlTable& table, ExcitationSettings& excitation) {
-  excitation.whole_record = table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
+  excitation.whole_record =
+      table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
   if (!excitation.whole_record) {
     return;
   }
   if (excitation.frequencies_hz.size() != 1 || excitation.repetitions != 1) {
-    table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: records of several steps must be searched");
+    table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: "
+                           "records of several steps must be searched");
   }
   for (const char* key : {"settling", "settling_s", "duration_s"}) {
     if (table.has(key)) {
-      table.refuse(key, "has no meaning when window is \"whole-record\": every sample is evaluated");
+      table.refuse(key,
+                   "has no meaning when window is \"whole-record\": every sample is evaluated");
     }
   }
 }
@@ -43,11 +48,14 @@ ExcitationSettings read_excitation(TomlTable table) {
   ExcitationSettings excitation;
   excitation.frequencies_hz = table.texts("frequencies_hz");
   if (excitation.frequencies_hz.empty()) {
-    table.refuse("frequencies_hz", "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");
+    table.refuse(
+        "frequencies_hz",
+        "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");
   }
   for (const std::string& text : excitation.frequencies_hz) {
     if (const auto frequency = analysis::Frequency::parse(text); !frequency) {
-      table.refuse("frequencies_hz", fmt::format("holds \"{}\", which is not a positive number in Hz", text));
+      table.refuse("frequencies_hz",
+                   fmt::format("holds \"{}\", which is not a positive number in Hz", text));
     }
   }
   excitation.levels_m_s2 = table.numbers("level", "m/s^2");
@@ -61,7 +69,8 @@ ExcitationSettings read_excitation(TomlTable table) {
   if (excitation.duration_s <= 0.0) {
     table.refuse("duration_s", "must be positive");
   }
-  excitation.settling_from_data = table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
+  excitation.settling_from_data =
+      table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
   read_window(table, excitation);
   table.finish();
   return excitation;

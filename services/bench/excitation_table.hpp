@@ -1,4 +1,5 @@
-// The table [excitation] of a bench file: which steps a run has, and what part of them is evaluated. Any thread.
+// The table [excitation] of a bench file: which steps a run has, and what part of them is
+// evaluated. Any thread.
 #pragma once
 
 #include "services/bench/bench_file.hpp"

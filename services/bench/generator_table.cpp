@@ -6,7 +6,8 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   GeneratorSettings generator;
   generator.driver = table.one_of("driver", {"scpi", "by-hand", "none"}, "");
   generator.level_per_volt = table.number("level_per_volt", 1.0, "m/s^2 per V");
-  generator.address = generator.driver == "scpi" ? table.required_text("address") : table.text("address");
+  generator.address =
+      generator.driver == "scpi" ? table.required_text("address") : table.text("address");
   if (generator.level_per_volt <= 0.0) {
     table.refuse("level_per_volt", "must be positive, in m/s^2 per V");
   }
@@ -20,11 +21,13 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   read_limit("maximum_voltage_v", "V, zero to peak", generator.maximum_voltage_v);
   read_limit("maximum_level_m_s2", "m/s^2", generator.maximum_level_m_s2);
   if (generator.level_tolerance_rel && generator.driver != "scpi") {
-    table.refuse("level_tolerance_rel", "needs driver = \"scpi\": a level is only brought to its value in time by an instrument");
+    table.refuse(
+        "level_tolerance_rel",
+        "needs driver = \"scpi\": a level is only brought to its value in time by an instrument");
   }
   if (generator.level_tolerance_rel && excitation.settling_from_data) {
-    table.refuse("level_tolerance_rel",
-                 "cannot go with excitation.settling = \"from-data\": the level is still being set while the samples look settled");
+    table.refuse("level_tolerance_rel", "cannot go with excitation.settling = \"from-data\": the "
+                                        "level is still being set while the samples look settled");
   }
   table.finish();
   return generator;

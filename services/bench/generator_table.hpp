@@ -1,4 +1,5 @@
-// The table [generator] of a bench file: what excites the bench, and the limits of its level. Any thread.
+// The table [generator] of a bench file: what excites the bench, and the limits of its level. Any
+// thread.
 #pragma once
 
 #include "services/bench/bench_file.hpp"
@@ -7,6 +8,7 @@
 namespace dyncal::services {
 
 // What cannot be, or not together with this excitation, is refused in the table.
-[[nodiscard]] GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& excitation);
+[[nodiscard]] GeneratorSettings read_generator(TomlTable table,
+                                               const ExcitationSettings& excitation);
 
 } // namespace dyncal::services

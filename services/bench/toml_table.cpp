@@ -44,7 +44,8 @@ std::string unit_phrase(const std::string& unit) {
 
 } // namespace
 
-TomlTable::TomlTable(const toml::table& table, std::string name, std::string file, std::string& problem)
+TomlTable::TomlTable(const toml::table& table, std::string name, std::string file,
+                     std::string& problem)
     : table_(table), name_(std::move(name)), file_(std::move(file)), problem_(problem) {}
 
 const toml::node* TomlTable::find(const std::string& key) {
@@ -209,7 +210,8 @@ std::map<std::string, std::string> TomlTable::text_map(const std::string& key) {
   return values;
 }
 
-std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& words, const std::string& otherwise) {
+std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& words,
+                              const std::string& otherwise) {
   if (!has(key) && otherwise.empty()) {
     refuse(key, fmt::format("is missing: one of {}", fmt::join(words, ", ")));
   }
@@ -245,7 +247,8 @@ void TomlTable::finish() {
     const std::string key(entry.first.str());
     if (!known_.contains(key)) {
       const std::string hint = nearest(key, known_);
-      refuse(key, hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
+      refuse(key,
+             hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
     }
   }
   if (problem_.empty()) {

@@ -1,8 +1,8 @@
 // Reads one table of a TOML file and refuses what it does not know.
 //
-// Every getter records that its key is known; `finish` then refuses the keys nobody asked for. The first problem is kept, later ones
-// are ignored, so a reader asks for everything and looks at `problem` once.
-// Belongs to one thread; the toml::table must outlive it.
+// Every getter records that its key is known; `finish` then refuses the keys nobody asked for. The
+// first problem is kept, later ones are ignored, so a reader asks for everything and looks at
+// `problem` once. Belongs to one thread; the toml::table must outlive it.
 #pragma once
 
 #include <map>
@@ -17,28 +17,35 @@ namespace dyncal::services {
 
 class TomlTable {
 public:
-  // `name` is the dotted name of the table ("" for the file itself), `problem` the place for the first problem found.
+  // `name` is the dotted name of the table ("" for the file itself), `problem` the place for the
+  // first problem found.
   TomlTable(const toml::table& table, std::string name, std::string file, std::string& problem);
 
   [[nodiscard]] bool has(const std::string& key) const { return table_.contains(key); }
   [[nodiscard]] std::string required_text(const std::string& key);
   [[nodiscard]] std::string text(const std::string& key, const std::string& otherwise = "");
   [[nodiscard]] double number(const std::string& key, double otherwise, const std::string& unit);
-  [[nodiscard]] std::optional<double> optional_number(const std::string& key, const std::string& unit);
+  [[nodiscard]] std::optional<double> optional_number(const std::string& key,
+                                                      const std::string& unit);
   [[nodiscard]] int whole_number(const std::string& key, int otherwise, int least);
   [[nodiscard]] bool yes_no(const std::string& key, bool otherwise);
   [[nodiscard]] std::vector<std::string> texts(const std::string& key);
-  [[nodiscard]] std::vector<double> numbers(const std::string& key, const std::string& unit); // a number alone counts as a list of one
+  [[nodiscard]] std::vector<double>
+  numbers(const std::string& key,
+          const std::string& unit); // a number alone counts as a list of one
   [[nodiscard]] std::map<std::string, std::string> text_map(const std::string& key);
-  [[nodiscard]] std::string one_of(const std::string& key, const std::vector<std::string>& words, const std::string& otherwise);
+  [[nodiscard]] std::string one_of(const std::string& key, const std::vector<std::string>& words,
+                                   const std::string& otherwise);
   // The sub-table, or nothing when it is not there.
   [[nodiscard]] std::optional<TomlTable> table(const std::string& key);
   [[nodiscard]] const toml::node* node(const std::string& key);
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  // Refuses keys that were not asked for; then what was said of keys that are not there, which a misspelt one may explain.
+  // Refuses keys that were not asked for; then what was said of keys that are not there, which a
+  // misspelt one may explain.
   void finish();
-  // Records "FILE:LINE: key 'table.key' <what>" unless there is a problem already; at `finish` if the key is not there.
+  // Records "FILE:LINE: key 'table.key' <what>" unless there is a problem already; at `finish` if
+  // the key is not there.
   void refuse(const std::string& key, const std::string& what);
   [[nodiscard]] std::string where(const std::string& key) const; // "FILE:LINE"
 

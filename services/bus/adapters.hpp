@@ -1,4 +1,5 @@
-// The adapters of the DDS vendors, as bus.cpp sees them. A build may lack either (DYNCAL_FAST_DDS, DYNCAL_CYCLONE_DDS).
+// The adapters of the DDS vendors, as bus.cpp sees them. A build may lack either (DYNCAL_FAST_DDS,
+// DYNCAL_CYCLONE_DDS).
 #pragma once
 
 #include <memory>
@@ -8,7 +9,9 @@
 namespace dyncal::bus {
 
 // Both throw nothing; the error says which option cannot be used.
-[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>> create_fast_dds_participant(const ParticipantOptions& options);
-[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>> create_cyclone_dds_participant(const ParticipantOptions& options);
+[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>
+create_fast_dds_participant(const ParticipantOptions& options);
+[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>
+create_cyclone_dds_participant(const ParticipantOptions& options);
 
 } // namespace dyncal::bus

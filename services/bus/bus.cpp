@@ -15,8 +15,9 @@ services::Error network_error(std::string message) {
 
 std::string words_of_this_build() {
   std::string words;
-  for (const Vendor vendor : vendors_in_this_build())
+  for (const Vendor vendor : vendors_in_this_build()) {
     words += (words.empty() ? "" : " or ") + vendor_word(vendor);
+  }
   return words.empty() ? "none" : words;
 }
 
@@ -38,25 +39,36 @@ bool WakeUp::wait_until(std::chrono::steady_clock::time_point deadline) {
 }
 
 services::Expected<Participant> Participant::create(const ParticipantOptions& options) {
-  if (options.domain < 0 || options.domain > max_domain)
-    return tl::unexpected(network_error("DDS domain " + std::to_string(options.domain) + " does not exist: choose one from 0 to " +
+  if (options.domain < 0 || options.domain > max_domain) {
+    return tl::unexpected(network_error("DDS domain " + std::to_string(options.domain) +
+                                        " does not exist: choose one from 0 to " +
                                         std::to_string(max_domain)));
-  services::Expected<std::unique_ptr<UntypedParticipant>> untyped =
-      tl::unexpected(network_error(vendor_word(options.vendor) + " is not in this build, which has " + words_of_this_build()));
+  }
+  services::Expected<std::unique_ptr<UntypedParticipant>> untyped = tl::unexpected(network_error(
+      vendor_word(options.vendor) + " is not in this build, which has " + words_of_this_build()));
 #ifdef DYNCAL_HAVE_FAST_DDS
-  if (options.vendor == Vendor::fast_dds) untyped = create_fast_dds_participant(options);
+  if (options.vendor == Vendor::fast_dds) {
+    untyped = create_fast_dds_participant(options);
+  }
 #endif
 #ifdef DYNCAL_HAVE_CYCLONE_DDS
-  if (options.vendor == Vendor::cyclone_dds) untyped = create_cyclone_dds_participant(options);
+  if (options.vendor == Vendor::cyclone_dds) {
+    untyped = create_cyclone_dds_participant(options);
+  }
 #endif
-  return std::move(untyped).map([](auto participant) { return Participant(std::move(participant)); });
+  return std::move(untyped).map(
+      [](auto participant) { return Participant(std::move(participant)); });
 }
 
 services::Expected<Vendor> parse_vendor(const std::string& word) {
-  for (const Vendor vendor : vendors_in_this_build())
-    if (word == vendor_word(vendor)) return vendor;
+  for (const Vendor vendor : vendors_in_this_build()) {
+    if (word == vendor_word(vendor)) {
+      return vendor;
+    }
+  }
   return tl::unexpected(
-      services::Error{services::ErrorCode::bad_argument, "\"" + word + "\" is no DDS of this build: say " + words_of_this_build()});
+      services::Error{services::ErrorCode::bad_argument,
+                      "\"" + word + "\" is no DDS of this build: say " + words_of_this_build()});
 }
 
 std::string vendor_word(Vendor vendor) {

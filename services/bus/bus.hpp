@@ -1,18 +1,19 @@
 // The bus: typed messages of idl/dyncal.idl over DDS, whichever vendor carries them.
 //
-// A process has one Participant, kept for as long as it runs; writers and readers keep it alive. Writers and readers are made from it for
-// one topic, one of four QoS profiles and one partition (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name
-// or type appears here.
+// A process has one Participant, kept for as long as it runs; writers and readers keep it alive.
+// Writers and readers are made from it for one topic, one of four QoS profiles and one partition
+// (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name or type
+// appears here.
 //
 // QoS profiles (idl/README.md has the exact settings):
-//   samples  reliable, keep all, transient local with bounded depth: blocks; a late joiner gets the most recent ones
-//   results  reliable, transient local, the newest of every key
-//   state    reliable, transient local, the newest of every key
-//   command  reliable, volatile, every one
+//   samples  reliable, keep all, transient local with bounded depth: blocks; a late joiner gets the
+//   most recent ones results  reliable, transient local, the newest of every key state    reliable,
+//   transient local, the newest of every key command  reliable, volatile, every one
 //
-// Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one thread at a time, except
-// Reader's wake-up, which comes from the vendor's threads and only notifies. write() may block (up to 1.5 s at 20 % packet loss;
-// for the lease of a reader that was killed): the thread that listens to a device never calls it.
+// Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one
+// thread at a time, except Reader's wake-up, which comes from the vendor's threads and only
+// notifies. write() may block (up to 1.5 s at 20 % packet loss; for the lease of a reader that was
+// killed): the thread that listens to a device never calls it.
 #pragma once
 
 #include <chrono>
@@ -40,7 +41,8 @@ struct ParticipantOptions {
   std::vector<std::string> peers; // addresses to find others at when multicast cannot be used
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
-  // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any thread while the participant lives.
+  // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
+  // thread while the participant lives.
   std::function<void(const std::string&)> warn;
 };
 
@@ -60,8 +62,9 @@ private:
 enum class WriteOutcome { written, timed_out, failed };
 
 struct SampleInfo {
-  bool valid = true;              // false: only the key members are set, the instance has ended
-  std::int64_t source_utc_ns = 0; // the writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets
+  bool valid = true; // false: only the key members are set, the instance has ended
+  std::int64_t source_utc_ns =
+      0; // the writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets
 };
 
 // What an adapter implements; use Writer<T> and Reader<T>.
@@ -84,10 +87,12 @@ public:
 class UntypedParticipant {
 public:
   virtual ~UntypedParticipant() = default;
-  virtual services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type, const std::string& topic, Profile profile,
-                                                                    const std::string& partition) = 0;
-  virtual services::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type, const std::string& topic, Profile profile,
-                                                                    const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
+  virtual services::Expected<std::unique_ptr<UntypedWriter>>
+  writer(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::string& partition) = 0;
+  virtual services::Expected<std::unique_ptr<UntypedReader>>
+  reader(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
   [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
 };
 
@@ -97,12 +102,17 @@ public:
   using Message = T;
 
   explicit Writer(std::unique_ptr<UntypedWriter> untyped) : untyped_(std::move(untyped)) {}
-  // Returns when the sample is in the writer's history, or when `limit` has passed without room for it (it then may be tried again).
-  WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) { return untyped_->write(&sample, limit); }
+  // Returns when the sample is in the writer's history, or when `limit` has passed without room for
+  // it (it then may be tried again).
+  WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) {
+    return untyped_->write(&sample, limit);
+  }
   bool unregister(const T& sample) { return untyped_->unregister(&sample); }
   [[nodiscard]] int matched_readers() const { return untyped_->matched_readers(); }
   // Acknowledged by all readers that are there; true as well when there is none.
-  bool wait_for_acknowledgments(std::chrono::nanoseconds limit) { return untyped_->wait_for_acknowledgments(limit); }
+  bool wait_for_acknowledgments(std::chrono::nanoseconds limit) {
+    return untyped_->wait_for_acknowledgments(limit);
+  }
 
 private:
   std::unique_ptr<UntypedWriter> untyped_;
@@ -115,7 +125,9 @@ public:
   // Hands over everything that has come, in order, and returns how many that were.
   template <class Consume>
   std::size_t take(Consume&& consume) {
-    return untyped_->take([&](const void* sample, const SampleInfo& info) { consume(*static_cast<const T*>(sample), info); });
+    return untyped_->take([&](const void* sample, const SampleInfo& info) {
+      consume(*static_cast<const T*>(sample), info);
+    });
   }
   [[nodiscard]] int matched_writers() const { return untyped_->matched_writers(); }
 
@@ -125,34 +137,43 @@ private:
 
 class Participant {
 public:
-  // Fails (network) when the vendor is not in this build or cannot use the domain, interface or peers.
+  // Fails (network) when the vendor is not in this build or cannot use the domain, interface or
+  // peers.
   [[nodiscard]] static services::Expected<Participant> create(const ParticipantOptions& options);
 
-  // Fail (bad_argument) when the partition cannot be a bench's name (services/bus/names.hpp), or (network) when the vendor refuses.
+  // Fail (bad_argument) when the partition cannot be a bench's name (services/bus/names.hpp), or
+  // (network) when the vendor refuses.
   template <class T>
-  [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile, const std::string& partition) {
-    if (const auto name = check_bench_name(partition); !name) return tl::unexpected(name.error());
-    return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) { return Writer<T>(std::move(w)); });
+  [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
+                                                     const std::string& partition) {
+    if (const auto name = check_bench_name(partition); !name) {
+      return tl::unexpected(name.error());
+    }
+    return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) {
+      return Writer<T>(std::move(w));
+    });
   }
   // `wake_up` rings whenever something may have come, and once at the beginning; it may be empty.
   template <class T>
-  [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile, const std::string& partition,
+  [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile,
+                                                     const std::string& partition,
                                                      std::shared_ptr<WakeUp> wake_up) {
-    return untyped_->reader(type_support<T>(), topic, profile, partition, std::move(wake_up)).map([](auto r) {
-      return Reader<T>(std::move(r));
-    });
+    return untyped_->reader(type_support<T>(), topic, profile, partition, std::move(wake_up))
+        .map([](auto r) { return Reader<T>(std::move(r)); });
   }
 
-  // Messages dropped because they were not what the contract says (idl/README.md). Not 0 when there was one; Fast DDS looks at some
-  // of them twice.
+  // Messages dropped because they were not what the contract says (idl/README.md). Not 0 when there
+  // was one; Fast DDS looks at some of them twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
 
 private:
-  explicit Participant(std::unique_ptr<UntypedParticipant> untyped) : untyped_(std::move(untyped)) {}
+  explicit Participant(std::unique_ptr<UntypedParticipant> untyped)
+      : untyped_(std::move(untyped)) {}
   std::unique_ptr<UntypedParticipant> untyped_;
 };
 
-// "fastdds" or "cyclonedds" (the words of --dds). Fails (bad_argument) on any other word, naming those of this build.
+// "fastdds" or "cyclonedds" (the words of --dds). Fails (bad_argument) on any other word, naming
+// those of this build.
 [[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& word);
 [[nodiscard]] std::string vendor_word(Vendor vendor);
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();

@@ -1,8 +1,9 @@
 // The key of a message, read from and written to CDR without its type: KeyLayout says where it is.
 //
-// DDS identifies an instance by the MD5 of its key members in big-endian CDR (DDSI-RTPS 9.6.3.8). Vendors do this themselves for
-// their own types; the bus needs it because it hands them bytes. Bounded strings are checked here: a foreign message whose key is
-// longer than the contract allows is refused instead of being cut to the name of somebody else.
+// DDS identifies an instance by the MD5 of its key members in big-endian CDR (DDSI-RTPS 9.6.3.8).
+// Vendors do this themselves for their own types; the bus needs it because it hands them bytes.
+// Bounded strings are checked here: a foreign message whose key is longer than the contract allows
+// is refused instead of being cut to the name of somebody else.
 //
 // Pure functions, any thread.
 #pragma once
@@ -18,7 +19,8 @@ namespace dyncal::bus {
 
 struct KeyLayout;
 
-inline constexpr std::size_t cdr_header_bytes = 4; // encapsulation: representation (2 bytes, big-endian), options (2 bytes)
+inline constexpr std::size_t cdr_header_bytes =
+    4; // encapsulation: representation (2 bytes, big-endian), options (2 bytes)
 
 // No key of the contract is longer: three strings and two numbers.
 inline constexpr std::size_t max_key_payload_bytes = 512;
@@ -33,8 +35,10 @@ using KeyHash = std::array<unsigned char, 16>;
 
 enum class ByteOrder { little, big };
 
-// From a whole payload or one that ends after the key. Nothing when it is not plain CDR, ends too soon, or a string exceeds its bound.
-[[nodiscard]] std::optional<Key> read_key(const KeyLayout& layout, const char* bytes, std::size_t count);
+// From a whole payload or one that ends after the key. Nothing when it is not plain CDR, ends too
+// soon, or a string exceeds its bound.
+[[nodiscard]] std::optional<Key> read_key(const KeyLayout& layout, const char* bytes,
+                                          std::size_t count);
 
 // Header and key members: the payload that announces the end of an instance.
 [[nodiscard]] std::string key_payload(const Key& key, ByteOrder order);

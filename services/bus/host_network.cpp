@@ -25,18 +25,25 @@ std::string text_of(const sockaddr* address) {
 
 services::Expected<std::string> interface_address(const std::string& name_or_address) {
   ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return tl::unexpected(network_error("this machine does not tell its network interfaces"));
+  if (getifaddrs(&list) != 0) {
+    return tl::unexpected(network_error("this machine does not tell its network interfaces"));
+  }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
 
   std::string known;
   for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) {
+      continue;
+    }
     const std::string address = text_of(entry->ifa_addr);
-    if (name_or_address == entry->ifa_name || name_or_address == address) return address;
+    if (name_or_address == entry->ifa_name || name_or_address == address) {
+      return address;
+    }
     known += (known.empty() ? "" : ", ") + std::string(entry->ifa_name) + " (" + address + ")";
   }
   return tl::unexpected(
-      network_error("network interface \"" + name_or_address + "\" is not one with an IPv4 address on this machine, which has " + known));
+      network_error("network interface \"" + name_or_address +
+                    "\" is not one with an IPv4 address on this machine, which has " + known));
 }
 
 services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {
@@ -46,8 +53,10 @@ services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std
     wanted.ai_family = AF_INET;
     wanted.ai_socktype = SOCK_DGRAM;
     addrinfo* found = nullptr;
-    if (const int status = getaddrinfo(host.c_str(), nullptr, &wanted, &found); status != 0)
-      return tl::unexpected(network_error("peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status)));
+    if (const int status = getaddrinfo(host.c_str(), nullptr, &wanted, &found); status != 0) {
+      return tl::unexpected(
+          network_error("peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status)));
+    }
     addresses.push_back(text_of(found->ai_addr));
     freeaddrinfo(found);
   }
@@ -56,20 +65,27 @@ services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std
 
 int granted_receive_buffer(int wanted_bytes) {
   const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket_fd < 0) return 0;
+  if (socket_fd < 0) {
+    return 0;
+  }
   int granted = 0;
   socklen_t length = sizeof granted;
-  const bool told = setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted_bytes, sizeof wanted_bytes) == 0 &&
-                    getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) == 0;
+  const bool told =
+      setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted_bytes, sizeof wanted_bytes) == 0 &&
+      getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) == 0;
   close(socket_fd);
   // Linux reports twice what was asked for, its own bookkeeping included.
   return told ? granted / 2 : 0;
 }
 
 std::string receive_buffer_warning(int wanted_bytes, int granted_bytes) {
-  if (granted_bytes == 0 || granted_bytes >= wanted_bytes) return "";
-  return "this host allows socket buffers of " + std::to_string(granted_bytes) + " bytes only, DDS wants " + std::to_string(wanted_bytes) +
-         ": it works, but bursts need repairs; to allow more: sysctl -w net.core.rmem_max=" + std::to_string(2 * wanted_bytes);
+  if (granted_bytes == 0 || granted_bytes >= wanted_bytes) {
+    return "";
+  }
+  return "this host allows socket buffers of " + std::to_string(granted_bytes) +
+         " bytes only, DDS wants " + std::to_string(wanted_bytes) +
+         ": it works, but bursts need repairs; to allow more: sysctl -w net.core.rmem_max=" +
+         std::to_string(2 * wanted_bytes);
 }
 
 } // namespace dyncal::bus

@@ -1,7 +1,8 @@
-// What the host says about its network: interfaces, addresses of peers, and how large a socket's receive buffer may be.
+// What the host says about its network: interfaces, addresses of peers, and how large a socket's
+// receive buffer may be.
 //
-// All functions ask the operating system anew, throw nothing and may be called from any thread. resolve_peers() may wait for a
-// name server.
+// All functions ask the operating system anew, throw nothing and may be called from any thread.
+// resolve_peers() may wait for a name server.
 #pragma once
 
 #include <string>
@@ -11,13 +12,16 @@
 
 namespace dyncal::bus {
 
-// IPv4 address of an interface given by name ("eth0") or by one of this machine's addresses. Fails (network) naming those there are.
+// IPv4 address of an interface given by name ("eth0") or by one of this machine's addresses. Fails
+// (network) naming those there are.
 [[nodiscard]] services::Expected<std::string> interface_address(const std::string& name_or_address);
 
 // IPv4 addresses of hosts given by address or name. Fails (network) naming the first that has none.
-[[nodiscard]] services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts);
+[[nodiscard]] services::Expected<std::vector<std::string>>
+resolve_peers(const std::vector<std::string>& hosts);
 
-// What the kernel grants a UDP socket that asks for `wanted` bytes (net.core.rmem_max caps it); 0 when there is no telling.
+// What the kernel grants a UDP socket that asks for `wanted` bytes (net.core.rmem_max caps it); 0
+// when there is no telling.
 [[nodiscard]] int granted_receive_buffer(int wanted_bytes);
 
 // One sentence for the user when `granted` is too little, else empty.

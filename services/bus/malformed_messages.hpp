@@ -1,7 +1,8 @@
-// Counts messages that are not what the contract says, and tells the user of the first one of each type.
+// Counts messages that are not what the contract says, and tells the user of the first one of each
+// type.
 //
-// They come from programs that do not keep to idl/README.md: another encoding, a key that is too long, a message cut short. They are
-// dropped. Any thread.
+// They come from programs that do not keep to idl/README.md: another encoding, a key that is too
+// long, a message cut short. They are dropped. Any thread.
 #pragma once
 
 #include <atomic>
@@ -16,7 +17,8 @@ namespace dyncal::bus {
 class MalformedMessages {
 public:
   // `warn` may be empty; it is called from the vendor's threads.
-  explicit MalformedMessages(std::function<void(const std::string&)> warn) : warn_(std::move(warn)) {}
+  explicit MalformedMessages(std::function<void(const std::string&)> warn)
+      : warn_(std::move(warn)) {}
 
   void add(const std::string& type_name);
   [[nodiscard]] std::uint64_t count() const { return count_; }

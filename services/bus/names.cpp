@@ -9,18 +9,29 @@ services::Error bad_name(const std::string& what, const std::string& name, const
 
 } // namespace
 
-services::Expected<void> check_name(const std::string& what, const std::string& name, std::size_t longest) {
-  if (name.empty()) return tl::unexpected(services::Error{services::ErrorCode::bad_argument, what + " has no name: give it one"});
-  if (name.size() > longest)
+services::Expected<void> check_name(const std::string& what, const std::string& name,
+                                    std::size_t longest) {
+  if (name.empty()) {
     return tl::unexpected(
-        bad_name(what, name, "is too long: " + std::to_string(name.size()) + " bytes, shorten it to " + std::to_string(longest)));
+        services::Error{services::ErrorCode::bad_argument, what + " has no name: give it one"});
+  }
+  if (name.size() > longest) {
+    return tl::unexpected(bad_name(what, name,
+                                   "is too long: " + std::to_string(name.size()) +
+                                       " bytes, shorten it to " + std::to_string(longest)));
+  }
   return {};
 }
 
 services::Expected<void> check_bench_name(const std::string& name) {
-  if (auto fits = check_name("bench", name); !fits) return fits;
-  if (name.find_first_of("*?[]") != std::string::npos)
-    return tl::unexpected(bad_name("bench", name, "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
+  if (auto fits = check_name("bench", name); !fits) {
+    return fits;
+  }
+  if (name.find_first_of("*?[]") != std::string::npos) {
+    return tl::unexpected(
+        bad_name("bench", name,
+                 "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
+  }
   return {};
 }
 

@@ -1,7 +1,8 @@
-// Names of benches, sources, runs and channels on the bus: keys of bounded length, and the bench is the DDS partition as well.
+// Names of benches, sources, runs and channels on the bus: keys of bounded length, and the bench is
+// the DDS partition as well.
 //
-// Check a name where a user gives it. The key members of the contract's structs cut a longer text silently, and two long names
-// could become one.
+// Check a name where a user gives it. The key members of the contract's structs cut a longer text
+// silently, and two long names could become one.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +15,13 @@ namespace dyncal::bus {
 inline constexpr std::size_t max_name = 64;     // characters of bench, source, run, service, target
 inline constexpr std::size_t max_channel = 128; // characters of "source/channel"
 
-// Fails (bad_argument) when the name is empty or too long. `what` begins the sentence: "the bench", "source".
-[[nodiscard]] services::Expected<void> check_name(const std::string& what, const std::string& name, std::size_t longest = max_name);
+// Fails (bad_argument) when the name is empty or too long. `what` begins the sentence: "the bench",
+// "source".
+[[nodiscard]] services::Expected<void> check_name(const std::string& what, const std::string& name,
+                                                  std::size_t longest = max_name);
 
-// A name that one bench can have: as above, and without the characters that make a DDS partition a pattern (* ? [ ]).
+// A name that one bench can have: as above, and without the characters that make a DDS partition a
+// pattern (* ? [ ]).
 [[nodiscard]] services::Expected<void> check_bench_name(const std::string& name);
 
 } // namespace dyncal::bus

@@ -19,25 +19,29 @@ const KeyLayout names_channel_and_step{{name_bound, name_bound, channel_bound}, 
 
 template <>
 const TypeSupport& type_support<SourceDescription>() {
-  static const TypeSupport support = make_type_support<SourceDescription>("dyncal::SourceDescription", two_names);
+  static const TypeSupport support =
+      make_type_support<SourceDescription>("dyncal::SourceDescription", two_names);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<SourceStatus>() {
-  static const TypeSupport support = make_type_support<SourceStatus>("dyncal::SourceStatus", two_names);
+  static const TypeSupport support =
+      make_type_support<SourceStatus>("dyncal::SourceStatus", two_names);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<SampleBlock>() {
-  static const TypeSupport support = make_type_support<SampleBlock>("dyncal::SampleBlock", two_names);
+  static const TypeSupport support =
+      make_type_support<SampleBlock>("dyncal::SampleBlock", two_names);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<TriggeredRecord>() {
-  static const TypeSupport support = make_type_support<TriggeredRecord>("dyncal::TriggeredRecord", two_names);
+  static const TypeSupport support =
+      make_type_support<TriggeredRecord>("dyncal::TriggeredRecord", two_names);
   return support;
 }
 
@@ -49,7 +53,8 @@ const TypeSupport& type_support<AcsPhasor>() {
 
 template <>
 const TypeSupport& type_support<Measurement>() {
-  static const TypeSupport support = make_type_support<Measurement>("dyncal::Measurement", two_names);
+  static const TypeSupport support =
+      make_type_support<Measurement>("dyncal::Measurement", two_names);
   return support;
 }
 
@@ -61,25 +66,29 @@ const TypeSupport& type_support<Excitation>() {
 
 template <>
 const TypeSupport& type_support<CalibrationResult>() {
-  static const TypeSupport support = make_type_support<CalibrationResult>("dyncal::CalibrationResult", names_channel_and_step);
+  static const TypeSupport support =
+      make_type_support<CalibrationResult>("dyncal::CalibrationResult", names_channel_and_step);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<TransferFunction>() {
-  static const TypeSupport support = make_type_support<TransferFunction>("dyncal::TransferFunction", names_and_channel);
+  static const TypeSupport support =
+      make_type_support<TransferFunction>("dyncal::TransferFunction", names_and_channel);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<SampleClockReport>() {
-  static const TypeSupport support = make_type_support<SampleClockReport>("dyncal::SampleClockReport", three_names);
+  static const TypeSupport support =
+      make_type_support<SampleClockReport>("dyncal::SampleClockReport", three_names);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<ServiceStatus>() {
-  static const TypeSupport support = make_type_support<ServiceStatus>("dyncal::ServiceStatus", two_names);
+  static const TypeSupport support =
+      make_type_support<ServiceStatus>("dyncal::ServiceStatus", two_names);
   return support;
 }
 

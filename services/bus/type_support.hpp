@@ -1,10 +1,13 @@
-// What the bus needs to know of a message type: its name, its key, and how it turns into bytes and back.
+// What the bus needs to know of a message type: its name, its key, and how it turns into bytes and
+// back.
 //
-// One set of C++ types (idl/dyncal.idl through fastddsgen) and one encoder (Fast CDR) serve every vendor, so the bytes on the
-// wire are the same by construction. Bytes here mean a whole DDS payload: the 4-byte encapsulation header, then plain CDR (XCDR1).
+// One set of C++ types (idl/dyncal.idl through fastddsgen) and one encoder (Fast CDR) serve every
+// vendor, so the bytes on the wire are the same by construction. Bytes here mean a whole DDS
+// payload: the 4-byte encapsulation header, then plain CDR (XCDR1).
 //
-// Growth: members may be appended to a type. A message from an older program lacks them; deserialize() then reads zeros, empty
-// strings and empty sequences. A message from a newer program has bytes at its end that are left unread.
+// Growth: members may be appended to a type. A message from an older program lacks them;
+// deserialize() then reads zeros, empty strings and empty sequences. A message from a newer program
+// has bytes at its end that are left unread.
 //
 // All functions may be called from any thread; a sample belongs to its caller.
 #pragma once
@@ -17,7 +20,8 @@
 
 namespace dyncal::bus {
 
-// The key members of a type. They stand first in its struct: bounded strings, then unsigned 32-bit numbers.
+// The key members of a type. They stand first in its struct: bounded strings, then unsigned 32-bit
+// numbers.
 struct KeyLayout {
   std::vector<std::size_t> string_bounds; // longest length of each string, without its end
   std::size_t numbers = 0;

@@ -1,4 +1,5 @@
-// Makes the TypeSupport of a struct that fastddsgen generated. Only type_support.cpp and tests with types of their own need it.
+// Makes the TypeSupport of a struct that fastddsgen generated. Only type_support.cpp and tests with
+// types of their own need it.
 //
 // Errors of Fast CDR, which throws, end here.
 #pragma once
@@ -27,21 +28,31 @@ struct Encoder {
   }
 
   static std::size_t serialize(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity, [sample](auto& cdr) { static_cast<const T*>(sample)->serialize(cdr); });
+    return write(bytes, capacity,
+                 [sample](auto& cdr) { static_cast<const T*>(sample)->serialize(cdr); });
   }
 
   static std::size_t serialize_key(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity, [sample](auto& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
+    return write(bytes, capacity,
+                 [sample](auto& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
   }
 
   static bool deserialize(void* sample, const char* bytes, std::size_t count) {
-    if (count < cdr_header_bytes) return false;
+    if (count < cdr_header_bytes) {
+      return false;
+    }
     const std::size_t understood = read(sample, bytes, count);
-    if (understood == everything) return true;
-    // Fast CDR stops at the beginning of the first member that is not wholly there. Only when the message ends just before it (but for
-    // padding to 4 bytes) it comes from a program whose type has fewer members; otherwise it is damaged.
-    if (count - understood >= 4) return false;
-    // Zeros read as 0, "" and empty; no struct of the contract is longer than this when all its members are empty.
+    if (understood == everything) {
+      return true;
+    }
+    // Fast CDR stops at the beginning of the first member that is not wholly there. Only when the
+    // message ends just before it (but for padding to 4 bytes) it comes from a program whose type
+    // has fewer members; otherwise it is damaged.
+    if (count - understood >= 4) {
+      return false;
+    }
+    // Zeros read as 0, "" and empty; no struct of the contract is longer than this when all its
+    // members are empty.
     constexpr std::size_t zeros = 1024;
     std::vector<char> extended(understood + zeros, '\0');
     std::memcpy(extended.data(), bytes, understood);
@@ -55,7 +66,8 @@ private:
   static std::size_t write(char* bytes, std::size_t capacity, Serialize&& serialize_members) {
     try {
       eprosima::fastcdr::FastBuffer buffer(bytes, capacity);
-      eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR);
+      eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
+                                 eprosima::fastcdr::Cdr::DDS_CDR);
       cdr.serialize_encapsulation();
       serialize_members(cdr);
       return cdr.getSerializedDataLength();
@@ -68,7 +80,8 @@ private:
   static std::size_t read(void* sample, const char* bytes, std::size_t count) {
     // FastBuffer wants a mutable pointer; nothing is written through it here.
     eprosima::fastcdr::FastBuffer buffer(const_cast<char*>(bytes), count);
-    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR);
+    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                               eprosima::fastcdr::Cdr::DDS_CDR);
     try {
       cdr.read_encapsulation();
       static_cast<T*>(sample)->deserialize(cdr);

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/bus/log_source.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
+#include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/time/system_clock.hpp"
 #include "services/can/can_status.hpp"
 
@@ -36,16 +36,20 @@ Error named(const std::string& source, const drivers::Error& error) {
 
 class PublisherSink : public drivers::can::SampleSink {
 public:
-  // `patient`: frames that can wait do so while the publisher has no room; what a live bus says is counted there as dropped.
+  // `patient`: frames that can wait do so while the publisher has no room; what a live bus says is
+  // counted there as dropped.
   PublisherSink(SourcePublisher& publisher, bool patient, std::stop_token stop)
       : publisher_(publisher), patient_(patient), stop_(std::move(stop)) {}
-  void describe(const drivers::SourceDescription& description) override { publisher_.describe(description); }
+  void describe(const drivers::SourceDescription& description) override {
+    publisher_.describe(description);
+  }
   void restart() override { publisher_.start_session(); }
   void take(drivers::SampleBlock block) override {
-    if (patient_)
+    if (patient_) {
       publisher_.offer_waiting(std::move(block), stop_);
-    else
+    } else {
       publisher_.offer(std::move(block));
+    }
   }
 
 private:
@@ -59,8 +63,10 @@ std::unique_ptr<drivers::can::FrameSource> open_interface(const CanSourceSetting
   socket.interface_name = can.interface_name;
   socket.bit_rate_per_s = static_cast<std::uint32_t>(can.sensor.bit_rates.nominal_per_s);
   socket.data_bit_rate_per_s = static_cast<std::uint32_t>(can.sensor.bit_rates.data_per_s);
-  if (can.restart_after_bus_off_s)
-    socket.restart_after_bus_off = std::chrono::milliseconds(static_cast<std::int64_t>(*can.restart_after_bus_off_s * 1e3));
+  if (can.restart_after_bus_off_s) {
+    socket.restart_after_bus_off =
+        std::chrono::milliseconds(static_cast<std::int64_t>(*can.restart_after_bus_off_s * 1e3));
+  }
   return std::make_unique<drivers::can::SocketCanSource>(std::move(socket));
 }
 
@@ -68,16 +74,24 @@ std::unique_ptr<drivers::can::FrameSource> open_interface(const CanSourceSetting
 
 std::unique_ptr<drivers::can::FrameSource> make_frame_source(const SourceSettings& settings) {
   const CanSourceSettings& can = *settings.can;
-  if (can.log.empty()) return open_interface(can);
-  return std::make_unique<drivers::can::LogSource>(can.log, can.interface_name, settings.play_speed);
+  if (can.log.empty()) {
+    return open_interface(can);
+  }
+  return std::make_unique<drivers::can::LogSource>(can.log, can.interface_name,
+                                                   settings.play_speed);
 }
 
-Expected<CanSource> CanSource::prepare(const SourceSettings& settings, MakeFrameSource make_frames) {
+Expected<CanSource> CanSource::prepare(const SourceSettings& settings,
+                                       MakeFrameSource make_frames) {
   CanSource source(settings, std::move(make_frames));
   drivers::can::SensorSettings& sensor = source.settings_.can->sensor;
   // This host's clock says nothing of the one that stamped a log.
-  if (!settings.can->log.empty() && !sensor.u_utc_s) sensor.u_utc_s = drivers::can::u_undisciplined_clock_s();
-  if (auto opened = source.open(); !opened) return tl::unexpected(opened.error());
+  if (!settings.can->log.empty() && !sensor.u_utc_s) {
+    sensor.u_utc_s = drivers::can::u_undisciplined_clock_s();
+  }
+  if (auto opened = source.open(); !opened) {
+    return tl::unexpected(opened.error());
+  }
   return source;
 }
 
@@ -85,36 +99,52 @@ Expected<CanSource> CanSource::prepare(const SourceSettings& settings, MakeFrame
 Expected<void> CanSource::open() {
   const CanSourceSettings& can = *settings_.can;
   auto dbc = drivers::can::read_dbc_file(can.dbc);
-  if (!dbc) return tl::unexpected(named(settings_.name, dbc.error()));
+  if (!dbc) {
+    return tl::unexpected(named(settings_.name, dbc.error()));
+  }
   warnings_ = dbc->warnings;
   auto stream = drivers::can::SensorStream::create(can.sensor, std::move(*dbc));
-  if (!stream) return tl::unexpected(named(settings_.name, stream.error()));
+  if (!stream) {
+    return tl::unexpected(named(settings_.name, stream.error()));
+  }
   stream_ = std::move(*stream);
   frames_ = make_frames_(settings_);
   auto link = frames_->open(stream_->filters());
-  if (!link) return tl::unexpected(named(settings_.name, link.error()));
+  if (!link) {
+    return tl::unexpected(named(settings_.name, link.error()));
+  }
   link_ = std::move(*link);
   return {};
 }
 
 Expected<void> CanSource::run(SourcePublisher& publisher, const std::stop_token& stop) {
   auto done = begin(publisher, stop).and_then([&] {
-    return settings_.can->log.empty() ? receive(publisher, stop) : play_for_every_run(publisher, stop);
+    return settings_.can->log.empty() ? receive(publisher, stop)
+                                      : play_for_every_run(publisher, stop);
   });
-  if (!done) publisher.fail(done.error().message);
+  if (!done) {
+    publisher.fail(done.error().message);
+  }
   return done;
 }
 
 Expected<void> CanSource::begin(SourcePublisher& publisher, const std::stop_token& stop) {
   PublisherSink sink(publisher, false, stop);
-  return stream_->begin(link_, sink).map_error([&](const drivers::Error& error) { return named(settings_.name, error); });
+  return stream_->begin(link_, sink).map_error([&](const drivers::Error& error) {
+    return named(settings_.name, error);
+  });
 }
 
-Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher, const std::stop_token& stop) {
+Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher,
+                                             const std::stop_token& stop) {
   while (publisher.wait_for_run(stop)) {
-    if (auto played = receive(publisher, stop); !played || stop.stop_requested()) return played;
+    if (auto played = receive(publisher, stop); !played || stop.stop_requested()) {
+      return played;
+    }
     publisher.start_session(); // what is said before the next run belongs to it
-    if (auto opened = open().and_then([&] { return begin(publisher, stop); }); !opened) return opened;
+    if (auto opened = open().and_then([&] { return begin(publisher, stop); }); !opened) {
+      return opened;
+    }
   }
   return {};
 }
@@ -132,14 +162,22 @@ Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_to
   for (Clock::time_point next_report{}; !ended && !stop.stop_requested();) {
     events.clear();
     const auto read = frames_->read(events, wait_limit);
-    if (!read) return tl::unexpected(named(settings_.name, read.error()));
+    if (!read) {
+      return tl::unexpected(named(settings_.name, read.error()));
+    }
     ended = *read == ReadState::ended;
     for (const BusEvent& event : events) {
-      if (const auto* change = std::get_if<LinkChange>(&event); change != nullptr && !change->what.empty())
+      if (const auto* change = std::get_if<LinkChange>(&event);
+          change != nullptr && !change->what.empty()) {
         spdlog::warn("source {}: {}", settings_.name, change->what);
-      if (auto taken = stream_->take(event, sink); !taken) return tl::unexpected(named(settings_.name, taken.error()));
+      }
+      if (auto taken = stream_->take(event, sink); !taken) {
+        return tl::unexpected(named(settings_.name, taken.error()));
+      }
     }
-    if (events.empty()) stream_->flush(sink);
+    if (events.empty()) {
+      stream_->flush(sink);
+    }
     if (const auto now = Clock::now(); now >= next_report) {
       tell();
       next_report = now + report_interval;

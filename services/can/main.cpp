@@ -22,14 +22,22 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
   Sources sources;
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
-    if (!bench) return tl::unexpected(bench.error());
+    if (!bench) {
+      return tl::unexpected(bench.error());
+    }
     add_network_settings(bench->network, network);
     for (const SourceSettings& settings : bench->sources) {
-      if (settings.driver != SourceDriver::can) continue; // others publish it
+      if (settings.driver != SourceDriver::can) {
+        continue; // others publish it
+      }
       auto source = can::CanSource::prepare(settings);
-      if (!source) return tl::unexpected(Error{source.error().code, fmt::format("{}: {}", settings.where, source.error().message)});
-      for (const std::string& warning : source->warnings())
+      if (!source) {
+        return tl::unexpected(Error{source.error().code,
+                                    fmt::format("{}: {}", settings.where, source.error().message)});
+      }
+      for (const std::string& warning : source->warnings()) {
         spdlog::warn("{}", warning);
+      }
       SourceOptions options;
       options.bench = bench->bench;
       options.source = settings.name;
@@ -37,20 +45,27 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
       sources.push_back({std::move(*source), std::move(options)});
     }
   }
-  if (sources.empty()) return tl::unexpected(Error{ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given"});
+  if (sources.empty()) {
+    return tl::unexpected(
+        Error{ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given"});
+  }
   return sources;
 }
 
-Expected<void> run(const std::vector<std::string>& files, NetworkOptions network, const std::stop_token& stop) {
+Expected<void> run(const std::vector<std::string>& files, NetworkOptions network,
+                   const std::stop_token& stop) {
   auto sources = prepare(files, network);
-  if (!sources) return tl::unexpected(sources.error());
+  if (!sources) {
+    return tl::unexpected(sources.error());
+  }
   return run_sources("dyncal-can", *sources, network, stop);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Publishes the sources of bench files whose driver is \"can\": sensors on CAN and CAN FD interfaces of this host.",
+  CLI::App app{"Publishes the sources of bench files whose driver is \"can\": sensors on CAN and "
+               "CAN FD interfaces of this host.",
                "dyncal-can"};
   std::vector<std::string> files;
   NetworkOptions network;
@@ -60,6 +75,8 @@ int main(int argc, char** argv) {
 
   set_up_log("dyncal-can");
   const std::stop_token stop = stop_on_signals();
-  if (const auto done = run(files, network, stop); !done) return fail(done.error());
+  if (const auto done = run(files, network, stop); !done) {
+    return fail(done.error());
+  }
   return EXIT_SUCCESS;
 }

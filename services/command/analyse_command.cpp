@@ -8,30 +8,33 @@
 
 #include <fmt/format.h>
 
+#include "drivers/utc_clock.hpp"
 #include "services/acs/played_source.hpp"
 #include "services/command/run_command.hpp"
+#include "services/evaluation/run_evaluator.hpp"
 #include "services/replay/sample_memory.hpp"
 #include "services/replay/shot_files.hpp"
-#include "services/evaluation/run_evaluator.hpp"
 #include "services/source/messages.hpp"
-#include "drivers/utc_clock.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr std::size_t blocks_ahead = 64;    // of at most 4096 samples
-constexpr std::size_t max_evaluations = 4; // at once, one a processor: a step takes longer than reading the next; each holds its samples
-constexpr std::uint64_t session = 1;        // a file is one session; nothing depends on its number
+constexpr std::size_t blocks_ahead = 64;   // of at most 4096 samples
+constexpr std::size_t max_evaluations = 4; // at once, one a processor: a step takes longer than
+                                           // reading the next; each holds its samples
+constexpr std::uint64_t session = 1;       // a file is one session; nothing depends on its number
 
-// A file of the bench, read in a thread of its own that waits when it is `blocks_ahead` in front. The thread ends with the file, with a
-// failure, or when the object goes.
+// A file of the bench, read in a thread of its own that waits when it is `blocks_ahead` in front.
+// The thread ends with the file, with a failure, or when the object goes.
 class FileInput : public drivers::acs::BlockSink {
 public:
-  static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings, const BenchFile& bench) {
+  static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings,
+                                                   const BenchFile& bench) {
     if (settings.driver != SourceDriver::file) {
       return tl::unexpected(
-          Error{ErrorCode::bad_file, fmt::format("{}: source '{}' is no file; analyse evaluates files, use 'dyncal run' for live sources",
+          Error{ErrorCode::bad_file, fmt::format("{}: source '{}' is no file; analyse evaluates "
+                                                 "files, use 'dyncal run' for live sources",
                                                  settings.where, settings.name)});
     }
     SourceSettings at_once = settings;
@@ -46,7 +49,8 @@ public:
     input->options_.kind = acs::kind_of(bench.method, settings.name);
     const auto described = input->driver_->describe();
     if (!described) {
-      return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("source '{}': {}", settings.name, described.error().message)});
+      return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("source '{}': {}", settings.name,
+                                                                   described.error().message)});
     }
     input->description_ = to_message(input->options_, session, software_version(), *described);
     input->thread_ = std::jthread([raw = input.get()] { raw->read(); });
@@ -89,7 +93,8 @@ public:
   }
 
 private:
-  explicit FileInput(std::unique_ptr<drivers::acs::AcsDriver> driver) : driver_(std::move(driver)) {}
+  explicit FileInput(std::unique_ptr<drivers::acs::AcsDriver> driver)
+      : driver_(std::move(driver)) {}
 
   void begin_session(const drivers::SourceDescription&) override {}
 
@@ -104,7 +109,8 @@ private:
     const auto outcome = driver_->run(*this);
     const std::lock_guard lock(mutex_);
     if (!outcome) {
-      failure_ = Error{ErrorCode::bad_file, fmt::format("source '{}': {}", options_.source, outcome.error().message)};
+      failure_ = Error{ErrorCode::bad_file,
+                       fmt::format("source '{}': {}", options_.source, outcome.error().message)};
     }
     done_ = true;
     changed_.notify_all();
@@ -114,8 +120,11 @@ private:
     if (block.samples == 0) {
       return;
     }
-    const std::int64_t last = block.clock ? block.clock->stamp_ns(block.first_sample + block.samples - 1) : block.stamps_ns.back();
-    const std::int64_t first = block.clock ? block.clock->stamp_ns(block.first_sample) : block.stamps_ns.front();
+    const std::int64_t last = block.clock
+                                  ? block.clock->stamp_ns(block.first_sample + block.samples - 1)
+                                  : block.stamps_ns.back();
+    const std::int64_t first =
+        block.clock ? block.clock->stamp_ns(block.first_sample) : block.stamps_ns.front();
     first_ns_ = first_ns_.value_or(first);
     reached_ns_ = last - *first_ns_;
   }
@@ -138,7 +147,8 @@ private:
 using Inputs = std::vector<std::unique_ptr<FileInput>>;
 
 // All at once: a record of shots is small beside one of samples.
-Expected<void> take_shots(const BenchFile& bench, const std::string& source, RunEvaluator& evaluator) {
+Expected<void> take_shots(const BenchFile& bench, const std::string& source,
+                          RunEvaluator& evaluator) {
   const auto files = read_shot_files(bench, source, evaluator.recipe().run);
   if (!files) {
     return tl::unexpected(files.error());
@@ -176,15 +186,21 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
 
 void collect(EvaluationOutput output, RunOutcome& outcome) {
   std::move(output.results.begin(), output.results.end(), std::back_inserter(outcome.results));
-  std::move(output.transfer_functions.begin(), output.transfer_functions.end(), std::back_inserter(outcome.transfer_functions));
-  std::move(output.clock_reports.begin(), output.clock_reports.end(), std::back_inserter(outcome.clock_reports));
+  std::move(output.transfer_functions.begin(), output.transfer_functions.end(),
+            std::back_inserter(outcome.transfer_functions));
+  std::move(output.clock_reports.begin(), output.clock_reports.end(),
+            std::back_inserter(outcome.clock_reports));
 }
 
-// Takes from the file that is behind in its own time, so that no record has to wait long for the other.
-Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_token& stop, RunOutcome& outcome) {
+// Takes from the file that is behind in its own time, so that no record has to wait long for the
+// other.
+Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_token& stop,
+                        RunOutcome& outcome) {
   while (!evaluator.finished() && !inputs.empty() && !stop.stop_requested()) {
     const auto behind =
-        std::min_element(inputs.begin(), inputs.end(), [](const auto& a, const auto& b) { return a->reached_ns() < b->reached_ns(); });
+        std::min_element(inputs.begin(), inputs.end(), [](const auto& a, const auto& b) {
+          return a->reached_ns() < b->reached_ns();
+        });
     const auto block = (*behind)->next();
     if (!block) {
       return tl::unexpected(block.error());
@@ -219,7 +235,9 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (!recipe) {
     return tl::unexpected(recipe.error());
   }
-  RunEvaluator evaluator(std::move(*recipe), std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, max_evaluations));
+  RunEvaluator evaluator(
+      std::move(*recipe),
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, max_evaluations));
   auto inputs = open_inputs(*bench, evaluator);
   if (!inputs) {
     return tl::unexpected(inputs.error());

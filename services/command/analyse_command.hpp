@@ -1,8 +1,9 @@
-// `dyncal analyse BENCH.toml`: the same evaluation as a live run, from the bench file's file sources, without the network.
-// Shots of series time stamping come from folders (shot_files.hpp).
+// `dyncal analyse BENCH.toml`: the same evaluation as a live run, from the bench file's file
+// sources, without the network. Shots of series time stamping come from folders (shot_files.hpp).
 //
-// Files are read in threads of their own, a bounded stretch ahead; the evaluation runs in the caller's thread. All have ended when it
-// returns. Fails like `dyncal run`: a file with an error is named with its line, a source that is no file is refused.
+// Files are read in threads of their own, a bounded stretch ahead; the evaluation runs in the
+// caller's thread. All have ended when it returns. Fails like `dyncal run`: a file with an error is
+// named with its line, a source that is no file is refused.
 #pragma once
 
 #include <filesystem>

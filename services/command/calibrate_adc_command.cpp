@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include "analysis/instrument/adc_comparison.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file_writer.hpp"
-#include "services/contract/digest.hpp"
-#include "services/contract/topics.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/command/run_command.hpp"
-#include "drivers/utc_clock.hpp"
+#include "services/contract/digest.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -25,9 +25,10 @@ using namespace std::chrono_literals;
 using Measurements = std::vector<analysis::AdcCalibrationPoint>;
 
 constexpr auto description_limit = 6s;
-constexpr double amplitude_tolerance = 0.1;  // of the sync voltage asked for; cables and loads take a little
-constexpr double amplitude_spread = 0.05;    // within one pass without a voltage asked for
-constexpr double max_adc_delay_s = 2e-5; // more is a hint at something else
+constexpr double amplitude_tolerance =
+    0.1; // of the sync voltage asked for; cables and loads take a little
+constexpr double amplitude_spread = 0.05; // within one pass without a voltage asked for
+constexpr double max_adc_delay_s = 2e-5;  // more is a hint at something else
 
 Error refused(std::string message) {
   return {ErrorCode::bad_argument, std::move(message)};
@@ -35,25 +36,31 @@ Error refused(std::string message) {
 
 Error no_time_scale(const std::string& source) {
   return refused(
-      fmt::format("source '{}' does not stamp in UTC: sync links unrelated clocks only up to a delay, and a delay is what the phase of "
+      fmt::format("source '{}' does not stamp in UTC: sync links unrelated clocks only up to a "
+                  "delay, and a delay is what the phase of "
                   "the ADC is made of; let both sources stamp in UTC (time_base = \"utc\")",
                   source));
 }
 
 // What the sources say of themselves, which counts more than the bench file.
-Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench, const std::stop_token& stop) {
+Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
+                                         const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
+  auto descriptions = participant.reader<SourceDescription>(
+      bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
     return tl::unexpected(descriptions.error());
   }
   std::map<std::string, TimeBase> time_bases;
-  const std::array<std::string, 2> sources{bench.method.sync_acs.source, bench.method.sync_dau.source};
+  const std::array<std::string, 2> sources{bench.method.sync_acs.source,
+                                           bench.method.sync_dau.source};
   const auto deadline = std::chrono::steady_clock::now() + description_limit;
   const auto missing = [&] {
-    return std::find_if(sources.begin(), sources.end(), [&](const std::string& source) { return time_bases.count(source) == 0; });
+    return std::find_if(sources.begin(), sources.end(),
+                        [&](const std::string& source) { return time_bases.count(source) == 0; });
   };
-  while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline && !stop.stop_requested()) {
+  while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline &&
+         !stop.stop_requested()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 100ms);
     descriptions->take([&](const SourceDescription& description, const bus::SampleInfo& info) {
       if (info.valid) {
@@ -62,11 +69,15 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
     });
   }
   if (stop.stop_requested()) {
-    return tl::unexpected(Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
+    return tl::unexpected(
+        Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
   }
   if (const auto source = missing(); source != sources.end()) {
     return tl::unexpected(Error{
-        ErrorCode::no_source, fmt::format("source '{}' has not described itself; does its service run in the same DDS domain?", *source)});
+        ErrorCode::no_source,
+        fmt::format(
+            "source '{}' has not described itself; does its service run in the same DDS domain?",
+            *source)});
   }
   for (const auto& source : sources) {
     if (time_bases[source] != TIME_BASE_UTC) {
@@ -77,7 +88,8 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
 }
 
 analysis::SyncPhasor phasor_of(const SineFit& fit) {
-  return {fit.frequency_hz(), fit.u_frequency_hz(), fit.reference_ns(), fit.sine(), fit.cosine(), fit.u_sine(), fit.u_cosine()};
+  return {fit.frequency_hz(), fit.u_frequency_hz(), fit.reference_ns(), fit.sine(),
+          fit.cosine(),       fit.u_sine(),         fit.u_cosine()};
 }
 
 const SineFit* fit_of(const CalibrationResult& result, const ChannelName& channel) {
@@ -89,7 +101,8 @@ const SineFit* fit_of(const CalibrationResult& result, const ChannelName& channe
   return nullptr;
 }
 
-Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench, const RunOutcome& outcome) {
+Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench,
+                                       const RunOutcome& outcome) {
   Measurements measurements;
   for (const CalibrationResult& result : outcome.results) {
     const SineFit* acs = fit_of(result, bench.method.sync_acs);
@@ -97,68 +110,81 @@ Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const
     if (!result.valid() || acs == nullptr || dau == nullptr) {
       continue;
     }
-    const auto compared = analysis::compare_sync_adc(
-        phasor_of(*acs), phasor_of(*dau), bench.excitation.duration_s,
-        {.time_scale_s = command.u_time_scale_s, .acs_delay_s = bench.uncertainty.acs_delay_s, .acs_gain_rel = command.u_acs_gain_rel});
+    const auto compared =
+        analysis::compare_sync_adc(phasor_of(*acs), phasor_of(*dau), bench.excitation.duration_s,
+                                   {.time_scale_s = command.u_time_scale_s,
+                                    .acs_delay_s = bench.uncertainty.acs_delay_s,
+                                    .acs_gain_rel = command.u_acs_gain_rel});
     if (!compared) {
-      return tl::unexpected(Error{ErrorCode::no_result,
-                                  fmt::format("step {}, {} Hz: {}", result.step(), result.frequency_text_hz(), compared.error().message)});
+      return tl::unexpected(Error{
+          ErrorCode::no_result, fmt::format("step {}, {} Hz: {}", result.step(),
+                                            result.frequency_text_hz(), compared.error().message)});
     }
     measurements.push_back(compared->point);
-    measurements.back().frequency_hz = result.frequency_hz(); // what was asked for; the clocks see it a little off
+    measurements.back().frequency_hz =
+        result.frequency_hz(); // what was asked for; the clocks see it a little off
   }
   return measurements;
 }
 
 // Gives all measurements of a pass the one test amplitude that they stand for.
 Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& measurements) {
-  const auto [low, high] = std::minmax_element(measurements.begin(), measurements.end(),
-                                               [](const auto& a, const auto& b) { return a.test_amplitude_vpp < b.test_amplitude_vpp; });
+  const auto [low, high] = std::minmax_element(
+      measurements.begin(), measurements.end(),
+      [](const auto& a, const auto& b) { return a.test_amplitude_vpp < b.test_amplitude_vpp; });
   const double lowest_vpp = low->test_amplitude_vpp;
   const double highest_vpp = high->test_amplitude_vpp;
-  if (asked_vpp && (lowest_vpp < *asked_vpp * (1.0 - amplitude_tolerance) || highest_vpp > *asked_vpp * (1.0 + amplitude_tolerance))) {
+  if (asked_vpp && (lowest_vpp < *asked_vpp * (1.0 - amplitude_tolerance) ||
+                    highest_vpp > *asked_vpp * (1.0 + amplitude_tolerance))) {
     return tl::unexpected(
-        refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the generator was set to {:.4g} V: "
+        refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
+                            "generator was set to {:.4g} V: "
                             "--amplitudes needs the generator's output itself as sync",
                             lowest_vpp, highest_vpp, *asked_vpp)));
   }
   if (!asked_vpp && highest_vpp > lowest_vpp * (1.0 + amplitude_spread)) {
-    return tl::unexpected(
-        refused(fmt::format("sync goes from {:.4g} to {:.4g} V peak to peak with the bench's levels, but an ADC is calibrated at "
-                            "one amplitude after the other: give --amplitudes",
-                            lowest_vpp, highest_vpp)));
+    return tl::unexpected(refused(fmt::format("sync goes from {:.4g} to {:.4g} V peak to peak with "
+                                              "the bench's levels, but an ADC is calibrated at "
+                                              "one amplitude after the other: give --amplitudes",
+                                              lowest_vpp, highest_vpp)));
   }
   const double step = std::pow(10.0, std::floor(std::log10(highest_vpp)) - 2.0);
-  const double name_vpp = asked_vpp.value_or(std::round(0.5 * (lowest_vpp + highest_vpp) / step) * step);
+  const double name_vpp =
+      asked_vpp.value_or(std::round(0.5 * (lowest_vpp + highest_vpp) / step) * step);
   for (analysis::AdcCalibrationPoint& point : measurements) {
     point.test_amplitude_vpp = name_vpp;
   }
   return {};
 }
 
-Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const BenchFile& bench, const std::string& run,
-                                    std::optional<double> amplitude_vpp, bus::Participant& participant, const std::stop_token& stop) {
+Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const BenchFile& bench,
+                                    const std::string& run, std::optional<double> amplitude_vpp,
+                                    bus::Participant& participant, const std::stop_token& stop) {
   const BenchFile pass = bench_of_adc_pass(bench, amplitude_vpp);
   ProgressLine progress(stderr);
-  RunController controller(participant, pass, run, [&](const RunProgress& state) { progress.show(state); });
+  RunController controller(participant, pass, run,
+                           [&](const RunProgress& state) { progress.show(state); });
   auto outcome = controller.conduct({}, stop);
   progress.end();
   if (!outcome) {
     return tl::unexpected(outcome.error());
   }
   if (outcome->interrupted || !outcome->problem.empty()) {
-    return tl::unexpected(Error{outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,
-                                outcome->interrupted ? "interrupted: the excitation is off; no file was written" : outcome->problem});
+    return tl::unexpected(
+        Error{outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,
+              outcome->interrupted ? "interrupted: the excitation is off; no file was written"
+                                   : outcome->problem});
   }
   auto measurements = measurements_of(command, pass, *outcome);
   if (!measurements) {
     return measurements;
   }
   if (measurements->size() < outcome->measurement.steps().size()) {
-    return tl::unexpected(
-        Error{ErrorCode::no_result,
-              fmt::format("{} of {} steps have no result; the analysis service says why (dyncal watch)",
-                          outcome->measurement.steps().size() - measurements->size(), outcome->measurement.steps().size())});
+    return tl::unexpected(Error{
+        ErrorCode::no_result,
+        fmt::format("{} of {} steps have no result; the analysis service says why (dyncal watch)",
+                    outcome->measurement.steps().size() - measurements->size(),
+                    outcome->measurement.steps().size())});
   }
   if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
     return tl::unexpected(named.error());
@@ -175,19 +201,25 @@ std::string utc_text(std::int64_t utc_ns) {
 }
 
 void print(const Measurements& measurements) {
-  fmt::print("{:>10} {:>9} {:>11} {:>10} {:>12} {:>10} {:>11} {:>9}\n", "Hz", "V pp", "gain", "u", "lag in rad", "u", "delay in ns", "u");
-  for (const analysis::AdcCalibrationPoint& point : analysis::adc_calibration_points(measurements)) {
+  fmt::print("{:>10} {:>9} {:>11} {:>10} {:>12} {:>10} {:>11} {:>9}\n", "Hz", "V pp", "gain", "u",
+             "lag in rad", "u", "delay in ns", "u");
+  for (const analysis::AdcCalibrationPoint& point :
+       analysis::adc_calibration_points(measurements)) {
     const double w = 2.0 * std::numbers::pi * point.frequency_hz;
-    fmt::print("{:>10.4g} {:>9.4g} {:>11.7f} {:>10.1e} {:>12.3e} {:>10.1e} {:>11.1f} {:>9.1f}\n", point.frequency_hz,
-               point.test_amplitude_vpp, point.gain, point.u_gain, point.phase_lag_rad, point.u_phase_lag_rad,
-               1e9 * point.phase_lag_rad / w, 1e9 * point.u_phase_lag_rad / w);
+    fmt::print("{:>10.4g} {:>9.4g} {:>11.7f} {:>10.1e} {:>12.3e} {:>10.1e} {:>11.1f} {:>9.1f}\n",
+               point.frequency_hz, point.test_amplitude_vpp, point.gain, point.u_gain,
+               point.phase_lag_rad, point.u_phase_lag_rad, 1e9 * point.phase_lag_rad / w,
+               1e9 * point.u_phase_lag_rad / w);
     if (std::abs(point.phase_lag_rad) > w * max_adc_delay_s + 6.0 * point.u_phase_lag_rad) {
-      fmt::print("{:>10} a delay that an ADC hardly has: do both sources mark the instant of sampling in UTC? is a cable inverted?\n", "");
+      fmt::print("{:>10} a delay that an ADC hardly has: do both sources mark the instant of "
+                 "sampling in UTC? is a cable inverted?\n",
+                 "");
     }
   }
 }
 
-Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench, const std::string& run, const Measurements& measurements) {
+Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
+                     const std::string& run, const Measurements& measurements) {
   const SourceSettings* unit = bench.source(bench.method.sync_dau.source);
   AdcFileHead head;
   head.channel = command.channel;
@@ -201,8 +233,8 @@ Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
   return write_adc_file(command.output, head, measurements);
 }
 
-Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFile& bench, const std::string& run,
-                               const std::stop_token& stop) {
+Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFile& bench,
+                               const std::string& run, const std::stop_token& stop) {
   NetworkOptions network = command.network;
   add_network_settings(bench.network, network);
   auto participant = join_network(network, "dyncal-calibrate");
@@ -212,16 +244,19 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
   if (const auto common = require_common_time_scale(*participant, bench, stop); !common) {
     return tl::unexpected(common.error());
   }
-  std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(), command.amplitudes_vpp.end());
+  std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(),
+                                            command.amplitudes_vpp.end());
   if (passes.empty()) {
     passes.emplace_back();
   }
   Measurements all;
   for (std::size_t i = 0; i < passes.size(); ++i) {
     if (passes[i]) {
-      fmt::print(stderr, "test amplitude {} V peak to peak, {} of {}\n", *passes[i], i + 1, passes.size());
+      fmt::print(stderr, "test amplitude {} V peak to peak, {} of {}\n", *passes[i], i + 1,
+                 passes.size());
     }
-    const auto measured = measure_pass(command, bench, fmt::format("{}-{}", run, i + 1), passes[i], *participant, stop);
+    const auto measured = measure_pass(command, bench, fmt::format("{}-{}", run, i + 1), passes[i],
+                                       *participant, stop);
     if (!measured) {
       return measured;
     }
@@ -234,30 +269,35 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
 
 Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) {
   if (bench.method.kind != EvaluationMethod::sample_timestamping) {
-    return tl::unexpected(
-        refused(fmt::format("{}: the sync ADC is calibrated on a bench of method.kind = \"sample-timestamping\", whose DAU "
-                            "records sync in the data-ready path",
-                            bench.path.string())));
+    return tl::unexpected(refused(fmt::format("{}: the sync ADC is calibrated on a bench of "
+                                              "method.kind = \"sample-timestamping\", whose DAU "
+                                              "records sync in the data-ready path",
+                                              bench.path.string())));
   }
   for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
     const SourceSettings* source = bench.source(role.source);
     if (source != nullptr && source->driver == SourceDriver::oscilloscope) {
-      return tl::unexpected(
-          refused(fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its trigger, and the DAU does "
-                              "not stamp that; calibrate the ADC against a system that stamps in UTC",
-                              bench.path.string(), role.source)));
+      return tl::unexpected(refused(
+          fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its "
+                      "trigger, and the DAU does "
+                      "not stamp that; calibrate the ADC against a system that stamps in UTC",
+                      bench.path.string(), role.source)));
     }
-    const bool may_be_told_by_instrument = source != nullptr && source->driver == SourceDriver::socket;
-    if (source != nullptr && source->time_base != drivers::TimeBase::utc && !may_be_told_by_instrument) {
+    const bool may_be_told_by_instrument =
+        source != nullptr && source->driver == SourceDriver::socket;
+    if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
+        !may_be_told_by_instrument) {
       return tl::unexpected(no_time_scale(role.source));
     }
   }
   if (bench.excitation.repetitions < 2) {
-    return tl::unexpected(refused(fmt::format(
-        "{}: excitation.repetitions must be 2 at least: the scatter of the calibration is seen from them", bench.path.string())));
+    return tl::unexpected(refused(fmt::format("{}: excitation.repetitions must be 2 at least: the "
+                                              "scatter of the calibration is seen from them",
+                                              bench.path.string())));
   }
   if (sets_amplitude && bench.generator.driver == "none") {
-    return tl::unexpected(refused(fmt::format("{}: --amplitudes sets the generator, but the bench has none", bench.path.string())));
+    return tl::unexpected(refused(fmt::format(
+        "{}: --amplitudes sets the generator, but the bench has none", bench.path.string())));
   }
   return {};
 }
@@ -285,7 +325,8 @@ int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token&
   if (!bench) {
     return fail(bench.error());
   }
-  if (const auto possible = check_bench_for_adc(*bench, !command.amplitudes_vpp.empty()); !possible) {
+  if (const auto possible = check_bench_for_adc(*bench, !command.amplitudes_vpp.empty());
+      !possible) {
     return fail(possible.error());
   }
   const std::string run = "adc-" + run_from_time();
@@ -297,9 +338,12 @@ int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token&
   if (const auto written = write(command, *bench, run, *measurements); !written) {
     return fail(written.error());
   }
-  fmt::print("wrote {}\nfor the bench file, under [corrections]:\nadc = {{ file = \"{}\", channel = \"{}\", phase_sign = \"lag\"{} }}\n",
+  fmt::print("wrote {}\nfor the bench file, under [corrections]:\nadc = {{ file = \"{}\", channel "
+             "= \"{}\", phase_sign = \"lag\"{} }}\n",
              command.output.string(), command.output.filename().string(), command.channel,
-             command.amplitudes_vpp.size() > 1 ? fmt::format(", test_amplitude_vpp = {}", command.amplitudes_vpp.front()) : "");
+             command.amplitudes_vpp.size() > 1
+                 ? fmt::format(", test_amplitude_vpp = {}", command.amplitudes_vpp.front())
+                 : "");
   return 0;
 }
 

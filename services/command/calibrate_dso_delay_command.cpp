@@ -34,12 +34,16 @@ Error device_error(const drivers::Error& error) {
   return {ErrorCode::device, error.message};
 }
 
-// A microsecond around the trigger for a rectangle; a whole period for a sine, with the deepest memory that is read in reasonable time.
-drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& command, double frequency_hz) {
+// A microsecond around the trigger for a rectangle; a whole period for a sine, with the deepest
+// memory that is read in reasonable time.
+drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& command,
+                                          double frequency_hz) {
   if (command.by == "rectangle") {
     return {.before_trigger_s = 0.3e-6, .after_trigger_s = 0.7e-6, .points = 1000};
   }
-  return {.before_trigger_s = 0.5 / frequency_hz, .after_trigger_s = 0.5 / frequency_hz, .points = 1'000'000};
+  return {.before_trigger_s = 0.5 / frequency_hz,
+          .after_trigger_s = 0.5 / frequency_hz,
+          .points = 1'000'000};
 }
 
 Expected<std::unique_ptr<ScpiGenerator>> start_generator(const CalibrateDsoDelayCommand& command) {
@@ -61,30 +65,37 @@ Expected<std::unique_ptr<ScpiGenerator>> start_generator(const CalibrateDsoDelay
   return std::move(*generator);
 }
 
-Expected<Delays> measure(const CalibrateDsoDelayCommand& command, const analysis::Frequency& frequency, const std::stop_token& stop) {
+Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
+                         const analysis::Frequency& frequency, const std::stop_token& stop) {
   drivers::StopSignal device_stop;
   const std::stop_callback raise(stop, [&] { device_stop.raise(); });
   drivers::dso::Oscilloscope oscilloscope(
       {.address = command.oscilloscope,
        .family = command.family,
        .inputs = {{"sync", command.sync_input, command.sync_range_v, 0.0},
-                  {"output", command.output_input, command.output_range_v, 0.4 * command.output_range_v}}},
+                  {"output", command.output_input, command.output_range_v,
+                   0.4 * command.output_range_v}}},
       device_stop);
   Delays delays;
   std::vector<analysis::ShotDelay> shots;
   double interval_s = 0.0;
   while (static_cast<int>(shots.size()) < command.shots) {
-    const auto shot =
-        oscilloscope.prepare(acquisition_for(command, frequency.hz())).and_then([&] { return oscilloscope.acquire(trigger_limit); });
+    const auto shot = oscilloscope.prepare(acquisition_for(command, frequency.hz())).and_then([&] {
+      return oscilloscope.acquire(trigger_limit);
+    });
     std::optional<std::string> problem;
     if (!shot) {
       problem = shot.error().message;
-      if (shots.empty() && (shot.error().code == drivers::ErrorCode::refused || shot.error().code == drivers::ErrorCode::not_found)) {
-        return tl::unexpected(device_error(shot.error())); // a wrong address or instrument does not get better
+      if (shots.empty() && (shot.error().code == drivers::ErrorCode::refused ||
+                            shot.error().code == drivers::ErrorCode::not_found)) {
+        return tl::unexpected(
+            device_error(shot.error())); // a wrong address or instrument does not get better
       }
     } else {
-      const analysis::DelayTrace trace{shot->first_sample_s, shot->interval_s, shot->traces[0].volts, shot->traces[1].volts};
-      const auto delay = command.by == "rectangle" ? analysis::delay_by_rectangle(trace) : analysis::delay_by_sine(trace, frequency);
+      const analysis::DelayTrace trace{shot->first_sample_s, shot->interval_s,
+                                       shot->traces[0].volts, shot->traces[1].volts};
+      const auto delay = command.by == "rectangle" ? analysis::delay_by_rectangle(trace)
+                                                   : analysis::delay_by_sine(trace, frequency);
       interval_s = shot->interval_s;
       if (delay) {
         shots.push_back(*delay);
@@ -93,10 +104,13 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command, const analysis
       }
     }
     if (stop.stop_requested()) {
-      return tl::unexpected(Error{ErrorCode::interrupted, fmt::format("interrupted after {} of {} shots", shots.size(), command.shots)});
+      return tl::unexpected(
+          Error{ErrorCode::interrupted,
+                fmt::format("interrupted after {} of {} shots", shots.size(), command.shots)});
     }
     if (problem && ++delays.failures > command.shots) {
-      return tl::unexpected(Error{ErrorCode::device, fmt::format("too many shots fail, the last one: {}", *problem)});
+      return tl::unexpected(
+          Error{ErrorCode::device, fmt::format("too many shots fail, the last one: {}", *problem)});
     }
     if (problem) {
       static_cast<void>(device_stop.wait_for(pause_after_failure));
@@ -113,21 +127,26 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command, const analysis
 
 void print(const CalibrateDsoDelayCommand& command, const Delays& delays) {
   const analysis::TriggerDelay& delay = delays.mean;
-  fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", delays.instrument, command.by, command.frequency_hz, delay.shots,
-             delays.failures);
-  fmt::print("delay of the trigger output   {:10.3f} ns   u {:.3f} ns   scatter of one shot {:.3f} ns\n", 1e9 * delay.delay_s,
-             1e9 * delay.u_delay_s, 1e9 * delay.scatter_s);
+  fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", delays.instrument, command.by,
+             command.frequency_hz, delay.shots, delays.failures);
+  fmt::print(
+      "delay of the trigger output   {:10.3f} ns   u {:.3f} ns   scatter of one shot {:.3f} ns\n",
+      1e9 * delay.delay_s, 1e9 * delay.u_delay_s, 1e9 * delay.scatter_s);
   if (command.by == "sine") {
-    fmt::print("from the zero crossing        {:10.3f} ns   scatter of one shot {:.3f} ns (trigger noise included)\n",
+    fmt::print("from the zero crossing        {:10.3f} ns   scatter of one shot {:.3f} ns (trigger "
+               "noise included)\n",
                1e9 * delay.from_zero_crossing_s, 1e9 * delay.scatter_from_zero_crossing_s);
   }
-  const std::size_t most = *std::max_element(delay.histogram.counts.begin(), delay.histogram.counts.end());
+  const std::size_t most =
+      *std::max_element(delay.histogram.counts.begin(), delay.histogram.counts.end());
   for (std::size_t bin = 0; bin < delay.histogram.counts.size(); ++bin) {
-    const double begin_s = delay.histogram.first_s + static_cast<double>(bin) * delay.histogram.width_s;
+    const double begin_s =
+        delay.histogram.first_s + static_cast<double>(bin) * delay.histogram.width_s;
     fmt::print("{:10.3f} ns {:5} {}\n", 1e9 * begin_s, delay.histogram.counts[bin],
                std::string(40 * delay.histogram.counts[bin] / most, '#'));
   }
-  fmt::print("for the bench file, under [corrections]:\ndso_delay = {{ file = \"{}\" }}\n", command.output.string());
+  fmt::print("for the bench file, under [corrections]:\ndso_delay = {{ file = \"{}\" }}\n",
+             command.output.string());
 }
 
 Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& delays) {
@@ -143,11 +162,15 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
       {"scatter_s", delay.scatter_s},
       {"from_zero_crossing_s", delay.from_zero_crossing_s},
       {"scatter_from_zero_crossing_s", delay.scatter_from_zero_crossing_s},
-      {"histogram", {{"first_s", delay.histogram.first_s}, {"width_s", delay.histogram.width_s}, {"counts", delay.histogram.counts}}}};
+      {"histogram",
+       {{"first_s", delay.histogram.first_s},
+        {"width_s", delay.histogram.width_s},
+        {"counts", delay.histogram.counts}}}};
   std::ofstream file(command.output);
   file << json.dump(1) << '\n';
   if (!file.flush()) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string())});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string())});
   }
   return {};
 }
@@ -157,7 +180,8 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
 int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::stop_token& stop) {
   const auto frequency = analysis::Frequency::parse(command.frequency_hz);
   if (!frequency) {
-    return fail({ErrorCode::bad_argument, fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
+    return fail({ErrorCode::bad_argument,
+                 fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
   }
   const auto generator = start_generator(command); // its destruction switches the output off
   if (!generator) {

@@ -1,9 +1,12 @@
-// `dyncal calibrate dso-delay`: the delay of an oscilloscope's trigger output, in the set-up of paper section 2.4: the sync line on one
-// input, the trigger output fed back to another (analysis/instrument/trigger_delay.hpp).
+// `dyncal calibrate dso-delay`: the delay of an oscilloscope's trigger output, in the set-up of
+// paper section 2.4: the sync line on one input, the trigger output fed back to another
+// (analysis/instrument/trigger_delay.hpp).
 //
-// Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that [corrections] dso_delay = { file = ... } of
-// a bench file names (services/bench/dso_delay_file.hpp). With a generator's address the generator is set and its output switched on and
-// off; otherwise the operator does that. A shot that fails is repeated, up to as many failures as shots. Belongs to one thread.
+// Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that
+// [corrections] dso_delay = { file = ... } of a bench file names
+// (services/bench/dso_delay_file.hpp). With a generator's address the generator is set and its
+// output switched on and off; otherwise the operator does that. A shot that fails is repeated, up
+// to as many failures as shots. Belongs to one thread.
 #pragma once
 
 #include <filesystem>
@@ -27,6 +30,7 @@ struct CalibrateDsoDelayCommand {
   std::filesystem::path output = "dso-delay.json";
 };
 
-[[nodiscard]] int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::stop_token& stop);
+[[nodiscard]] int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command,
+                                          const std::stop_token& stop);
 
 } // namespace dyncal::services

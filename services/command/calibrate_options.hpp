@@ -1,4 +1,5 @@
-// `dyncal calibrate INSTRUMENT`: the command line of the calibrations of single instruments of a bench; each has a file of its own.
+// `dyncal calibrate INSTRUMENT`: the command line of the calibrations of single instruments of a
+// bench; each has a file of its own.
 #pragma once
 
 #include <stop_token>
@@ -23,6 +24,7 @@ struct CalibrateCommands {
 void add_calibrate(CLI::App& app, CalibrateCommands& commands);
 
 // REQUIRES: the command line was parsed and has the sub-command.
-[[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands, const std::stop_token& stop);
+[[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands,
+                                const std::stop_token& stop);
 
 } // namespace dyncal::services

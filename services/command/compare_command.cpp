@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/comparison.hpp"
-#include "services/report/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
+#include "services/report/result_file.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -27,7 +27,8 @@ struct ComparedPoint {
   analysis::ComplexComparison comparison;
 };
 
-Expected<std::vector<ComparedPoint>> compare(const CompareCommand& command, const ResultPoints& first, const ResultPoints& second) {
+Expected<std::vector<ComparedPoint>>
+compare(const CompareCommand& command, const ResultPoints& first, const ResultPoints& second) {
   std::vector<ComparedPoint> compared;
   for (const auto& [place, point] : first) {
     const auto& [channel, frequency_hz] = place;
@@ -40,22 +41,28 @@ Expected<std::vector<ComparedPoint>> compare(const CompareCommand& command, cons
       continue;
     }
     if (match->second.unit != point.unit) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_file, fmt::format("{} is in \"{}\" but {} in \"{}\"; results in different units cannot be compared", channel,
-                                                 point.unit, other, match->second.unit)});
+      return tl::unexpected(Error{
+          ErrorCode::bad_file,
+          fmt::format(
+              "{} is in \"{}\" but {} in \"{}\"; results in different units cannot be compared",
+              channel, point.unit, other, match->second.unit)});
     }
-    const auto comparison =
-        analysis::compare_transfer(point.value, match->second.value, {command.common_magnitude_rel, command.common_phase_rad});
+    const auto comparison = analysis::compare_transfer(
+        point.value, match->second.value, {command.common_magnitude_rel, command.common_phase_rad});
     if (!comparison) {
       return tl::unexpected(
-          Error{ErrorCode::bad_argument, fmt::format("{} at {} Hz: {}", channel, frequency_hz, comparison.error().message)});
+          Error{ErrorCode::bad_argument,
+                fmt::format("{} at {} Hz: {}", channel, frequency_hz, comparison.error().message)});
     }
-    compared.push_back({channel, other, frequency_hz, point.value, match->second.value, *comparison});
+    compared.push_back(
+        {channel, other, frequency_hz, point.value, match->second.value, *comparison});
   }
   if (compared.empty()) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{} and {} have no channel and frequency in common; --channel and "
-                                                                 "--other-channel compare channels of different names",
-                                                                 command.first.string(), command.second.string())});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file,
+              fmt::format("{} and {} have no channel and frequency in common; --channel and "
+                          "--other-channel compare channels of different names",
+                          command.first.string(), command.second.string())});
   }
   return compared;
 }
@@ -65,20 +72,22 @@ double phase_difference_rad(const ComparedPoint& point) {
 }
 
 bool agrees(const ComparedPoint& point) {
-  return std::abs(point.comparison.en_magnitude) <= 1.0 && std::abs(point.comparison.en_phase) <= 1.0;
+  return std::abs(point.comparison.en_magnitude) <= 1.0 &&
+         std::abs(point.comparison.en_phase) <= 1.0;
 }
 
 void print_json(const std::vector<ComparedPoint>& points) {
   Json json{{"points", Json::array()}};
   for (const ComparedPoint& point : points) {
-    json["points"].push_back({{"channel", point.first_channel},
-                              {"other_channel", point.second_channel},
-                              {"frequency_hz", point.frequency_hz},
-                              {"magnitude_difference", point.first.magnitude - point.second.magnitude},
-                              {"phase_difference_rad", phase_difference_rad(point)},
-                              {"en_magnitude", point.comparison.en_magnitude},
-                              {"en_phase", point.comparison.en_phase},
-                              {"agrees", agrees(point)}});
+    json["points"].push_back(
+        {{"channel", point.first_channel},
+         {"other_channel", point.second_channel},
+         {"frequency_hz", point.frequency_hz},
+         {"magnitude_difference", point.first.magnitude - point.second.magnitude},
+         {"phase_difference_rad", phase_difference_rad(point)},
+         {"en_magnitude", point.comparison.en_magnitude},
+         {"en_phase", point.comparison.en_phase},
+         {"agrees", agrees(point)}});
   }
   json["agreeing"] = std::count_if(points.begin(), points.end(), agrees);
   fmt::print("{}\n", json.dump(2));
@@ -89,15 +98,19 @@ void print_table(const std::vector<ComparedPoint>& points) {
   for (const ComparedPoint& point : points) {
     if (point.first_channel != channel) {
       channel = point.first_channel;
-      fmt::print("{}{}\n{:>12} {:>14} {:>9} {:>16} {:>9}\n", channel == points.front().first_channel ? "" : "\n",
-                 point.second_channel == channel ? channel : channel + " and " + point.second_channel, "f / Hz", "d|H|", "E_n",
-                 "d arg H / rad", "E_n");
+      fmt::print("{}{}\n{:>12} {:>14} {:>9} {:>16} {:>9}\n",
+                 channel == points.front().first_channel ? "" : "\n",
+                 point.second_channel == channel ? channel
+                                                 : channel + " and " + point.second_channel,
+                 "f / Hz", "d|H|", "E_n", "d arg H / rad", "E_n");
     }
-    fmt::print("{:>12g} {:>14.3e} {:>9.2f} {:>16.3e} {:>9.2f}{}\n", point.frequency_hz, point.first.magnitude - point.second.magnitude,
-               point.comparison.en_magnitude, phase_difference_rad(point), point.comparison.en_phase, agrees(point) ? "" : "  disagree");
+    fmt::print("{:>12g} {:>14.3e} {:>9.2f} {:>16.3e} {:>9.2f}{}\n", point.frequency_hz,
+               point.first.magnitude - point.second.magnitude, point.comparison.en_magnitude,
+               phase_difference_rad(point), point.comparison.en_phase,
+               agrees(point) ? "" : "  disagree");
   }
-  fmt::print("\n{} of {} points agree (|E_n| <= 1 in magnitude and phase, k = 2)\n", std::count_if(points.begin(), points.end(), agrees),
-             points.size());
+  fmt::print("\n{} of {} points agree (|E_n| <= 1 in magnitude and phase, k = 2)\n",
+             std::count_if(points.begin(), points.end(), agrees), points.size());
 }
 
 } // namespace

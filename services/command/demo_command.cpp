@@ -12,12 +12,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "services/program/child_process.hpp"
-#include "services/demo/demo_bench.hpp"
 #include "services/command/run_command.hpp"
-#include "services/report/run_report.hpp"
+#include "services/demo/demo_bench.hpp"
 #include "services/demo/truth_check.hpp"
 #include "services/demo/vendor_assignment.hpp"
+#include "services/program/child_process.hpp"
+#include "services/report/run_report.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -26,12 +26,14 @@ using namespace std::chrono_literals;
 
 constexpr double agreement_limit = 4.0; // standard uncertainties
 constexpr auto start_limit = 10s;
-// Domains whose ports lie below those that Linux hands out to clients; chosen by process so that two demos do not meet.
+// Domains whose ports lie below those that Linux hands out to clients; chosen by process so that
+// two demos do not meet.
 constexpr int first_demo_domain = 20;
 constexpr int demo_domains = 80;
 
 // Of the virtual laser: the bench draws its errors from them and the recipe states them.
-constexpr DemoUncertainty reference_uncertainty{.reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4, .acs_rate_rel = 3e-7};
+constexpr DemoUncertainty reference_uncertainty{
+    .reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4, .acs_rate_rel = 3e-7};
 
 struct Demo {
   DemoPreset preset;
@@ -42,7 +44,8 @@ struct Demo {
   std::vector<ChildProcess> processes;
 };
 
-// A UDP port that is free now; the unit sends to it, so it must be known before the receiver opens it.
+// A UDP port that is free now; the unit sends to it, so it must be known before the receiver opens
+// it.
 Expected<std::uint16_t> free_udp_port() {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
@@ -50,27 +53,32 @@ Expected<std::uint16_t> free_udp_port() {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof address;
   void* raw = &address;
-  const bool found =
-      probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), size) == 0 && getsockname(probe, static_cast<sockaddr*>(raw), &size) == 0;
+  const bool found = probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), size) == 0 &&
+                     getsockname(probe, static_cast<sockaddr*>(raw), &size) == 0;
   close(probe);
   if (!found) {
-    return tl::unexpected(Error{ErrorCode::network, "this machine has no free UDP port on 127.0.0.1"});
+    return tl::unexpected(
+        Error{ErrorCode::network, "this machine has no free UDP port on 127.0.0.1"});
   }
   return ntohs(address.sin_port);
 }
 
 Error cannot_write(const std::filesystem::path& path) {
-  return {ErrorCode::bad_file, fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
+  return {ErrorCode::bad_file,
+          fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
 }
 
 Expected<Demo> prepare(const DemoCommand& command) {
   Demo demo;
   const auto& presets = demo_presets();
-  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) { return one.name == command.preset; });
+  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) {
+    return one.name == command.preset;
+  });
   if (preset == presets.end()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_argument,
-              fmt::format("--preset {} is not known; there are mpu9250-paper, mpu9250-ptb, bma280, tss, can, can-sync", command.preset)});
+    return tl::unexpected(Error{ErrorCode::bad_argument,
+                                fmt::format("--preset {} is not known; there are mpu9250-paper, "
+                                            "mpu9250-ptb, bma280, tss, can, can-sync",
+                                            command.preset)});
   }
   demo.preset = *preset;
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
@@ -81,7 +89,8 @@ Expected<Demo> prepare(const DemoCommand& command) {
     return tl::unexpected(dds.error());
   }
   demo.dds = *dds;
-  demo.domain = command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
+  demo.domain =
+      command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
   demo.bench = fmt::format("demo-{}", getpid());
   std::error_code failed;
   std::filesystem::create_directories(command.folder, failed);
@@ -92,8 +101,10 @@ Expected<Demo> prepare(const DemoCommand& command) {
   return demo;
 }
 
-Expected<void> start(Demo& demo, const std::string& program, const std::vector<std::string>& arguments) {
-  auto process = ChildProcess::start(program_folder() / program, arguments, demo.folder / (program + ".log"));
+Expected<void> start(Demo& demo, const std::string& program,
+                     const std::vector<std::string>& arguments) {
+  auto process =
+      ChildProcess::start(program_folder() / program, arguments, demo.folder / (program + ".log"));
   if (!process) {
     return tl::unexpected(process.error());
   }
@@ -112,16 +123,19 @@ Expected<nlohmann::json> wait_for_json(const std::filesystem::path& path, ChildP
     }
     std::this_thread::sleep_for(20ms); // until the file is there or the deadline is over
   }
-  return tl::unexpected(Error{ErrorCode::device, fmt::format("{} did not start: {}", process.name(), process.last_line())});
+  return tl::unexpected(Error{
+      ErrorCode::device, fmt::format("{} did not start: {}", process.name(), process.last_line())});
 }
 
 // How long the run will take in the bench's own time, about: the sensor shall warm up through it.
 double bench_seconds(const DemoPreset& preset) {
   constexpr double between_steps_s = 1.0;
-  return static_cast<double>(preset.frequencies_hz.size()) * preset.repetitions * (preset.settling_s + preset.duration_s + between_steps_s);
+  return static_cast<double>(preset.frequencies_hz.size()) * preset.repetitions *
+         (preset.settling_s + preset.duration_s + between_steps_s);
 }
 
-std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo, std::uint16_t dau_port) {
+std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo,
+                                         std::uint16_t dau_port) {
   const DemoPreset& preset = demo.preset;
   const std::vector<std::pair<std::string, std::string>> options{
       {"--preset", preset.sensor()},
@@ -135,14 +149,16 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
       {"--ports-file", demo.folder / "ports.json"},
       {"--frequencies", fmt::format("{}", fmt::join(preset.frequencies_hz, ","))},
       {"--levels", fmt::format("{}", fmt::join(preset.levels_m_s2, ","))},
-      {"--reference-magnitude-rel", fmt::format("{}", reference_uncertainty.reference_magnitude_rel)},
+      {"--reference-magnitude-rel",
+       fmt::format("{}", reference_uncertainty.reference_magnitude_rel)},
       {"--reference-phase-rad", fmt::format("{}", reference_uncertainty.reference_phase_rad)},
       {"--thermal-cycle", fmt::format("{:.0f}", bench_seconds(preset))},
       {"--loss", std::to_string(command.loss)},
       {"--duplicate", std::to_string(command.duplicates)}};
   std::vector<std::string> arguments;
   if (preset.can != DemoPreset::CanLink::none) {
-    arguments = {"--can", command.can_interface, "--can-bus", command.can_bus, "--dbc-file", demo.folder / "sensor.dbc"};
+    arguments = {"--can",         command.can_interface, "--can-bus",
+                 command.can_bus, "--dbc-file",          demo.folder / "sensor.dbc"};
   }
   for (const auto& [name, value] : options) {
     arguments.push_back(name);
@@ -157,7 +173,9 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
     return tl::unexpected(port.error());
   }
   std::filesystem::remove(demo.folder / "ports.json");
-  if (const auto started = start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port)); !started) {
+  if (const auto started =
+          start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port));
+      !started) {
     return started;
   }
   const auto ports = wait_for_json(demo.folder / "ports.json", demo.processes.back());
@@ -166,7 +184,8 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
   }
   const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
                                 .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
-                                .generator = fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
+                                .generator =
+                                    fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
                                 .oscilloscope = fmt::format("127.0.0.1:{}", ports->value("dso", 0)),
                                 .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0)),
                                 .can_interface = command.can_interface,
@@ -184,7 +203,8 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
 Expected<void> start_services(Demo& demo) {
   const std::string bench_file = demo.folder / "bench.toml";
   const std::string domain = std::to_string(demo.domain);
-  std::vector<std::pair<std::string, std::string>> services{{"dyncal-analysis", "analysis"}, {"dyncal-acs", "acs"}};
+  std::vector<std::pair<std::string, std::string>> services{{"dyncal-analysis", "analysis"},
+                                                            {"dyncal-acs", "acs"}};
   if (demo.preset.triggered) {
     services.emplace_back("dyncal-dso", "dau");
   } else if (demo.preset.can != DemoPreset::CanLink::none) {
@@ -205,7 +225,8 @@ Expected<void> start_services(Demo& demo) {
   return {};
 }
 
-// A service that has ended says why in its last line, which explains more than what the others make of its absence.
+// A service that has ended says why in its last line, which explains more than what the others make
+// of its absence.
 Error explain(Demo& demo, const Error& error) {
   for (ChildProcess& process : demo.processes) {
     if (!process.running()) {
@@ -220,11 +241,14 @@ int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
   if (!check) {
     return fail(check.error());
   }
-  fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} standard uncertainties ({})\n",
+  fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} "
+             "standard uncertainties ({})\n",
              check->points, check->worst, check->worst_where);
   if (check->points == 0 || !(check->worst <= agreement_limit)) {
     return fail(
-        {ErrorCode::no_result, fmt::format("the result does not agree with the truth within {} standard uncertainties", agreement_limit)});
+        {ErrorCode::no_result,
+         fmt::format("the result does not agree with the truth within {} standard uncertainties",
+                     agreement_limit)});
   }
   return 0;
 }
@@ -238,7 +262,9 @@ int run_demo(const DemoCommand& command, const std::stop_token& stop) {
   }
   fmt::print("Virtual bench: {}\nFiles in {}\n", demo->preset.shows, demo->folder.string());
   std::fflush(stdout);
-  if (const auto started = start_bench(command, *demo).and_then([&] { return start_services(*demo); }); !started) {
+  if (const auto started =
+          start_bench(command, *demo).and_then([&] { return start_services(*demo); });
+      !started) {
     return fail(explain(*demo, started.error()));
   }
   RunCommand run;

@@ -1,8 +1,9 @@
 // `dyncal demo`: a whole virtual bench, its services, DDS, analysis and report on this machine.
 //
-// Every instrument and service is a process of its own and talks as it does in a laboratory. All files go to one folder: bench file, ADC
-// calibration, logs, result, figures, and the truth that nobody but the final comparison reads. Belongs to one thread; all processes have
-// ended when it returns.
+// Every instrument and service is a process of its own and talks as it does in a laboratory. All
+// files go to one folder: bench file, ADC calibration, logs, result, figures, and the truth that
+// nobody but the final comparison reads. Belongs to one thread; all processes have ended when it
+// returns.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,8 @@ struct DemoCommand {
   std::string can_bus = "1M";
 };
 
-// Exit status: 0 when every result agrees with the bench's truth within four standard uncertainties.
+// Exit status: 0 when every result agrees with the bench's truth within four standard
+// uncertainties.
 [[nodiscard]] int run_demo(const DemoCommand& command, const std::stop_token& stop);
 
 } // namespace dyncal::services

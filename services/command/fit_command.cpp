@@ -7,11 +7,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/frequency_estimate.hpp"
 #include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/extended_sine_fit.hpp"
-#include "services/replay/series_file.hpp"
 #include "services/program/program.hpp"
+#include "services/replay/series_file.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -31,15 +31,18 @@ Error at(const FitCommand& command, const analysis::Error& error) {
   return {ErrorCode::bad_file, fmt::format("{}: {}", command.file.string(), error.message)};
 }
 
-Expected<std::vector<std::span<const double>>> chosen_columns(const FitCommand& command, const SeriesFile& series,
+Expected<std::vector<std::span<const double>>> chosen_columns(const FitCommand& command,
+                                                              const SeriesFile& series,
                                                               std::vector<std::string>& names) {
   names = command.columns.empty() ? series.names : command.columns;
   std::vector<std::span<const double>> columns;
   for (const std::string& name : names) {
     const auto column = series.column(name);
     if (!column) {
-      return tl::unexpected(Error{ErrorCode::bad_argument, fmt::format("{}: there is no column '{}'; the columns are: {}",
-                                                                       command.file.string(), name, fmt::join(series.names, ", "))});
+      return tl::unexpected(
+          Error{ErrorCode::bad_argument,
+                fmt::format("{}: there is no column '{}'; the columns are: {}",
+                            command.file.string(), name, fmt::join(series.names, ", "))});
     }
     columns.emplace_back(series.columns[*column]);
   }
@@ -68,17 +71,21 @@ analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) 
 }
 
 analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesFile& series,
-                                        const std::vector<std::span<const double>>& columns, Fit& fit) {
+                                        const std::vector<std::span<const double>>& columns,
+                                        Fit& fit) {
   if (!command.frequency.empty()) {
-    return analysis::Frequency::parse(command.frequency).map([&](const analysis::Frequency& frequency) { fit.frequency = frequency; });
+    return analysis::Frequency::parse(command.frequency)
+        .map([&](const analysis::Frequency& frequency) { fit.frequency = frequency; });
   }
   const auto start = analysis::estimate_frequency(series.stamps_ns, columns);
   if (!start) {
     return tl::unexpected(start.error());
   }
-  const double duration_s = static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
+  const double duration_s =
+      static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
   const double search_rel = std::min(estimate_bins / (start->hz() * duration_s), 0.9);
-  return analysis::fit_sine_and_frequency(*start, search_rel, fit.reference_ns, series.stamps_ns, columns)
+  return analysis::fit_sine_and_frequency(*start, search_rel, fit.reference_ns, series.stamps_ns,
+                                          columns)
       .map([&](analysis::FrequencyFit found) {
         fit.frequency = found.frequency;
         fit.u_frequency_hz = found.u_frequency_hz;
@@ -87,7 +94,8 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
 }
 
 analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile& series,
-                                     const std::vector<std::span<const double>>& columns, Fit& fit) {
+                                     const std::vector<std::span<const double>>& columns,
+                                     Fit& fit) {
   const auto basis = basis_of(command);
   if (!basis) {
     return tl::unexpected(basis.error());
@@ -96,11 +104,11 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
     if (!fit.fits.empty()) {
       return {};
     }
-    return analysis::fit_sine(fit.frequency, fit.reference_ns, series.stamps_ns, columns).map([&](auto fits) {
-      fit.fits = std::move(fits);
-    });
+    return analysis::fit_sine(fit.frequency, fit.reference_ns, series.stamps_ns, columns)
+        .map([&](auto fits) { fit.fits = std::move(fits); });
   }
-  return analysis::fit_sine_extended(fit.frequency, *basis, analysis::Weighting::none, fit.reference_ns, series.stamps_ns, columns)
+  return analysis::fit_sine_extended(fit.frequency, *basis, analysis::Weighting::none,
+                                     fit.reference_ns, series.stamps_ns, columns)
       .map([&](const std::vector<analysis::ExtendedFit>& fits) {
         fit.fits.clear();
         for (const analysis::ExtendedFit& one : fits) {
@@ -137,13 +145,15 @@ void print_json(const Fit& fit) {
 
 void print_table(const Fit& fit) {
   fmt::print("frequency {} Hz{}, reference time {} ns\n", fit.frequency.hz(),
-             fit.u_frequency_hz ? fmt::format(" (u {:.1e} Hz)", *fit.u_frequency_hz) : "", fit.reference_ns);
-  fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10}\n", "column", "amplitude", "u", "phase / rad", "u / rad", "offset",
-             "samples");
+             fit.u_frequency_hz ? fmt::format(" (u {:.1e} Hz)", *fit.u_frequency_hz) : "",
+             fit.reference_ns);
+  fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10}\n", "column", "amplitude", "u",
+             "phase / rad", "u / rad", "offset", "samples");
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const analysis::SineFit& one = fit.fits[i];
-    fmt::print("{:>20} {:>16.9g} {:>10.1e} {:>16.9f} {:>10.1e} {:>14.6g} {:>10}\n", fit.names[i], one.amplitude(), one.u_amplitude(),
-               one.phase_rad(), one.u_phase_rad(), one.offset, one.samples);
+    fmt::print("{:>20} {:>16.9g} {:>10.1e} {:>16.9f} {:>10.1e} {:>14.6g} {:>10}\n", fit.names[i],
+               one.amplitude(), one.u_amplitude(), one.phase_rad(), one.u_phase_rad(), one.offset,
+               one.samples);
   }
 }
 
@@ -163,11 +173,13 @@ int run_fit(const FitCommand& command) {
     return fail(columns.error());
   }
   if (series->stamps_ns.empty()) {
-    return fail({ErrorCode::bad_file, fmt::format("{}: the file has no samples", command.file.string())});
+    return fail(
+        {ErrorCode::bad_file, fmt::format("{}: the file has no samples", command.file.string())});
   }
   fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
-  const auto fitted =
-      find_frequency(command, *series, *columns, fit).and_then([&] { return fit_columns(command, *series, *columns, fit); });
+  const auto fitted = find_frequency(command, *series, *columns, fit).and_then([&] {
+    return fit_columns(command, *series, *columns, fit);
+  });
   if (!fitted) {
     return fail(at(command, fitted.error()));
   }

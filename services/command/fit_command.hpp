@@ -1,7 +1,8 @@
 // `dyncal fit DATA.csv`: one sine approximation (paper eq. (1)) of a recorded series, for checking.
 //
-// With a frequency three parameters are fitted, without one four, the frequency shared by all columns. Phase is lead at the reference time:
-// y = amplitude sin(w (t - t_ref) + phase_rad). Prints a table, or JSON with 17 digits. Belongs to one thread.
+// With a frequency three parameters are fitted, without one four, the frequency shared by all
+// columns. Phase is lead at the reference time: y = amplitude sin(w (t - t_ref) + phase_rad).
+// Prints a table, or JSON with 17 digits. Belongs to one thread.
 #pragma once
 
 #include <cstdint>

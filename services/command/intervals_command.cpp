@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/clock/sample_clock.hpp"
-#include "services/replay/series_file.hpp"
 #include "services/program/program.hpp"
+#include "services/replay/series_file.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -16,8 +16,11 @@ using Json = nlohmann::ordered_json;
 Json events_json(const analysis::SampleClockStatistics& clock) {
   Json events = Json::array();
   for (const analysis::IntervalEvent& event : clock.events) {
-    events.push_back(
-        {{"kind", event.kind}, {"sample", event.sample}, {"time_s", event.time_s}, {"size_ns", event.size_ns}, {"missing", event.missing}});
+    events.push_back({{"kind", event.kind},
+                      {"sample", event.sample},
+                      {"time_s", event.time_s},
+                      {"size_ns", event.size_ns},
+                      {"missing", event.missing}});
   }
   return events;
 }
@@ -74,17 +77,20 @@ void print_json(const analysis::SampleClockStatistics& clock) {
 }
 
 void print_table(const analysis::SampleClockStatistics& clock) {
-  fmt::print("{} intervals, mean {:.6f} us, rate {:.6f} Hz\n", clock.intervals, clock.mean_interval_s * 1e6, clock.mean_rate_hz);
-  fmt::print("sd {:.2f} ns, robust sd {:.2f} ns, smallest {:.3f} us, median {:.3f} us, largest {:.3f} us, spread {:.0f} ns\n",
-             clock.sd_s * 1e9, clock.mad_sd_s * 1e9, clock.minimum_s * 1e6, clock.median_s * 1e6, clock.maximum_s * 1e6,
-             (clock.maximum_s - clock.minimum_s) * 1e9);
+  fmt::print("{} intervals, mean {:.6f} us, rate {:.6f} Hz\n", clock.intervals,
+             clock.mean_interval_s * 1e6, clock.mean_rate_hz);
+  fmt::print("sd {:.2f} ns, robust sd {:.2f} ns, smallest {:.3f} us, median {:.3f} us, largest "
+             "{:.3f} us, spread {:.0f} ns\n",
+             clock.sd_s * 1e9, clock.mad_sd_s * 1e9, clock.minimum_s * 1e6, clock.median_s * 1e6,
+             clock.maximum_s * 1e6, (clock.maximum_s - clock.minimum_s) * 1e9);
   if (clock.pair_period_samples > 0.0) {
-    fmt::print("{} late/early pairs, one every {:.0f} samples ({:.4f} s)\n", clock.pair_count, clock.pair_period_samples,
-               clock.pair_period_s);
+    fmt::print("{} late/early pairs, one every {:.0f} samples ({:.4f} s)\n", clock.pair_count,
+               clock.pair_period_samples, clock.pair_period_s);
   }
   fmt::print("{} events\n", clock.event_count);
   for (const analysis::IntervalEvent& event : clock.events) {
-    fmt::print("  {:>9} at sample {:>10}, {:>12.6f} s, {:+.0f} ns{}\n", event.kind, event.sample, event.time_s, event.size_ns,
+    fmt::print("  {:>9} at sample {:>10}, {:>12.6f} s, {:+.0f} ns{}\n", event.kind, event.sample,
+               event.time_s, event.size_ns,
                event.missing > 0 ? fmt::format(", {} missing", event.missing) : "");
   }
 }
@@ -100,8 +106,10 @@ int run_intervals(const IntervalsCommand& command) {
   if (!command.temperature.empty()) {
     const auto column = series->column(command.temperature);
     if (!column) {
-      return fail({ErrorCode::bad_argument, fmt::format("{}: there is no column '{}'; the columns are: {}", command.file.string(),
-                                                        command.temperature, fmt::join(series->names, ", "))});
+      return fail(
+          {ErrorCode::bad_argument,
+           fmt::format("{}: there is no column '{}'; the columns are: {}", command.file.string(),
+                       command.temperature, fmt::join(series->names, ", "))});
     }
     temperature = series->columns[*column];
   }
@@ -112,8 +120,9 @@ int run_intervals(const IntervalsCommand& command) {
   clock.push(0, series->stamps_ns, {}, temperature);
   const auto statistics = clock.statistics();
   if (!statistics) {
-    return fail(
-        {ErrorCode::bad_file, fmt::format("{}: fewer than three samples: there are no intervals to speak of", command.file.string())});
+    return fail({ErrorCode::bad_file,
+                 fmt::format("{}: fewer than three samples: there are no intervals to speak of",
+                             command.file.string())});
   }
   command.json ? print_json(*statistics) : print_table(*statistics);
   return 0;

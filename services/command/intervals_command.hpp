@@ -1,5 +1,6 @@
-// `dyncal intervals DATA.csv`: the sample clock of a recorded series by direct sample interval evaluation (paper section 3,
-// analysis/clock/sample_clock.hpp): statistics, histogram, events. Belongs to one thread.
+// `dyncal intervals DATA.csv`: the sample clock of a recorded series by direct sample interval
+// evaluation (paper section 3, analysis/clock/sample_clock.hpp): statistics, histogram, events.
+// Belongs to one thread.
 #pragma once
 
 #include <filesystem>

@@ -11,17 +11,18 @@
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
-#include "services/run/output_guard.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
+#include "services/run/output_guard.hpp"
 
 namespace {
 
 using namespace dyncal::services;
 
 void add_run(CLI::App& app, RunCommand& run) {
-  CLI::App* command = app.add_subcommand("run", "run the excitation list of a bench and print the result");
+  CLI::App* command =
+      app.add_subcommand("run", "run the excitation list of a bench and print the result");
   command->add_option("BENCH.toml", run.bench_file, "bench file")->required();
   command->add_option("--run", run.run, "name of the run (default: the time)");
   command->add_option("--json", run.json, "write the result to this file as JSON");
@@ -30,93 +31,145 @@ void add_run(CLI::App& app, RunCommand& run) {
 }
 
 void add_demo(CLI::App& app, DemoCommand& demo) {
-  CLI::App* command = app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
-  command->add_option("--preset", demo.preset, "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")->capture_default_str();
-  command->add_option("--dds", demo.dds,
-                      "fastdds, cyclonedds, or one for each: dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
-  command->add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
-                    "of preset tss: take the phase of sync at the trigger out of every shot (default), or see what that is worth");
-  command->add_option("--speed", demo.speed, "times real time, or max")->capture_default_str();
-  command->add_option("--seed", demo.seed, "of the virtual bench's randomness")->capture_default_str();
-  command->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")->check(CLI::Range(0, 232));
-  command->add_option("--output", demo.folder, "folder for all files")->capture_default_str();
-  command->add_option("--json", demo.json, "write the result to this file as JSON (default: result.json in the folder)");
-  command->add_option("--repetitions", demo.repetitions, "of the excitation list")->check(CLI::Range(1, 1000));
-  command->add_option("--duration", demo.duration_s, "of the evaluated part of a step, in seconds of the bench")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--loss", demo.loss, "part of the unit's datagrams that is lost, 0 to 1")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--duplicate", demo.duplicates, "part of the unit's datagrams that comes twice, 0 to 1")->check(CLI::Range(0.0, 1.0));
+  CLI::App* command =
+      app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
   command
-      ->add_option("--can", demo.can_interface, "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a virtual one")
+      ->add_option("--preset", demo.preset,
+                   "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")
       ->capture_default_str();
-  command->add_option("--can-bus", demo.can_bus, "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
+  command->add_option("--dds", demo.dds,
+                      "fastdds, cyclonedds, or one for each: "
+                      "dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
+  command->add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
+                    "of preset tss: take the phase of sync at the trigger out of every shot "
+                    "(default), or see what that is worth");
+  command->add_option("--speed", demo.speed, "times real time, or max")->capture_default_str();
+  command->add_option("--seed", demo.seed, "of the virtual bench's randomness")
+      ->capture_default_str();
+  command
+      ->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")
+      ->check(CLI::Range(0, 232));
+  command->add_option("--output", demo.folder, "folder for all files")->capture_default_str();
+  command->add_option("--json", demo.json,
+                      "write the result to this file as JSON (default: result.json in the folder)");
+  command->add_option("--repetitions", demo.repetitions, "of the excitation list")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--duration", demo.duration_s,
+                   "of the evaluated part of a step, in seconds of the bench")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--loss", demo.loss, "part of the unit's datagrams that is lost, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option("--duplicate", demo.duplicates,
+                   "part of the unit's datagrams that comes twice, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option("--can", demo.can_interface,
+                   "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a "
+                   "virtual one")
+      ->capture_default_str();
+  command
+      ->add_option("--can-bus", demo.can_bus,
+                   "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
       ->check(CLI::IsMember({"500k", "1M", "fd-5M"}))
       ->capture_default_str();
 }
 
 void add_watch(CLI::App& app, WatchCommand& watch) {
-  CLI::App* command = app.add_subcommand("watch", "show benches, sources, rates, losses and results as they come");
+  CLI::App* command =
+      app.add_subcommand("watch", "show benches, sources, rates, losses and results as they come");
   command->add_option("--bench", watch.bench, "only this bench (default: all)");
-  command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")->check(CLI::PositiveNumber);
+  command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
+      ->check(CLI::PositiveNumber);
   add_network_options(*command, watch.network);
 }
 
 void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
-  CLI::App* command = app.add_subcommand("analyse", "evaluate the file sources of a bench file, without the network");
+  CLI::App* command = app.add_subcommand(
+      "analyse", "evaluate the file sources of a bench file, without the network");
   command->add_option("BENCH.toml", analyse.bench_file, "bench file")->required();
   command->add_option("--json", analyse.json, "write the result to this file as JSON");
   command->add_option("--figures", analyse.figures, "write figures (SVG and CSV) into this folder");
 }
 
 void add_fit(CLI::App& app, FitCommand& fit) {
-  CLI::App* command = app.add_subcommand("fit", "one sine approximation of a recorded series, for checking");
-  command->add_option("DATA.csv", fit.file, "CSV with a header line, or .npy: column t_ns, further columns")->required();
-  command->add_option("--frequency", fit.frequency, "in Hz, decimal text (default: estimated as fourth parameter)");
+  CLI::App* command =
+      app.add_subcommand("fit", "one sine approximation of a recorded series, for checking");
+  command
+      ->add_option("DATA.csv", fit.file,
+                   "CSV with a header line, or .npy: column t_ns, further columns")
+      ->required();
+  command->add_option("--frequency", fit.frequency,
+                      "in Hz, decimal text (default: estimated as fourth parameter)");
   command->add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
-  command->add_option("--reference-time", fit.reference_time_ns, "in ns, of the phase (default: the first stamp)");
-  command->add_option("--drift", fit.drift, "highest power of a drift beside the sine")->check(CLI::Range(0, 8));
-  command->add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")->check(CLI::Range(1, 50));
+  command->add_option("--reference-time", fit.reference_time_ns,
+                      "in ns, of the phase (default: the first stamp)");
+  command->add_option("--drift", fit.drift, "highest power of a drift beside the sine")
+      ->check(CLI::Range(0, 8));
+  command->add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")
+      ->check(CLI::Range(1, 50));
   command->add_option("--hum", fit.hum, "frequency of a further line in Hz (repeatable)");
-  command->add_option("--nominal-rate", fit.nominal_rate_hz, "take stamps of this rate in Hz in place of the file's")
+  command
+      ->add_option("--nominal-rate", fit.nominal_rate_hz,
+                   "take stamps of this rate in Hz in place of the file's")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", fit.json, "print JSON");
 }
 
 void add_intervals(CLI::App& app, IntervalsCommand& intervals) {
-  CLI::App* command = app.add_subcommand("intervals", "sample intervals of a recorded series: statistics and events");
-  command->add_option("DATA.csv", intervals.file, "CSV with a header line, or .npy: column t_ns")->required();
-  command->add_option("--temperature", intervals.temperature, "column with the sensor's temperature");
-  command->add_option("--tick", intervals.tick_s, "of the counter that made the stamps, in seconds")->check(CLI::PositiveNumber);
-  command->add_option("--nominal-rate", intervals.nominal_rate_hz, "in Hz")->check(CLI::PositiveNumber);
+  CLI::App* command = app.add_subcommand(
+      "intervals", "sample intervals of a recorded series: statistics and events");
+  command->add_option("DATA.csv", intervals.file, "CSV with a header line, or .npy: column t_ns")
+      ->required();
+  command->add_option("--temperature", intervals.temperature,
+                      "column with the sensor's temperature");
+  command->add_option("--tick", intervals.tick_s, "of the counter that made the stamps, in seconds")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--nominal-rate", intervals.nominal_rate_hz, "in Hz")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", intervals.json, "print JSON");
 }
 
 void add_compare(CLI::App& app, CompareCommand& compare) {
-  CLI::App* command = app.add_subcommand("compare", "do two results agree? E_n of magnitude and phase at every common frequency");
+  CLI::App* command = app.add_subcommand(
+      "compare", "do two results agree? E_n of magnitude and phase at every common frequency");
   command->add_option("A.json", compare.first, "result of dyncal")->required();
   command->add_option("B.json", compare.second, "the other result")->required();
   command->add_option("--channel", compare.first_channel, "only this channel (default: all)");
-  command->add_option("--other-channel", compare.second_channel, "its name in the other result (default: the same)");
+  command->add_option("--other-channel", compare.second_channel,
+                      "its name in the other result (default: the same)");
   command
       ->add_option("--common-magnitude", compare.common_magnitude_rel,
                    "relative standard uncertainty that both share, e.g. of one reference")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--common-phase", compare.common_phase_rad, "standard uncertainty of the phase that both share, in rad")
+  command
+      ->add_option("--common-phase", compare.common_phase_rad,
+                   "standard uncertainty of the phase that both share, in rad")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", compare.json, "print JSON");
 }
 
 void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
-  CLI::App* command = app.add_subcommand("triaxial", "response of a sensor's three axes and transverse sensitivity, from one result for "
-                                                     "each direction of excitation");
+  CLI::App* command = app.add_subcommand(
+      "triaxial",
+      "response of a sensor's three axes and transverse sensitivity, from one result for "
+      "each direction of excitation");
   constexpr std::array axes{"x", "y", "z"};
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    command->add_option(std::string("--") + axes[i], triaxial.results[i], std::string("result of the excitation along ") + axes[i]);
-    command->add_option(std::string("--motion-") + axes[i], triaxial.motions[i],
-                        std::string("result of a triaxial reference's other axes against its axis ") + axes[i]);
+    command->add_option(std::string("--") + axes[i], triaxial.results[i],
+                        std::string("result of the excitation along ") + axes[i]);
+    command->add_option(
+        std::string("--motion-") + axes[i], triaxial.motions[i],
+        std::string("result of a triaxial reference's other axes against its axis ") + axes[i]);
   }
-  command->add_option("--channels", triaxial.channels, "channels of the sensor: x, y, z (default: by their names' ends)")->expected(3);
-  command->add_option("--motion-channels", triaxial.motion_channels, "channels of the reference: x, y, z (default: by their names' ends)")
+  command
+      ->add_option("--channels", triaxial.channels,
+                   "channels of the sensor: x, y, z (default: by their names' ends)")
+      ->expected(3);
+  command
+      ->add_option("--motion-channels", triaxial.motion_channels,
+                   "channels of the reference: x, y, z (default: by their names' ends)")
       ->expected(3);
   command
       ->add_option("--transverse-motion", triaxial.transverse_motion_rel,
@@ -127,7 +180,8 @@ void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
 
 // Not for people: services/run/output_guard.hpp starts it.
 void add_guard_output(CLI::App& app, std::string& generator) {
-  CLI::App* command = app.add_subcommand("guard-output", "switch a generator's output off when standard input ends");
+  CLI::App* command = app.add_subcommand(
+      "guard-output", "switch a generator's output off when standard input ends");
   command->group("");
   command->add_option("ADDRESS", generator, "of the generator, HOST:PORT")->required();
 }

@@ -10,16 +10,19 @@ namespace dyncal::services {
 
 std::string describe(const RunProgress& progress) {
   if (progress.step == 0) {
-    return fmt::format("{} steps planned, {}, {} results", progress.steps, progress.phase, progress.results);
+    return fmt::format("{} steps planned, {}, {} results", progress.steps, progress.phase,
+                       progress.results);
   }
-  std::string text = fmt::format("step {} of {}, {} Hz, {}", progress.step, progress.steps, progress.frequency_hz, progress.phase);
+  std::string text = fmt::format("step {} of {}, {} Hz, {}", progress.step, progress.steps,
+                                 progress.frequency_hz, progress.phase);
   if (progress.seconds_left) {
     text += fmt::format(", {:.0f} s left", std::ceil(*progress.seconds_left));
   }
   return text;
 }
 
-ProgressLine::ProgressLine(std::FILE* stream) : stream_(stream), terminal_(isatty(fileno(stream)) != 0) {}
+ProgressLine::ProgressLine(std::FILE* stream)
+    : stream_(stream), terminal_(isatty(fileno(stream)) != 0) {}
 
 ProgressLine::~ProgressLine() {
   end();

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/report/run_figures.hpp"
 #include "services/report/run_report.hpp"
-#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -46,9 +46,11 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
   return read_adc_file(*bench.corrections.adc);
 }
 
-Expected<void> show_outcome(const RunOutcome& outcome, const std::optional<std::filesystem::path>& json,
+Expected<void> show_outcome(const RunOutcome& outcome,
+                            const std::optional<std::filesystem::path>& json,
                             const std::optional<std::filesystem::path>& figures) {
-  fmt::print("bench {}, run {}{}\n", outcome.measurement.bench().c_str(), outcome.measurement.run().c_str(), result_table(outcome));
+  fmt::print("bench {}, run {}{}\n", outcome.measurement.bench().c_str(),
+             outcome.measurement.run().c_str(), result_table(outcome));
   if (json) {
     if (const auto written = write_json(*json, result_json(outcome)); !written) {
       return tl::unexpected(written.error());
@@ -82,7 +84,8 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     return tl::unexpected(participant.error());
   }
   ProgressLine progress(stderr);
-  RunController controller(*participant, *bench, command.run.empty() ? run_from_time() : command.run,
+  RunController controller(*participant, *bench,
+                           command.run.empty() ? run_from_time() : command.run,
                            [&](const RunProgress& state) { progress.show(state); });
   auto outcome = controller.conduct(*adc, stop);
   progress.end();
@@ -99,15 +102,19 @@ int conclude(const RunOutcome& outcome) {
   const std::size_t steps = outcome.measurement.steps().size();
   const std::size_t measured = steps_with_a_result(outcome);
   if (outcome.interrupted) {
-    return fail({ErrorCode::interrupted,
-                 fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept", measured, steps)});
+    return fail(
+        {ErrorCode::interrupted,
+         fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept",
+                     measured, steps)});
   }
   if (!outcome.problem.empty()) {
-    return fail({ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept", outcome.problem, measured, steps)});
+    return fail({ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
+                                                   outcome.problem, measured, steps)});
   }
   if (measured < steps) {
-    return fail(
-        {ErrorCode::no_result, fmt::format("{} of {} steps have no result; the reasons are listed above", steps - measured, steps)});
+    return fail({ErrorCode::no_result,
+                 fmt::format("{} of {} steps have no result; the reasons are listed above",
+                             steps - measured, steps)});
   }
   return 0;
 }

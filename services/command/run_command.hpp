@@ -1,5 +1,6 @@
-// `dyncal run BENCH.toml`: conducts a run with progress on standard error, the result table on standard output, JSON and figures on
-// request. Exit status 0 only when every planned step has a valid result. Belongs to one thread.
+// `dyncal run BENCH.toml`: conducts a run with progress on standard error, the result table on
+// standard output, JSON and figures on request. Exit status 0 only when every planned step has a
+// valid result. Belongs to one thread.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "services/run/run_controller.hpp"
 #include "services/program/program.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 
@@ -22,16 +23,20 @@ struct RunCommand {
 };
 
 // Does the run and prints; the outcome is for callers that look further into it.
-[[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop);
+[[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command,
+                                               const std::stop_token& stop);
 
-// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script starts in the same second.
+// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script
+// starts in the same second.
 [[nodiscard]] std::string run_from_time();
 
 // The points of the ADC calibration that the bench file names; none when it names none.
-[[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench);
+[[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
+read_adc_calibration(const BenchFile& bench);
 
 // Prints the table and writes the files asked for.
-[[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome, const std::optional<std::filesystem::path>& json,
+[[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome,
+                                          const std::optional<std::filesystem::path>& json,
                                           const std::optional<std::filesystem::path>& figures);
 
 // The exit status and, unless 0, one line on standard error.

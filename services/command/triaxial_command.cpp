@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
-#include "services/report/result_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
+#include "services/report/result_file.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -46,7 +46,8 @@ tl::unexpected<Error> bad(std::string message) {
   return tl::unexpected(Error{ErrorCode::bad_argument, std::move(message)});
 }
 
-// The names that end with "_x", "_y", "_z" after the same beginning, when there is one such beginning.
+// The names that end with "_x", "_y", "_z" after the same beginning, when there is one such
+// beginning.
 Expected<Names> find_channels(const std::set<std::string>& names, const std::string& option) {
   std::set<std::string> beginnings;
   for (const std::string& name : names) {
@@ -57,18 +58,22 @@ Expected<Names> find_channels(const std::set<std::string>& names, const std::str
     }
   }
   if (beginnings.size() != 1) {
-    return bad(fmt::format("the axes' channels cannot be told by their names' ends (_x, _y, _z); name them: {} X Y Z", option));
+    return bad(fmt::format(
+        "the axes' channels cannot be told by their names' ends (_x, _y, _z); name them: {} X Y Z",
+        option));
   }
   const std::string& beginning = *beginnings.begin();
   return Names{beginning + "x", beginning + "y", beginning + "z"};
 }
 
-Expected<Names> channels_of(const std::vector<std::string>& named, const std::vector<Direction>& directions,
+Expected<Names> channels_of(const std::vector<std::string>& named,
+                            const std::vector<Direction>& directions,
                             ResultPoints Direction::*points, const std::string& option) {
   if (named.size() == 3) {
     return Names{named[0], named[1], named[2]};
   }
-  // A sensor may have other axes than those that answer in the reference's unit: a gyroscope's, a magnetometer's.
+  // A sensor may have other axes than those that answer in the reference's unit: a gyroscope's, a
+  // magnetometer's.
   std::set<std::string> like_the_reference;
   std::set<std::string> others;
   for (const Direction& direction : directions) {
@@ -81,11 +86,12 @@ Expected<Names> channels_of(const std::vector<std::string>& named, const std::ve
 
 Expected<Measured> read(const TriaxialCommand& command) {
   Measured measured;
-  const bool motion_known = std::any_of(command.motions.begin(), command.motions.end(), [](const auto& path) { return !path.empty(); });
+  const bool motion_known = std::any_of(command.motions.begin(), command.motions.end(),
+                                        [](const auto& path) { return !path.empty(); });
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (motion_known && (command.results[axis].empty() || command.motions[axis].empty())) {
-      return bad(
-          "a triaxial reference needs the results and the motions of all three directions: --x --y --z --motion-x --motion-y --motion-z");
+      return bad("a triaxial reference needs the results and the motions of all three directions: "
+                 "--x --y --z --motion-x --motion-y --motion-z");
     }
     if (command.results[axis].empty()) {
       continue;
@@ -106,13 +112,15 @@ Expected<Measured> read(const TriaxialCommand& command) {
   if (measured.directions.empty()) {
     return bad("name the result of one direction of excitation at least: --x, --y or --z");
   }
-  auto channels = channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
+  auto channels =
+      channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
   if (!channels) {
     return tl::unexpected(channels.error());
   }
   measured.channels = std::move(*channels);
   if (motion_known) {
-    channels = channels_of(command.motion_channels, measured.directions, &Direction::motion, "--motion-channels");
+    channels = channels_of(command.motion_channels, measured.directions, &Direction::motion,
+                           "--motion-channels");
     if (!channels) {
       return tl::unexpected(channels.error());
     }
@@ -126,8 +134,10 @@ struct AxesAndUncertainty {
   std::array<double, 3> u{}; // of each real component: the larger of along and across the phasor
 };
 
-// Nothing when a channel has no value there. The excited axis of a reference is the unit of its motion.
-std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Names& channels, double frequency_hz,
+// Nothing when a channel has no value there. The excited axis of a reference is the unit of its
+// motion.
+std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Names& channels,
+                                          double frequency_hz,
                                           std::optional<std::size_t> unit_axis) {
   AxesAndUncertainty axes;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -158,7 +168,8 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, dou
     point.columns[direction.axis] = sensor->values;
     point.u[direction.axis] = sensor->u;
     if (measured.triaxial_reference()) {
-      const auto motion = axes_at(direction.motion, measured.motion_channels, frequency_hz, direction.axis);
+      const auto motion =
+          axes_at(direction.motion, measured.motion_channels, frequency_hz, direction.axis);
       if (!motion) {
         return std::optional<ResponsePoint>();
       }
@@ -187,19 +198,23 @@ Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel
       continue;
     }
     std::array<double, 3> own{};
-    for (std::size_t i = 0; i < 3; ++i) { // an axis that was not excited answers about as much as the others
+    for (std::size_t i = 0; i < 3;
+         ++i) { // an axis that was not excited answers about as much as the others
       own[i] = std::abs(point.columns[i] ? (*point.columns[i])[i] : (*point.columns[j])[j]);
     }
-    const auto transverse = analysis::transverse_sensitivity(*point.columns[j], point.u[j], j, own, transverse_motion_rel);
+    const auto transverse = analysis::transverse_sensitivity(*point.columns[j], point.u[j], j, own,
+                                                             transverse_motion_rel);
     if (!transverse) {
-      return bad(fmt::format("{} Hz, excitation along {}: {}", point.frequency_hz, axis_names[j], transverse.error().message));
+      return bad(fmt::format("{} Hz, excitation along {}: {}", point.frequency_hz, axis_names[j],
+                             transverse.error().message));
     }
     point.transverse[j] = *transverse;
   }
   return {};
 }
 
-Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command, const Measured& measured) {
+Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
+                                              const Measured& measured) {
   std::vector<ResponsePoint> points;
   for (const auto& [place, unused] : measured.directions.front().sensor) {
     if (place.first != measured.channels[0]) {
@@ -219,14 +234,17 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command, co
     points.push_back(**point);
   }
   if (points.empty()) {
-    return bad(fmt::format("the files have no frequency in common at which {}, {} and {} have values", measured.channels[0],
-                           measured.channels[1], measured.channels[2]));
+    return bad(
+        fmt::format("the files have no frequency in common at which {}, {} and {} have values",
+                    measured.channels[0], measured.channels[1], measured.channels[2]));
   }
   return points;
 }
 
 void print_json(const Measured& measured, const std::vector<ResponsePoint>& points) {
-  Json json{{"channels", measured.channels}, {"triaxial_reference", measured.triaxial_reference()}, {"points", Json::array()}};
+  Json json{{"channels", measured.channels},
+            {"triaxial_reference", measured.triaxial_reference()},
+            {"points", Json::array()}};
   for (const ResponsePoint& point : points) {
     Json one{{"frequency_hz", point.frequency_hz}, {"excitations", Json::array()}};
     for (std::size_t j = 0; j < 3; ++j) {
@@ -254,9 +272,10 @@ void print_json(const Measured& measured, const std::vector<ResponsePoint>& poin
   fmt::print("{}\n", json.dump(2));
 }
 
-void print_table(const TriaxialCommand& command, const Measured& measured, const std::vector<ResponsePoint>& points) {
-  fmt::print("{:>12} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz", "along", "|H_x|", "|H_y|", "|H_z|", "transverse", "u",
-             "largest of the ratios to the excited axis");
+void print_table(const TriaxialCommand& command, const Measured& measured,
+                 const std::vector<ResponsePoint>& points) {
+  fmt::print("{:>12} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz", "along", "|H_x|",
+             "|H_y|", "|H_z|", "transverse", "u", "largest of the ratios to the excited axis");
   for (const ResponsePoint& point : points) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (!point.columns[j]) {
@@ -264,19 +283,23 @@ void print_table(const TriaxialCommand& command, const Measured& measured, const
       }
       const analysis::Axes& h = *point.columns[j];
       const analysis::TransverseSensitivity& transverse = *point.transverse[j];
-      const std::size_t largest = transverse.ratio[(j + 1) % 3] > transverse.ratio[(j + 2) % 3] ? (j + 1) % 3 : (j + 2) % 3;
-      fmt::print("{:>12g} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n", point.frequency_hz, axis_names[j],
-                 std::abs(h[0]), std::abs(h[1]), std::abs(h[2]), 100.0 * transverse.largest, 100.0 * transverse.u_ratio[largest],
+      const std::size_t largest =
+          transverse.ratio[(j + 1) % 3] > transverse.ratio[(j + 2) % 3] ? (j + 1) % 3 : (j + 2) % 3;
+      fmt::print("{:>12g} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n",
+                 point.frequency_hz, axis_names[j], std::abs(h[0]), std::abs(h[1]), std::abs(h[2]),
+                 100.0 * transverse.largest, 100.0 * transverse.u_ratio[largest],
                  axis_names[largest]);
     }
   }
   if (measured.triaxial_reference()) {
     fmt::print("\nthe motion across the excited axis is taken out by the triaxial reference\n");
   } else if (command.transverse_motion_rel > 0.0) {
-    fmt::print("\nthe exciter's motion across its axis is unknown up to {} of the motion along it, which u holds\n",
+    fmt::print("\nthe exciter's motion across its axis is unknown up to {} of the motion along it, "
+               "which u holds\n",
                command.transverse_motion_rel);
   } else {
-    fmt::print("\nthe exciter's motion across its axis is taken for nothing; --transverse-motion gives its bound\n");
+    fmt::print("\nthe exciter's motion across its axis is taken for nothing; --transverse-motion "
+               "gives its bound\n");
   }
 }
 

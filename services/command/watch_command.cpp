@@ -65,32 +65,39 @@ std::string excitation_word(ExcitationState state) {
 }
 
 std::string source_line(const SourceStatus& status) {
-  std::string line =
-      fmt::format("{}/{}: {}, {:.1f} S/s, {} received, {} lost in the device, {} lost on the way, {} duplicate, {} rejected, "
-                  "{} stamps not trusted, {} dropped, buffer {:.0f} %, {} readers",
-                  status.bench().c_str(), status.source().c_str(), state_word(status.state()), status.rate_hz(), status.received(),
-                  status.lost_in_device(), status.lost_on_way(), status.duplicates(), status.rejected(), status.stamps_not_trusted(),
-                  status.dropped_in_service(), status.buffer_fill() * 100.0, status.matched_readers());
+  std::string line = fmt::format(
+      "{}/{}: {}, {:.1f} S/s, {} received, {} lost in the device, {} lost on the way, {} "
+      "duplicate, {} rejected, "
+      "{} stamps not trusted, {} dropped, buffer {:.0f} %, {} readers",
+      status.bench().c_str(), status.source().c_str(), state_word(status.state()), status.rate_hz(),
+      status.received(), status.lost_in_device(), status.lost_on_way(), status.duplicates(),
+      status.rejected(), status.stamps_not_trusted(), status.dropped_in_service(),
+      status.buffer_fill() * 100.0, status.matched_readers());
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
 std::string result_line(const CalibrationResult& result) {
-  const std::string head = fmt::format("{} {}: step {}, {} Hz, #{}, {}", result.bench().c_str(), result.run().c_str(), result.step(),
-                                       result.frequency_text_hz(), result.repetition(), result.channel().c_str());
-  return result.valid() ? fmt::format("{}: |H| = {:.6f} (u {:.1e}), arg H = {:.6f} rad (u {:.1e}), {} lost", head, result.magnitude(),
-                                      result.u_magnitude(), result.phase_rad(), result.u_phase_rad(), result.lost())
-                        : fmt::format("{}: no result: {}", head, result.problem());
+  const std::string head = fmt::format(
+      "{} {}: step {}, {} Hz, #{}, {}", result.bench().c_str(), result.run().c_str(), result.step(),
+      result.frequency_text_hz(), result.repetition(), result.channel().c_str());
+  return result.valid()
+             ? fmt::format("{}: |H| = {:.6f} (u {:.1e}), arg H = {:.6f} rad (u {:.1e}), {} lost",
+                           head, result.magnitude(), result.u_magnitude(), result.phase_rad(),
+                           result.u_phase_rad(), result.lost())
+             : fmt::format("{}: no result: {}", head, result.problem());
 }
 
 std::string run_line(const ServiceStatus& status) {
-  const std::string line = fmt::format("{} {}: {} {}, {} results", status.bench(), status.run().c_str(), status.service().c_str(),
-                                       arm_word(status.arm()), status.results_published());
+  const std::string line =
+      fmt::format("{} {}: {} {}, {} results", status.bench(), status.run().c_str(),
+                  status.service().c_str(), arm_word(status.arm()), status.results_published());
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
 std::string step_line(const Excitation& excitation) {
-  return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(), excitation.run().c_str(), excitation.step(),
-                     excitation.frequency_hz(), excitation.level_m_s2(), excitation_word(excitation.state()));
+  return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(),
+                     excitation.run().c_str(), excitation.step(), excitation.frequency_hz(),
+                     excitation.level_m_s2(), excitation_word(excitation.state()));
 }
 
 // Lines that are replaced by newer ones of the same key, and lines that follow one another.
@@ -147,33 +154,44 @@ struct Readers {
   bus::Reader<CalibrationResult> results;
 };
 
-Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench, const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto sources = participant.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench, wake_up);
-  auto services = participant.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench, wake_up);
-  auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench, wake_up);
-  auto results = participant.reader<CalibrationResult>(bus::topics::calibration_result, bus::Profile::results, bench, wake_up);
-  for (const Error* error : {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
-                             excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
+Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench,
+                               const std::shared_ptr<bus::WakeUp>& wake_up) {
+  auto sources = participant.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
+                                                  bench, wake_up);
+  auto services = participant.reader<ServiceStatus>(bus::topics::service_status,
+                                                    bus::Profile::state, bench, wake_up);
+  auto excitation =
+      participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench, wake_up);
+  auto results = participant.reader<CalibrationResult>(bus::topics::calibration_result,
+                                                       bus::Profile::results, bench, wake_up);
+  for (const Error* error :
+       {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
+        excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
     if (error != nullptr) {
       return tl::unexpected(*error);
     }
   }
-  return Readers{std::move(*sources), std::move(*services), std::move(*excitation), std::move(*results)};
+  return Readers{std::move(*sources), std::move(*services), std::move(*excitation),
+                 std::move(*results)};
 }
 
 void take_all(Readers& readers, Screen& screen) {
   readers.sources.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
     const std::string key = fmt::format("1 {}/{}", status.bench().c_str(), status.source().c_str());
-    screen.replace(key, info.valid ? source_line(status) : fmt::format("{}/{}: gone", status.bench().c_str(), status.source().c_str()));
+    screen.replace(key, info.valid ? source_line(status)
+                                   : fmt::format("{}/{}: gone", status.bench().c_str(),
+                                                 status.source().c_str()));
   });
   readers.services.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
     if (info.valid) {
-      screen.replace(fmt::format("2 {} {}", status.run().c_str(), status.service().c_str()), run_line(status));
+      screen.replace(fmt::format("2 {} {}", status.run().c_str(), status.service().c_str()),
+                     run_line(status));
     }
   });
   readers.excitation.take([&](const Excitation& excitation, const bus::SampleInfo& info) {
     if (info.valid) {
-      screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()), step_line(excitation));
+      screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()),
+                     step_line(excitation));
     }
   });
   readers.results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
@@ -200,7 +218,9 @@ int run_watch(const WatchCommand& command, const std::stop_token& stop) {
   auto next_draw = began;
   const auto over = [&] {
     return stop.stop_requested() ||
-           (command.seconds && std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > *command.seconds);
+           (command.seconds &&
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() >
+                *command.seconds);
   };
   while (!over()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 200ms);

@@ -1,6 +1,8 @@
-// `dyncal watch`: benches, sources with their rates and losses, runs and results, as they come on the network.
+// `dyncal watch`: benches, sources with their rates and losses, runs and results, as they come on
+// the network.
 //
-// On a terminal the picture is drawn anew once a second; elsewhere every change is a line. It publishes nothing. Belongs to one thread.
+// On a terminal the picture is drawn anew once a second; elsewhere every change is a line. It
+// publishes nothing. Belongs to one thread.
 #pragma once
 
 #include <optional>

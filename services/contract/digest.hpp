@@ -1,4 +1,5 @@
-// SHA-256 of what a result was made from: recipe and samples, as hexadecimal text. Each object belongs to one thread.
+// SHA-256 of what a result was made from: recipe and samples, as hexadecimal text. Each object
+// belongs to one thread.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,13 @@
-// Counts what is missing in the streams of sample blocks, by the numbers the blocks carry; DDS itself does not tell reliably.
+// Counts what is missing in the streams of sample blocks, by the numbers the blocks carry; DDS
+// itself does not tell reliably.
 //
-// A source numbers its blocks from 0 in each session, empty ones too, and its samples without a break; a sample that was lost
-// before it reached the bus shows as a jump of the sample number between two blocks that follow each other. So:
+// A source numbers its blocks from 0 in each session, empty ones too, and its samples without a
+// break; a sample that was lost before it reached the bus shows as a jump of the sample number
+// between two blocks that follow each other. So:
 //   a jump of the block number   blocks were lost on the bus, with the samples in them
 //   a jump of the sample number  samples are missing, wherever they were lost
-// The first block heard of a source counts nothing as missing: who joins late has not lost what went before.
+// The first block heard of a source counts nothing as missing: who joins late has not lost what
+// went before.
 //
 // One thread.
 #pragma once
@@ -21,14 +24,18 @@ namespace dyncal::bus {
 // What one block says about those before it.
 struct ContinuityFinding {
   bool first = false;       // of this source
-  bool new_session = false; // the source, or its device, has started anew: its stamps and numbers have no relation to those before
+  bool new_session = false; // the source, or its device, has started anew: its stamps and numbers
+                            // have no relation to those before
   bool duplicate = false;   // its number was there already, or it comes too late: do not use it
   std::uint64_t missing_blocks = 0;
-  std::uint64_t missing_samples = 0;  // between the last sample before and its first; not known across sessions
-  std::uint64_t repeated_samples = 0; // at its beginning, with numbers that were there already: the source is at fault
+  std::uint64_t missing_samples =
+      0; // between the last sample before and its first; not known across sessions
+  std::uint64_t repeated_samples =
+      0; // at its beginning, with numbers that were there already: the source is at fault
 
   [[nodiscard]] bool continuous() const {
-    return !new_session && !duplicate && missing_blocks == 0 && missing_samples == 0 && repeated_samples == 0;
+    return !new_session && !duplicate && missing_blocks == 0 && missing_samples == 0 &&
+           repeated_samples == 0;
   }
 };
 

@@ -1,4 +1,5 @@
-// Names of the topics of the contract and the QoS profile each one uses; idl/README.md explains them.
+// Names of the topics of the contract and the QoS profile each one uses; idl/README.md explains
+// them.
 #pragma once
 
 namespace dyncal::bus::topics {

@@ -32,21 +32,25 @@ constexpr std::array<Pair, 17> short_forms{{
 }};
 
 constexpr std::array<std::string_view, 37> unit_words{
-    "metre",     "second", "gram",   "kilogram", "ampere",  "kelvin",    "mole",          "candela", "one",   "radian",
-    "steradian", "hertz",  "newton", "pascal",   "joule",   "watt",      "coulomb",       "volt",    "farad", "ohm",
-    "siemens",   "weber",  "tesla",  "henry",    "lumen",   "lux",       "minute",        "hour",    "day",   "degree",
-    "percent",   "ppm",    "bar",    "tonne",    "decibel", "arcminute", "degreecelsius",
+    "metre",   "second", "gram",      "kilogram",  "ampere",        "kelvin", "mole",    "candela",
+    "one",     "radian", "steradian", "hertz",     "newton",        "pascal", "joule",   "watt",
+    "coulomb", "volt",   "farad",     "ohm",       "siemens",       "weber",  "tesla",   "henry",
+    "lumen",   "lux",    "minute",    "hour",      "day",           "degree", "percent", "ppm",
+    "bar",     "tonne",  "decibel",   "arcminute", "degreecelsius",
 };
 
 constexpr std::array<std::string_view, 16> prefix_words{
-    "deca", "hecto", "kilo", "mega", "giga", "tera", "peta", "exa", "deci", "centi", "milli", "micro", "nano", "pico", "femto", "atto",
+    "deca", "hecto", "kilo",  "mega",  "giga", "tera", "peta",  "exa",
+    "deci", "centi", "milli", "micro", "nano", "pico", "femto", "atto",
 };
 
 bool is_exponent(std::string_view text) { // between the braces of \tothe{...}
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
     text.remove_prefix(1);
   }
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isdigit(c) != 0 || c == '.';
+  });
 }
 
 template <class Words>
@@ -64,13 +68,15 @@ bool is_d_si(std::string_view text) {
     }
     text.remove_prefix(1);
     const std::size_t length = static_cast<std::size_t>(
-        std::find_if_not(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) - text.begin());
+        std::find_if_not(text.begin(), text.end(),
+                         [](unsigned char c) { return std::isalpha(c) != 0; }) -
+        text.begin());
     const std::string_view word = text.substr(0, length);
     text.remove_prefix(length);
     if (word == "tothe") {
       const std::size_t close = text.find('}');
-      if (!unit_seen || prefix_open || text.empty() || text.front() != '{' || close == std::string_view::npos ||
-          !is_exponent(text.substr(1, close - 1))) {
+      if (!unit_seen || prefix_open || text.empty() || text.front() != '{' ||
+          close == std::string_view::npos || !is_exponent(text.substr(1, close - 1))) {
         return false;
       }
       text.remove_prefix(close + 1);

@@ -1,6 +1,6 @@
-// Units as the contract carries them: D-SI text (https://ptb.de/si), TeX-like words without spaces, for example
-// \metre\second\tothe{-2}. Short forms that people write ("m/s^2", "V", "degC") are translated, anything else is refused.
-// Any thread.
+// Units as the contract carries them: D-SI text (https://ptb.de/si), TeX-like words without spaces,
+// for example \metre\second\tothe{-2}. Short forms that people write ("m/s^2", "V", "degC") are
+// translated, anything else is refused. Any thread.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@ namespace dyncal::services {
 // The D-SI form, or nothing when `unit` is neither D-SI nor a known short form.
 [[nodiscard]] std::optional<std::string> to_d_si(const std::string& unit);
 
-// For people: "m/s^2" for \metre\second\tothe{-2}; the D-SI text itself where no short form is known.
+// For people: "m/s^2" for \metre\second\tothe{-2}; the D-SI text itself where no short form is
+// known.
 [[nodiscard]] std::string short_form(const std::string& d_si);
 
 } // namespace dyncal::services

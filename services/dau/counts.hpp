@@ -6,7 +6,9 @@
 
 namespace dyncal::services::dau {
 
-// Causes that concern the whole address (datagrams, not samples) stand among those of every sensor received there.
-[[nodiscard]] SourceCounts source_counts(const drivers::smartup::SensorCounts& sensor, const drivers::smartup::ReceptionCounts& reception);
+// Causes that concern the whole address (datagrams, not samples) stand among those of every sensor
+// received there.
+[[nodiscard]] SourceCounts source_counts(const drivers::smartup::SensorCounts& sensor,
+                                         const drivers::smartup::ReceptionCounts& reception);
 
 } // namespace dyncal::services::dau

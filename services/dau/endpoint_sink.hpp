@@ -1,6 +1,7 @@
-// Carries what comes in at one address to the sources that want it, and says what a person should know: a sensor that appears, falls
-// silent or comes back, what is wrong (each cause once), sensors that no bench file names, and sensors that are named and do not come.
-// Called on the receiver's thread; never blocks.
+// Carries what comes in at one address to the sources that want it, and says what a person should
+// know: a sensor that appears, falls silent or comes back, what is wrong (each cause once), sensors
+// that no bench file names, and sensors that are named and do not come. Called on the receiver's
+// thread; never blocks.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +51,8 @@ private:
   EventLines& lines_;
   std::map<std::uint32_t, Source> sources_;      // by sensor
   std::map<std::uint32_t, std::string> present_; // sensors that were received, with their names
-  std::map<std::uint32_t, int> unknown_;         // reports of sensors that nobody wants, before they were named in the log
+  std::map<std::uint32_t, int>
+      unknown_; // reports of sensors that nobody wants, before they were named in the log
   drivers::smartup::ReceptionCounts reception_;
 };
 

@@ -1,5 +1,6 @@
-// Lines for the log from threads that must not wait: the receiver's thread puts them here, the main thread prints them.
-// Bound: max_lines lines; policy: further ones are left out and counted. Any number of threads add, one takes.
+// Lines for the log from threads that must not wait: the receiver's thread puts them here, the main
+// thread prints them. Bound: max_lines lines; policy: further ones are left out and counted. Any
+// number of threads add, one takes.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,11 @@ public:
 
   void add(bool warning, std::string text) {
     const std::lock_guard lock(mutex_);
-    if (lines_.size() < max_lines)
+    if (lines_.size() < max_lines) {
       lines_.push_back({warning, std::move(text)});
-    else
+    } else {
       ++left_out_;
+    }
   }
 
   // What has come since the last call, and how many lines were left out.

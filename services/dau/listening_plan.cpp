@@ -21,24 +21,34 @@ PlannedSource planned(const BenchFile& bench, const SourceSettings& source) {
 
 PlannedEndpoint& endpoint_at(std::vector<PlannedEndpoint>& endpoints, const std::string& listen) {
   const auto found = std::ranges::find(endpoints, listen, &PlannedEndpoint::listen);
-  return found != endpoints.end() ? *found : endpoints.emplace_back(PlannedEndpoint{.listen = listen, .sources = {}});
+  return found != endpoints.end()
+             ? *found
+             : endpoints.emplace_back(PlannedEndpoint{.listen = listen, .sources = {}});
 }
 
-// A sensor that is wanted as a source cannot be the sync of another one as well, and none can be both wanted twice.
+// A sensor that is wanted as a source cannot be the sync of another one as well, and none can be
+// both wanted twice.
 std::vector<std::uint32_t> sensors_of(const drivers::smartup::SensorSettings& settings) {
   std::vector<std::uint32_t> sensors{settings.sensor};
-  if (settings.sync_sensor) sensors.push_back(*settings.sync_sensor);
+  if (settings.sync_sensor) {
+    sensors.push_back(*settings.sync_sensor);
+  }
   return sensors;
 }
 
-Expected<void> check_unused(const PlannedEndpoint& endpoint, const PlannedSource& added, const std::string& where) {
+Expected<void> check_unused(const PlannedEndpoint& endpoint, const PlannedSource& added,
+                            const std::string& where) {
   for (const PlannedSource& other : endpoint.sources) {
     for (const std::uint32_t sensor : sensors_of(added.settings)) {
-      if (std::ranges::count(sensors_of(other.settings), sensor) == 0) continue;
-      return tl::unexpected(Error{ErrorCode::bad_file,
-                                  fmt::format("{}: sensor {} at {} already belongs to source '{}' of bench '{}': a sensor "
-                                              "has one bench",
-                                              where, drivers::smartup::sensor_text(sensor), endpoint.listen, other.source, other.bench)});
+      if (std::ranges::count(sensors_of(other.settings), sensor) == 0) {
+        continue;
+      }
+      return tl::unexpected(Error{
+          ErrorCode::bad_file,
+          fmt::format("{}: sensor {} at {} already belongs to source '{}' of bench '{}': a sensor "
+                      "has one bench",
+                      where, drivers::smartup::sensor_text(sensor), endpoint.listen, other.source,
+                      other.bench)});
     }
   }
   return {};
@@ -51,19 +61,28 @@ Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFil
   for (const BenchFile& bench : benches) {
     bool any = false;
     for (const SourceSettings& source : bench.sources) {
-      if (source.driver != SourceDriver::smartup) continue;
+      if (source.driver != SourceDriver::smartup) {
+        continue;
+      }
       any = true;
       PlannedSource added = planned(bench, source);
       PlannedEndpoint& endpoint = endpoint_at(endpoints, source.listen);
-      if (added.settings.sync_sensor == added.settings.sensor)
-        return tl::unexpected(Error{ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same"});
-      if (auto unused = check_unused(endpoint, added, source.where); !unused) return tl::unexpected(unused.error());
+      if (added.settings.sync_sensor == added.settings.sensor) {
+        return tl::unexpected(
+            Error{ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same"});
+      }
+      if (auto unused = check_unused(endpoint, added, source.where); !unused) {
+        return tl::unexpected(unused.error());
+      }
       endpoint.sources.push_back(std::move(added));
     }
-    if (!any)
-      return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: no source has driver = \"smartup\", so there is nothing to receive "
-                                                                   "for bench '{}'",
-                                                                   bench.path.string(), bench.bench)});
+    if (!any) {
+      return tl::unexpected(Error{
+          ErrorCode::bad_file,
+          fmt::format("{}: no source has driver = \"smartup\", so there is nothing to receive "
+                      "for bench '{}'",
+                      bench.path.string(), bench.bench)});
+    }
   }
   return endpoints;
 }

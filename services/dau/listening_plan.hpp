@@ -1,6 +1,6 @@
-// What dyncal-dau has to listen to: the SmartUp sources of all its bench files, put together by address, so that one socket serves every
-// sensor that comes in there, of whatever bench.
-// Plain data.
+// What dyncal-dau has to listen to: the SmartUp sources of all its bench files, put together by
+// address, so that one socket serves every sensor that comes in there, of whatever bench. Plain
+// data.
 #pragma once
 
 #include <string>
@@ -23,7 +23,9 @@ struct PlannedEndpoint {
   std::vector<PlannedSource> sources;
 };
 
-// Fails (bad_file) when no bench has a SmartUp source, or two sources want the same sensor at the same address.
-[[nodiscard]] Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFile>& benches);
+// Fails (bad_file) when no bench has a SmartUp source, or two sources want the same sensor at the
+// same address.
+[[nodiscard]] Expected<std::vector<PlannedEndpoint>>
+plan_listening(const std::vector<BenchFile>& benches);
 
 } // namespace dyncal::services::dau

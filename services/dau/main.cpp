@@ -1,4 +1,5 @@
-// dyncal-dau BENCH.toml...: receives the SmartUp Units of one or more benches and publishes their sensors.
+// dyncal-dau BENCH.toml...: receives the SmartUp Units of one or more benches and publishes their
+// sensors.
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
@@ -27,9 +28,12 @@ constexpr int wanted_receive_buffer = 4 << 20; // bytes; about half a second of 
 
 void print(EventLines& lines) {
   const auto [events, left_out] = lines.take();
-  for (const EventLine& line : events)
+  for (const EventLine& line : events) {
     spdlog::log(line.warning ? spdlog::level::warn : spdlog::level::info, "{}", line.text);
-  if (left_out > 0) spdlog::warn("{} more lines were left out", left_out);
+  }
+  if (left_out > 0) {
+    spdlog::warn("{} more lines were left out", left_out);
+  }
 }
 
 void print_until(const std::stop_token& stop, EventLines& lines) {
@@ -46,7 +50,9 @@ Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& pa
   std::vector<BenchFile> benches;
   for (const auto& path : paths) {
     auto bench = read_bench_file(path);
-    if (!bench) return tl::unexpected(bench.error());
+    if (!bench) {
+      return tl::unexpected(bench.error());
+    }
     benches.push_back(std::move(*bench));
   }
   return benches;
@@ -58,47 +64,67 @@ struct Reception {
   std::unique_ptr<drivers::smartup::Receiver> receiver;
 };
 
-Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceService& service, EventLines& lines) {
+Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceService& service,
+                                   EventLines& lines) {
   Reception reception;
   std::vector<drivers::smartup::Receiver::Endpoint> endpoints;
   for (auto& planned : plan) {
-    auto& sink = reception.sinks.emplace_back(std::make_unique<EndpointSink>(planned.listen, lines));
+    auto& sink =
+        reception.sinks.emplace_back(std::make_unique<EndpointSink>(planned.listen, lines));
     auto& endpoint = endpoints.emplace_back();
     endpoint.listen = planned.listen;
     endpoint.sink = sink.get();
     for (auto& source : planned.sources) {
-      auto publisher = service.add({.bench = source.bench, .source = source.source, .kind = SourceKind::dau});
-      if (!publisher) return tl::unexpected(publisher.error());
+      auto publisher =
+          service.add({.bench = source.bench, .source = source.source, .kind = SourceKind::dau});
+      if (!publisher) {
+        return tl::unexpected(publisher.error());
+      }
       endpoint.wanted.push_back(source.settings);
       sink->add(std::move(source), std::move(*publisher));
     }
   }
   auto receiver = drivers::smartup::Receiver::create(std::move(endpoints));
-  if (!receiver) return tl::unexpected(Error{ErrorCode::device, receiver.error().message});
+  if (!receiver) {
+    return tl::unexpected(Error{ErrorCode::device, receiver.error().message});
+  }
   reception.receiver = std::move(*receiver);
   return reception;
 }
 
-Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options, const std::stop_token& stop) {
+Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options,
+                   const std::stop_token& stop) {
   const auto benches = read_benches(paths);
-  if (!benches) return tl::unexpected(benches.error());
+  if (!benches) {
+    return tl::unexpected(benches.error());
+  }
   auto plan = plan_listening(*benches);
-  if (!plan) return tl::unexpected(plan.error());
-  for (const BenchFile& bench : *benches)
+  if (!plan) {
+    return tl::unexpected(plan.error());
+  }
+  for (const BenchFile& bench : *benches) {
     add_network_settings(bench.network, options);
+  }
   auto participant = join_network(options, "dyncal-dau");
-  if (!participant) return tl::unexpected(participant.error());
+  if (!participant) {
+    return tl::unexpected(participant.error());
+  }
 
   EventLines lines;
   const auto service = SourceService::create(*participant, {.software = software_version()});
   auto reception = open_reception(*plan, *service, lines);
-  if (!reception) return tl::unexpected(reception.error());
+  if (!reception) {
+    return tl::unexpected(reception.error());
+  }
   for (std::size_t i = 0; i < plan->size(); ++i) {
     const int bytes = reception->receiver->receive_buffer_bytes(i);
-    spdlog::info("listening at UDP {} for {} sensor{}", (*plan)[i].listen, (*plan)[i].sources.size(),
-                 (*plan)[i].sources.size() == 1 ? "" : "s");
-    if (bytes < wanted_receive_buffer)
-      spdlog::warn("the system allows a receive buffer of {} bytes only: set net.core.rmem_max to {} or more", bytes, wanted_receive_buffer);
+    spdlog::info("listening at UDP {} for {} sensor{}", (*plan)[i].listen,
+                 (*plan)[i].sources.size(), (*plan)[i].sources.size() == 1 ? "" : "s");
+    if (bytes < wanted_receive_buffer) {
+      spdlog::warn("the system allows a receive buffer of {} bytes only: set net.core.rmem_max to "
+                   "{} or more",
+                   bytes, wanted_receive_buffer);
+    }
   }
   service->start();
   reception->receiver->start();
@@ -115,7 +141,8 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
 
 int main(int argc, char** argv) {
   using namespace dyncal::services;
-  CLI::App app{"Receives SmartUp Units and publishes the samples of their sensors on DDS.", "dyncal-dau"};
+  CLI::App app{"Receives SmartUp Units and publishes the samples of their sensors on DDS.",
+               "dyncal-dau"};
   std::vector<std::string> benches;
   NetworkOptions network;
   app.add_option("BENCH", benches, "bench files (TOML)")->required();

@@ -62,7 +62,8 @@ trigger_phase_correction = {correction}
 dso_delay = {{ file = "dso-delay.json" }}
 )";
 
-// The virtual sensor's frames reach the kernel within some 10 us of their end, and everything on the virtual bench keeps this host's clock.
+// The virtual sensor's frames reach the kernel within some 10 us of their end, and everything on
+// the virtual bench keeps this host's clock.
 constexpr const char* can_source = R"([sources.can]
 driver = "can"
 interface = "{interface}"
@@ -107,11 +108,14 @@ adc = {{ file = "adc.json", channel = "ADC1", phase_sign = "lag" }}
 
 std::string sources_of(const DemoPreset& preset, const DemoAddresses& addresses) {
   const auto filled = [&](const std::string& text) {
-    return fmt::format(fmt::runtime(text), fmt::arg("dau", addresses.dau_listen), fmt::arg("acs", addresses.acs),
-                       fmt::arg("dso", addresses.oscilloscope), fmt::arg("tss", addresses.sensor),
-                       fmt::arg("interface", addresses.can_interface), fmt::arg("bit_rate", addresses.can_bus == "500k" ? 500000 : 1000000),
-                       fmt::arg("data_bit_rate", addresses.can_bus == "fd-5M" ? "data_bit_rate_per_s = 5000000\n" : ""),
-                       fmt::arg("correction", preset.trigger_phase_correction));
+    return fmt::format(
+        fmt::runtime(text), fmt::arg("dau", addresses.dau_listen), fmt::arg("acs", addresses.acs),
+        fmt::arg("dso", addresses.oscilloscope), fmt::arg("tss", addresses.sensor),
+        fmt::arg("interface", addresses.can_interface),
+        fmt::arg("bit_rate", addresses.can_bus == "500k" ? 500000 : 1000000),
+        fmt::arg("data_bit_rate",
+                 addresses.can_bus == "fd-5M" ? "data_bit_rate_per_s = 5000000\n" : ""),
+        fmt::arg("correction", preset.trigger_phase_correction));
   };
   switch (preset.can) {
   case DemoPreset::CanLink::absolute_time:
@@ -129,27 +133,32 @@ std::string sources_of(const DemoPreset& preset, const DemoAddresses& addresses)
 const std::vector<DemoPreset>& demo_presets() {
   static const std::vector<DemoPreset> presets{
       {.name = "mpu9250-paper",
-       .shows = "an MPU-9250 as in the paper: delay 8.1 ms, sample interval 996.96 us with its strange histogram",
-       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "180",
-                          "200"},
+       .shows = "an MPU-9250 as in the paper: delay 8.1 ms, sample interval 996.96 us with its "
+                "strange histogram",
+       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63",
+                          "80", "100", "125", "160", "180", "200"},
        .levels_m_s2 = {2.5, 2.5, 5, 5, 10, 10, 20, 50, 50, 50, 100, 100, 100, 100, 100, 100, 100}},
       {.name = "mpu9250-ptb",
-       .shows = "an MPU-9250 with the response that a national institute has published: delay 1.511 ms",
-       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63", "80", "100", "125", "160", "200",
-                          "250"},
-       .levels_m_s2 = {2.75, 2.76, 5.57, 5.59, 11.28, 11.43, 23.25, 58.54, 58.76, 59.09, 115.4, 119.2, 122.9, 125.0, 126.8, 126.6, 126.1}},
+       .shows =
+           "an MPU-9250 with the response that a national institute has published: delay 1.511 ms",
+       .frequencies_hz = {"10", "12.5", "16", "20", "25", "31.5", "40", "46.7", "50", "53.3", "63",
+                          "80", "100", "125", "160", "200", "250"},
+       .levels_m_s2 = {2.75, 2.76, 5.57, 5.59, 11.28, 11.43, 23.25, 58.54, 58.76, 59.09, 115.4,
+                       119.2, 122.9, 125.0, 126.8, 126.6, 126.1}},
       {.name = "bma280",
        .shows = "a BMA280: sample interval 485 us, a late and an early sample every 2200",
        .frequencies_hz = {"10", "20", "40", "80", "160", "315", "500"},
        .levels_m_s2 = {5, 10, 20, 50, 100, 100, 100}},
       {.name = "tss",
-       .shows = "a sensor that records a series after the trigger of an oscilloscope, series time stamping",
+       .shows = "a sensor that records a series after the trigger of an oscilloscope, series time "
+                "stamping",
        .frequencies_hz = {"10", "20", "40", "80", "125", "200"},
        .levels_m_s2 = {2.75, 5.5, 23, 100, 100, 100},
        .repetitions = 1,
        .triggered = true},
       {.name = "can",
-       .shows = "a sensor with CAN output on a busy bus, stamped in UTC as the analogue system is: absolute time",
+       .shows = "a sensor with CAN output on a busy bus, stamped in UTC as the analogue system is: "
+                "absolute time",
        .frequencies_hz = {"10", "20", "40", "80", "125"},
        .levels_m_s2 = {2.75, 5.5, 23, 100, 100},
        .repetitions = 1,
@@ -166,10 +175,11 @@ const std::vector<DemoPreset>& demo_presets() {
   return presets;
 }
 
-std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
-                            const DemoUncertainty& uncertainty) {
+std::string demo_bench_file(const DemoPreset& preset, const std::string& bench,
+                            const DemoAddresses& addresses, const DemoUncertainty& uncertainty) {
   const std::string sources = sources_of(preset, addresses);
-  return fmt::format(R"(# Written by "dyncal demo"; a bench of your own looks the same.
+  return fmt::format(
+      R"(# Written by "dyncal demo"; a bench of your own looks the same.
 bench = "{bench}"
 
 [excitation]
@@ -190,12 +200,14 @@ reference_magnitude_rel = {u_magnitude}
 reference_phase_rad = {u_phase}
 acs_rate_rel = {u_rate}
 )",
-                     fmt::arg("bench", bench), fmt::arg("frequencies", fmt::join(quoted(preset.frequencies_hz), ", ")),
-                     fmt::arg("levels", fmt::join(preset.levels_m_s2, ", ")), fmt::arg("repetitions", preset.repetitions),
-                     fmt::arg("settling", preset.settling_s), fmt::arg("duration", preset.duration_s),
-                     fmt::arg("generator", addresses.generator), fmt::arg("sources", sources),
-                     fmt::arg("u_magnitude", uncertainty.reference_magnitude_rel), fmt::arg("u_phase", uncertainty.reference_phase_rad),
-                     fmt::arg("u_rate", uncertainty.acs_rate_rel));
+      fmt::arg("bench", bench),
+      fmt::arg("frequencies", fmt::join(quoted(preset.frequencies_hz), ", ")),
+      fmt::arg("levels", fmt::join(preset.levels_m_s2, ", ")),
+      fmt::arg("repetitions", preset.repetitions), fmt::arg("settling", preset.settling_s),
+      fmt::arg("duration", preset.duration_s), fmt::arg("generator", addresses.generator),
+      fmt::arg("sources", sources), fmt::arg("u_magnitude", uncertainty.reference_magnitude_rel),
+      fmt::arg("u_phase", uncertainty.reference_phase_rad),
+      fmt::arg("u_rate", uncertainty.acs_rate_rel));
 }
 
 } // namespace dyncal::services

@@ -1,5 +1,5 @@
-// The benches that `dyncal demo` shows: for every preset of the virtual bench what is excited, and the bench file that goes with it.
-// Plain functions, any thread.
+// The benches that `dyncal demo` shows: for every preset of the virtual bench what is excited, and
+// the bench file that goes with it. Plain functions, any thread.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct DemoPreset {
   int repetitions = 3;
   double settling_s = 0.5;
   double duration_s = 3.0;
-  bool triggered = false;               // series time stamping with oscilloscope and time series sensor
+  bool triggered = false; // series time stamping with oscilloscope and time series sensor
   bool trigger_phase_correction = true; // of every shot
   enum class CanLink { none, absolute_time, sync_beside };
   CanLink can = CanLink::none; // a sensor with CAN output, and what links it to the ACS
@@ -36,14 +36,16 @@ struct DemoAddresses {
   std::string can_bus;       // of the virtual bench: "500k", "1M", "fd-5M"
 };
 
-// What the virtual bench says of itself in its truth file's settings: the recipe must state the same.
+// What the virtual bench says of itself in its truth file's settings: the recipe must state the
+// same.
 struct DemoUncertainty {
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
   double acs_rate_rel = 0.0;
 };
 
-[[nodiscard]] std::string demo_bench_file(const DemoPreset& preset, const std::string& bench, const DemoAddresses& addresses,
+[[nodiscard]] std::string demo_bench_file(const DemoPreset& preset, const std::string& bench,
+                                          const DemoAddresses& addresses,
                                           const DemoUncertainty& uncertainty);
 
 } // namespace dyncal::services

@@ -23,7 +23,8 @@ struct Truth {
 };
 
 Error unreadable(const std::filesystem::path& path, const std::string& why) {
-  return {ErrorCode::bad_file, fmt::format("{}: the truth of the virtual bench cannot be read: {}", path.string(), why)};
+  return {ErrorCode::bad_file,
+          fmt::format("{}: the truth of the virtual bench cannot be read: {}", path.string(), why)};
 }
 
 Expected<Truth> read_truth(const std::filesystem::path& path) {
@@ -32,17 +33,20 @@ Expected<Truth> read_truth(const std::filesystem::path& path) {
     std::vector<TruePoint> points;
     const nlohmann::json truth = nlohmann::json::parse(stream);
     for (const auto& point : truth.at("transfer_function")) {
-      points.push_back({point.at("channel"), point.at("frequency_text_hz"), point.at("magnitude"), point.at("phase_rad")});
+      points.push_back({point.at("channel"), point.at("frequency_text_hz"), point.at("magnitude"),
+                        point.at("phase_rad")});
     }
-    const double mean_interval_s =
-        truth.contains("sample_clock") ? truth["sample_clock"].at("mean_interval_s").get<double>() : std::nan("");
+    const double mean_interval_s = truth.contains("sample_clock")
+                                       ? truth["sample_clock"].at("mean_interval_s").get<double>()
+                                       : std::nan("");
     return Truth{std::move(points), mean_interval_s};
   } catch (const nlohmann::json::exception& error) {
     return tl::unexpected(unreadable(path, error.what()));
   }
 }
 
-const TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth, std::string& channel) {
+const TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth,
+                                    std::string& channel) {
   for (const TransferFunction& function : outcome.transfer_functions) {
     channel = function.channel().to_string();
     if (channel.substr(channel.find('/') + 1) != truth.channel) {
@@ -68,7 +72,8 @@ void compare(TruthCheck& check, double deviation, double u, const std::string& w
 
 } // namespace
 
-Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesystem::path& truth_file) {
+Expected<TruthCheck> check_truth(const RunOutcome& outcome,
+                                 const std::filesystem::path& truth_file) {
   const auto truth = read_truth(truth_file);
   if (!truth) {
     return tl::unexpected(truth.error());
@@ -82,15 +87,19 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesyste
         continue; // not every frequency was reached
       }
       return tl::unexpected(
-          Error{ErrorCode::no_result, fmt::format("the run has no result for {} at {} Hz", point.channel, point.frequency_text_hz)});
+          Error{ErrorCode::no_result, fmt::format("the run has no result for {} at {} Hz",
+                                                  point.channel, point.frequency_text_hz)});
     }
-    const double phase_rad = std::remainder(measured->phase_rad() - point.phase_rad, 2.0 * std::numbers::pi);
+    const double phase_rad =
+        std::remainder(measured->phase_rad() - point.phase_rad, 2.0 * std::numbers::pi);
     compare(check, measured->magnitude() - point.magnitude, measured->u_magnitude(),
             fmt::format("{}, {} Hz, magnitude", channel, point.frequency_text_hz));
-    compare(check, phase_rad, measured->u_phase_rad(), fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
+    compare(check, phase_rad, measured->u_phase_rad(),
+            fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
   }
   for (const SampleClockReport& report : outcome.clock_reports) {
-    if (report.intervals() == 0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
+    if (report.intervals() ==
+        0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
       compare(check, report.mean_interval_s() - truth->mean_interval_s, report.u_mean_interval_s(),
               fmt::format("{}, sample interval", report.source().c_str()));
     }

@@ -1,14 +1,15 @@
-// Holds the results of a demo against what the virtual bench knows: the only place that reads the truth file, after the run is over.
+// Holds the results of a demo against what the virtual bench knows: the only place that reads the
+// truth file, after the run is over.
 //
-// The deviation of a point is compared with its own standard uncertainty; for the phase after taking out whole turns.
-// Plain functions, any thread.
+// The deviation of a point is compared with its own standard uncertainty; for the phase after
+// taking out whole turns. Plain functions, any thread.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 
@@ -18,7 +19,9 @@ struct TruthCheck {
   std::string worst_where; // "dau/acceleration_z, 40 Hz, phase"
 };
 
-// Fails (bad_file) when the truth file cannot be read or lacks an excited channel that the run has no result for.
-[[nodiscard]] Expected<TruthCheck> check_truth(const RunOutcome& outcome, const std::filesystem::path& truth_file);
+// Fails (bad_file) when the truth file cannot be read or lacks an excited channel that the run has
+// no result for.
+[[nodiscard]] Expected<TruthCheck> check_truth(const RunOutcome& outcome,
+                                               const std::filesystem::path& truth_file);
 
 } // namespace dyncal::services

@@ -11,7 +11,8 @@ namespace dyncal::services {
 Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::string& text) {
   const auto vendors = bus::vendors_in_this_build();
   const std::string usual = vendors.empty() ? "" : bus::vendor_word(vendors.front());
-  std::map<std::string, std::string> words{{"dau", usual}, {"acs", usual}, {"analysis", usual}, {"run", usual}};
+  std::map<std::string, std::string> words{
+      {"dau", usual}, {"acs", usual}, {"analysis", usual}, {"run", usual}};
   std::istringstream parts(text);
   std::string part;
   while (std::getline(parts, part, ',')) {
@@ -29,7 +30,9 @@ Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::
       words[service] = word;
     } else {
       return tl::unexpected(
-          Error{ErrorCode::bad_argument, fmt::format("--dds names the service '{}', but a demo has: acs, analysis, dau, run", service)});
+          Error{ErrorCode::bad_argument,
+                fmt::format("--dds names the service '{}', but a demo has: acs, analysis, dau, run",
+                            service)});
     }
   }
   return words;

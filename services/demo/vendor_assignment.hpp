@@ -1,5 +1,6 @@
-// Which DDS implementation each service of a demo uses: "cyclonedds" for all, or "dau=cyclonedds,acs=fastdds,analysis=cyclonedds".
-// Services that are not named use the first implementation of the build. Plain data; any thread.
+// Which DDS implementation each service of a demo uses: "cyclonedds" for all, or
+// "dau=cyclonedds,acs=fastdds,analysis=cyclonedds". Services that are not named use the first
+// implementation of the build. Plain data; any thread.
 #pragma once
 
 #include <map>
@@ -9,7 +10,9 @@
 
 namespace dyncal::services {
 
-// Word of --dds for each of "dau", "acs", "analysis", "run". Fails (bad_argument) on words that are none.
-[[nodiscard]] Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::string& text);
+// Word of --dds for each of "dau", "acs", "analysis", "run". Fails (bad_argument) on words that are
+// none.
+[[nodiscard]] Expected<std::map<std::string, std::string>>
+parse_vendor_assignment(const std::string& text);
 
 } // namespace dyncal::services

@@ -7,9 +7,9 @@
 #include <spdlog/spdlog.h>
 
 #include "analysis/base/frequency.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/contract/topics.hpp"
 #include "services/dso/series_channels.hpp"
-#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services::dso {
 namespace {
@@ -27,11 +27,13 @@ std::uint64_t random_session() {
 
 const SourceSettings* source_with(const BenchFile& bench, SourceDriver driver) {
   const auto found =
-      std::find_if(bench.sources.begin(), bench.sources.end(), [&](const SourceSettings& source) { return source.driver == driver; });
+      std::find_if(bench.sources.begin(), bench.sources.end(),
+                   [&](const SourceSettings& source) { return source.driver == driver; });
   return found == bench.sources.end() ? nullptr : &*found;
 }
 
-ChannelDescription channel_message(const std::string& name, const std::string& quantity, const std::string& unit, double resolution) {
+ChannelDescription channel_message(const std::string& name, const std::string& quantity,
+                                   const std::string& unit, double resolution) {
   ChannelDescription channel;
   channel.name(name);
   channel.quantity(quantity);
@@ -42,41 +44,55 @@ ChannelDescription channel_message(const std::string& name, const std::string& q
 
 } // namespace
 
-Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& participant, const BenchFile& bench) {
+Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& participant,
+                                                             const BenchFile& bench) {
   const SourceSettings* oscilloscope = source_with(bench, SourceDriver::oscilloscope);
   const SourceSettings* sensor = source_with(bench, SourceDriver::series);
   if (oscilloscope == nullptr || sensor == nullptr) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: dyncal-dso needs a source with driver = \"oscilloscope\" and one with "
-                                               "driver = \"series\"",
-                                               bench.path.string())});
+    return tl::unexpected(Error{
+        ErrorCode::bad_file,
+        fmt::format("{}: dyncal-dso needs a source with driver = \"oscilloscope\" and one with "
+                    "driver = \"series\"",
+                    bench.path.string())});
   }
   if (oscilloscope->address.empty()) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no address; files of shots are for dyncal analyse",
-                                                                 oscilloscope->where, oscilloscope->name)});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file,
+              fmt::format("{}: source '{}' has no address; files of shots are for dyncal analyse",
+                          oscilloscope->where, oscilloscope->name)});
   }
   const std::uint64_t session = random_session();
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench.bench, wake_up);
-  auto command = participant.reader<Command>(bus::topics::command, bus::Profile::command, bench.bench, wake_up);
-  auto traces = RecordWriter::create(participant, bench.bench, oscilloscope->name, bus::topics::dso_record, SOURCE_DSO, session);
-  auto series = RecordWriter::create(participant, bench.bench, sensor->name, bus::topics::tss_record, SOURCE_TSS, session);
-  for (const Error* error : {excitation ? nullptr : &excitation.error(), command ? nullptr : &command.error(),
-                             traces ? nullptr : &traces.error(), series ? nullptr : &series.error()}) {
+  auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state,
+                                                   bench.bench, wake_up);
+  auto command = participant.reader<Command>(bus::topics::command, bus::Profile::command,
+                                             bench.bench, wake_up);
+  auto traces = RecordWriter::create(participant, bench.bench, oscilloscope->name,
+                                     bus::topics::dso_record, SOURCE_DSO, session);
+  auto series = RecordWriter::create(participant, bench.bench, sensor->name,
+                                     bus::topics::tss_record, SOURCE_TSS, session);
+  for (const Error* error :
+       {excitation ? nullptr : &excitation.error(), command ? nullptr : &command.error(),
+        traces ? nullptr : &traces.error(), series ? nullptr : &series.error()}) {
     if (error != nullptr) {
       return tl::unexpected(*error);
     }
   }
   return std::unique_ptr<BenchService>(
       new BenchService(bench, *oscilloscope, *sensor, std::move(wake_up),
-                       Endpoints{std::move(*excitation), std::move(*command), std::move(*traces), std::move(*series)}));
+                       Endpoints{std::move(*excitation), std::move(*command), std::move(*traces),
+                                 std::move(*series)}));
 }
 
-BenchService::BenchService(const BenchFile& bench, const SourceSettings& oscilloscope, const SourceSettings& sensor,
-                           std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints)
-    : bench_(bench.bench), oscilloscope_settings_(oscilloscope), sensor_settings_(sensor), shots_wanted_(bench.method.shots),
-      first_frequency_hz_(analysis::Frequency::parse(bench.excitation.frequencies_hz.front())->hz()), // the bench file was checked
-      wake_up_(std::move(wake_up)), endpoints_(std::move(endpoints)), device_(oscilloscope_settings_, sensor_settings_, device_stop_) {
+BenchService::BenchService(const BenchFile& bench, const SourceSettings& oscilloscope,
+                           const SourceSettings& sensor, std::shared_ptr<bus::WakeUp> wake_up,
+                           Endpoints endpoints)
+    : bench_(bench.bench), oscilloscope_settings_(oscilloscope), sensor_settings_(sensor),
+      shots_wanted_(bench.method.shots),
+      first_frequency_hz_(analysis::Frequency::parse(bench.excitation.frequencies_hz.front())
+                              ->hz()), // the bench file was checked
+      wake_up_(std::move(wake_up)), endpoints_(std::move(endpoints)),
+      device_(oscilloscope_settings_, sensor_settings_, device_stop_) {
   for (const ChannelName& channel : bench.method.dut) {
     if (channel.source == sensor.name) {
       sensor_channels_.push_back(channel.channel);
@@ -97,7 +113,8 @@ void BenchService::run(const std::stop_token& stop) {
     if (connected_ && step_ && step_->shots < shots_wanted_) {
       take_shot();
     } else {
-      wake_up_->wait_until(std::chrono::steady_clock::now() + (connected_ ? idle_wait : retry_wait));
+      wake_up_->wait_until(std::chrono::steady_clock::now() +
+                           (connected_ ? idle_wait : retry_wait));
     }
     report();
   }
@@ -123,7 +140,8 @@ void BenchService::take_messages() {
     if (!info.valid || command.kind() != COMMAND_ARM || command.bench() != bench_) {
       return;
     }
-    if (command.target().to_string() == oscilloscope_settings_.name && endpoints_.oscilloscope.described()) {
+    if (command.target().to_string() == oscilloscope_settings_.name &&
+        endpoints_.oscilloscope.described()) {
       endpoints_.oscilloscope.answer(command.run());
     }
     if (command.target().to_string() == sensor_settings_.name && endpoints_.sensor.described()) {
@@ -135,7 +153,8 @@ void BenchService::take_messages() {
 void BenchService::follow(const Excitation& excitation) {
   const std::string run = excitation.run().to_string();
   if (excitation.state() != EXCITATION_STEADY) {
-    // Only the newest state is kept on the way: whatever is not steady ends the step of its run, be it that step's end or the next one.
+    // Only the newest state is kept on the way: whatever is not steady ends the step of its run, be
+    // it that step's end or the next one.
     if (step_ && step_->run == run) {
       step_.reset();
     }
@@ -180,12 +199,15 @@ void BenchService::take_shot() {
   const Step step = *step_;
   auto pair = device_.take(step.frequency_hz);
   if (pair) {
-    auto selected = select_channels(std::move(pair->series), sensor_settings_.channels, sensor_channels_);
-    pair = selected ? Expected<ShotPair>(ShotPair{std::move(pair->trace), std::move(*selected)}) : tl::unexpected(selected.error());
+    auto selected =
+        select_channels(std::move(pair->series), sensor_settings_.channels, sensor_channels_);
+    pair = selected ? Expected<ShotPair>(ShotPair{std::move(pair->trace), std::move(*selected)})
+                    : tl::unexpected(selected.error());
   }
   take_messages();
   if (pair && !in_step(step.run, step.step)) {
-    pair = tl::unexpected(Error{ErrorCode::device, "the excitation ended during the shot, which is left out"});
+    pair = tl::unexpected(
+        Error{ErrorCode::device, "the excitation ended during the shot, which is left out"});
   }
   if (!pair) {
     shot_problem_ = pair.error().message;
@@ -209,10 +231,12 @@ void BenchService::describe_sensor(const drivers::tss::Series& series) {
   description.driver("series");
   description.nominal_rate_hz(series.nominal_rate_hz);
   for (std::size_t i = 0; i < sensor_channels_.size(); ++i) {
-    const drivers::ChannelDescription channel = i < series.channels.size() ? series.channels[i] : drivers::ChannelDescription{};
+    const drivers::ChannelDescription channel =
+        i < series.channels.size() ? series.channels[i] : drivers::ChannelDescription{};
     const auto unit = sensor_settings_.units.find(sensor_channels_[i]);
     description.channels().push_back(channel_message(
-        sensor_channels_[i], channel.quantity, unit == sensor_settings_.units.end() ? channel.unit : unit->second, channel.resolution));
+        sensor_channels_[i], channel.quantity,
+        unit == sensor_settings_.units.end() ? channel.unit : unit->second, channel.resolution));
   }
   endpoints_.sensor.describe(std::move(description));
 }
@@ -220,7 +244,8 @@ void BenchService::describe_sensor(const drivers::tss::Series& series) {
 void BenchService::publish(ShotPair& pair, const Step& step) {
   describe_sensor(pair.series);
   ++shot_;
-  const auto record = [&](std::size_t samples, std::size_t channels, double interval_s, std::vector<double>& values) {
+  const auto record = [&](std::size_t samples, std::size_t channels, double interval_s,
+                          std::vector<double>& values) {
     TriggeredRecord message;
     message.shot(shot_);
     message.run(step.run);
@@ -237,8 +262,10 @@ void BenchService::publish(ShotPair& pair, const Step& step) {
   const std::size_t points = volts.size();
   TriggeredRecord trace = record(points, 1, pair.trace.interval_s, volts);
   trace.first_sample_s(pair.trace.first_sample_s);
-  TriggeredRecord series = record(pair.series.samples, sensor_channels_.size(), 1.0 / pair.series.nominal_rate_hz, pair.series.values);
-  if (!endpoints_.oscilloscope.write(std::move(trace)) || !endpoints_.sensor.write(std::move(series))) {
+  TriggeredRecord series = record(pair.series.samples, sensor_channels_.size(),
+                                  1.0 / pair.series.nominal_rate_hz, pair.series.values);
+  if (!endpoints_.oscilloscope.write(std::move(trace)) ||
+      !endpoints_.sensor.write(std::move(series))) {
     spdlog::error("bench {}: shot {} could not be written to the network", bench_, shot_);
   }
 }

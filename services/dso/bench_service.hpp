@@ -1,11 +1,14 @@
-// One bench of dyncal-dso: follows the excitation of the bench's runs, takes shots while a step is steady, and publishes each as a pair
-// of records, DsoRecord and TssRecord, with the same session and shot number.
+// One bench of dyncal-dso: follows the excitation of the bench's runs, takes shots while a step is
+// steady, and publishes each as a pair of records, DsoRecord and TssRecord, with the same session
+// and shot number.
 //
-// Per step `shots` pairs are taken, however often one fails in between, as long as the step is steady: a shot that fails is counted as
-// rejected, named in the log and until the next step in the status of both sources, and repeated over new connections where these were
-// lost. While the devices cannot be reached both sources are silent. Shot numbers count the pairs of a session from 1; each names its run
-// and step. The sensor tells its device and units only with a series; its channels are those that the bench calibrates, from the beginning.
-// run() belongs to one thread; `stop` may be requested from any.
+// Per step `shots` pairs are taken, however often one fails in between, as long as the step is
+// steady: a shot that fails is counted as rejected, named in the log and until the next step in the
+// status of both sources, and repeated over new connections where these were lost. While the
+// devices cannot be reached both sources are silent. Shot numbers count the pairs of a session from
+// 1; each names its run and step. The sensor tells its device and units only with a series; its
+// channels are those that the bench calibrates, from the beginning. run() belongs to one thread;
+// `stop` may be requested from any.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +30,10 @@ namespace dyncal::services::dso {
 
 class BenchService {
 public:
-  // Fails (bad_file) when the bench file has no oscilloscope or time series sensor, (network) when the bus refuses.
-  [[nodiscard]] static Expected<std::unique_ptr<BenchService>> create(bus::Participant& participant, const BenchFile& bench);
+  // Fails (bad_file) when the bench file has no oscilloscope or time series sensor, (network) when
+  // the bus refuses.
+  [[nodiscard]] static Expected<std::unique_ptr<BenchService>> create(bus::Participant& participant,
+                                                                      const BenchFile& bench);
 
   void run(const std::stop_token& stop);
 
@@ -46,8 +51,9 @@ private:
     int shots = 0;
   };
 
-  BenchService(const BenchFile& bench, const SourceSettings& oscilloscope, const SourceSettings& sensor,
-               std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints);
+  BenchService(const BenchFile& bench, const SourceSettings& oscilloscope,
+               const SourceSettings& sensor, std::shared_ptr<bus::WakeUp> wake_up,
+               Endpoints endpoints);
   void take_messages();
   void follow(const Excitation& excitation);
   void take_shot();

@@ -1,4 +1,5 @@
-// dyncal-dso BENCH.toml...: triggers time series sensors by an oscilloscope and publishes the records of both.
+// dyncal-dso BENCH.toml...: triggers time series sensors by an oscilloscope and publishes the
+// records of both.
 #include <memory>
 #include <string>
 #include <thread>
@@ -15,7 +16,8 @@ namespace {
 
 using namespace dyncal::services;
 
-Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options, const std::stop_token& stop) {
+Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options,
+                   const std::stop_token& stop) {
   std::vector<BenchFile> benches;
   for (const std::string& path : paths) {
     auto bench = read_bench_file(path);
@@ -50,7 +52,9 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
 } // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Triggers time series sensors by an oscilloscope and publishes the records of both on DDS.", "dyncal-dso"};
+  CLI::App app{
+      "Triggers time series sensors by an oscilloscope and publishes the records of both on DDS.",
+      "dyncal-dso"};
   std::vector<std::string> benches;
   NetworkOptions network;
   app.add_option("BENCH", benches, "bench files (TOML)")->required();

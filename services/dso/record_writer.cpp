@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
+#include "services/contract/topics.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services::dso {
@@ -13,13 +13,16 @@ constexpr auto status_interval = std::chrono::milliseconds(500);
 
 } // namespace
 
-Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const std::string& bench, const std::string& source,
-                                            const std::string& topic, SourceKind kind, std::uint64_t session) {
-  auto description = participant.writer<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench);
+Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const std::string& bench,
+                                            const std::string& source, const std::string& topic,
+                                            SourceKind kind, std::uint64_t session) {
+  auto description = participant.writer<SourceDescription>(bus::topics::source_description,
+                                                           bus::Profile::state, bench);
   if (!description) {
     return tl::unexpected(description.error());
   }
-  auto status = participant.writer<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench);
+  auto status =
+      participant.writer<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench);
   if (!status) {
     return tl::unexpected(status.error());
   }
@@ -27,7 +30,8 @@ Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const
   if (!records) {
     return tl::unexpected(records.error());
   }
-  return RecordWriter(bench, source, kind, session, std::move(*description), std::move(*status), std::move(*records));
+  return RecordWriter(bench, source, kind, session, std::move(*description), std::move(*status),
+                      std::move(*records));
 }
 
 void RecordWriter::describe(SourceDescription description) {
@@ -64,7 +68,8 @@ bool RecordWriter::write(TriggeredRecord record) {
   return true;
 }
 
-void RecordWriter::status(SourceState state, const std::string& message, std::chrono::steady_clock::time_point now) {
+void RecordWriter::status(SourceState state, const std::string& message,
+                          std::chrono::steady_clock::time_point now) {
   if (state_ == state && message_ == message && now < next_status_) {
     return;
   }

@@ -1,7 +1,9 @@
-// The bus side of one source of triggered records (an oscilloscope or a time series sensor): description, status, records, answers to ARM.
+// The bus side of one source of triggered records (an oscilloscope or a time series sensor):
+// description, status, records, answers to ARM.
 //
-// An answer is an empty record that names the run, in the same stream and behind everything written before it. One thread; write() may
-// block for seconds, which holds up the next shot but loses nothing: devices deliver one shot at a time, when asked.
+// An answer is an empty record that names the run, in the same stream and behind everything written
+// before it. One thread; write() may block for seconds, which holds up the next shot but loses
+// nothing: devices deliver one shot at a time, when asked.
 #pragma once
 
 #include <chrono>
@@ -19,10 +21,12 @@ namespace dyncal::services::dso {
 class RecordWriter {
 public:
   // `topic` is DsoRecord or TssRecord.
-  [[nodiscard]] static Expected<RecordWriter> create(bus::Participant& participant, const std::string& bench, const std::string& source,
-                                                     const std::string& topic, SourceKind kind, std::uint64_t session);
+  [[nodiscard]] static Expected<RecordWriter>
+  create(bus::Participant& participant, const std::string& bench, const std::string& source,
+         const std::string& topic, SourceKind kind, std::uint64_t session);
 
-  // Publishes when it differs from the last one. Bench, source, session and software are filled in here.
+  // Publishes when it differs from the last one. Bench, source, session and software are filled in
+  // here.
   void describe(SourceDescription description);
   [[nodiscard]] bool described() const { return description_.has_value(); }
 
@@ -30,15 +34,18 @@ public:
   // Key members are filled in here. False when it could not be written.
   bool write(TriggeredRecord record);
   // Published at once when state or message change, else every half second.
-  void status(SourceState state, const std::string& message, std::chrono::steady_clock::time_point now);
+  void status(SourceState state, const std::string& message,
+              std::chrono::steady_clock::time_point now);
   void count_rejected() { ++rejected_; }
   void end();
 
 private:
-  RecordWriter(std::string bench, std::string source, SourceKind kind, std::uint64_t session, bus::Writer<SourceDescription> description,
-               bus::Writer<SourceStatus> status, bus::Writer<TriggeredRecord> records)
-      : bench_(std::move(bench)), source_(std::move(source)), kind_(kind), session_(session), description_writer_(std::move(description)),
-        status_writer_(std::move(status)), record_writer_(std::move(records)) {}
+  RecordWriter(std::string bench, std::string source, SourceKind kind, std::uint64_t session,
+               bus::Writer<SourceDescription> description, bus::Writer<SourceStatus> status,
+               bus::Writer<TriggeredRecord> records)
+      : bench_(std::move(bench)), source_(std::move(source)), kind_(kind), session_(session),
+        description_writer_(std::move(description)), status_writer_(std::move(status)),
+        record_writer_(std::move(records)) {}
 
   std::string bench_;
   std::string source_;

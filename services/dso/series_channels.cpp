@@ -7,7 +7,8 @@
 
 namespace dyncal::services::dso {
 
-Expected<drivers::tss::Series> select_channels(drivers::tss::Series series, const std::map<std::string, std::string>& our_names,
+Expected<drivers::tss::Series> select_channels(drivers::tss::Series series,
+                                               const std::map<std::string, std::string>& our_names,
                                                const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
   for (drivers::ChannelDescription& channel : series.channels) {
@@ -21,8 +22,9 @@ Expected<drivers::tss::Series> select_channels(drivers::tss::Series series, cons
   for (const std::string& name : wanted) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      return tl::unexpected(
-          Error{ErrorCode::device, fmt::format("the sensor's series has no channel '{}'; it has: {}", name, fmt::join(names, ", "))});
+      return tl::unexpected(Error{ErrorCode::device,
+                                  fmt::format("the sensor's series has no channel '{}'; it has: {}",
+                                              name, fmt::join(names, ", "))});
     }
     const auto place = found - names.begin();
     channels.push_back(series.channels[static_cast<std::size_t>(place)]);

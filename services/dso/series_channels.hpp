@@ -1,6 +1,7 @@
-// Out of a series as the sensor sends it, the channels that the bench calibrates: by our names (the source's `channels` renames), in the
-// order of the role `dut`. So a source describes the same channels before its first series as after it.
-// Fails (device) when the sensor does not have one of them; the message lists those it has. Any thread.
+// Out of a series as the sensor sends it, the channels that the bench calibrates: by our names (the
+// source's `channels` renames), in the order of the role `dut`. So a source describes the same
+// channels before its first series as after it. Fails (device) when the sensor does not have one of
+// them; the message lists those it has. Any thread.
 #pragma once
 
 #include <map>
@@ -13,6 +14,7 @@
 namespace dyncal::services::dso {
 
 [[nodiscard]] Expected<drivers::tss::Series>
-select_channels(drivers::tss::Series series, const std::map<std::string, std::string>& our_names, const std::vector<std::string>& wanted);
+select_channels(drivers::tss::Series series, const std::map<std::string, std::string>& our_names,
+                const std::vector<std::string>& wanted);
 
 } // namespace dyncal::services::dso

@@ -22,7 +22,8 @@ drivers::dso::OscilloscopeSettings oscilloscope_settings(const SourceSettings& s
   drivers::dso::OscilloscopeSettings settings;
   settings.address = source.address;
   settings.family = source.oscilloscope.family;
-  settings.inputs.push_back({"sync", source.oscilloscope.sync_input, source.oscilloscope.sync_range_v, 0.0});
+  settings.inputs.push_back(
+      {"sync", source.oscilloscope.sync_input, source.oscilloscope.sync_range_v, 0.0});
   settings.trigger_level_v = source.oscilloscope.trigger_level_v;
   return settings;
 }
@@ -34,20 +35,24 @@ drivers::dso::Acquisition acquisition_for(double frequency_hz) {
   return {.before_trigger_s = half_s, .after_trigger_s = half_s, .points = points};
 }
 
-ShotDevice::ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor, const drivers::StopSignal& stop)
+ShotDevice::ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor,
+                       const drivers::StopSignal& stop)
     : oscilloscope_(oscilloscope_settings(oscilloscope), stop),
       sensor_(sensor.path.empty() ? drivers::tss::series_from_socket(sensor.address, stop)
                                   : drivers::tss::series_from_folder(sensor.path, stop)) {}
 
 Expected<void> ShotDevice::connect(double frequency_hz) {
-  return oscilloscope_.prepare(acquisition_for(frequency_hz)).and_then([&] { return sensor_->discard_pending(); }).map_error(device_error);
+  return oscilloscope_.prepare(acquisition_for(frequency_hz))
+      .and_then([&] { return sensor_->discard_pending(); })
+      .map_error(device_error);
 }
 
 Expected<ShotPair> ShotDevice::take(double frequency_hz) {
   if (auto ready = connect(frequency_hz); !ready) {
     return tl::unexpected(ready.error());
   }
-  const milliseconds trigger_limit = min_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
+  const milliseconds trigger_limit =
+      min_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
   auto trace = oscilloscope_.acquire(trigger_limit);
   if (!trace) {
     triggers_.trigger_may_have_come();
@@ -76,9 +81,11 @@ Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
     case SeriesVerdict::late:
       break; // the right one is still to come
     case SeriesVerdict::open:
-      return tl::unexpected(Error{ErrorCode::device, fmt::format("the sensor counts trigger {} after {}: which of them its series belongs "
-                                                                 "to is open; this shot is left out",
-                                                                 series->shot, before.value_or(0))});
+      return tl::unexpected(Error{
+          ErrorCode::device,
+          fmt::format("the sensor counts trigger {} after {}: which of them its series belongs "
+                      "to is open; this shot is left out",
+                      series->shot, before.value_or(0))});
     }
   }
 }

@@ -1,9 +1,11 @@
-// One shot of the bench: the oscilloscope's single acquisition and the series that its trigger output started.
+// One shot of the bench: the oscilloscope's single acquisition and the series that its trigger
+// output started.
 //
-// Before the oscilloscope is armed, series that were left over are dropped; after it has triggered, the sensor's series is waited for. The
-// sensor counts its triggers: a series that is late is dropped, and where the count leaves open whether the two records belong together
-// (a spurious or missed trigger, trigger_count.hpp), the shot fails. A shot that fails changes nothing; the next call tries again, over new
-// connections where these were lost. One thread.
+// Before the oscilloscope is armed, series that were left over are dropped; after it has triggered,
+// the sensor's series is waited for. The sensor counts its triggers: a series that is late is
+// dropped, and where the count leaves open whether the two records belong together (a spurious or
+// missed trigger, trigger_count.hpp), the shot fails. A shot that fails changes nothing; the next
+// call tries again, over new connections where these were lost. One thread.
 #pragma once
 
 #include <chrono>
@@ -26,14 +28,19 @@ struct ShotPair {
 
 class ShotDevice {
 public:
-  // `oscilloscope` and `sensor` are sources of the bench file with these drivers. `stop` outlives the device.
-  ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor, const drivers::StopSignal& stop);
+  // `oscilloscope` and `sensor` are sources of the bench file with these drivers. `stop` outlives
+  // the device.
+  ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor,
+             const drivers::StopSignal& stop);
 
-  // Connects both, so that they can be described. The sensor's channels are known only with its first series.
+  // Connects both, so that they can be described. The sensor's channels are known only with its
+  // first series.
   [[nodiscard]] Expected<void> connect(double frequency_hz);
   [[nodiscard]] Expected<ShotPair> take(double frequency_hz);
 
-  [[nodiscard]] const std::string& oscilloscope_identity() const { return oscilloscope_.identity(); }
+  [[nodiscard]] const std::string& oscilloscope_identity() const {
+    return oscilloscope_.identity();
+  }
 
 private:
   [[nodiscard]] Expected<drivers::tss::Series> series_of_last_trigger();

@@ -1,8 +1,11 @@
-// Does a series belong to the trigger that has just been seen? The sensor counts its triggers (`shot` of a series, 0: it does not).
+// Does a series belong to the trigger that has just been seen? The sensor counts its triggers
+// (`shot` of a series, 0: it does not).
 //
-// Since the series that was accepted last, so many triggers came for sure (traces that were read) and so many may have come (shots of which
-// the trace was lost). A series whose number says that it belongs to one of the earlier triggers is late: the right one is still to come.
-// A number that fits no count, or more than one, leaves it open; then the shot is given up, and counting begins anew with it. One thread.
+// Since the series that was accepted last, so many triggers came for sure (traces that were read)
+// and so many may have come (shots of which the trace was lost). A series whose number says that it
+// belongs to one of the earlier triggers is late: the right one is still to come. A number that
+// fits no count, or more than one, leaves it open; then the shot is given up, and counting begins
+// anew with it. One thread.
 #pragma once
 
 #include <cstdint>

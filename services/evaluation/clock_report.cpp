@@ -81,7 +81,8 @@ void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport&
 
 } // namespace
 
-ClockReportBuilder::ClockReportBuilder(const Recipe& recipe) : bench_(recipe.bench), run_(recipe.run), source_(recipe.sensor_source()) {
+ClockReportBuilder::ClockReportBuilder(const Recipe& recipe)
+    : bench_(recipe.bench), run_(recipe.run), source_(recipe.sensor_source()) {
   if (recipe.temperature && recipe.temperature->source == source_) {
     temperature_channel_ = recipe.temperature->channel;
   }
@@ -92,9 +93,10 @@ void ClockReportBuilder::describe(const SourceDescription& description) {
     return;
   }
   const auto& channels = description.channels();
-  const auto found = std::find_if(channels.begin(), channels.end(), [&](const ChannelDescription& channel) {
-    return temperature_channel_ && channel.name() == *temperature_channel_;
-  });
+  const auto found =
+      std::find_if(channels.begin(), channels.end(), [&](const ChannelDescription& channel) {
+        return temperature_channel_ && channel.name() == *temperature_channel_;
+      });
   if (found != channels.end()) {
     temperature_column_ = static_cast<std::size_t>(found - channels.begin());
   }
@@ -106,12 +108,14 @@ void ClockReportBuilder::describe(const SourceDescription& description) {
 }
 
 void ClockReportBuilder::add(const SampleBlock& block) {
-  if (!clock_ || block.source().to_string() != source_ || block.stamps_ns().empty() || continuity_.add(block).duplicate) {
+  if (!clock_ || block.source().to_string() != source_ || block.stamps_ns().empty() ||
+      continuity_.add(block).duplicate) {
     return;
   }
   std::span<const double> temperature;
   if (temperature_column_) {
-    temperature = std::span(block.values()).subspan(*temperature_column_ * block.sample_count(), block.sample_count());
+    temperature = std::span(block.values())
+                      .subspan(*temperature_column_ * block.sample_count(), block.sample_count());
   }
   clock_->push(block.first_sample(), block.stamps_ns(), block.flags(), temperature);
 }

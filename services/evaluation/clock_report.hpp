@@ -1,8 +1,9 @@
-// Follows the sample clock of the sensor under calibration through a run and reports on it: paper section 3 (direct sample interval
-// evaluation) and section 4.2 (analysis/clock/sample_clock.hpp has the definitions).
+// Follows the sample clock of the sensor under calibration through a run and reports on it: paper
+// section 3 (direct sample interval evaluation) and section 4.2 (analysis/clock/sample_clock.hpp
+// has the definitions).
 //
-// Takes the blocks of the DAU source as they come, relates intervals to the temperature channel if the recipe names one of the
-// same source. Belongs to one thread.
+// Takes the blocks of the DAU source as they come, relates intervals to the temperature channel if
+// the recipe names one of the same source. Belongs to one thread.
 #pragma once
 
 #include <optional>

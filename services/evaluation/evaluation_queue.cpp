@@ -22,7 +22,8 @@ void EvaluationQueue::begin(Evaluation evaluation) {
 }
 
 std::vector<CalibrationResult> EvaluationQueue::take_finished() {
-  while (!under_way_.empty() && under_way_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  while (!under_way_.empty() &&
+         under_way_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     finish_oldest();
   }
   return std::exchange(finished_, {});
@@ -41,7 +42,8 @@ void EvaluationQueue::finish_oldest() {
 }
 
 void EvaluationQueue::keep(std::vector<CalibrationResult> results) {
-  finished_.insert(finished_.end(), std::make_move_iterator(results.begin()), std::make_move_iterator(results.end()));
+  finished_.insert(finished_.end(), std::make_move_iterator(results.begin()),
+                   std::make_move_iterator(results.end()));
 }
 
 } // namespace dyncal::services

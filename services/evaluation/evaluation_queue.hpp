@@ -1,7 +1,8 @@
-// Evaluations of steps, one after the other in the caller's thread, or some at once in threads of their own; results come in the order in
-// which the evaluations were begun, so that nothing depends on which of the two it was.
-// Bounded: who begins one more than there may be at once waits for the oldest. The destructor waits for those under way.
-// Belongs to one thread; what an evaluation looks at must not change until its results were taken.
+// Evaluations of steps, one after the other in the caller's thread, or some at once in threads of
+// their own; results come in the order in which the evaluations were begun, so that nothing depends
+// on which of the two it was. Bounded: who begins one more than there may be at once waits for the
+// oldest. The destructor waits for those under way. Belongs to one thread; what an evaluation looks
+// at must not change until its results were taken.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +24,8 @@ public:
 
   [[nodiscard]] bool in_background() const { return at_once_ > 0; }
 
-  // Waits until one more may begin: before its samples are copied, so that no more of them are held than are evaluated.
+  // Waits until one more may begin: before its samples are copied, so that no more of them are held
+  // than are evaluated.
   void make_room();
   void begin(Evaluation evaluation);
   // Of all evaluations before the first one that is still under way.

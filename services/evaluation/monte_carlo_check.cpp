@@ -4,12 +4,13 @@
 
 namespace dyncal::services {
 
-void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point, std::span<const analysis::SeriesFit> link,
-                           CalibrationResult& result) {
+void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point,
+                           std::span<const analysis::SeriesFit> link, CalibrationResult& result) {
   if (recipe.monte_carlo_trials == 0) {
     return;
   }
-  const auto drawn = analysis::check_transfer(point, link, {.max_trials = recipe.monte_carlo_trials});
+  const auto drawn =
+      analysis::check_transfer(point, link, {.max_trials = recipe.monte_carlo_trials});
   if (!drawn) {
     result.flags().push_back("no Monte Carlo check: " + drawn.error().message);
     return;

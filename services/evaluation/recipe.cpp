@@ -33,7 +33,8 @@ void plan_steps(const BenchFile& file, Measurement& measurement) {
       step.repetition(static_cast<std::uint32_t>(repetition));
       step.frequency_hz(excitation.frequencies_hz[i]);
       step.level_m_s2(excitation.levels_m_s2[i]);
-      step.settling_s(planned_settling_s(file, analysis::Frequency::parse(excitation.frequencies_hz[i])->hz(), repetition));
+      step.settling_s(planned_settling_s(
+          file, analysis::Frequency::parse(excitation.frequencies_hz[i])->hz(), repetition));
       step.duration_s(excitation.duration_s);
       measurement.steps().push_back(step);
     }
@@ -61,7 +62,8 @@ Expected<ChannelName> role(const std::string& what, const std::string& text) {
   if (const auto name = parse_channel_name(text)) {
     return *name;
   }
-  return tl::unexpected(refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
+  return tl::unexpected(
+      refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
 }
 
 Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
@@ -101,24 +103,29 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     recipe.sync_dau = {};
   }
   if (without_sync && recipe.dut.empty()) {
-    return tl::unexpected(refused("the recipe names no channel under calibration, which a method without sync needs: give \"dut\""));
+    return tl::unexpected(refused("the recipe names no channel under calibration, which a method "
+                                  "without sync needs: give \"dut\""));
   }
   if (recipe.reference.source != recipe.sync_acs.source) {
-    return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, but they must share a clock"));
+    return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, "
+                                  "but they must share a clock"));
   }
   if (recipe.sync_dau.source == recipe.sync_acs.source) {
-    return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; sample time stamping links two clocks"));
+    return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; "
+                                  "sample time stamping links two clocks"));
   }
-  if (recipe.method == METHOD_ANALOGUE && recipe.dut_sources() != std::vector{recipe.reference.source}) {
-    return tl::unexpected(refused("the recipe's channels under calibration must be of the source of the reference: the analogue method "
+  if (recipe.method == METHOD_ANALOGUE &&
+      recipe.dut_sources() != std::vector{recipe.reference.source}) {
+    return tl::unexpected(refused("the recipe's channels under calibration must be of the source "
+                                  "of the reference: the analogue method "
                                   "compares channels of one system"));
   }
   const bool beside = recipe.stamped_apart();
   for (const ChannelName& name : recipe.dut) {
     const bool of_dau = name.source == recipe.sync_dau.source;
     if (recipe.method == METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
-      return tl::unexpected(
-          refused("the recipe's channels under calibration must be either all of the source of sync_dau or none of them"));
+      return tl::unexpected(refused("the recipe's channels under calibration must be either all of "
+                                    "the source of sync_dau or none of them"));
     }
   }
   return {};
@@ -128,11 +135,13 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
   for (const PlannedStep& planned : measurement.steps()) {
     const auto frequency = analysis::Frequency::parse(planned.frequency_hz());
     if (!frequency || !(planned.duration_s() > 0.0) || !(planned.settling_s() >= 0.0)) {
-      return tl::unexpected(refused(fmt::format("step {} of the recipe has frequency \"{}\", settling {} s, duration {} s", planned.step(),
-                                                planned.frequency_hz(), planned.settling_s(), planned.duration_s())));
+      return tl::unexpected(refused(fmt::format(
+          "step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
+          planned.step(), planned.frequency_hz(), planned.settling_s(), planned.duration_s())));
     }
-    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_hz(), *frequency, planned.level_m_s2(),
-                            planned.settling_s(), planned.duration_s()});
+    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_hz(),
+                            *frequency, planned.level_m_s2(), planned.settling_s(),
+                            planned.duration_s()});
   }
   if (recipe.steps.empty()) {
     return tl::unexpected(refused("the recipe has no excitation steps"));
@@ -143,7 +152,8 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
 } // namespace
 
 bool Recipe::stamped_apart() const {
-  return method == METHOD_ABSOLUTE_TIME || (method == METHOD_SAMPLE_TIMESTAMPING && !dut.empty() && dut.front().source != sync_dau.source);
+  return method == METHOD_ABSOLUTE_TIME || (method == METHOD_SAMPLE_TIMESTAMPING && !dut.empty() &&
+                                            dut.front().source != sync_dau.source);
 }
 
 std::vector<std::string> Recipe::dut_sources() const {
@@ -182,7 +192,9 @@ Measurement plan_measurement(const BenchFile& file, const std::string& run, std:
   measurement.method(method_message(file.method.kind));
   measurement.planned_utc_ns(now_utc_ns);
   measurement.reference(file.method.reference.text());
-  const auto text_of = [](const ChannelName& name) { return name.source.empty() ? std::string() : name.text(); };
+  const auto text_of = [](const ChannelName& name) {
+    return name.source.empty() ? std::string() : name.text();
+  };
   measurement.sync_acs(text_of(file.method.sync_acs));
   measurement.sync_dau(text_of(file.method.sync_dau));
   for (const ChannelName& name : file.method.dut) {
@@ -226,21 +238,24 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
     return tl::unexpected(roles.error());
   }
   if (recipe.method == METHOD_SERIES_TIMESTAMPING && recipe.dut.empty()) {
-    return tl::unexpected(refused("the recipe of a series time stamping names no channel under calibration"));
+    return tl::unexpected(
+        refused("the recipe of a series time stamping names no channel under calibration"));
   }
   if (const auto steps = parse_steps(measurement, recipe); !steps) {
     return tl::unexpected(steps.error());
   }
   for (const AdcCalibrationPoint& point : measurement.adc_calibration()) {
-    recipe.adc_calibration.push_back(
-        {point.frequency_hz(), point.test_amplitude_vpp(), point.gain(), point.phase_lag_rad(), point.u_gain(), point.u_phase_lag_rad()});
+    recipe.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
+                                      point.gain(), point.phase_lag_rad(), point.u_gain(),
+                                      point.u_phase_lag_rad()});
   }
   recipe.whole_record = measurement.whole_record();
   recipe.settling_from_data = measurement.settling_from_data();
   recipe.monte_carlo_trials = measurement.monte_carlo_trials();
   if (recipe.whole_record && recipe.steps.size() != 1) {
-    return tl::unexpected(
-        refused(fmt::format("the recipe evaluates whole records but has {} steps; only one is possible", recipe.steps.size())));
+    return tl::unexpected(refused(
+        fmt::format("the recipe evaluates whole records but has {} steps; only one is possible",
+                    recipe.steps.size())));
   }
   if (measurement.frequency_exact()) {
     recipe.frequency_search_rel = 0.0;
@@ -252,12 +267,15 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();
   recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
   recipe.sha256 = measurement.recipe_sha256();
-  if (recipe.method == METHOD_SERIES_TIMESTAMPING && (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
-    return tl::unexpected(refused("series time stamping has neither settling = \"from-data\" nor monte_carlo_trials; "
-                                  "leave them out of the bench file"));
+  if (recipe.method == METHOD_SERIES_TIMESTAMPING &&
+      (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
+    return tl::unexpected(
+        refused("series time stamping has neither settling = \"from-data\" nor monte_carlo_trials; "
+                "leave them out of the bench file"));
   }
   if (recipe.stamped_apart() && recipe.settling_from_data) {
-    return tl::unexpected(refused("sensors with stamps of their own are evaluated without settling = \"from-data\"; leave it out of the "
+    return tl::unexpected(refused("sensors with stamps of their own are evaluated without settling "
+                                  "= \"from-data\"; leave it out of the "
                                   "bench file and give the longest settling as settling_s"));
   }
   return recipe;

@@ -1,7 +1,8 @@
-// The recipe of a run as the evaluation uses it, and its way through the contract's Measurement message.
+// The recipe of a run as the evaluation uses it, and its way through the contract's Measurement
+// message.
 //
-// `dyncal run` makes the message from the bench file; the analysis service makes the recipe from the message alone, so that it evaluates
-// benches it has never heard of. Plain data; any thread.
+// `dyncal run` makes the message from the bench file; the analysis service makes the recipe from
+// the message alone, so that it evaluates benches it has never heard of. Plain data; any thread.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
@@ -38,11 +39,11 @@ struct Recipe {
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
   std::vector<RecipeStep> steps;
-  bool settling_from_data = false;                            // RecipeStep::settling_s is the longest that is left out
-  std::uint64_t monte_carlo_trials = 0;                       // 0: no cross-check
-  bool whole_record = false;                                  // one step; nothing is searched, nothing is left out
-  double frequency_search_rel = 1e-3;                         // 0: the frequency is known exactly in every clock
-  double reference_delay_s = 0.0;                             // of the reference's channel against the ACS's sync
+  bool settling_from_data = false;      // RecipeStep::settling_s is the longest that is left out
+  std::uint64_t monte_carlo_trials = 0; // 0: no cross-check
+  bool whole_record = false;            // one step; nothing is searched, nothing is left out
+  double frequency_search_rel = 1e-3;   // 0: the frequency is known exactly in every clock
+  double reference_delay_s = 0.0;       // of the reference's channel against the ACS's sync
   std::vector<analysis::AdcCalibrationPoint> adc_calibration; // empty: no correction
   analysis::SystematicUncertainty systematic;
   double dso_delay_s = 0.0; // from the oscilloscope's trigger point to its trigger output
@@ -52,23 +53,31 @@ struct Recipe {
   double u_acs_rate_rel = 0.0;
   std::string sha256;
 
-  // The steps are found in the reference itself, or in what the ACS has of sync; nothing else records sync.
-  [[nodiscard]] bool without_sync() const { return method == METHOD_ABSOLUTE_TIME || method == METHOD_ANALOGUE; }
+  // The steps are found in the reference itself, or in what the ACS has of sync; nothing else
+  // records sync.
+  [[nodiscard]] bool without_sync() const {
+    return method == METHOD_ABSOLUTE_TIME || method == METHOD_ANALOGUE;
+  }
   // The sensors have stamps of their own: everything is on UTC, or sync is recorded beside them.
   [[nodiscard]] bool stamped_apart() const;
   // Whose sample clock is reported on.
-  [[nodiscard]] const std::string& sensor_source() const { return stamped_apart() ? dut.front().source : sync_dau.source; }
+  [[nodiscard]] const std::string& sensor_source() const {
+    return stamped_apart() ? dut.front().source : sync_dau.source;
+  }
   // The sources of the channels under calibration, each once.
   [[nodiscard]] std::vector<std::string> dut_sources() const;
   // The sources whose samples the evaluation needs, each once: the ACS first.
   [[nodiscard]] std::vector<std::string> sources() const;
 };
 
-// The steps of a bench file in the order they are run: all frequencies, then all again for the next repetition.
-[[nodiscard]] Measurement plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
-                                           const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
+// The steps of a bench file in the order they are run: all frequencies, then all again for the next
+// repetition.
+[[nodiscard]] Measurement
+plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
+                 const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
 
-// Fails (bad_argument) with what this version cannot evaluate: another method, a role that is no "source/channel", no steps.
+// Fails (bad_argument) with what this version cannot evaluate: another method, a role that is no
+// "source/channel", no steps.
 [[nodiscard]] Expected<Recipe> parse_recipe(const Measurement& measurement);
 
 } // namespace dyncal::services

@@ -12,8 +12,9 @@
 namespace dyncal::services {
 namespace {
 
-// Samples that a source's service received this long after a step was over belong to later times for sure: devices, services and clocks
-// of hosts that keep time by NTP delay and differ by far less.
+// Samples that a source's service received this long after a step was over belong to later times
+// for sure: devices, services and clocks of hosts that keep time by NTP delay and differ by far
+// less.
 constexpr std::int64_t grace_ns = 2'000'000'000;
 
 std::vector<std::string> channel_names(const SourceDescription& description) {
@@ -24,31 +25,37 @@ std::vector<std::string> channel_names(const SourceDescription& description) {
   return names;
 }
 
-std::vector<std::string> flags_of(const Recipe& recipe, const RecipeStep& step, const SourceRecord& source, const StretchOfTime& stretch) {
+std::vector<std::string> flags_of(const Recipe& recipe, const RecipeStep& step,
+                                  const SourceRecord& source, const StretchOfTime& stretch) {
   std::vector<std::string> flags;
   if (source.lost_between(stretch.begin_ns, stretch.end_ns) > 0) {
     flags.push_back(source.source() + ": samples lost");
   }
-  if (!recipe.whole_record && static_cast<double>(stretch.end_ns - stretch.begin_ns) < 0.95e9 * step.duration_s) {
+  if (!recipe.whole_record &&
+      static_cast<double>(stretch.end_ns - stretch.begin_ns) < 0.95e9 * step.duration_s) {
     flags.push_back(source.source() + ": shorter than planned");
   }
   return flags;
 }
 
 std::string no_sine(const RecipeStep& step, const ChannelName& sync) {
-  return fmt::format("no steady sine of {} Hz was found in {}; is the sync signal connected?", step.frequency_text_hz, sync.text());
+  return fmt::format("no steady sine of {} Hz was found in {}; is the sync signal connected?",
+                     step.frequency_text_hz, sync.text());
 }
 
 } // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe, std::size_t evaluations_at_once)
-    : recipe_(std::move(recipe)), clock_(recipe_), summary_(recipe_), evaluations_(evaluations_at_once) {
+    : recipe_(std::move(recipe)), clock_(recipe_), summary_(recipe_),
+      evaluations_(evaluations_at_once) {
   for (const std::string& source : recipe_.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source));
   }
-  acs_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_acs.source), recipe_.sync_acs.channel);
+  acs_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_acs.source),
+                                             recipe_.sync_acs.channel);
   if (!by_series() && !recipe_.without_sync()) {
-    dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source), recipe_.sync_dau.channel);
+    dau_search_ = std::make_unique<StepSearch>(recipe_, *records_.at(recipe_.sync_dau.source),
+                                               recipe_.sync_dau.channel);
   }
 }
 
@@ -66,9 +73,12 @@ Expected<void> RunEvaluator::describe(const SourceDescription& description) {
   }
   const std::vector<std::string> names = channel_names(description);
   for (const ChannelName& channel : channels_needed()) {
-    if (channel.source == source->source() && std::find(names.begin(), names.end(), channel.channel) == names.end()) {
-      return tl::unexpected(Error{ErrorCode::no_source, fmt::format("source '{}' has no channel '{}'; it has: {}", channel.source,
-                                                                    channel.channel, fmt::join(names, ", "))});
+    if (channel.source == source->source() &&
+        std::find(names.begin(), names.end(), channel.channel) == names.end()) {
+      return tl::unexpected(
+          Error{ErrorCode::no_source,
+                fmt::format("source '{}' has no channel '{}'; it has: {}", channel.source,
+                            channel.channel, fmt::join(names, ", "))});
     }
   }
   source->describe(description);
@@ -94,7 +104,8 @@ std::vector<ChannelName> RunEvaluator::channels_needed() const {
 void RunEvaluator::keep_only_what_is_needed(SourceRecord& source) const {
   std::set<std::size_t> channels;
   for (const ChannelName& name : channels_needed()) {
-    if (const auto channel = source.channel(name.channel); channel && name.source == source.source()) {
+    if (const auto channel = source.channel(name.channel);
+        channel && name.source == source.source()) {
       channels.insert(*channel);
     }
   }
@@ -119,8 +130,9 @@ void RunEvaluator::add(const SampleBlock& block) {
 }
 
 void RunEvaluator::add(const TriggeredRecord& record) {
-  const bool evaluated = std::any_of(recipe_.steps.begin(), recipe_.steps.begin() + static_cast<std::ptrdiff_t>(next_step_),
-                                     [&](const RecipeStep& step) { return step.step == record.step(); });
+  const bool evaluated = std::any_of(
+      recipe_.steps.begin(), recipe_.steps.begin() + static_cast<std::ptrdiff_t>(next_step_),
+      [&](const RecipeStep& step) { return step.step == record.step(); });
   if (finished_ || !by_series() || evaluated || record.run() != recipe_.run) {
     return;
   }
@@ -134,7 +146,8 @@ void RunEvaluator::add(const TriggeredRecord& record) {
 
 void RunEvaluator::announce(const Excitation& excitation) {
   const auto found =
-      std::find_if(recipe_.steps.begin(), recipe_.steps.end(), [&](const RecipeStep& step) { return step.step == excitation.step(); });
+      std::find_if(recipe_.steps.begin(), recipe_.steps.end(),
+                   [&](const RecipeStep& step) { return step.step == excitation.step(); });
   if (found == recipe_.steps.end()) {
     return;
   }
@@ -146,7 +159,8 @@ void RunEvaluator::announce(const Excitation& excitation) {
   if (excitation.state() == EXCITATION_ABORTED) {
     broken_off_.insert(step);
   }
-  // Only the newest state is kept on the way: a step that is announced says that the ones before it are over.
+  // Only the newest state is kept on the way: a step that is announced says that the ones before it
+  // are over.
   for (std::size_t before = next_step_; before < step; ++before) {
     over_utc_ns_.emplace(before, excitation.window_begin_utc_ns());
   }
@@ -158,7 +172,8 @@ void RunEvaluator::end_of_excitation(bool aborted) {
 }
 
 std::size_t RunEvaluator::steps_expected() const {
-  return excitation_aborted_ ? std::min(steps_announced_, recipe_.steps.size()) : recipe_.steps.size();
+  return excitation_aborted_ ? std::min(steps_announced_, recipe_.steps.size())
+                             : recipe_.steps.size();
 }
 
 bool RunEvaluator::over_in(const SourceRecord& source, std::size_t step) const {
@@ -181,9 +196,11 @@ void RunEvaluator::follow(StepSearch& search, const SourceRecord& source) {
   }
 }
 
-// All that were wanted; or when none can come any more, which has the same grace as the samples of the ACS.
+// All that were wanted; or when none can come any more, which has the same grace as the samples of
+// the ACS.
 bool RunEvaluator::shots_are_there(std::size_t step) const {
-  const bool complete = over_utc_ns_.contains(step) && shots_.of_step(recipe_.steps[step].step).size() >= recipe_.shots;
+  const bool complete = over_utc_ns_.contains(step) &&
+                        shots_.of_step(recipe_.steps[step].step).size() >= recipe_.shots;
   return complete || over_in(*records_.at(recipe_.sync_acs.source), step);
 }
 
@@ -192,7 +209,8 @@ bool RunEvaluator::sensors_are_there(std::size_t step) const {
   const std::vector<std::string> sources = recipe_.dut_sources();
   return !stretch || std::all_of(sources.begin(), sources.end(), [&](const std::string& name) {
     const SourceRecord& sensor = *records_.at(name);
-    return (!sensor.stamps_ns().empty() && sensor.stamps_ns().back() >= stretch->end_ns) || over_in(sensor, step);
+    return (!sensor.stamps_ns().empty() && sensor.stamps_ns().back() >= stretch->end_ns) ||
+           over_in(sensor, step);
   });
 }
 
@@ -232,7 +250,8 @@ EvaluationQueue::Evaluation RunEvaluator::evaluation_by_method(const RecipeStep&
   return recipe_.stamped_apart() ? apart_evaluation(step) : stamped_evaluation(step);
 }
 
-std::shared_ptr<const SourceRecord> RunEvaluator::samples_of(const std::string& source, const StretchOfTime& stretch) const {
+std::shared_ptr<const SourceRecord> RunEvaluator::samples_of(const std::string& source,
+                                                             const StretchOfTime& stretch) const {
   const SourceRecord& whole = *records_.at(source);
   if (evaluations_.in_background()) {
     return std::make_shared<const SourceRecord>(whole.part(stretch.begin_ns, stretch.end_ns));
@@ -244,7 +263,8 @@ EvaluationQueue::Evaluation RunEvaluator::analogue_evaluation(const RecipeStep& 
   const SourceRecord& acs = *records_.at(recipe_.reference.source);
   const auto stretch = acs_search_->stretch(next_step_);
   if (!stretch) {
-    return [results = results_of_missing_step(recipe_, step, acs, no_sine(step, recipe_.sync_acs))] { return results; };
+    return [results = results_of_missing_step(recipe_, step, acs,
+                                              no_sine(step, recipe_.sync_acs))] { return results; };
   }
   std::vector<std::string> flags = flags_of(recipe_, step, acs, *stretch);
   if (broken_off_.contains(next_step_)) {
@@ -270,9 +290,11 @@ EvaluationQueue::Evaluation RunEvaluator::stamped_evaluation(const RecipeStep& s
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  return
-      [this, &step, acs_samples = samples_of(acs.source(), *acs_stretch), dau_samples = samples_of(dau.source(), *dau_stretch), acs_stretch,
-       dau_stretch, flags] { return evaluate_step(recipe_, step, *acs_samples, *acs_stretch, *dau_samples, *dau_stretch, flags); };
+  return [this, &step, acs_samples = samples_of(acs.source(), *acs_stretch),
+          dau_samples = samples_of(dau.source(), *dau_stretch), acs_stretch, dau_stretch, flags] {
+    return evaluate_step(recipe_, step, *acs_samples, *acs_stretch, *dau_samples, *dau_stretch,
+                         flags);
+  };
 }
 
 EvaluationQueue::Evaluation RunEvaluator::apart_evaluation(const RecipeStep& step) const {
@@ -281,9 +303,11 @@ EvaluationQueue::Evaluation RunEvaluator::apart_evaluation(const RecipeStep& ste
   const auto stretch = search_of_sensors().stretch(next_step_);
   if (!acs_stretch || !stretch) {
     const std::string problem = no_sine(step, acs_stretch ? recipe_.sync_dau : recipe_.sync_acs);
-    return [results = results_of_missing_step(recipe_, step, *records_.at(sensors.front()), problem)] { return results; };
+    return [results = results_of_missing_step(recipe_, step, *records_.at(sensors.front()),
+                                              problem)] { return results; };
   }
-  std::vector<std::string> flags = flags_of(recipe_, step, *records_.at(recipe_.sync_acs.source), *acs_stretch);
+  std::vector<std::string> flags =
+      flags_of(recipe_, step, *records_.at(recipe_.sync_acs.source), *acs_stretch);
   std::vector<std::string> others = sensors;
   if (!by_absolute_time()) {
     others.insert(others.begin(), recipe_.sync_dau.source);
@@ -297,13 +321,15 @@ EvaluationQueue::Evaluation RunEvaluator::apart_evaluation(const RecipeStep& ste
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  return [this, &step, acs = samples_of(recipe_.sync_acs.source, *acs_stretch), acs_stretch, samples, stretch, flags] {
+  return [this, &step, acs = samples_of(recipe_.sync_acs.source, *acs_stretch), acs_stretch,
+          samples, stretch, flags] {
     const SourceRecord* const sync = by_absolute_time() ? nullptr : samples.front().get();
     std::vector<const SourceRecord*> of_sensors;
     for (std::size_t i = sync == nullptr ? 0 : 1; i < samples.size(); ++i) {
       of_sensors.push_back(samples[i].get());
     }
-    return evaluate_apart_step(recipe_, step, {*acs, *acs_stretch, sync, *stretch}, of_sensors, flags);
+    return evaluate_apart_step(recipe_, step, {*acs, *acs_stretch, sync, *stretch}, of_sensors,
+                               flags);
   };
 }
 
@@ -318,8 +344,9 @@ std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const Recip
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  SeriesStepOutput evaluated = evaluate_series_step(recipe_, step, acs, *stretch, *records_.at(recipe_.sync_dau.source), sensor,
-                                                    shots_.of_step(step.step), start_, std::move(flags));
+  SeriesStepOutput evaluated =
+      evaluate_series_step(recipe_, step, acs, *stretch, *records_.at(recipe_.sync_dau.source),
+                           sensor, shots_.of_step(step.step), start_, std::move(flags));
   start_ = evaluated.start;
   if (evaluated.rate) {
     rates_.push_back(*evaluated.rate);
@@ -360,7 +387,8 @@ EvaluationOutput RunEvaluator::take_output() {
   }
   evaluate_next_steps(output);
   forget_what_is_evaluated();
-  const bool all_steps = next_step_ >= steps_expected() && (excitation_done_ || next_step_ >= recipe_.steps.size());
+  const bool all_steps =
+      next_step_ >= steps_expected() && (excitation_done_ || next_step_ >= recipe_.steps.size());
   if (all_steps || finish_now_) {
     finish(output);
   }
@@ -378,7 +406,8 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   if (!by_series()) {
     output.clock_reports = clock_.reports();
   } else if (!rates_.empty()) {
-    output.clock_reports.push_back(series_clock_report(recipe_, recipe_.dut.front().source, rates_));
+    output.clock_reports.push_back(
+        series_clock_report(recipe_, recipe_.dut.front().source, rates_));
   }
 }
 

@@ -37,16 +37,21 @@ std::optional<std::size_t> SourceRecord::channel(const std::string& name) const 
   }
   const auto& channels = description_->channels();
   const auto found =
-      std::find_if(channels.begin(), channels.end(), [&](const ChannelDescription& channel) { return channel.name() == name; });
-  return found == channels.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - channels.begin()));
+      std::find_if(channels.begin(), channels.end(),
+                   [&](const ChannelDescription& channel) { return channel.name() == name; });
+  return found == channels.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - channels.begin()));
 }
 
 bool SourceRecord::usable(const SampleBlock& block) const {
   const std::size_t samples = block.sample_count();
-  const bool stamped = block.stamps_ns().empty() ? block.interval_numerator_ns() > 0 && block.interval_denominator() > 0
-                                                 : block.stamps_ns().size() == samples;
+  const bool stamped = block.stamps_ns().empty()
+                           ? block.interval_numerator_ns() > 0 && block.interval_denominator() > 0
+                           : block.stamps_ns().size() == samples;
   const bool flagged = block.flags().empty() || block.flags().size() == samples;
-  const bool filled = block.values().size() == samples * block.channel_count() && block.channel_count() > 0;
+  const bool filled =
+      block.values().size() == samples * block.channel_count() && block.channel_count() > 0;
   return stamped && flagged && filled;
 }
 
@@ -67,7 +72,9 @@ bool SourceRecord::add(const SampleBlock& block) {
     ++unusable_blocks_;
     return false;
   }
-  const std::int64_t first_ns = block.stamps_ns().empty() ? regular_clock(block).stamp_ns(block.first_sample()) : block.stamps_ns().front();
+  const std::int64_t first_ns = block.stamps_ns().empty()
+                                    ? regular_clock(block).stamp_ns(block.first_sample())
+                                    : block.stamps_ns().front();
   if (step.missing_samples > 0) {
     lost_ += step.missing_samples;
     gaps_.push_back({newest_ns_.value_or(first_ns), first_ns, step.missing_samples});
@@ -84,7 +91,8 @@ void SourceRecord::append(const SampleBlock& block) {
     const std::int64_t first_ns = clock.stamp_ns(block.first_sample());
     const bool whole = clock.interval_denominator == 1; // then no division a sample is needed
     for (std::size_t i = 0; i < samples; ++i) {
-      stamps_ns_.push_back(whole ? first_ns + static_cast<std::int64_t>(i) * clock.interval_numerator_ns
+      stamps_ns_.push_back(whole ? first_ns +
+                                       static_cast<std::int64_t>(i) * clock.interval_numerator_ns
                                  : clock.stamp_ns(block.first_sample() + i));
     }
   } else {
@@ -98,7 +106,9 @@ void SourceRecord::append(const SampleBlock& block) {
   const bool told = block.stamp_uncertainty_ns().size() == samples;
   if (told) {
     stamp_uncertainties_ns_.resize(stamps_ns_.size() - samples, 0);
-    stamp_uncertainties_ns_.insert(stamp_uncertainties_ns_.end(), block.stamp_uncertainty_ns().begin(), block.stamp_uncertainty_ns().end());
+    stamp_uncertainties_ns_.insert(stamp_uncertainties_ns_.end(),
+                                   block.stamp_uncertainty_ns().begin(),
+                                   block.stamp_uncertainty_ns().end());
   } else if (!stamp_uncertainties_ns_.empty()) {
     stamp_uncertainties_ns_.resize(stamps_ns_.size(), 0);
   }
@@ -107,7 +117,8 @@ void SourceRecord::append(const SampleBlock& block) {
       continue;
     }
     const auto begin = block.values().begin() + static_cast<std::ptrdiff_t>(channel * samples);
-    columns_[channel].insert(columns_[channel].end(), begin, begin + static_cast<std::ptrdiff_t>(samples));
+    columns_[channel].insert(columns_[channel].end(), begin,
+                             begin + static_cast<std::ptrdiff_t>(samples));
   }
   newest_ns_ = stamps_ns_.back();
   if (stamps_ns().size() > capacity_) {
@@ -125,13 +136,15 @@ void SourceRecord::restart() {
 }
 
 std::span<const double> SourceRecord::column(std::size_t channel) const {
-  return channel < columns_.size() && keeps(channel) ? std::span(columns_[channel]).subspan(first_) : std::span<const double>{};
+  return channel < columns_.size() && keeps(channel) ? std::span(columns_[channel]).subspan(first_)
+                                                     : std::span<const double>{};
 }
 
 void SourceRecord::forget_before(std::int64_t stamp_ns) {
   const auto stamps = stamps_ns();
   // Stamps of a faulty clock may step back, so the first one that is not earlier ends the search.
-  const auto keep = std::find_if(stamps.begin(), stamps.end(), [&](std::int64_t stamp) { return stamp >= stamp_ns; });
+  const auto keep = std::find_if(stamps.begin(), stamps.end(),
+                                 [&](std::int64_t stamp) { return stamp >= stamp_ns; });
   forget(static_cast<std::size_t>(keep - stamps.begin()));
   while (!gaps_.empty() && gaps_.front().after_ns < stamp_ns) {
     gaps_.pop_front();
@@ -145,13 +158,17 @@ SourceRecord SourceRecord::part(std::int64_t begin_ns, std::int64_t end_ns) cons
   part.gaps_ = gaps_;
   part.columns_.resize(columns_.size());
   const auto inside = [&](std::int64_t stamp) { return stamp >= begin_ns && stamp <= end_ns; };
-  // Stamps of a faulty clock may step back: all that lies between the first one inside and the last one is taken.
+  // Stamps of a faulty clock may step back: all that lies between the first one inside and the last
+  // one is taken.
   const auto stamps = stamps_ns();
   const auto first = std::find_if(stamps.begin(), stamps.end(), inside);
-  const auto behind = std::find_if(stamps.rbegin(), std::make_reverse_iterator(first), inside).base();
+  const auto behind =
+      std::find_if(stamps.rbegin(), std::make_reverse_iterator(first), inside).base();
   const auto begin = static_cast<std::ptrdiff_t>(first_) + (first - stamps.begin());
   const auto end = begin + (behind - first);
-  const auto take = [&](const auto& from, auto& to) { to.assign(from.begin() + begin, from.begin() + end); };
+  const auto take = [&](const auto& from, auto& to) {
+    to.assign(from.begin() + begin, from.begin() + end);
+  };
   take(stamps_ns_, part.stamps_ns_);
   take(flags_, part.flags_);
   if (!stamp_uncertainties_ns_.empty()) {
@@ -171,7 +188,9 @@ void SourceRecord::forget(std::size_t samples) {
   if (first_ < forgotten_worth_moving || first_ * 2 < stamps_ns_.size()) {
     return;
   }
-  const auto erase = [this](auto& column) { column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_)); };
+  const auto erase = [this](auto& column) {
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_));
+  };
   erase(stamps_ns_);
   erase(flags_);
   if (!stamp_uncertainties_ns_.empty()) {

@@ -17,7 +17,8 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
 
-SourceSamples samples_message(const SourceRecord& record, const StepSamples& series, const StretchOfTime& stretch) {
+SourceSamples samples_message(const SourceRecord& record, const StepSamples& series,
+                              const StretchOfTime& stretch) {
   SourceSamples samples;
   samples.source(record.source());
   samples.used(series.stamps_ns.size());
@@ -40,12 +41,14 @@ SineFit fit_message(const analysis::SeriesFit& series) {
   message.u_sine(std::sqrt(series.fit.covariance[0]));
   message.u_cosine(std::sqrt(series.fit.covariance[3]));
   message.u_offset(std::sqrt(series.fit.covariance[5]));
-  message.residual_rms(std::sqrt(series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
+  message.residual_rms(std::sqrt(
+      series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
   message.samples(series.fit.samples);
   return message;
 }
 
-CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step, const std::string& channel) {
+CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
+                              const std::string& channel) {
   CalibrationResult result;
   result.bench(recipe.bench);
   result.run(recipe.run);
@@ -66,7 +69,8 @@ CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step, cons
 }
 
 // Output per input, as D-SI knows it: "\one" when both are the same.
-std::string ratio_unit(const SourceRecord& acs, const std::string& reference, const SourceRecord& dau, const std::string& channel) {
+std::string ratio_unit(const SourceRecord& acs, const std::string& reference,
+                       const SourceRecord& dau, const std::string& channel) {
   const std::string in = acs.description().channels()[*acs.channel(reference)].unit();
   const std::string out = dau.description().channels()[*dau.channel(channel)].unit();
   if (in == out) {
@@ -87,7 +91,8 @@ void add_budget(std::span<const analysis::Contribution> budget, CalibrationResul
   }
 }
 
-CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step, const ChannelName& name, const analysis::TransferPoint& point,
+CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step,
+                               const ChannelName& name, const analysis::TransferPoint& point,
                                std::span<const analysis::SeriesFit> common_fits) {
   CalibrationResult result = result_head(recipe, step, name.text());
   result.valid(true);

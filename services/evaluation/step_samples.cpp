@@ -13,7 +13,8 @@ struct IndexRun { // of samples that follow one another
 
 class Cutter {
 public:
-  Cutter(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels)
+  Cutter(const SourceRecord& record, const StretchOfTime& stretch,
+         const std::vector<std::size_t>& channels)
       : stretch_(stretch), stamps_(record.stamps_ns()), flags_(record.flags()) {
     for (const std::size_t channel : channels) {
       columns_.push_back(record.column(channel));
@@ -29,7 +30,8 @@ public:
       copy_into(result);
     } else if (runs_.size() == 1) {
       result.stamps_ns = part(stamps_, runs_.front());
-      std::transform(columns_.begin(), columns_.end(), result.columns.begin(), [&](auto column) { return part(column, runs_.front()); });
+      std::transform(columns_.begin(), columns_.end(), result.columns.begin(),
+                     [&](auto column) { return part(column, runs_.front()); });
     }
     return result;
   }
@@ -40,7 +42,9 @@ private:
     return all.subspan(run.begin, run.end - run.begin);
   }
 
-  [[nodiscard]] bool inside(std::size_t i) const { return stamps_[i] >= stretch_.begin_ns && stamps_[i] <= stretch_.end_ns; }
+  [[nodiscard]] bool inside(std::size_t i) const {
+    return stamps_[i] >= stretch_.begin_ns && stamps_[i] <= stretch_.end_ns;
+  }
 
   void find_runs() {
     for (std::size_t i = 0; i < stamps_.size();) {
@@ -70,13 +74,15 @@ private:
     std::int64_t last_ns = last_ns_;
     bool any = !runs_.empty();
     std::size_t end = begin;
-    for (; end < most && inside(end) && flags_[end] == 0 && (!any || stamps_[end] > last_ns); ++end) {
+    for (; end < most && inside(end) && flags_[end] == 0 && (!any || stamps_[end] > last_ns);
+         ++end) {
       last_ns = stamps_[end];
       any = true;
     }
     for (const auto& column : columns_) {
       const auto first = column.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto bad = std::find_if(first, column.begin() + static_cast<std::ptrdiff_t>(end), [](double y) { return !std::isfinite(y); });
+      const auto bad = std::find_if(first, column.begin() + static_cast<std::ptrdiff_t>(end),
+                                    [](double y) { return !std::isfinite(y); });
       end = begin + static_cast<std::size_t>(bad - first);
     }
     return end;
@@ -116,7 +122,8 @@ private:
 
 } // namespace
 
-StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels) {
+StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch,
+                const std::vector<std::size_t>& channels) {
   return Cutter(record, stretch, channels).samples();
 }
 

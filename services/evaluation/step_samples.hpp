@@ -1,8 +1,10 @@
-// The samples of one source that belong to a step: cut out of its record, cleaned, each sample once.
+// The samples of one source that belong to a step: cut out of its record, cleaned, each sample
+// once.
 //
-// Left out and counted: samples whose stamp is not trusted (flags), does not increase, or that were not measured (NaN) in a column asked
-// for. As a rule nothing must be left out: then these are views of the record, and nothing is copied.
-// Plain functions, any thread; REQUIRES: the record lives on and does not change as long as they are looked at.
+// Left out and counted: samples whose stamp is not trusted (flags), does not increase, or that were
+// not measured (NaN) in a column asked for. As a rule nothing must be left out: then these are
+// views of the record, and nothing is copied. Plain functions, any thread; REQUIRES: the record
+// lives on and does not change as long as they are looked at.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +34,7 @@ struct StepSamples {
   std::shared_ptr<const Copies> copies; // where they lie when samples between them were left out
 };
 
-[[nodiscard]] StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch, const std::vector<std::size_t>& channels);
+[[nodiscard]] StepSamples cut(const SourceRecord& record, const StretchOfTime& stretch,
+                              const std::vector<std::size_t>& channels);
 
 } // namespace dyncal::services

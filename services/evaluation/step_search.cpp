@@ -16,7 +16,8 @@ std::int64_t to_ns(double seconds) {
 } // namespace
 
 StepSearch::StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel)
-    : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)), search_from_ns_(std::numeric_limits<std::int64_t>::min()) {}
+    : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)),
+      search_from_ns_(std::numeric_limits<std::int64_t>::min()) {}
 
 void StepSearch::look_for(std::size_t step) {
   step_ = step;

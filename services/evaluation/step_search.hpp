@@ -1,9 +1,10 @@
-// Follows one source through the planned steps: finds in its own clock where each step was excited, from its sync channel alone.
+// Follows one source through the planned steps: finds in its own clock where each step was excited,
+// from its sync channel alone.
 //
-// With Recipe::whole_record nothing is looked for: the one step is the record from its first to its last sample.
-// Steps are looked for in the planned order, each from the end of the one before; the search never goes back but when the source was
-// restarted. What it finds depends on the samples only, not on how they came.
-// Belongs to one thread; the record and the recipe must outlive it.
+// With Recipe::whole_record nothing is looked for: the one step is the record from its first to its
+// last sample. Steps are looked for in the planned order, each from the end of the one before; the
+// search never goes back but when the source was restarted. What it finds depends on the samples
+// only, not on how they came. Belongs to one thread; the record and the recipe must outlive it.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@
 #include <string>
 
 #include "analysis/step/excitation_window.hpp"
+#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 #include "services/evaluation/recipe.hpp"
 #include "services/evaluation/source_record.hpp"
-#include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
 
 namespace dyncal::services {
 
@@ -22,15 +23,18 @@ class StepSearch {
 public:
   StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel);
 
-  // Looks at the samples that have come since the last call, as far as `last_step` (an index into the recipe's steps).
+  // Looks at the samples that have come since the last call, as far as `last_step` (an index into
+  // the recipe's steps).
   void advance(std::size_t last_step);
 
-  // The stretch to evaluate for the step: settling dropped, at most the planned duration; when settling is found from the data, from the
-  // beginning of the excitation. Empty until the step's excitation is over.
+  // The stretch to evaluate for the step: settling dropped, at most the planned duration; when
+  // settling is found from the data, from the beginning of the excitation. Empty until the step's
+  // excitation is over.
   [[nodiscard]] std::optional<StretchOfTime> stretch(std::size_t step) const;
   // The step whose excitation is looked for now.
   [[nodiscard]] std::size_t step() const { return step_; }
-  // Takes what there is of the step looked for, or passes over it when there is nothing; the search goes on with the next.
+  // Takes what there is of the step looked for, or passes over it when there is nothing; the search
+  // goes on with the next.
   void give_up_step();
   // Nothing earlier than this is needed for steps that were not found yet.
   [[nodiscard]] std::int64_t needed_from_ns() const { return search_from_ns_; }

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "analysis/response/group_delay.hpp"
 #include "analysis/method/repetitions.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -16,7 +16,8 @@ namespace {
 analysis::Repetition repetition_of(const CalibrationResult& result) {
   std::vector<analysis::Contribution> budget;
   for (const BudgetContribution& line : result.budget()) {
-    budget.push_back({line.name(), line.distribution(), line.degrees_of_freedom(), line.u_magnitude_rel(), line.u_phase_rad()});
+    budget.push_back({line.name(), line.distribution(), line.degrees_of_freedom(),
+                      line.u_magnitude_rel(), line.u_phase_rad()});
   }
   return analysis::make_repetition(std::polar(result.magnitude(), result.phase_rad()), budget);
 }
@@ -26,7 +27,8 @@ struct PointOfMean {
   analysis::PhasePoint phase;
 };
 
-PointOfMean point_of(const std::vector<const CalibrationResult*>& results, const analysis::RepetitionMean& mean) {
+PointOfMean point_of(const std::vector<const CalibrationResult*>& results,
+                     const analysis::RepetitionMean& mean) {
   PointOfMean point;
   point.message.frequency_text_hz(results.front()->frequency_text_hz());
   point.message.frequency_hz(results.front()->frequency_hz());
@@ -43,7 +45,8 @@ PointOfMean point_of(const std::vector<const CalibrationResult*>& results, const
   return point;
 }
 
-// Several levels at one frequency are points of their own; the line through the phases takes the first of them.
+// Several levels at one frequency are points of their own; the line through the phases takes the
+// first of them.
 std::vector<std::size_t> first_of_each_frequency(const std::vector<PointOfMean>& points) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -54,8 +57,8 @@ std::vector<std::size_t> first_of_each_frequency(const std::vector<PointOfMean>&
   return chosen;
 }
 
-// The ADC's lag is calibrated as one curve: its uncertainty shifts all phases alike in delay. The largest over the frequencies stands for
-// all.
+// The ADC's lag is calibrated as one curve: its uncertainty shifts all phases alike in delay. The
+// largest over the frequencies stands for all.
 double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
   double max_s = 0.0;
   for (const analysis::PhasePoint& point : phases) {
@@ -69,30 +72,36 @@ double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoin
 // What shifts all frequencies alike: it adds in full to the group delay.
 double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
   const bool by_series = recipe.method == METHOD_SERIES_TIMESTAMPING;
-  return std::hypot(recipe.systematic.acs_delay_s, by_series ? recipe.u_dso_delay_s : u_adc_delay_s(recipe, phases));
+  return std::hypot(recipe.systematic.acs_delay_s,
+                    by_series ? recipe.u_dso_delay_s : u_adc_delay_s(recipe, phases));
 }
 
-// One clock against the other, and the latency of stamps: the same error of time at every frequency.
-double u_clock_offset_s(const std::map<std::pair<std::uint32_t, std::uint32_t>, CalibrationResult>& results) {
+// One clock against the other, and the latency of stamps: the same error of time at every
+// frequency.
+double u_clock_offset_s(
+    const std::map<std::pair<std::uint32_t, std::uint32_t>, CalibrationResult>& results) {
   double max_s = 0.0;
   for (const auto& [key, result] : results) {
     for (const BudgetContribution& line : result.budget()) {
       if (line.name() == "offset between the clocks") {
-        max_s = std::max(max_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
+        max_s =
+            std::max(max_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
       }
     }
   }
   return max_s;
 }
 
-void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOfMean>& points, TransferFunction& function) {
+void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOfMean>& points,
+                     TransferFunction& function) {
   const std::vector<std::size_t> chosen = first_of_each_frequency(points);
   std::vector<analysis::PhasePoint> phases;
   for (const std::size_t i : chosen) {
     phases.push_back(points[i].phase);
   }
   const auto delay = analysis::evaluate_group_delay(
-      phases, {std::hypot(u_common_delay_s(recipe, phases), u_clock_s), recipe.systematic.reference_phase_rad});
+      phases, {std::hypot(u_common_delay_s(recipe, phases), u_clock_s),
+               recipe.systematic.reference_phase_rad});
   function.group_delay_valid(delay.has_value());
   if (!delay) {
     function.group_delay_problem(delay.error().message);
@@ -125,7 +134,8 @@ void TransferSummary::add(const CalibrationResult& result) {
 std::vector<TransferFunction> TransferSummary::transfer_functions() const {
   std::vector<TransferFunction> functions;
   for (const std::string& channel : channels_) {
-    std::map<std::pair<double, double>, std::vector<const CalibrationResult*>> by_frequency_and_level;
+    std::map<std::pair<double, double>, std::vector<const CalibrationResult*>>
+        by_frequency_and_level;
     TransferFunction function;
     for (const auto& [key, result] : results_.at(channel)) {
       if (result.valid()) {

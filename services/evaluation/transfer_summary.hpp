@@ -1,5 +1,6 @@
-// Gathers the results of a run and sums them up per channel: mean over repetitions at every frequency, scatter, unwrapped phase, group
-// delay with intercept and covariance (analysis/method/repetitions.hpp, analysis/response/group_delay.hpp).
+// Gathers the results of a run and sums them up per channel: mean over repetitions at every
+// frequency, scatter, unwrapped phase, group delay with intercept and covariance
+// (analysis/method/repetitions.hpp, analysis/response/group_delay.hpp).
 //
 // Belongs to one thread; the recipe must outlive it.
 #pragma once

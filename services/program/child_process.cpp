@@ -37,17 +37,20 @@ constexpr std::chrono::milliseconds poll_interval{10};
 
 } // namespace
 
-Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program,
+                                           const std::vector<std::string>& arguments,
                                            const std::filesystem::path& log) {
   if (access(program.c_str(), X_OK) != 0) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: this program is missing or may not be run; build or install all of dyncal", program.string())});
+    return tl::unexpected(Error{
+        ErrorCode::bad_file,
+        fmt::format("{}: this program is missing or may not be run; build or install all of dyncal",
+                    program.string())});
   }
   const int log_file = open(log.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
   if (log_file < 0) {
     return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot write this log file: {}", log.string(), std::strerror(errno))});
+        Error{ErrorCode::bad_file, fmt::format("{}: cannot write this log file: {}", log.string(),
+                                               std::strerror(errno))});
   }
   std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -63,13 +66,16 @@ Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program,
   }
   close(log_file);
   if (child < 0) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno))});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file,
+              fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno))});
   }
   return ChildProcess(child, program.filename().string(), log);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : process_(std::exchange(other.process_, 0)), name_(std::move(other.name_)), log_(std::move(other.log_)) {}
+    : process_(std::exchange(other.process_, 0)), name_(std::move(other.name_)),
+      log_(std::move(other.log_)) {}
 
 ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   if (this != &other) {

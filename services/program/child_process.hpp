@@ -1,8 +1,8 @@
-// A program of ours that another one starts and ends: `dyncal demo` runs every service of a bench as it runs in a laboratory, as a
-// process of its own.
+// A program of ours that another one starts and ends: `dyncal demo` runs every service of a bench
+// as it runs in a laboratory, as a process of its own.
 //
-// What the child prints goes to a log file. It is asked to end (SIGTERM) when the object goes, killed after two seconds, and ends by
-// itself when the parent dies. Belongs to one thread.
+// What the child prints goes to a log file. It is asked to end (SIGTERM) when the object goes,
+// killed after two seconds, and ends by itself when the parent dies. Belongs to one thread.
 #pragma once
 
 #include <sys/types.h>
@@ -19,7 +19,8 @@ namespace dyncal::services {
 class ChildProcess {
 public:
   // Fails (bad_file) when the program cannot be started.
-  [[nodiscard]] static Expected<ChildProcess> start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+  [[nodiscard]] static Expected<ChildProcess> start(const std::filesystem::path& program,
+                                                    const std::vector<std::string>& arguments,
                                                     const std::filesystem::path& log);
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;

@@ -32,11 +32,17 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
   if (!words.empty()) {
     options.dds = words.front();
   }
-  app.add_option("--dds", options.dds, "DDS implementation that carries the messages")->check(CLI::IsMember(words))->capture_default_str();
-  app.add_option("--domain", options.domain, "DDS domain: one per laboratory")->check(CLI::Range(0, 232))->capture_default_str();
-  app.add_option("--peer", options.peers, "address of another host, where the network has no multicast (repeatable)");
+  app.add_option("--dds", options.dds, "DDS implementation that carries the messages")
+      ->check(CLI::IsMember(words))
+      ->capture_default_str();
+  app.add_option("--domain", options.domain, "DDS domain: one per laboratory")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  app.add_option("--peer", options.peers,
+                 "address of another host, where the network has no multicast (repeatable)");
   app.add_flag("--no-multicast", options.no_multicast, "find others by --peer alone");
-  app.add_option("--interface", options.interface_name, "network interface to use (name or address)");
+  app.add_option("--interface", options.interface_name,
+                 "network interface to use (name or address)");
 }
 
 void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
@@ -65,7 +71,8 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
 
 void set_up_log(const std::string& program) {
   program_name = program;
-  auto logger = std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  auto logger =
+      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
   logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %n %l: %v");
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
@@ -90,7 +97,9 @@ std::stop_token stop_on_signals() {
 
 int fail(const Error& error) {
   fmt::print(stderr, "{}: {}\n", program_name, error.message);
-  return error.code == ErrorCode::interrupted ? interrupted_status : error.code == ErrorCode::bad_argument ? 2 : 1;
+  return error.code == ErrorCode::interrupted    ? interrupted_status
+         : error.code == ErrorCode::bad_argument ? 2
+                                                 : 1;
 }
 
 } // namespace dyncal::services

@@ -1,4 +1,5 @@
-// What every program of dyncal does alike: options of the network, log lines, stopping on signals, one line for what went wrong.
+// What every program of dyncal does alike: options of the network, log lines, stopping on signals,
+// one line for what went wrong.
 #pragma once
 
 #include <stop_token>
@@ -26,20 +27,24 @@ struct NetworkOptions {
 // --dds, --domain, --peer, --no-multicast, --interface
 void add_network_options(CLI::App& app, NetworkOptions& options);
 
-// Peers of the bench file come to those of the command line; what the command line leaves open, the bench file says.
+// Peers of the bench file come to those of the command line; what the command line leaves open, the
+// bench file says.
 void add_network_settings(const NetworkSettings& bench, NetworkOptions& options);
 
 // Warnings of the network go to the log.
-[[nodiscard]] Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program);
+[[nodiscard]] Expected<bus::Participant> join_network(const NetworkOptions& options,
+                                                      const std::string& program);
 
 // Lines of time, level and text on standard error.
 void set_up_log(const std::string& program);
 
-// Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called once, before other threads start, since
-// the signals are blocked in all threads and waited for in one of their own, which lasts as long as the process.
+// Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called
+// once, before other threads start, since the signals are blocked in all threads and waited for in
+// one of their own, which lasts as long as the process.
 [[nodiscard]] std::stop_token stop_on_signals();
 
-// Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the error.
+// Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the
+// error.
 [[nodiscard]] int fail(const Error& error);
 
 } // namespace dyncal::services

@@ -18,11 +18,14 @@ public:
 
   void take(drivers::SampleBlock block) override {
     for (std::size_t i = 0; i < block.samples; ++i) {
-      series_.stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i) : block.stamps_ns[i]);
+      series_.stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i)
+                                              : block.stamps_ns[i]);
     }
     for (std::size_t channel = 0; channel < series_.columns.size(); ++channel) {
-      const auto begin = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
-      series_.columns[channel].insert(series_.columns[channel].end(), begin, begin + static_cast<std::ptrdiff_t>(block.samples));
+      const auto begin =
+          block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+      series_.columns[channel].insert(series_.columns[channel].end(), begin,
+                                      begin + static_cast<std::ptrdiff_t>(block.samples));
     }
   }
 
@@ -36,7 +39,8 @@ private:
 
 std::optional<std::size_t> SeriesFile::column(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
+  return found == names.end() ? std::nullopt
+                              : std::optional(static_cast<std::size_t>(found - names.begin()));
 }
 
 Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
@@ -44,7 +48,8 @@ Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
   settings.path = path;
   drivers::acs::FileSource source(std::move(settings));
   Collector collector;
-  const auto read = source.describe().and_then([&](const drivers::SourceDescription&) { return source.run(collector); });
+  const auto read = source.describe().and_then(
+      [&](const drivers::SourceDescription&) { return source.run(collector); });
   if (!read) {
     return tl::unexpected(Error{ErrorCode::bad_file, read.error().message});
   }

@@ -34,19 +34,23 @@ std::optional<StepAndShot> step_and_shot_of(std::string_view name) {
     return there;
   };
   const auto number = [&](auto& value) {
-    const auto [end, status] = std::from_chars(name.data(), name.data() + std::min<std::size_t>(name.size(), 6), value);
+    const auto [end, status] =
+        std::from_chars(name.data(), name.data() + std::min<std::size_t>(name.size(), 6), value);
     name.remove_prefix(static_cast<std::size_t>(end - name.data()));
     return status == std::errc{};
   };
   StepAndShot found;
-  const bool matches = text("step-") && number(found.first) && text("-shot-") && number(found.second) && text(".csv") && name.empty();
+  const bool matches = text("step-") && number(found.first) && text("-shot-") &&
+                       number(found.second) && text(".csv") && name.empty();
   return matches ? std::optional(found) : std::nullopt;
 }
 
-Expected<std::map<StepAndShot, std::filesystem::path>> find_files(const std::filesystem::path& folder) {
+Expected<std::map<StepAndShot, std::filesystem::path>>
+find_files(const std::filesystem::path& folder) {
   std::map<StepAndShot, std::filesystem::path> files;
   std::error_code problem;
-  for (std::filesystem::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
+  for (std::filesystem::directory_iterator entry(folder, problem), end; !problem && entry != end;
+       entry.increment(problem)) {
     if (const auto found = step_and_shot_of(entry->path().filename().string())) {
       files.emplace(*found, entry->path());
     }
@@ -55,13 +59,17 @@ Expected<std::map<StepAndShot, std::filesystem::path>> find_files(const std::fil
     return bad_file(folder, "cannot be read: " + problem.message());
   }
   if (files.empty() || files.size() > ShotRecord::capacity) {
-    return bad_file(folder, fmt::format("holds {} files named like step-1-shot-1.csv; between 1 and {} can be evaluated", files.size(),
-                                        ShotRecord::capacity));
+    return bad_file(
+        folder,
+        fmt::format(
+            "holds {} files named like step-1-shot-1.csv; between 1 and {} can be evaluated",
+            files.size(), ShotRecord::capacity));
   }
   return files;
 }
 
-Expected<drivers::tss::Series> read_file(const std::filesystem::path& path, const SourceSettings& source,
+Expected<drivers::tss::Series> read_file(const std::filesystem::path& path,
+                                         const SourceSettings& source,
                                          const std::vector<std::string>& wanted) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
@@ -77,7 +85,8 @@ Expected<drivers::tss::Series> read_file(const std::filesystem::path& path, cons
   return selected ? std::move(selected) : bad_file(path, selected.error().message);
 }
 
-SourceDescription describe(const BenchFile& bench, const SourceSettings& source, SourceKind kind, const drivers::tss::Series& series) {
+SourceDescription describe(const BenchFile& bench, const SourceSettings& source, SourceKind kind,
+                           const drivers::tss::Series& series) {
   SourceDescription description;
   description.bench(bench.bench);
   description.source(source.name);
@@ -100,12 +109,14 @@ SourceDescription describe(const BenchFile& bench, const SourceSettings& source,
 
 } // namespace
 
-Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name, const std::string& run) {
+Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name,
+                                    const std::string& run) {
   const SourceSettings& source = *bench.source(name); // a role names it: it was checked
   const bool trace = name == bench.method.sync_dau.source;
   if (source.path.empty()) {
     return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates files, use 'dyncal run' for live sources",
+        Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates "
+                                               "files, use 'dyncal run' for live sources",
                                                source.where, source.name)});
   }
   const auto files = find_files(source.path);

@@ -10,7 +10,8 @@ namespace dyncal::services {
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{} cannot be read", path.string())});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file, fmt::format("{} cannot be read", path.string())});
   }
   const auto json = nlohmann::json::parse(stream, nullptr, false);
   ResultPoints points;
@@ -20,11 +21,14 @@ Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
         continue;
       }
       points[{point.at("channel"), point.at("frequency_hz")}] = {
-          point.value("unit", ""), {point.at("magnitude"), point.at("u_magnitude"), point.at("phase_rad"), point.at("u_phase_rad")}};
+          point.value("unit", ""),
+          {point.at("magnitude"), point.at("u_magnitude"), point.at("phase_rad"),
+           point.at("u_phase_rad")}};
     }
   } catch (const nlohmann::json::exception&) {
     return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{} is no result of dyncal: it has no 'transfer_function' with magnitude and phase, each "
+        Error{ErrorCode::bad_file, fmt::format("{} is no result of dyncal: it has no "
+                                               "'transfer_function' with magnitude and phase, each "
                                                "with its uncertainty",
                                                path.string())});
   }

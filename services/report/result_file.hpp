@@ -1,5 +1,6 @@
-// The transfer function in a result file of dyncal (the means over repetitions), for commands that go on from results. Points without a
-// value are left out. Fails: bad_file, when the file cannot be read or is no result. Any thread.
+// The transfer function in a result file of dyncal (the means over repetitions), for commands that
+// go on from results. Points without a value are left out. Fails: bad_file, when the file cannot be
+// read or is no result. Any thread.
 #pragma once
 
 #include <filesystem>

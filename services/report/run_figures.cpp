@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "services/contract/unit.hpp"
-#include "services/report/run_report.hpp"
 #include "services/report/figures/sample_clock.hpp"
 #include "services/report/figures/transfer_function.hpp"
+#include "services/report/run_report.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -18,26 +18,30 @@ std::string file_name(const std::string& what, std::string of) {
 }
 
 std::string run_line(const RunOutcome& outcome) {
-  return fmt::format("bench {}, run {}", outcome.measurement.bench().c_str(), outcome.measurement.run().c_str());
+  return fmt::format("bench {}, run {}", outcome.measurement.bench().c_str(),
+                     outcome.measurement.run().c_str());
 }
 
-figures::TransferFunctionData transfer_data(const RunOutcome& outcome, const TransferFunction& function) {
+figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
+                                            const TransferFunction& function) {
   figures::TransferFunctionData data;
   data.title = function.channel().to_string();
   data.subtitle = run_line(outcome);
   data.unit = short_form(function.unit());
   for (const CalibrationResult& result : outcome.results) {
     if (result.valid() && result.channel() == function.channel()) {
-      data.repetitions.push_back(
-          {result.repetition(),
-           {result.frequency_hz(), result.magnitude(), result.u_magnitude(), result.phase_rad(), result.u_phase_rad()}});
+      data.repetitions.push_back({result.repetition(),
+                                  {result.frequency_hz(), result.magnitude(), result.u_magnitude(),
+                                   result.phase_rad(), result.u_phase_rad()}});
     }
   }
   for (const TransferPoint& point : function.points()) {
-    data.mean.push_back({point.frequency_hz(), point.magnitude(), point.u_magnitude(), point.unwrapped_phase_rad(), point.u_phase_rad()});
+    data.mean.push_back({point.frequency_hz(), point.magnitude(), point.u_magnitude(),
+                         point.unwrapped_phase_rad(), point.u_phase_rad()});
   }
   if (function.group_delay_valid()) {
-    data.group_delay = figures::GroupDelay{function.group_delay_s(), function.u_group_delay_s(), function.intercept_rad()};
+    data.group_delay = figures::GroupDelay{function.group_delay_s(), function.u_group_delay_s(),
+                                           function.intercept_rad()};
   }
   return data;
 }
@@ -56,24 +60,28 @@ figures::IntervalHistogramData histogram_data(const SampleClockReport& report) {
   return data;
 }
 
-figures::IntervalOverTemperatureData temperature_data(const RunOutcome& outcome, const SampleClockReport& report) {
+figures::IntervalOverTemperatureData temperature_data(const RunOutcome& outcome,
+                                                      const SampleClockReport& report) {
   figures::IntervalOverTemperatureData data;
   data.title = fmt::format("Sample interval of {} over its temperature", report.source().c_str());
   data.subtitle = run_line(outcome);
   data.temperature_degc = report.scatter_temperature_degc();
   data.interval_ns = report.scatter_interval_ns();
   for (const TemperatureBin& bin : report.over_temperature()) {
-    data.bins.push_back({bin.temperature_degc(), bin.mean_interval_ns(), bin.sd_interval_ns(), bin.count()});
+    data.bins.push_back(
+        {bin.temperature_degc(), bin.mean_interval_ns(), bin.sd_interval_ns(), bin.count()});
   }
   return data;
 }
 
-figures::IntervalOverTimeData time_data(const RunOutcome& outcome, const SampleClockReport& report) {
+figures::IntervalOverTimeData time_data(const RunOutcome& outcome,
+                                        const SampleClockReport& report) {
   figures::IntervalOverTimeData data;
   data.title = fmt::format("Sample interval of {} over time", report.source().c_str());
   data.subtitle = run_line(outcome);
   for (const IntervalBucket& bucket : report.over_time()) {
-    data.overview.push_back({bucket.time_s(), bucket.minimum_ns(), bucket.maximum_ns(), bucket.mean_ns()});
+    data.overview.push_back(
+        {bucket.time_s(), bucket.minimum_ns(), bucket.maximum_ns(), bucket.mean_ns()});
   }
   data.close_up_first_time_s = report.close_up_first_time_s();
   data.close_up_ns = report.close_up_ns();
@@ -82,12 +90,14 @@ figures::IntervalOverTimeData time_data(const RunOutcome& outcome, const SampleC
 
 } // namespace
 
-Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome, const std::filesystem::path& folder) {
+Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome,
+                                                           const std::filesystem::path& folder) {
   std::vector<figures::Figure> drawn;
   for (const TransferFunction& function : outcome.transfer_functions) {
     if (responds(function)) {
-      drawn.push_back(figures::transfer_function_figure(transfer_data(outcome, function),
-                                                        file_name("transfer-function", function.channel().to_string())));
+      drawn.push_back(figures::transfer_function_figure(
+          transfer_data(outcome, function),
+          file_name("transfer-function", function.channel().to_string())));
     }
   }
   for (const SampleClockReport& report : outcome.clock_reports) {
@@ -95,11 +105,13 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
       continue; // series have no stamps
     }
     const std::string source = report.source().to_string();
-    drawn.push_back(figures::interval_histogram_figure(histogram_data(report), file_name("interval-histogram", source)));
-    drawn.push_back(figures::interval_over_time_figure(time_data(outcome, report), file_name("interval-over-time", source)));
+    drawn.push_back(figures::interval_histogram_figure(histogram_data(report),
+                                                       file_name("interval-histogram", source)));
+    drawn.push_back(figures::interval_over_time_figure(time_data(outcome, report),
+                                                       file_name("interval-over-time", source)));
     if (!report.scatter_temperature_degc().empty()) {
-      drawn.push_back(
-          figures::interval_over_temperature_figure(temperature_data(outcome, report), file_name("interval-over-temperature", source)));
+      drawn.push_back(figures::interval_over_temperature_figure(
+          temperature_data(outcome, report), file_name("interval-over-temperature", source)));
     }
   }
   std::vector<std::filesystem::path> paths;

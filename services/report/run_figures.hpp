@@ -1,16 +1,18 @@
-// The figures of a run as files: magnitude and phase over frequency for every channel that responds, and for the sample clock the histogram
-// of intervals, intervals over temperature and over time (paper figures 5 to 9), each as SVG and CSV.
+// The figures of a run as files: magnitude and phase over frequency for every channel that
+// responds, and for the sample clock the histogram of intervals, intervals over temperature and
+// over time (paper figures 5 to 9), each as SVG and CSV.
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
-#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 
 // Fails (bad_file) when a file cannot be written.
-[[nodiscard]] Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome, const std::filesystem::path& folder);
+[[nodiscard]] Expected<std::vector<std::filesystem::path>>
+write_figures(const RunOutcome& outcome, const std::filesystem::path& folder);
 
 } // namespace dyncal::services

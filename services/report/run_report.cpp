@@ -136,16 +136,21 @@ Json clock_json(const SampleClockReport& report) {
 }
 
 std::string channel_table(const TransferFunction& function) {
-  std::string text = fmt::format("\n{}{}\n", function.channel().c_str(),
-                                 function.unit().empty() || function.unit() == R"(\one)" ? "" : ", in " + function.unit());
-  text += fmt::format("{:>12}  {:>12} {:>10}  {:>12} {:>10}  {}\n", "f / Hz", "|H|", "u(|H|)", "arg H / rad", "u / rad", "n");
+  std::string text = fmt::format(
+      "\n{}{}\n", function.channel().c_str(),
+      function.unit().empty() || function.unit() == R"(\one)" ? "" : ", in " + function.unit());
+  text += fmt::format("{:>12}  {:>12} {:>10}  {:>12} {:>10}  {}\n", "f / Hz", "|H|", "u(|H|)",
+                      "arg H / rad", "u / rad", "n");
   for (const TransferPoint& point : function.points()) {
-    text += fmt::format("{:>12}  {:>12.6f} {:>10.1e}  {:>12.6f} {:>10.1e}  {}\n", point.frequency_text_hz(), point.magnitude(),
-                        point.u_magnitude(), point.phase_rad(), point.u_phase_rad(), point.repetitions());
+    text += fmt::format("{:>12}  {:>12.6f} {:>10.1e}  {:>12.6f} {:>10.1e}  {}\n",
+                        point.frequency_text_hz(), point.magnitude(), point.u_magnitude(),
+                        point.phase_rad(), point.u_phase_rad(), point.repetitions());
   }
   if (function.group_delay_valid()) {
-    text += fmt::format("  group delay {:.6g} ms, u = {:.2g} ms; intercept {:.2g} rad, u = {:.2g} rad\n", function.group_delay_s() * 1e3,
-                        function.u_group_delay_s() * 1e3, function.intercept_rad(), function.u_intercept_rad());
+    text += fmt::format(
+        "  group delay {:.6g} ms, u = {:.2g} ms; intercept {:.2g} rad, u = {:.2g} rad\n",
+        function.group_delay_s() * 1e3, function.u_group_delay_s() * 1e3, function.intercept_rad(),
+        function.u_intercept_rad());
   } else if (!function.group_delay_problem().empty()) {
     text += fmt::format("  no group delay: {}\n", function.group_delay_problem());
   }
@@ -160,16 +165,20 @@ std::string series_clock_line(const RunOutcome& outcome, const SampleClockReport
       starts.insert(result.series_start());
     }
   }
-  const double u_rate_hz = report.u_mean_interval_s() * report.mean_rate_hz() * report.mean_rate_hz();
-  return fmt::format("\nSample rate of {}: {:.6f} Hz, u = {:.1g} Hz, nominal {:g} Hz; its series start {}\n", report.source().c_str(),
-                     report.mean_rate_hz(), u_rate_hz, report.nominal_rate_hz(), fmt::join(starts, " or "));
+  const double u_rate_hz =
+      report.u_mean_interval_s() * report.mean_rate_hz() * report.mean_rate_hz();
+  return fmt::format(
+      "\nSample rate of {}: {:.6f} Hz, u = {:.1g} Hz, nominal {:g} Hz; its series start {}\n",
+      report.source().c_str(), report.mean_rate_hz(), u_rate_hz, report.nominal_rate_hz(),
+      fmt::join(starts, " or "));
 }
 
 } // namespace
 
 bool responds(const TransferFunction& function) {
-  const auto above = std::count_if(function.points().begin(), function.points().end(),
-                                   [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
+  const auto above = std::count_if(
+      function.points().begin(), function.points().end(),
+      [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
   return 2 * static_cast<std::size_t>(above) > function.points().size();
 }
 
@@ -184,21 +193,24 @@ std::string result_table(const RunOutcome& outcome) {
     }
   }
   if (!quiet.empty()) {
-    text += fmt::format("\nNo response above three times its uncertainty in: {}\n", fmt::join(quiet, ", "));
+    text += fmt::format("\nNo response above three times its uncertainty in: {}\n",
+                        fmt::join(quiet, ", "));
   }
   for (const SampleClockReport& report : outcome.clock_reports) {
     if (report.intervals() == 0) {
       text += series_clock_line(outcome, report);
       continue;
     }
-    text += fmt::format(
-        "\nSample clock of {}: mean interval {:.5f} us, sd {:.1f} ns, spread {:.0f} ns, {} intervals, {} events, {} samples lost\n",
-        report.source().c_str(), report.mean_interval_s() * 1e6, report.sd_s() * 1e9, (report.maximum_s() - report.minimum_s()) * 1e9,
-        report.intervals(), report.event_count(), report.lost());
+    text += fmt::format("\nSample clock of {}: mean interval {:.5f} us, sd {:.1f} ns, spread "
+                        "{:.0f} ns, {} intervals, {} events, {} samples lost\n",
+                        report.source().c_str(), report.mean_interval_s() * 1e6,
+                        report.sd_s() * 1e9, (report.maximum_s() - report.minimum_s()) * 1e9,
+                        report.intervals(), report.event_count(), report.lost());
   }
   std::vector<std::string> problems;
   for (const CalibrationResult& result : outcome.results) {
-    const std::string line = fmt::format("step {}, {} Hz: {}", result.step(), result.frequency_text_hz(), result.problem());
+    const std::string line = fmt::format("step {}, {} Hz: {}", result.step(),
+                                         result.frequency_text_hz(), result.problem());
     if (!result.valid() && std::find(problems.begin(), problems.end(), line) == problems.end()) {
       problems.push_back(line);
     }
@@ -213,7 +225,8 @@ nlohmann::ordered_json result_json(const RunOutcome& outcome) {
   Json json{{"bench", outcome.measurement.bench().to_string()},
             {"run", outcome.measurement.run().to_string()},
             {"method", method_word(outcome.measurement.method())},
-            {"phase_convention", "lead: arg H in rad, a delay is negative; u_ are standard uncertainties"},
+            {"phase_convention",
+             "lead: arg H in rad, a delay is negative; u_ are standard uncertainties"},
             {"dds", {{"analysis", outcome.analysis_dds}}},
             {"recipe_sha256", outcome.measurement.recipe_sha256()},
             {"interrupted", outcome.interrupted},
@@ -243,7 +256,8 @@ Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ord
   std::ofstream stream(path);
   stream << json.dump(1) << '\n';
   if (!stream.flush()) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: cannot write this file", path.string())});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file, fmt::format("{}: cannot write this file", path.string())});
   }
   return {};
 }

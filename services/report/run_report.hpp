@@ -1,7 +1,7 @@
 // What a run leaves behind: a table for people, JSON for programs.
 //
-// Phase is lead, in rad, within (-pi, pi] (a delay is negative); `u_` is a standard uncertainty (k = 1).
-// Plain functions, any thread.
+// Phase is lead, in rad, within (-pi, pi] (a delay is negative); `u_` is a standard uncertainty (k
+// = 1). Plain functions, any thread.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/run/run_controller.hpp"
 #include "services/error.hpp"
+#include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
 
-// The channel's magnitude is above three times its uncertainty at more than half of the frequencies: it is worth showing.
+// The channel's magnitude is above three times its uncertainty at more than half of the
+// frequencies: it is worth showing.
 [[nodiscard]] bool responds(const TransferFunction& function);
 
 // One row per channel and frequency; channels that do not respond are only named.
@@ -23,6 +24,7 @@ namespace dyncal::services {
 [[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome);
 
 // Fails (bad_file) when the file cannot be written.
-[[nodiscard]] Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+[[nodiscard]] Expected<void> write_json(const std::filesystem::path& path,
+                                        const nlohmann::ordered_json& json);
 
 } // namespace dyncal::services

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/sine/sine_fit.hpp"
-#include "services/run/level_settling.hpp"
 #include "services/contract/topics.hpp"
+#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -20,27 +20,33 @@ std::int64_t ns(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-std::optional<double> amplitude(const analysis::Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+std::optional<double> amplitude(const analysis::Frequency& frequency,
+                                std::span<const std::int64_t> stamps_ns,
                                 std::span<const double> values) {
   if (stamps_ns.size() < min_samples) {
     return std::nullopt;
   }
-  const auto fit = analysis::fit_sine(frequency, stamps_ns.front(), stamps_ns, std::span(&values, 1));
+  const auto fit =
+      analysis::fit_sine(frequency, stamps_ns.front(), stamps_ns, std::span(&values, 1));
   return fit ? std::optional(fit->front().amplitude()) : std::nullopt;
 }
 
 } // namespace
 
-LevelMeter::LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions, bus::Reader<SampleBlock> samples)
-    : reference_(std::move(reference)), descriptions_(std::move(descriptions)), samples_(std::move(samples)),
-      record_(reference_.source, max_samples) {}
+LevelMeter::LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions,
+                       bus::Reader<SampleBlock> samples)
+    : reference_(std::move(reference)), descriptions_(std::move(descriptions)),
+      samples_(std::move(samples)), record_(reference_.source, max_samples) {}
 
-Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench, std::shared_ptr<bus::WakeUp> wake_up) {
-  auto descriptions = participant.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
+Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench,
+                                        std::shared_ptr<bus::WakeUp> wake_up) {
+  auto descriptions = participant.reader<SourceDescription>(
+      bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
     return tl::unexpected(descriptions.error());
   }
-  auto samples = participant.reader<SampleBlock>(bus::topics::acs_samples, bus::Profile::samples, bench.bench, wake_up);
+  auto samples = participant.reader<SampleBlock>(bus::topics::acs_samples, bus::Profile::samples,
+                                                 bench.bench, wake_up);
   if (!samples) {
     return tl::unexpected(samples.error());
   }
@@ -68,14 +74,17 @@ void LevelMeter::take(double bench_time_s) {
   const std::int64_t newest_ns = record_.stamps_ns().back();
   const std::int64_t difference_ns = newest_ns - ns(bench_time_s);
   if (acs_minus_bench_ns_) {
-    *acs_minus_bench_ns_ -= ns(max_drift * (bench_time_s - taken_s_)); // a slow ACS clock must not make everybody wait
+    *acs_minus_bench_ns_ -=
+        ns(max_drift * (bench_time_s - taken_s_)); // a slow ACS clock must not make everybody wait
   }
   acs_minus_bench_ns_ = std::max(acs_minus_bench_ns_.value_or(difference_ns), difference_ns);
   taken_s_ = bench_time_s;
   record_.forget_before(newest_ns - ns(kept_s));
 }
 
-std::optional<double> LevelMeter::level_after(double bench_time_s, const analysis::Frequency& frequency, double agreement_rel) const {
+std::optional<double> LevelMeter::level_after(double bench_time_s,
+                                              const analysis::Frequency& frequency,
+                                              double agreement_rel) const {
   const auto stamps = record_.stamps_ns();
   if (stamps.empty() || !acs_minus_bench_ns_ || !record_.described()) {
     return std::nullopt;
@@ -86,17 +95,20 @@ std::optional<double> LevelMeter::level_after(double bench_time_s, const analysi
   }
   const std::int64_t window_ns = ns(level_window_s(frequency.hz()));
   const std::int64_t begin_ns = stamps.back() - window_ns;
-  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) || record_.lost_between(begin_ns, stamps.back()) > 0) {
+  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) ||
+      record_.lost_between(begin_ns, stamps.back()) > 0) {
     return std::nullopt;
   }
   const auto place = [&](std::int64_t stamp_ns) {
-    return static_cast<std::size_t>(std::lower_bound(stamps.begin(), stamps.end(), stamp_ns) - stamps.begin());
+    return static_cast<std::size_t>(std::lower_bound(stamps.begin(), stamps.end(), stamp_ns) -
+                                    stamps.begin());
   };
   const std::size_t begin = place(begin_ns);
   const std::size_t middle = place(begin_ns + window_ns / 2);
   const auto values = record_.column(*channel);
   const auto whole = amplitude(frequency, stamps.subspan(begin), values.subspan(begin));
-  const auto first = amplitude(frequency, stamps.subspan(begin, middle - begin), values.subspan(begin, middle - begin));
+  const auto first = amplitude(frequency, stamps.subspan(begin, middle - begin),
+                               values.subspan(begin, middle - begin));
   const auto second = amplitude(frequency, stamps.subspan(middle), values.subspan(middle));
   if (!whole || !first || !second || std::abs(*second - *first) > agreement_rel * *whole) {
     return std::nullopt;

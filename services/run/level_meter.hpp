@@ -1,11 +1,14 @@
-// The level of the excitation as the reference shows it, while a run goes on: from the ACS's sample blocks on DDS.
+// The level of the excitation as the reference shows it, while a run goes on: from the ACS's sample
+// blocks on DDS.
 //
-// Amplitude of the sine of the step's frequency (three-parameter approximation, analysis/sine/sine_fit.hpp) in the newest window of samples that
-// were taken after a given bench time. The ACS's clock and bench time share nothing, so their difference is learnt from arrival: a block
-// with the newest stamp a that is there at bench time b says that the clocks differ by a - b at least, and the largest of these is short of
-// the truth by the smallest delay of any block. level_transport_s bounds that delay. Against a longer one, and a level that still moves:
-// the two halves of the window must show the same level within the agreement asked for. While it exists its blocks must be taken: call
-// take() at least every second. One thread.
+// Amplitude of the sine of the step's frequency (three-parameter approximation,
+// analysis/sine/sine_fit.hpp) in the newest window of samples that were taken after a given bench
+// time. The ACS's clock and bench time share nothing, so their difference is learnt from arrival: a
+// block with the newest stamp a that is there at bench time b says that the clocks differ by a - b
+// at least, and the largest of these is short of the truth by the smallest delay of any block.
+// level_transport_s bounds that delay. Against a longer one, and a level that still moves: the two
+// halves of the window must show the same level within the agreement asked for. While it exists its
+// blocks must be taken: call take() at least every second. One thread.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +25,22 @@ namespace dyncal::services {
 class LevelMeter {
 public:
   // Of the channel that is the bench's reference. Fails as readers do.
-  [[nodiscard]] static Expected<LevelMeter> create(bus::Participant& participant, const BenchFile& bench,
+  [[nodiscard]] static Expected<LevelMeter> create(bus::Participant& participant,
+                                                   const BenchFile& bench,
                                                    std::shared_ptr<bus::WakeUp> wake_up);
 
   // Takes what has come; `bench_time_s` is the bench's time now.
   void take(double bench_time_s);
 
-  // Nothing while there is no full window of samples from after `bench_time_s`, or while its halves differ by more than `agreement_rel`.
-  [[nodiscard]] std::optional<double> level_after(double bench_time_s, const analysis::Frequency& frequency, double agreement_rel) const;
+  // Nothing while there is no full window of samples from after `bench_time_s`, or while its halves
+  // differ by more than `agreement_rel`.
+  [[nodiscard]] std::optional<double> level_after(double bench_time_s,
+                                                  const analysis::Frequency& frequency,
+                                                  double agreement_rel) const;
 
 private:
-  LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions, bus::Reader<SampleBlock> samples);
+  LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions,
+             bus::Reader<SampleBlock> samples);
 
   ChannelName reference_;
   bus::Reader<SourceDescription> descriptions_;

@@ -24,7 +24,8 @@ double planned_settling_s(const BenchFile& bench, double frequency_hz, int repet
   if (!bench.generator.level_tolerance_rel) {
     return settling_s;
   }
-  const double measurement_s = settling_s + level_transport_s + level_window_s(frequency_hz) + slack_s;
+  const double measurement_s =
+      settling_s + level_transport_s + level_window_s(frequency_hz) + slack_s;
   return settling_s + (1 + level_corrections(repetition)) * measurement_s;
 }
 

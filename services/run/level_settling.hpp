@@ -1,9 +1,11 @@
-// How long a step settles when its level is brought to the wanted one by closed loop: the loop's measurements happen before the evaluated
-// part of the step, so the recipe plans time for as many as may be needed. Durations in bench time. Any thread.
+// How long a step settles when its level is brought to the wanted one by closed loop: the loop's
+// measurements happen before the evaluated part of the step, so the recipe plans time for as many
+// as may be needed. Durations in bench time. Any thread.
 //
 //   planned settling = settling + n (settling + transport + window + slack)
 //
-// n: 4 measurements in the first repetition, when the exciter's response at the frequency is not known, 2 in later ones.
+// n: 4 measurements in the first repetition, when the exciter's response at the frequency is not
+// known, 2 in later ones.
 #pragma once
 
 #include "services/bench/bench_file.hpp"
@@ -18,6 +20,7 @@ inline constexpr double level_transport_s = 0.3;
 
 [[nodiscard]] int level_corrections(int repetition);
 
-[[nodiscard]] double planned_settling_s(const BenchFile& bench, double frequency_hz, int repetition);
+[[nodiscard]] double planned_settling_s(const BenchFile& bench, double frequency_hz,
+                                        int repetition);
 
 } // namespace dyncal::services

@@ -20,10 +20,12 @@ namespace dyncal::services {
 namespace {
 
 constexpr char farewell = '.';
-constexpr int attempts = 5; // the instrument may hold on to the dead program's connection for a moment
+constexpr int attempts =
+    5; // the instrument may hold on to the dead program's connection for a moment
 
 Error cannot_start(const std::string& why) {
-  return {ErrorCode::device, fmt::format("the guard of the generator's output cannot be started: {}", why)};
+  return {ErrorCode::device,
+          fmt::format("the guard of the generator's output cannot be started: {}", why)};
 }
 
 } // namespace
@@ -41,18 +43,21 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
-  std::vector<std::string> words{(program_folder() / "dyncal").string(), "guard-output", generator_address};
+  std::vector<std::string> words{(program_folder() / "dyncal").string(), "guard-output",
+                                 generator_address};
   std::vector<char*> pointers;
   for (std::string& word : words) {
     pointers.push_back(word.data());
   }
   pointers.push_back(nullptr);
   pid_t process = 0;
-  const int problem = posix_spawn(&process, pointers.front(), &actions, &attributes, pointers.data(), environ);
+  const int problem =
+      posix_spawn(&process, pointers.front(), &actions, &attributes, pointers.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) {
-    return tl::unexpected(cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
+    return tl::unexpected(
+        cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
   }
   return OutputGuard(std::move(writing), process);
 }
@@ -61,7 +66,8 @@ OutputGuard::~OutputGuard() {
   if (!pipe_.open()) {
     return; // moved from
   }
-  static_cast<void>(write(pipe_.number(), &farewell, 1)); // fails only when the guard is gone already
+  static_cast<void>(
+      write(pipe_.number(), &farewell, 1)); // fails only when the guard is gone already
   waitpid(process_, nullptr, 0);
 }
 
@@ -80,12 +86,15 @@ int guard_output(const std::string& generator_address, int input) {
     // Connecting switches the output off.
     const auto generator = drivers::generator::ScpiGenerator::connect(generator_address);
     if (generator) {
-      fmt::print(stderr, "dyncal: the run has died; the output of the generator {} was switched off\n", generator_address);
+      fmt::print(stderr,
+                 "dyncal: the run has died; the output of the generator {} was switched off\n",
+                 generator_address);
       return 0;
     }
     if (attempt == attempts) {
-      return fail(
-          {ErrorCode::device, fmt::format("the run has died, and its generator's output may be on: {}", generator.error().message)});
+      return fail({ErrorCode::device,
+                   fmt::format("the run has died, and its generator's output may be on: {}",
+                               generator.error().message)});
     }
   }
 }

@@ -1,10 +1,11 @@
-// Switches a generator's output off when the program that switched it on dies without having done so: killed (SIGKILL), crashed, out of
-// memory.
+// Switches a generator's output off when the program that switched it on dies without having done
+// so: killed (SIGKILL), crashed, out of memory.
 //
-// A process of its own ("dyncal guard-output HOST:PORT") waits for the end of a pipe whose other end only the guarded program holds. When
-// the pipe ends without a farewell the guard connects to the generator and switches its output off; with one it ends and does nothing. It
-// has a session of its own, so that what is sent to the terminal's programs does not reach it. Fails (device) when the guard cannot be
-// started. Belongs to one thread.
+// A process of its own ("dyncal guard-output HOST:PORT") waits for the end of a pipe whose other
+// end only the guarded program holds. When the pipe ends without a farewell the guard connects to
+// the generator and switches its output off; with one it ends and does nothing. It has a session of
+// its own, so that what is sent to the terminal's programs does not reach it. Fails (device) when
+// the guard cannot be started. Belongs to one thread.
 #pragma once
 
 #include <string>
@@ -16,7 +17,8 @@ namespace dyncal::services {
 
 class OutputGuard {
 public:
-  // From now on until the object goes. REQUIRES: the generator is switched off before the object goes.
+  // From now on until the object goes. REQUIRES: the generator is switched off before the object
+  // goes.
   [[nodiscard]] static Expected<OutputGuard> start(const std::string& generator_address);
   ~OutputGuard();
   OutputGuard(OutputGuard&&) noexcept = default;

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "drivers/utc_clock.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/recipe.hpp"
-#include "drivers/utc_clock.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -22,7 +22,8 @@ constexpr auto alive_interval = 2s;
 
 template <class T>
 void keep_newest(std::vector<T>& all, const T& one, bool (*same)(const T&, const T&)) {
-  const auto known = std::find_if(all.begin(), all.end(), [&](const T& other) { return same(other, one); });
+  const auto known =
+      std::find_if(all.begin(), all.end(), [&](const T& other) { return same(other, one); });
   if (known == all.end()) {
     all.push_back(one);
   } else {
@@ -32,12 +33,14 @@ void keep_newest(std::vector<T>& all, const T& one, bool (*same)(const T&, const
 
 } // namespace
 
-RunController::RunController(bus::Participant& participant, const BenchFile& bench, std::string run, ShowProgress show_progress)
-    : participant_(participant), bench_(bench), run_(std::move(run)), show_progress_(std::move(show_progress)),
-      wake_up_(std::make_shared<bus::WakeUp>()) {}
+RunController::RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
+                             ShowProgress show_progress)
+    : participant_(participant), bench_(bench), run_(std::move(run)),
+      show_progress_(std::move(show_progress)), wake_up_(std::make_shared<bus::WakeUp>()) {}
 
-Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
-                                            const std::stop_token& stop) {
+Expected<RunOutcome>
+RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
+                       const std::stop_token& stop) {
   outcome_ = {};
   outcome_.measurement = plan_measurement(bench_, run_, utc_now_ns(), adc_calibration);
   if (const auto ready = open_endpoints().and_then([&] { return open_excitation(); }); !ready) {
@@ -72,31 +75,42 @@ Expected<RunOutcome> RunController::conduct(const std::vector<analysis::AdcCalib
   const auto key = [](const CalibrationResult& result) {
     return std::tuple(result.step(), result.repetition(), result.channel().to_string());
   };
-  std::stable_sort(outcome_.results.begin(), outcome_.results.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  std::stable_sort(outcome_.results.begin(), outcome_.results.end(),
+                   [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::sort(outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
-            [](const TransferFunction& a, const TransferFunction& b) { return a.channel().to_string() < b.channel().to_string(); });
+            [](const TransferFunction& a, const TransferFunction& b) {
+              return a.channel().to_string() < b.channel().to_string();
+            });
   return std::move(outcome_);
 }
 
 Expected<void> RunController::open_endpoints() {
   const std::string& bench = bench_.bench;
-  auto measurement = participant_.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench);
-  auto excitation = participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench);
-  auto status = participant_.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench, wake_up_);
-  auto results = participant_.reader<CalibrationResult>(bus::topics::calibration_result, bus::Profile::results, bench, wake_up_);
-  auto transfer = participant_.reader<TransferFunction>(bus::topics::transfer_function, bus::Profile::results, bench, wake_up_);
-  auto clocks = participant_.reader<SampleClockReport>(bus::topics::sample_clock_report, bus::Profile::results, bench, wake_up_);
+  auto measurement =
+      participant_.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench);
+  auto excitation =
+      participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench);
+  auto status = participant_.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state,
+                                                   bench, wake_up_);
+  auto results = participant_.reader<CalibrationResult>(bus::topics::calibration_result,
+                                                        bus::Profile::results, bench, wake_up_);
+  auto transfer = participant_.reader<TransferFunction>(bus::topics::transfer_function,
+                                                        bus::Profile::results, bench, wake_up_);
+  auto clocks = participant_.reader<SampleClockReport>(bus::topics::sample_clock_report,
+                                                       bus::Profile::results, bench, wake_up_);
   if (!measurement || !excitation || !status || !results || !transfer || !clocks) {
     for (const Error* error :
-         {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(), status ? nullptr : &status.error(),
-          results ? nullptr : &results.error(), transfer ? nullptr : &transfer.error(), clocks ? nullptr : &clocks.error()}) {
+         {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
+          status ? nullptr : &status.error(), results ? nullptr : &results.error(),
+          transfer ? nullptr : &transfer.error(), clocks ? nullptr : &clocks.error()}) {
       if (error != nullptr) {
         return tl::unexpected(*error);
       }
     }
   }
-  endpoints_ = std::make_unique<Endpoints>(Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
-                                                     std::move(*results), std::move(*transfer), std::move(*clocks)});
+  endpoints_ = std::make_unique<Endpoints>(
+      Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
+                std::move(*results), std::move(*transfer), std::move(*clocks)});
   return {};
 }
 
@@ -104,11 +118,13 @@ Expected<void> RunController::open_excitation() {
   if (bench_.generator.driver == "none") {
     return {};
   }
-  auto excitation = StepExcitation::open(participant_, bench_, outcome_.measurement, wake_up_,
-                                         {.announce = [this](const PlannedStep& step, ExcitationState state) { announce(step, state); },
-                                          .show = [this](const std::string& phase) { show(phase); },
-                                          .ask = [this](const std::string& request) { show("asking", request); },
-                                          .attend = [this] { return attend(); }});
+  auto excitation =
+      StepExcitation::open(participant_, bench_, outcome_.measurement, wake_up_,
+                           {.announce = [this](const PlannedStep& step,
+                                               ExcitationState state) { announce(step, state); },
+                            .show = [this](const std::string& phase) { show(phase); },
+                            .ask = [this](const std::string& request) { show("asking", request); },
+                            .attend = [this] { return attend(); }});
   if (!excitation) {
     return tl::unexpected(excitation.error());
   }
@@ -131,16 +147,20 @@ Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
     }
     const auto waited = Clock::now() - began;
     if (!analysis_ && waited > answer_limit) {
-      return tl::unexpected(Error{
-          ErrorCode::no_analysis,
-          fmt::format("no analysis service answers for bench '{}'; is dyncal-analysis running in the same DDS domain?", bench_.bench)});
+      return tl::unexpected(Error{ErrorCode::no_analysis,
+                                  fmt::format("no analysis service answers for bench '{}'; is "
+                                              "dyncal-analysis running in the same DDS domain?",
+                                              bench_.bench)});
     }
     if (waited > armed_limit) {
-      return tl::unexpected(Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has not armed for bench '{}'",
-                                                                      analysis_->service().c_str(), bench_.bench)});
+      return tl::unexpected(
+          Error{ErrorCode::no_analysis,
+                fmt::format("the analysis service {} has not armed for bench '{}'",
+                            analysis_->service().c_str(), bench_.bench)});
     }
   }
-  return tl::unexpected(Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
+  return tl::unexpected(
+      Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
 }
 
 Expected<void> RunController::excite(const std::stop_token& stop) {
@@ -168,14 +188,17 @@ Expected<void> RunController::attend() {
   }
   if (Clock::now() - analysis_heard_ > analysis_limit) {
     return tl::unexpected(
-        Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
+        Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
+                                                  analysis_->service().c_str())});
   }
   return {};
 }
 
-// Topics have no order among each other: FINISHED may come before the results that were written before it.
+// Topics have no order among each other: FINISHED may come before the results that were written
+// before it.
 bool RunController::everything_has_come() const {
-  return analysis_ && analysis_->arm() == ARM_FINISHED && outcome_.results.size() >= analysis_->results_published() &&
+  return analysis_ && analysis_->arm() == ARM_FINISHED &&
+         outcome_.results.size() >= analysis_->results_published() &&
          outcome_.transfer_functions.size() >= analysis_->transfer_functions_published() &&
          outcome_.clock_reports.size() >= analysis_->clock_reports_published();
 }
@@ -190,24 +213,29 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
     wake_up_->wait_until(Clock::now() + 200ms);
     take_messages();
     keep_alive();
-    if (!already_stopped && stop.stop_requested() && outcome_.measurement.state() != MEASUREMENT_ABORTED) {
+    if (!already_stopped && stop.stop_requested() &&
+        outcome_.measurement.state() != MEASUREMENT_ABORTED) {
       set_state(MEASUREMENT_ABORTED);
     }
     if (outcome_.results.size() != results_before ||
-        (from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING && analysis_->health() == HEALTH_OK)) {
+        (from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING &&
+         analysis_->health() == HEALTH_OK)) {
       results_before = outcome_.results.size();
       deadline = Clock::now() + results_limit;
     }
     if (Clock::now() - analysis_heard_ > analysis_limit) {
       return tl::unexpected(
-          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent", analysis_->service().c_str())});
+          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
+                                                    analysis_->service().c_str())});
     }
-    if (analysis_->health() == HEALTH_FAILED && from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING) {
+    if (analysis_->health() == HEALTH_FAILED && from_files &&
+        outcome_.measurement.state() == MEASUREMENT_RUNNING) {
       outcome_.problem = analysis_->message();
       set_state(MEASUREMENT_ABORTED);
     }
     if (Clock::now() > deadline) {
-      return tl::unexpected(Error{ErrorCode::no_result, "the last results have not come from the analysis service"});
+      return tl::unexpected(
+          Error{ErrorCode::no_result, "the last results have not come from the analysis service"});
     }
   }
   return {};
@@ -226,7 +254,8 @@ void RunController::announce(const PlannedStep& step, ExcitationState state) {
   excitation.repetition(step.repetition());
   excitation.state(state);
   excitation.window_begin_utc_ns(window_begin_utc_ns_);
-  excitation.window_end_utc_ns(state == EXCITATION_DONE || state == EXCITATION_ABORTED ? utc_now_ns() : 0);
+  excitation.window_end_utc_ns(
+      state == EXCITATION_DONE || state == EXCITATION_ABORTED ? utc_now_ns() : 0);
   endpoints_->excitation.write(excitation);
 }
 
@@ -249,19 +278,24 @@ void RunController::take_messages() {
   endpoints_->results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
     if (of_this_run(result, info)) {
       keep_newest<CalibrationResult>(outcome_.results, result, [](const auto& a, const auto& b) {
-        return a.step() == b.step() && a.repetition() == b.repetition() && a.channel() == b.channel();
+        return a.step() == b.step() && a.repetition() == b.repetition() &&
+               a.channel() == b.channel();
       });
     }
   });
-  endpoints_->transfer_functions.take([&](const TransferFunction& function, const bus::SampleInfo& info) {
-    if (of_this_run(function, info)) {
-      keep_newest<TransferFunction>(outcome_.transfer_functions, function,
-                                    [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
-    }
-  });
+  endpoints_->transfer_functions.take(
+      [&](const TransferFunction& function, const bus::SampleInfo& info) {
+        if (of_this_run(function, info)) {
+          keep_newest<TransferFunction>(
+              outcome_.transfer_functions, function,
+              [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
+        }
+      });
   endpoints_->clock_reports.take([&](const SampleClockReport& report, const bus::SampleInfo& info) {
     if (of_this_run(report, info)) {
-      keep_newest<SampleClockReport>(outcome_.clock_reports, report, [](const auto& a, const auto& b) { return a.source() == b.source(); });
+      keep_newest<SampleClockReport>(
+          outcome_.clock_reports, report,
+          [](const auto& a, const auto& b) { return a.source() == b.source(); });
     }
   });
   endpoints_->status.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
@@ -284,7 +318,9 @@ void RunController::show(const std::string& phase, const std::string& request) {
     progress.frequency_hz = outcome_.measurement.steps()[step_ - 1].frequency_hz();
   }
   if (step_ > 1) {
-    const double per_step_s = std::chrono::duration<double>(Clock::now() - first_step_began_).count() / static_cast<double>(step_ - 1);
+    const double per_step_s =
+        std::chrono::duration<double>(Clock::now() - first_step_began_).count() /
+        static_cast<double>(step_ - 1);
     progress.seconds_left = per_step_s * static_cast<double>(progress.steps - step_ + 1);
   }
   show_progress_(progress);

@@ -1,9 +1,11 @@
-// Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites step by step, collects what is published.
+// Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites
+// step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "The run protocol"; services/run/step_excitation.hpp excites the steps.
-// The generator's output is off on every way out: end, error, stop.
-// Fails: no_analysis (nobody answers, or the recipe is refused), no_source, device (generator), network, no_result. A stop is no failure:
-// the outcome says `interrupted` and holds what was measured. Belongs to one thread.
+// Order of messages: idl/README.md, "The run protocol"; services/run/step_excitation.hpp excites
+// the steps. The generator's output is off on every way out: end, error, stop. Fails: no_analysis
+// (nobody answers, or the recipe is refused), no_source, device (generator), network, no_result. A
+// stop is no failure: the outcome says `interrupted` and holds what was measured. Belongs to one
+// thread.
 #pragma once
 
 #include <chrono>
@@ -46,10 +48,12 @@ class RunController {
 public:
   using ShowProgress = std::function<void(const RunProgress&)>;
 
-  RunController(bus::Participant& participant, const BenchFile& bench, std::string run, ShowProgress show_progress);
+  RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
+                ShowProgress show_progress);
 
-  [[nodiscard]] Expected<RunOutcome> conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
-                                             const std::stop_token& stop);
+  [[nodiscard]] Expected<RunOutcome>
+  conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
+          const std::stop_token& stop);
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -67,7 +71,8 @@ private:
   Expected<void> open_excitation();
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> excite(const std::stop_token& stop);
-  // Keeps the run alive on the network; fails when the analysis, or a source that it watches, is lost.
+  // Keeps the run alive on the network; fails when the analysis, or a source that it watches, is
+  // lost.
   Expected<void> attend();
   Expected<void> wait_for_results(const std::stop_token& stop);
   void announce(const PlannedStep& step, ExcitationState state);
@@ -90,7 +95,8 @@ private:
   std::size_t step_ = 0;
   std::int64_t window_begin_utc_ns_ = 0;
   Clock::time_point first_step_began_;
-  std::unique_ptr<StepExcitation> excitation_; // last: its end may ask the operator to switch the output off
+  std::unique_ptr<StepExcitation>
+      excitation_; // last: its end may ask the operator to switch the output off
 };
 
 } // namespace dyncal::services

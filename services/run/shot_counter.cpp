@@ -6,12 +6,15 @@
 
 namespace dyncal::services {
 
-Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench, std::shared_ptr<bus::WakeUp> wake_up) {
-  auto traces = participant.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench, wake_up);
+Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
+                                          std::shared_ptr<bus::WakeUp> wake_up) {
+  auto traces = participant.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples,
+                                                    bench, wake_up);
   if (!traces) {
     return tl::unexpected(traces.error());
   }
-  auto series = participant.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench, wake_up);
+  auto series = participant.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples,
+                                                    bench, wake_up);
   if (!series) {
     return tl::unexpected(series.error());
   }
@@ -37,7 +40,8 @@ int ShotCounter::shots() {
   take(traces_, trace_numbers_);
   take(series_, series_numbers_);
   return static_cast<int>(
-      std::count_if(trace_numbers_.begin(), trace_numbers_.end(), [&](const auto& number) { return series_numbers_.contains(number); }));
+      std::count_if(trace_numbers_.begin(), trace_numbers_.end(),
+                    [&](const auto& number) { return series_numbers_.contains(number); }));
 }
 
 } // namespace dyncal::services

@@ -1,6 +1,6 @@
-// Counts the shots of the step that is being measured: pairs of an oscilloscope's and a sensor's record with the same session and number
-// that name the step. `dyncal run` excites a step until it has the shots that the recipe asks for.
-// Belongs to one thread.
+// Counts the shots of the step that is being measured: pairs of an oscilloscope's and a sensor's
+// record with the same session and number that name the step. `dyncal run` excites a step until it
+// has the shots that the recipe asks for. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ namespace dyncal::services {
 
 class ShotCounter {
 public:
-  [[nodiscard]] static Expected<ShotCounter> create(bus::Participant& participant, const std::string& bench,
+  [[nodiscard]] static Expected<ShotCounter> create(bus::Participant& participant,
+                                                    const std::string& bench,
                                                     std::shared_ptr<bus::WakeUp> wake_up);
 
   // Forgets what has been counted.

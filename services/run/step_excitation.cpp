@@ -25,7 +25,8 @@ constexpr double shot_slice_s = 0.25;
 constexpr double slice_s = 1.0;     // bench time between two looks at the network
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
-// Time beyond settling and duration for which a step is excited, see analysis/step/excitation_window.hpp.
+// Time beyond settling and duration for which a step is excited, see
+// analysis/step/excitation_window.hpp.
 double margin_s(double frequency_hz) {
   return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
 }
@@ -44,12 +45,17 @@ Error of_step(const PlannedStep& step, ErrorCode code, const std::string& what) 
 
 } // namespace
 
-Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant& participant, const BenchFile& bench,
-                                                               const Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up,
+Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant& participant,
+                                                               const BenchFile& bench,
+                                                               const Measurement& measurement,
+                                                               std::shared_ptr<bus::WakeUp> wake_up,
                                                                StepAttendance attendance) {
-  std::unique_ptr<StepExcitation> excitation(
-      new StepExcitation(participant, bench, measurement.run().to_string(), wake_up, std::move(attendance)));
-  if (const auto ready = excitation->check_levels(measurement).and_then([&] { return excitation->connect_generator(); }); !ready) {
+  std::unique_ptr<StepExcitation> excitation(new StepExcitation(
+      participant, bench, measurement.run().to_string(), wake_up, std::move(attendance)));
+  if (const auto ready = excitation->check_levels(measurement).and_then([&] {
+        return excitation->connect_generator();
+      });
+      !ready) {
     return tl::unexpected(ready.error());
   }
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
@@ -64,7 +70,8 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant&
 
 Expected<void> StepExcitation::connect_generator() {
   if (bench_.generator.driver == "by-hand") {
-    generator_ = std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, attendance_.ask);
+    generator_ =
+        std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, attendance_.ask);
     return {};
   }
   auto guard = OutputGuard::start(bench_.generator.address);
@@ -82,7 +89,8 @@ Expected<void> StepExcitation::connect_generator() {
 
 Expected<void> StepExcitation::check_levels(const Measurement& measurement) const {
   for (const PlannedStep& step : measurement.steps()) {
-    const auto voltage = drivers::generator::voltage_for_level(step.level_m_s2(), bench_.generator.level_per_volt, limits());
+    const auto voltage = drivers::generator::voltage_for_level(
+        step.level_m_s2(), bench_.generator.level_per_volt, limits());
     if (!voltage) {
       return tl::unexpected(of_step(step, ErrorCode::bad_argument, voltage.error().message));
     }
@@ -93,7 +101,8 @@ Expected<void> StepExcitation::check_levels(const Measurement& measurement) cons
 drivers::generator::LevelLimits StepExcitation::limits() const {
   drivers::generator::LevelLimits limits;
   limits.maximum_voltage_v = bench_.generator.maximum_voltage_v.value_or(limits.maximum_voltage_v);
-  limits.maximum_level_m_s2 = bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
+  limits.maximum_level_m_s2 =
+      bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
   return limits;
 }
 
@@ -145,7 +154,9 @@ Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_t
 }
 
 Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::stop_token& stop) {
-  const auto began = meter_ ? switch_on_to_level(step, stop) : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
+  const auto began =
+      meter_ ? switch_on_to_level(step, stop)
+             : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
   if (!began || stop.stop_requested()) {
     return began.map([](double) {});
   }
@@ -159,7 +170,8 @@ Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::sto
   }
   attendance_.announce(step, EXCITATION_STEADY);
   attendance_.show("measuring");
-  const auto held = hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
+  const auto held =
+      hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
   if (!held || !*held || !shots_) {
     return held.map([](bool) {});
   }
@@ -167,11 +179,11 @@ Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::sto
 }
 
 // The bench time from which on the output is on.
-Expected<double> StepExcitation::switch_on(const PlannedStep& step, double voltage_v, const std::stop_token& stop) {
-  const auto set =
-      generator_->set_frequency(step.frequency_hz()).and_then([&] { return generator_->set_amplitude_v(voltage_v); }).and_then([&] {
-        return generator_->set_output(true);
-      });
+Expected<double> StepExcitation::switch_on(const PlannedStep& step, double voltage_v,
+                                           const std::stop_token& stop) {
+  const auto set = generator_->set_frequency(step.frequency_hz())
+                       .and_then([&] { return generator_->set_amplitude_v(voltage_v); })
+                       .and_then([&] { return generator_->set_output(true); });
   if (!set) {
     return tl::unexpected(device_error(set.error()));
   }
@@ -187,7 +199,8 @@ Expected<double> StepExcitation::switch_on(const PlannedStep& step, double volta
 }
 
 // The same, and the level within its tolerance before the planned settling is over.
-Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step, const std::stop_token& stop) {
+Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
+                                                    const std::stop_token& stop) {
   auto loop = LevelControl::start(target_of(step), limits());
   if (!loop) {
     return tl::unexpected(of_step(step, ErrorCode::bad_argument, loop.error().message));
@@ -210,7 +223,9 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step, con
     if (*reached) {
       return began;
     }
-    const auto changed = generator_->set_amplitude_v(loop->voltage_v()).and_then([&] { return generator_->clock_now_s(); });
+    const auto changed = generator_->set_amplitude_v(loop->voltage_v()).and_then([&] {
+      return generator_->clock_now_s();
+    });
     if (!changed) {
       return tl::unexpected(device_error(changed.error()));
     }
@@ -219,7 +234,8 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step, con
 }
 
 // Nothing when it shall stop.
-Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep& step, double changed_s, double deadline_s,
+Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep& step,
+                                                              double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
   attendance_.show("setting the level");
   if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
@@ -232,14 +248,17 @@ Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep&
     }
     meter_->take(*now);
     const auto level =
-        meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step), 0.5 * *bench_.generator.level_tolerance_rel);
+        meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step),
+                            0.5 * *bench_.generator.level_tolerance_rel);
     if (level) {
       return level;
     }
     if (*now > deadline_s) {
-      return tl::unexpected(of_step(step, ErrorCode::device,
-                                    fmt::format("{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
-                                                bench_.method.reference.text(), *now - changed_s)));
+      return tl::unexpected(of_step(
+          step, ErrorCode::device,
+          fmt::format(
+              "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
+              bench_.method.reference.text(), *now - changed_s)));
     }
     wake_up_->wait_until(Clock::now() + look_interval);
     if (const auto attended = attendance_.attend(); !attended) {
@@ -252,7 +271,8 @@ Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep&
 // A step without all of its shots is measured with those there are; the analysis says how many.
 Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token& stop) {
   const auto deadline = Clock::now() + shots_limit;
-  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline && !stop.stop_requested()) {
+  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline &&
+         !stop.stop_requested()) {
     attendance_.show("shots");
     const auto now = generator_->clock_now_s();
     if (!now) {

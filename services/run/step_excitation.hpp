@@ -1,12 +1,14 @@
 // Excites the steps of a run one after the other: generator, level, durations, shots.
 //
-// A step holds the output on for its planned settling, its duration and a margin in which the analysis finds the edges of the steady part,
-// then off for a moment, which separates it from the next. Durations are in bench time (the generator's clock) and begin when what was set
-// is in effect: with a generator set by hand, when the operator has confirmed. With a level tolerance the voltage follows what the
-// reference shows (drivers/generator/level_control.hpp) within the planned settling (services/run/level_settling.hpp). The output is off
-// whenever excite() has returned, and when the object goes; a guard sees to it when the program is killed. Fails: bad_argument (a level
-// above a limit, before anything is excited), device (generator, exciter), and as `attend` does. A requested stop is no failure. Belongs to
-// one thread.
+// A step holds the output on for its planned settling, its duration and a margin in which the
+// analysis finds the edges of the steady part, then off for a moment, which separates it from the
+// next. Durations are in bench time (the generator's clock) and begin when what was set is in
+// effect: with a generator set by hand, when the operator has confirmed. With a level tolerance the
+// voltage follows what the reference shows (drivers/generator/level_control.hpp) within the planned
+// settling (services/run/level_settling.hpp). The output is off whenever excite() has returned, and
+// when the object goes; a guard sees to it when the program is killed. Fails: bad_argument (a level
+// above a limit, before anything is excited), device (generator, exciter), and as `attend` does. A
+// requested stop is no failure. Belongs to one thread.
 #pragma once
 
 #include <chrono>
@@ -39,9 +41,9 @@ struct StepAttendance {
 class StepExcitation {
 public:
   // Connects the generator and switches its output off.
-  [[nodiscard]] static Expected<std::unique_ptr<StepExcitation>> open(bus::Participant& participant, const BenchFile& bench,
-                                                                      const Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up,
-                                                                      StepAttendance attendance);
+  [[nodiscard]] static Expected<std::unique_ptr<StepExcitation>>
+  open(bus::Participant& participant, const BenchFile& bench, const Measurement& measurement,
+       std::shared_ptr<bus::WakeUp> wake_up, StepAttendance attendance);
 
   // Before the first step and after the last.
   [[nodiscard]] Expected<void> begin();
@@ -51,16 +53,19 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  StepExcitation(bus::Participant& participant, const BenchFile& bench, std::string run, std::shared_ptr<bus::WakeUp> wake_up,
-                 StepAttendance attendance)
-      : participant_(participant), bench_(bench), run_(std::move(run)), wake_up_(std::move(wake_up)), attendance_(std::move(attendance)) {}
+  StepExcitation(bus::Participant& participant, const BenchFile& bench, std::string run,
+                 std::shared_ptr<bus::WakeUp> wake_up, StepAttendance attendance)
+      : participant_(participant), bench_(bench), run_(std::move(run)),
+        wake_up_(std::move(wake_up)), attendance_(std::move(attendance)) {}
 
   Expected<void> connect_generator();
   Expected<void> check_levels(const Measurement& measurement) const;
   Expected<void> hold_step(const PlannedStep& step, const std::stop_token& stop);
-  Expected<double> switch_on(const PlannedStep& step, double voltage_v, const std::stop_token& stop);
+  Expected<double> switch_on(const PlannedStep& step, double voltage_v,
+                             const std::stop_token& stop);
   Expected<double> switch_on_to_level(const PlannedStep& step, const std::stop_token& stop);
-  Expected<std::optional<double>> measure_level(const PlannedStep& step, double changed_s, double deadline_s, const std::stop_token& stop);
+  Expected<std::optional<double>> measure_level(const PlannedStep& step, double changed_s,
+                                                double deadline_s, const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
   Expected<void> wait_for_effect(const std::stop_token& stop);
   // False when it shall stop.

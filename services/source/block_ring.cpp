@@ -6,13 +6,17 @@
 namespace dyncal::services {
 
 std::size_t held_bytes(const drivers::SampleBlock& block) {
-  return sizeof(RingEntry) + block.values.capacity() * sizeof(double) + block.stamps_ns.capacity() * sizeof(std::int64_t) +
+  return sizeof(RingEntry) + block.values.capacity() * sizeof(double) +
+         block.stamps_ns.capacity() * sizeof(std::int64_t) +
          block.stamp_uncertainty_ns.capacity() * sizeof(std::uint32_t) + block.flags.capacity();
 }
 
 bool BlockRing::has_room(const RingEntry& entry) const {
-  if (entries_.empty() || entry.block.samples == 0) return true;
-  return bytes_ + held_bytes(entry.block) <= limits_.bytes && entry.offered - entries_.front().offered <= limits_.span;
+  if (entries_.empty() || entry.block.samples == 0) {
+    return true;
+  }
+  return bytes_ + held_bytes(entry.block) <= limits_.bytes &&
+         entry.offered - entries_.front().offered <= limits_.span;
 }
 
 void BlockRing::append(RingEntry entry) {
@@ -32,7 +36,9 @@ bool BlockRing::offer(RingEntry entry) {
 
 bool BlockRing::offer_waiting(RingEntry entry, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  if (!room_.wait(lock, stop, [&] { return has_room(entry); })) return false;
+  if (!room_.wait(lock, stop, [&] { return has_room(entry); })) {
+    return false;
+  }
   append(std::move(entry));
   return true;
 }
@@ -41,7 +47,9 @@ std::optional<RingEntry> BlockRing::take() {
   std::optional<RingEntry> entry;
   {
     const std::lock_guard lock(mutex_);
-    if (entries_.empty()) return std::nullopt;
+    if (entries_.empty()) {
+      return std::nullopt;
+    }
     entry = std::move(entries_.front());
     entries_.pop_front();
     bytes_ -= held_bytes(entry->block);
@@ -57,8 +65,11 @@ bool BlockRing::empty() const {
 
 double BlockRing::fill() const {
   const std::lock_guard lock(mutex_);
-  if (entries_.empty()) return 0.0;
-  const double span = std::chrono::duration<double>(entries_.back().offered - entries_.front().offered).count();
+  if (entries_.empty()) {
+    return 0.0;
+  }
+  const double span =
+      std::chrono::duration<double>(entries_.back().offered - entries_.front().offered).count();
   const double by_span = span / std::chrono::duration<double>(limits_.span).count();
   const double by_bytes = static_cast<double>(bytes_) / static_cast<double>(limits_.bytes);
   return std::clamp(std::max(by_span, by_bytes), 0.0, 1.0);

@@ -1,11 +1,11 @@
-// The buffer between the thread that listens to a device and the thread that publishes: write() on the bus may block for seconds,
-// the listener never may.
+// The buffer between the thread that listens to a device and the thread that publishes: write() on
+// the bus may block for seconds, the listener never may.
 //
-// Bounds: the time between the oldest and the newest entry when they were put in (for a live device: the duration of its data), and
-// the bytes held. Policy when full: the newest block is not taken and its samples are counted; what is already held stays whole,
-// so the gap shows once, as a jump of `first_sample`.
-// Entries keep their order; each belongs to a session and may carry marks (end of the stream) instead of samples.
-// Any number of threads put in, one thread takes out.
+// Bounds: the time between the oldest and the newest entry when they were put in (for a live
+// device: the duration of its data), and the bytes held. Policy when full: the newest block is not
+// taken and its samples are counted; what is already held stays whole, so the gap shows once, as a
+// jump of `first_sample`. Entries keep their order; each belongs to a session and may carry marks
+// (end of the stream) instead of samples. Any number of threads put in, one thread takes out.
 #pragma once
 
 #include <chrono>
@@ -40,11 +40,12 @@ class BlockRing {
 public:
   explicit BlockRing(RingLimits limits) : limits_(limits) {}
 
-  // False when the ring is full: the entry is lost and its samples are counted in dropped_samples(). Never blocks. A mark without
-  // samples is always taken.
+  // False when the ring is full: the entry is lost and its samples are counted in
+  // dropped_samples(). Never blocks. A mark without samples is always taken.
   bool offer(RingEntry entry);
 
-  // Waits for room. False when `stop` was requested before there was any: the entry is lost and not counted.
+  // Waits for room. False when `stop` was requested before there was any: the entry is lost and not
+  // counted.
   bool offer_waiting(RingEntry entry, const std::stop_token& stop);
 
   [[nodiscard]] std::optional<RingEntry> take();

@@ -63,7 +63,8 @@ const char* sample_topic(SourceKind kind) {
   return bus::topics::dau_samples;
 }
 
-dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t session, const std::string& software,
+dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t session,
+                                     const std::string& software,
                                      const drivers::SourceDescription& description) {
   dyncal::SourceDescription message;
   message.bench(source.bench);
@@ -74,17 +75,20 @@ dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t 
   message.serial(description.serial);
   message.driver(description.driver);
   message.software(software);
-  for (const auto& channel : description.channels)
+  for (const auto& channel : description.channels) {
     message.channels().push_back(to_contract(channel));
+  }
   message.nominal_rate_hz(description.nominal_rate_hz);
-  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_BASE_UTC : TIME_BASE_LOCAL);
+  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_BASE_UTC
+                                                                    : TIME_BASE_LOCAL);
   message.stamp_instant(to_contract(description.stamp_instant));
   message.tick_s(description.tick_s);
   message.stamp_uncertainty_s(description.stamp_uncertainty_s);
   return message;
 }
 
-dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t session, std::uint64_t block_number, drivers::SampleBlock block) {
+dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t session,
+                               std::uint64_t block_number, drivers::SampleBlock block) {
   dyncal::SampleBlock message;
   message.bench(source.bench);
   message.source(source.source);
@@ -92,7 +96,8 @@ dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t sessio
   message.block(block_number);
   message.first_sample(block.first_sample);
   message.sample_count(static_cast<std::uint32_t>(block.samples));
-  message.channel_count(block.samples == 0 ? 0 : static_cast<std::uint32_t>(block.values.size() / block.samples));
+  message.channel_count(
+      block.samples == 0 ? 0 : static_cast<std::uint32_t>(block.values.size() / block.samples));
   if (block.clock) {
     message.origin_ns(block.clock->origin_ns);
     message.interval_numerator_ns(block.clock->interval_numerator_ns);
@@ -106,7 +111,8 @@ dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t sessio
   return message;
 }
 
-dyncal::SourceStatus to_message(const SourceOptions& source, const SourcePublisher::Snapshot& snapshot) {
+dyncal::SourceStatus to_message(const SourceOptions& source,
+                                const SourcePublisher::Snapshot& snapshot) {
   const SourceCounts& counts = snapshot.counts;
   dyncal::SourceStatus message;
   message.bench(source.bench);

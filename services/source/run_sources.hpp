@@ -1,8 +1,11 @@
-// The sources of one program, run beside each other: every one in a thread of its own, until all have ended or a stop is requested.
+// The sources of one program, run beside each other: every one in a thread of its own, until all
+// have ended or a stop is requested.
 //
-// A source is a movable class with `Expected<void> run(SourcePublisher&, std::stop_token)`, which blocks; its header says when it ends and
-// fails. run_sources() joins the network under the program's name, announces every source, runs them and leaves the network again; it
-// returns the first failure, if there was one. A source that fails is logged at once and does not end the others. Blocks its caller.
+// A source is a movable class with `Expected<void> run(SourcePublisher&, std::stop_token)`, which
+// blocks; its header says when it ends and fails. run_sources() joins the network under the
+// program's name, announces every source, runs them and leaves the network again; it returns the
+// first failure, if there was one. A source that fails is logged at once and does not end the
+// others. Blocks its caller.
 #pragma once
 
 #include <memory>
@@ -27,15 +30,20 @@ struct RunnableSource {
 };
 
 template <class Source>
-[[nodiscard]] Expected<void> run_sources(const std::string& program, std::vector<RunnableSource<Source>>& sources,
-                                         const NetworkOptions& network, const std::stop_token& stop) {
+[[nodiscard]] Expected<void>
+run_sources(const std::string& program, std::vector<RunnableSource<Source>>& sources,
+            const NetworkOptions& network, const std::stop_token& stop) {
   auto participant = join_network(network, program);
-  if (!participant) return tl::unexpected(participant.error());
+  if (!participant) {
+    return tl::unexpected(participant.error());
+  }
   const auto service = SourceService::create(*participant, {.software = software_version()});
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (const RunnableSource<Source>& one : sources) {
     auto publisher = service->add(one.options);
-    if (!publisher) return tl::unexpected(publisher.error());
+    if (!publisher) {
+      return tl::unexpected(publisher.error());
+    }
     publishers.push_back(std::move(*publisher));
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);
   }
@@ -43,16 +51,22 @@ template <class Source>
   std::vector<Expected<void>> outcomes(sources.size());
   {
     std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < sources.size(); ++i)
+    for (std::size_t i = 0; i < sources.size(); ++i) {
       threads.emplace_back([&, i] {
         outcomes[i] = sources[i].source.run(*publishers[i], stop);
-        if (!outcomes[i] && sources.size() > 1) // the others go on; the sentence at the end would come late
+        if (!outcomes[i] &&
+            sources.size() > 1) { // the others go on; the sentence at the end would come late
           spdlog::error("bench {}: {}", sources[i].options.bench, outcomes[i].error().message);
+        }
       });
+    }
   }
   service->stop();
-  for (const Expected<void>& outcome : outcomes)
-    if (!outcome) return outcome;
+  for (const Expected<void>& outcome : outcomes) {
+    if (!outcome) {
+      return outcome;
+    }
+  }
   return {};
 }
 

@@ -3,40 +3,56 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/contract/topics.hpp"
 #include "drivers/utc_clock.hpp"
+#include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 
 namespace {
 
-constexpr int blocks_per_step = 16;                    // so that one source cannot starve the others
+constexpr int blocks_per_step = 16;                   // so that one source cannot starve the others
 constexpr auto rate_window = std::chrono::seconds(3); // over which the rate of the status is taken
-constexpr std::size_t runs_to_answer = 16;             // a run asks again, so a forgotten one is not lost
+constexpr std::size_t runs_to_answer = 16; // a run asks again, so a forgotten one is not lost
 
 } // namespace
 
-Expected<std::unique_ptr<SourceChannel>> SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
-                                                               std::string software) {
+Expected<std::unique_ptr<SourceChannel>>
+SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
+                      std::string software) {
   const SourceOptions& options = publisher->options();
-  auto description = participant.writer<dyncal::SourceDescription>(bus::topics::source_description, bus::Profile::state, options.bench);
-  if (!description) return tl::unexpected(description.error());
-  auto status = participant.writer<dyncal::SourceStatus>(bus::topics::source_status, bus::Profile::state, options.bench);
-  if (!status) return tl::unexpected(status.error());
-  auto samples = participant.writer<dyncal::SampleBlock>(sample_topic(options.kind), bus::Profile::samples, options.bench);
-  if (!samples) return tl::unexpected(samples.error());
-  return std::make_unique<SourceChannel>(std::move(publisher), std::move(software),
-                                         SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
+  auto description = participant.writer<dyncal::SourceDescription>(
+      bus::topics::source_description, bus::Profile::state, options.bench);
+  if (!description) {
+    return tl::unexpected(description.error());
+  }
+  auto status = participant.writer<dyncal::SourceStatus>(bus::topics::source_status,
+                                                         bus::Profile::state, options.bench);
+  if (!status) {
+    return tl::unexpected(status.error());
+  }
+  auto samples = participant.writer<dyncal::SampleBlock>(sample_topic(options.kind),
+                                                         bus::Profile::samples, options.bench);
+  if (!samples) {
+    return tl::unexpected(samples.error());
+  }
+  return std::make_unique<SourceChannel>(
+      std::move(publisher), std::move(software),
+      SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
 }
 
-SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software, SourceWriters writers)
-    : publisher_(std::move(publisher)), software_(std::move(software)), writers_(std::move(writers)),
-      session_(publisher_->snapshot().session) {}
+SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software,
+                             SourceWriters writers)
+    : publisher_(std::move(publisher)), software_(std::move(software)),
+      writers_(std::move(writers)), session_(publisher_->snapshot().session) {}
 
 void SourceChannel::answer(const std::string& run) {
-  if (std::ranges::count(runs_to_answer_, run) != 0) return;
+  if (std::ranges::count(runs_to_answer_, run) != 0) {
+    return;
+  }
   runs_to_answer_.push_back(run);
-  if (runs_to_answer_.size() > runs_to_answer) runs_to_answer_.pop_front();
+  if (runs_to_answer_.size() > runs_to_answer) {
+    runs_to_answer_.pop_front();
+  }
 }
 
 void SourceChannel::begin_session(std::uint64_t session) {
@@ -52,10 +68,14 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
     description_ = std::move(changed);
     description_due_ = true;
   }
-  if (!description_due_) return true;
-  if (writers_.description.write(to_message(publisher_->options(), session_, software_, *description_), limit) !=
-      bus::WriteOutcome::written)
+  if (!description_due_) {
+    return true;
+  }
+  if (writers_.description.write(
+          to_message(publisher_->options(), session_, software_, *description_), limit) !=
+      bus::WriteOutcome::written) {
     return false;
+  }
   description_due_ = false;
   return true;
 }
@@ -63,18 +83,26 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
 // Takes the next thing to be written into pending_. False when there is none.
 bool SourceChannel::next_message() {
   if (auto entry = publisher_->ring().take()) {
-    if (entry->session != session_) begin_session(entry->session);
-    if (entry->block.samples > 0)
+    if (entry->session != session_) {
+      begin_session(entry->session);
+    }
+    if (entry->block.samples > 0) {
       next_sample_ = entry->block.first_sample;
-    else
+    } else {
       entry->block.first_sample = next_sample_;
+    }
     next_sample_ += entry->block.samples;
-    pending_ = to_message(publisher_->options(), session_, block_number_++, std::move(entry->block));
+    pending_ =
+        to_message(publisher_->options(), session_, block_number_++, std::move(entry->block));
     pending_->end_of_stream(entry->end_of_stream);
     return true;
   }
-  if (const auto session = publisher_->snapshot().session; session != session_) begin_session(session);
-  if (runs_to_answer_.empty() || !description_) return false;
+  if (const auto session = publisher_->snapshot().session; session != session_) {
+    begin_session(session);
+  }
+  if (runs_to_answer_.empty() || !description_) {
+    return false;
+  }
   drivers::SampleBlock answer;
   answer.first_sample = next_sample_;
   answer.received_utc_ns = utc_now_ns();
@@ -86,44 +114,74 @@ bool SourceChannel::next_message() {
 
 bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   // The session of the block to be written decides what the description in front of it says.
-  if (!pending_ && !next_message()) return false;
-  if (!write_description(limit)) return false;
+  if (!pending_ && !next_message()) {
+    return false;
+  }
+  if (!write_description(limit)) {
+    return false;
+  }
   const auto outcome = writers_.samples.write(*pending_, limit);
-  if (outcome == bus::WriteOutcome::timed_out) return false;
+  if (outcome == bus::WriteOutcome::timed_out) {
+    return false;
+  }
   if (outcome == bus::WriteOutcome::failed) {
     ++failed_writes_;
     samples_not_written_ += pending_->sample_count();
   }
-  if (pending_->end_of_stream()) ended_ = true;
+  if (pending_->end_of_stream()) {
+    ended_ = true;
+  }
   pending_.reset();
   return true;
 }
 
 bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
-  if (!write_description(write_limit)) return false;
-  if (!description_ && !flushing_) return false;
+  if (!write_description(write_limit)) {
+    return false;
+  }
+  if (!description_ && !flushing_) {
+    return false;
+  }
   for (int i = 0; i < blocks_per_step; ++i) {
-    if (!write_next(write_limit)) return false;
-    if (ended_) write_status(Clock::now(), write_limit); // ENDED is seen even if the next session follows at once
+    if (!write_next(write_limit)) {
+      return false;
+    }
+    if (ended_) {
+      write_status(Clock::now(),
+                   write_limit); // ENDED is seen even if the next session follows at once
+    }
   }
   return true;
 }
 
-dyncal::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot, Clock::time_point now) const {
-  if (snapshot.stage == SourceStage::failed) return SOURCE_FAILED;
-  if (ended_ && snapshot.stage == SourceStage::starting) return SOURCE_ENDED;
-  if (ended_ && snapshot.stage == SourceStage::ended) return SOURCE_ENDED;
-  const bool watched = snapshot.silent_after > std::chrono::nanoseconds(0) && snapshot.stage != SourceStage::ended;
-  if (watched && now - snapshot.last_offer > snapshot.silent_after) return SOURCE_SILENT;
+dyncal::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot,
+                                         Clock::time_point now) const {
+  if (snapshot.stage == SourceStage::failed) {
+    return SOURCE_FAILED;
+  }
+  if (ended_ && snapshot.stage == SourceStage::starting) {
+    return SOURCE_ENDED;
+  }
+  if (ended_ && snapshot.stage == SourceStage::ended) {
+    return SOURCE_ENDED;
+  }
+  const bool watched =
+      snapshot.silent_after > std::chrono::nanoseconds(0) && snapshot.stage != SourceStage::ended;
+  if (watched && now - snapshot.last_offer > snapshot.silent_after) {
+    return SOURCE_SILENT;
+  }
   return snapshot.stage == SourceStage::starting ? SOURCE_STARTING : SOURCE_RUNNING;
 }
 
 void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
   rate_points_.push_back({now, offered_samples});
-  while (rate_points_.size() > 2 && now - rate_points_.front().time > rate_window)
+  while (rate_points_.size() > 2 && now - rate_points_.front().time > rate_window) {
     rate_points_.pop_front();
+  }
   const double elapsed_s = std::chrono::duration<double>(now - rate_points_.front().time).count();
-  rate_hz_ = elapsed_s > 0.0 ? static_cast<double>(offered_samples - rate_points_.front().samples) / elapsed_s : 0.0;
+  rate_hz_ = elapsed_s > 0.0
+                 ? static_cast<double>(offered_samples - rate_points_.front().samples) / elapsed_s
+                 : 0.0;
 }
 
 void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
@@ -136,22 +194,28 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   message.rate_hz(rate_hz_);
   message.dropped_in_service(publisher_->ring().dropped_samples() + samples_not_written_);
   message.buffer_fill(publisher_->ring().fill());
-  message.matched_readers(static_cast<std::uint32_t>(std::max(0, writers_.samples.matched_readers())));
+  message.matched_readers(
+      static_cast<std::uint32_t>(std::max(0, writers_.samples.matched_readers())));
   if (failed_writes_ > 0) {
     dyncal::NamedCount failed;
     failed.name("writes refused by the bus");
     failed.value(failed_writes_);
     message.causes().push_back(failed);
   }
-  if (writers_.status.write(message, limit) != bus::WriteOutcome::written) return; // the next one is due soon anyway
+  if (writers_.status.write(message, limit) != bus::WriteOutcome::written) {
+    return; // the next one is due soon anyway
+  }
   published_state_ = message.state();
   status_written_ = now;
 }
 
-SourceChannel::Clock::time_point SourceChannel::step_status(std::chrono::nanoseconds interval, std::chrono::nanoseconds write_limit) {
+SourceChannel::Clock::time_point SourceChannel::step_status(std::chrono::nanoseconds interval,
+                                                            std::chrono::nanoseconds write_limit) {
   const auto now = Clock::now();
   const bool changed = state(publisher_->snapshot(), now) != published_state_;
-  if (!status_written_ || changed || now - *status_written_ >= interval) write_status(now, write_limit);
+  if (!status_written_ || changed || now - *status_written_ >= interval) {
+    write_status(now, write_limit);
+  }
   return (status_written_ ? *status_written_ : now) + interval;
 }
 

@@ -1,8 +1,9 @@
-// The publishing thread's side of one source: its three writers, its place in the stream, and what is due to be written.
+// The publishing thread's side of one source: its three writers, its place in the stream, and what
+// is due to be written.
 //
-// Everything it does is one short step that may block for `write_limit` at most, so that a reader that hangs on one source does not hold
-// up the others: what could not be written stays and is tried again at the next step.
-// Used by the publishing thread alone.
+// Everything it does is one short step that may block for `write_limit` at most, so that a reader
+// that hangs on one source does not hold up the others: what could not be written stays and is
+// tried again at the next step. Used by the publishing thread alone.
 #pragma once
 
 #include <chrono>
@@ -29,13 +30,16 @@ class SourceChannel {
 public:
   using Clock = std::chrono::steady_clock;
 
-  [[nodiscard]] static Expected<std::unique_ptr<SourceChannel>> create(bus::Participant& participant,
-                                                                       std::shared_ptr<SourcePublisher> publisher, std::string software);
-  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software, SourceWriters writers);
+  [[nodiscard]] static Expected<std::unique_ptr<SourceChannel>>
+  create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
+         std::string software);
+  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software,
+                SourceWriters writers);
 
   [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
 
-  // Somebody arms for this run: an empty block that names it is written as soon as the source has a description.
+  // Somebody arms for this run: an empty block that names it is written as soon as the source has a
+  // description.
   void answer(const std::string& run);
 
   // Writes a few of the things that wait. True when there is more to do at once.
@@ -46,10 +50,14 @@ public:
   [[nodiscard]] bool blocked() const { return pending_.has_value() || description_due_; }
   [[nodiscard]] bool idle() const { return !pending_ && publisher_->ring().empty(); }
 
-  // Writes the status when its state has changed or `interval` has passed; returns when it is next due.
-  Clock::time_point step_status(std::chrono::nanoseconds interval, std::chrono::nanoseconds write_limit);
+  // Writes the status when its state has changed or `interval` has passed; returns when it is next
+  // due.
+  Clock::time_point step_status(std::chrono::nanoseconds interval,
+                                std::chrono::nanoseconds write_limit);
 
-  void wait_for_acknowledgments(std::chrono::nanoseconds limit) { writers_.samples.wait_for_acknowledgments(limit); }
+  void wait_for_acknowledgments(std::chrono::nanoseconds limit) {
+    writers_.samples.wait_for_acknowledgments(limit);
+  }
 
 private:
   bool write_description(std::chrono::nanoseconds limit);
@@ -57,7 +65,8 @@ private:
   bool next_message();
   void begin_session(std::uint64_t session);
   void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
-  [[nodiscard]] dyncal::SourceState state(const SourcePublisher::Snapshot& snapshot, Clock::time_point now) const;
+  [[nodiscard]] dyncal::SourceState state(const SourcePublisher::Snapshot& snapshot,
+                                          Clock::time_point now) const;
   void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
 
   const std::shared_ptr<SourcePublisher> publisher_;

@@ -14,20 +14,23 @@ namespace {
 std::uint64_t random_session() {
   std::random_device device;
   std::uint64_t session = 0;
-  while (session == 0)
+  while (session == 0) {
     session = (std::uint64_t{device()} << 32U) | device();
+  }
   return session;
 }
 
 bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDescription& b) {
-  return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
-         a.resolution == b.resolution;
+  return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit &&
+         a.minimum == b.minimum && a.maximum == b.maximum && a.resolution == b.resolution;
 }
 
 bool same_description(const drivers::SourceDescription& a, const drivers::SourceDescription& b) {
-  return a.device == b.device && a.serial == b.serial && a.driver == b.driver && a.nominal_rate_hz == b.nominal_rate_hz &&
-         a.time_base == b.time_base && a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
-         a.stamp_uncertainty_s == b.stamp_uncertainty_s && std::ranges::equal(a.channels, b.channels, same_channel);
+  return a.device == b.device && a.serial == b.serial && a.driver == b.driver &&
+         a.nominal_rate_hz == b.nominal_rate_hz && a.time_base == b.time_base &&
+         a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
+         a.stamp_uncertainty_s == b.stamp_uncertainty_s &&
+         std::ranges::equal(a.channels, b.channels, same_channel);
 }
 
 } // namespace
@@ -41,7 +44,9 @@ SourcePublisher::SourcePublisher(SourceOptions options, std::shared_ptr<bus::Wak
 void SourcePublisher::describe(drivers::SourceDescription description) {
   {
     const std::lock_guard lock(mutex_);
-    if (description_ && same_description(*description_, description)) return;
+    if (description_ && same_description(*description_, description)) {
+      return;
+    }
     description_ = std::move(description);
     description_changed_ = true;
   }
@@ -50,7 +55,9 @@ void SourcePublisher::describe(drivers::SourceDescription description) {
 
 void SourcePublisher::start_session() {
   const std::lock_guard lock(mutex_);
-  if (!session_used_) return;
+  if (!session_used_) {
+    return;
+  }
   state_.session = random_session();
   state_.stage = SourceStage::starting;
   state_.last_offer = Clock::now();
@@ -61,12 +68,15 @@ void SourcePublisher::start_session() {
 RingEntry SourcePublisher::next_entry(drivers::SampleBlock block) {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
-  if (session_used_) gaps_[gap_count_++ % gaps_.size()] = now - state_.last_offer;
+  if (session_used_) {
+    gaps_[gap_count_++ % gaps_.size()] = now - state_.last_offer;
+  }
   session_used_ = true;
   state_.stage = SourceStage::streaming;
   state_.offered_samples += block.samples;
   state_.last_offer = now;
-  return {.block = std::move(block), .session = state_.session, .end_of_stream = false, .offered = now};
+  return {
+      .block = std::move(block), .session = state_.session, .end_of_stream = false, .offered = now};
 }
 
 bool SourcePublisher::offer(drivers::SampleBlock block) {
@@ -85,7 +95,9 @@ void SourcePublisher::close_stream(SourceStage stage) {
   RingEntry mark;
   {
     const std::lock_guard lock(mutex_);
-    if (state_.stage == SourceStage::ended || state_.stage == SourceStage::failed) return;
+    if (state_.stage == SourceStage::ended || state_.stage == SourceStage::failed) {
+      return;
+    }
     state_.stage = stage;
     session_used_ = true;
     mark.session = state_.session;
@@ -119,13 +131,18 @@ std::optional<std::string> SourcePublisher::wait_for_run(const std::stop_token& 
   std::unique_lock lock(mutex_);
   std::optional<std::string> found;
   running_changed_.wait(lock, stop, [&] {
-    const auto fresh = std::ranges::find_if(running_, [&](const auto& run) { return std::ranges::count(returned_, run) == 0; });
-    if (fresh != running_.end()) found = *fresh;
+    const auto fresh = std::ranges::find_if(
+        running_, [&](const auto& run) { return std::ranges::count(returned_, run) == 0; });
+    if (fresh != running_.end()) {
+      found = *fresh;
+    }
     return found.has_value();
   });
   // Only runs that are still RUNNING need to be remembered, so this stays as short as that list.
   std::erase_if(returned_, [&](const auto& run) { return std::ranges::count(running_, run) == 0; });
-  if (found) returned_.push_back(*found);
+  if (found) {
+    returned_.push_back(*found);
+  }
   return found;
 }
 
@@ -140,19 +157,25 @@ void SourcePublisher::note_running(const std::vector<std::string>& runs) {
 std::chrono::nanoseconds SourcePublisher::usual_gap() const {
   const auto known = std::min(gap_count_, gaps_.size());
   // The shortest of the last gaps: one long pause does not make a quick source look slow.
-  return known == 0 ? std::chrono::nanoseconds(0) : *std::min_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(known));
+  return known == 0
+             ? std::chrono::nanoseconds(0)
+             : *std::min_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(known));
 }
 
 SourcePublisher::Snapshot SourcePublisher::snapshot() const {
   const std::lock_guard lock(mutex_);
   Snapshot snapshot = state_;
-  if (options_.silent_after > std::chrono::nanoseconds(0)) snapshot.silent_after = std::max(options_.silent_after, 4 * usual_gap());
+  if (options_.silent_after > std::chrono::nanoseconds(0)) {
+    snapshot.silent_after = std::max(options_.silent_after, 4 * usual_gap());
+  }
   return snapshot;
 }
 
 std::optional<drivers::SourceDescription> SourcePublisher::take_changed_description() {
   const std::lock_guard lock(mutex_);
-  if (!description_changed_) return std::nullopt;
+  if (!description_changed_) {
+    return std::nullopt;
+  }
   description_changed_ = false;
   return description_;
 }

@@ -16,7 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto write_limit = std::chrono::milliseconds(50);    // of one write, before the other sources get their turn
+constexpr auto write_limit =
+    std::chrono::milliseconds(50); // of one write, before the other sources get their turn
 constexpr auto retry_interval = std::chrono::milliseconds(10); // for what could not be written
 constexpr auto acknowledgment_limit = std::chrono::seconds(2);
 constexpr std::size_t max_name = 64; // bound of the keys of the contract
@@ -33,11 +34,14 @@ struct BenchReaders {
 class SourceService::Implementation {
 public:
   Implementation(bus::Participant& participant, SourceServiceOptions options)
-      : participant_(participant), options_(std::move(options)), wake_up_(std::make_shared<bus::WakeUp>()) {}
+      : participant_(participant), options_(std::move(options)),
+        wake_up_(std::make_shared<bus::WakeUp>()) {}
 
   Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions source);
   void start() {
-    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    if (!thread_.joinable()) {
+      thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    }
   }
   void stop();
 
@@ -59,57 +63,86 @@ private:
 };
 
 Expected<void> SourceService::Implementation::join_bench(const std::string& bench) {
-  if (benches_.contains(bench)) return {};
-  auto command = participant_.reader<dyncal::Command>(bus::topics::command, bus::Profile::command, bench, wake_up_);
-  if (!command) return tl::unexpected(command.error());
-  auto measurement = participant_.reader<dyncal::Measurement>(bus::topics::measurement, bus::Profile::state, bench, wake_up_);
-  if (!measurement) return tl::unexpected(measurement.error());
+  if (benches_.contains(bench)) {
+    return {};
+  }
+  auto command = participant_.reader<dyncal::Command>(bus::topics::command, bus::Profile::command,
+                                                      bench, wake_up_);
+  if (!command) {
+    return tl::unexpected(command.error());
+  }
+  auto measurement = participant_.reader<dyncal::Measurement>(bus::topics::measurement,
+                                                              bus::Profile::state, bench, wake_up_);
+  if (!measurement) {
+    return tl::unexpected(measurement.error());
+  }
   benches_.emplace(bench, BenchReaders{std::move(*command), std::move(*measurement)});
   return {};
 }
 
-Expected<std::shared_ptr<SourcePublisher>> SourceService::Implementation::add(SourceOptions source) {
+Expected<std::shared_ptr<SourcePublisher>>
+SourceService::Implementation::add(SourceOptions source) {
   for (const auto* name : {&source.bench, &source.source}) {
-    if (name->empty() || name->size() > max_name)
-      return tl::unexpected(Error{ErrorCode::bad_argument, "the name '" + *name + "' of a bench or source must have 1 to 64 characters"});
+    if (name->empty() || name->size() > max_name) {
+      return tl::unexpected(
+          Error{ErrorCode::bad_argument,
+                "the name '" + *name + "' of a bench or source must have 1 to 64 characters"});
+    }
   }
   const auto taken = [&](const auto& channel) {
     const SourceOptions& other = channel->publisher().options();
     return other.bench == source.bench && other.source == source.source;
   };
   if (std::ranges::any_of(channels_, taken)) {
-    return tl::unexpected(Error{ErrorCode::bad_argument, "bench '" + source.bench + "' has the source '" + source.source +
-                                                             "' twice: give each bench file its own bench name"});
+    return tl::unexpected(Error{ErrorCode::bad_argument,
+                                "bench '" + source.bench + "' has the source '" + source.source +
+                                    "' twice: give each bench file its own bench name"});
   }
-  if (auto joined = join_bench(source.bench); !joined) return tl::unexpected(joined.error());
+  if (auto joined = join_bench(source.bench); !joined) {
+    return tl::unexpected(joined.error());
+  }
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
   auto channel = SourceChannel::create(participant_, publisher, options_.software);
-  if (!channel) return tl::unexpected(channel.error());
+  if (!channel) {
+    return tl::unexpected(channel.error());
+  }
   channels_.push_back(std::move(*channel));
   return publisher;
 }
 
 void SourceService::Implementation::take_commands(const std::string& bench, BenchReaders& readers) {
   readers.command.take([&](const dyncal::Command& command, const bus::SampleInfo& info) {
-    if (!info.valid || command.kind() != COMMAND_ARM || command.bench() != bench) return;
+    if (!info.valid || command.kind() != COMMAND_ARM || command.bench() != bench) {
+      return;
+    }
     for (auto& channel : channels_) {
       const SourceOptions& source = channel->publisher().options();
-      if (source.bench == bench && source.source == command.target().c_str()) channel->answer(command.run());
+      if (source.bench == bench && source.source == command.target().c_str()) {
+        channel->answer(command.run());
+      }
     }
   });
 }
 
-void SourceService::Implementation::take_measurements(const std::string& bench, BenchReaders& readers) {
+void SourceService::Implementation::take_measurements(const std::string& bench,
+                                                      BenchReaders& readers) {
   auto running = readers.running;
-  readers.measurement.take([&](const dyncal::Measurement& measurement, const bus::SampleInfo& info) {
-    const std::string run = measurement.run().c_str();
-    std::erase(running, run);
-    if (info.valid && measurement.state() == MEASUREMENT_RUNNING) running.push_back(run);
-  });
-  if (running == readers.running) return;
+  readers.measurement.take(
+      [&](const dyncal::Measurement& measurement, const bus::SampleInfo& info) {
+        const std::string run = measurement.run().c_str();
+        std::erase(running, run);
+        if (info.valid && measurement.state() == MEASUREMENT_RUNNING) {
+          running.push_back(run);
+        }
+      });
+  if (running == readers.running) {
+    return;
+  }
   readers.running = std::move(running);
   for (auto& channel : channels_) {
-    if (channel->publisher().options().bench == bench) channel->publisher().note_running(readers.running);
+    if (channel->publisher().options().bench == bench) {
+      channel->publisher().note_running(readers.running);
+    }
   }
 }
 
@@ -123,8 +156,9 @@ void SourceService::Implementation::listen() {
 // True when something is left to do at once.
 bool SourceService::Implementation::step_channels() {
   bool more = false;
-  for (auto& channel : channels_)
+  for (auto& channel : channels_) {
     more = channel->step(write_limit) || more;
+  }
   return more;
 }
 
@@ -136,9 +170,13 @@ void SourceService::Implementation::run(const std::stop_token& stop) {
     auto due = Clock::now() + options_.status_interval;
     for (auto& channel : channels_) {
       due = std::min(due, channel->step_status(options_.status_interval, write_limit));
-      if (channel->blocked()) due = std::min(due, Clock::now() + retry_interval);
+      if (channel->blocked()) {
+        due = std::min(due, Clock::now() + retry_interval);
+      }
     }
-    if (!more) wake_up_->wait_until(due);
+    if (!more) {
+      wake_up_->wait_until(due);
+    }
   }
   finish();
 }
@@ -151,7 +189,9 @@ void SourceService::Implementation::finish() {
   }
   const auto idle = [](const auto& channel) { return channel->idle(); };
   while (!std::ranges::all_of(channels_, idle) && Clock::now() < deadline) {
-    if (!step_channels()) wake_up_->wait_until(std::min(deadline, Clock::now() + retry_interval));
+    if (!step_channels()) {
+      wake_up_->wait_until(std::min(deadline, Clock::now() + retry_interval));
+    }
   }
   const auto acknowledged_by = Clock::now() + acknowledgment_limit;
   for (auto& channel : channels_) {
@@ -161,19 +201,24 @@ void SourceService::Implementation::finish() {
 }
 
 void SourceService::Implementation::stop() {
-  if (!thread_.joinable()) return;
+  if (!thread_.joinable()) {
+    return;
+  }
   thread_.request_stop();
   thread_.join();
 }
 
-SourceService::SourceService(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+SourceService::SourceService(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
 
 SourceService::~SourceService() {
   stop();
 }
 
-std::unique_ptr<SourceService> SourceService::create(bus::Participant& participant, SourceServiceOptions options) {
-  return std::unique_ptr<SourceService>(new SourceService(std::make_unique<Implementation>(participant, std::move(options))));
+std::unique_ptr<SourceService> SourceService::create(bus::Participant& participant,
+                                                     SourceServiceOptions options) {
+  return std::unique_ptr<SourceService>(
+      new SourceService(std::make_unique<Implementation>(participant, std::move(options))));
 }
 
 Expected<std::shared_ptr<SourcePublisher>> SourceService::add(SourceOptions options) {

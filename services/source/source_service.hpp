@@ -1,10 +1,12 @@
-// What every source program is made of: one publishing thread that carries all sources of a process to the bus, whatever benches
-// they belong to (a bench is a partition).
+// What every source program is made of: one publishing thread that carries all sources of a process
+// to the bus, whatever benches they belong to (a bench is a partition).
 //
-// Per source it writes SampleBlocks (DauSamples, AcsSamples or CanSamples), SourceDescription when it is known or changes, and SourceStatus
-// every 500 ms and at once when the state changes. It answers COMMAND_ARM for a described source in its sample stream with an empty block
-// that names the run, behind everything written before: who reads that answer reads what follows.
-// Only this thread calls write(), which may block; a write that times out is tried again until it succeeds or the service stops.
+// Per source it writes SampleBlocks (DauSamples, AcsSamples or CanSamples), SourceDescription when
+// it is known or changes, and SourceStatus every 500 ms and at once when the state changes. It
+// answers COMMAND_ARM for a described source in its sample stream with an empty block that names
+// the run, behind everything written before: who reads that answer reads what follows. Only this
+// thread calls write(), which may block; a write that times out is tried again until it succeeds or
+// the service stops.
 //
 //   auto service = SourceService::create(participant, {"dyncal-dau", software});
 //   auto source = service->add({.bench = "acc-1", .source = "dau", .kind = SourceKind::dau});
@@ -28,25 +30,28 @@ namespace dyncal::services {
 struct SourceServiceOptions {
   std::string software; // name and version, as descriptions carry it
   std::chrono::nanoseconds status_interval = std::chrono::milliseconds(500);
-  std::chrono::nanoseconds stop_limit = std::chrono::seconds(5); // for what is still in the rings when the service stops
+  std::chrono::nanoseconds stop_limit =
+      std::chrono::seconds(5); // for what is still in the rings when the service stops
 };
 
 class SourceService {
 public:
   // `participant` outlives the service.
-  [[nodiscard]] static std::unique_ptr<SourceService> create(bus::Participant& participant, SourceServiceOptions options);
+  [[nodiscard]] static std::unique_ptr<SourceService> create(bus::Participant& participant,
+                                                             SourceServiceOptions options);
   ~SourceService(); // stops
 
   SourceService(const SourceService&) = delete;
   SourceService& operator=(const SourceService&) = delete;
 
-  // Before start(). Fails (bad_argument) when the bench has a source of this name already or a name is empty or longer than 64
-  // characters, (network) when the bus refuses.
+  // Before start(). Fails (bad_argument) when the bench has a source of this name already or a name
+  // is empty or longer than 64 characters, (network) when the bus refuses.
   [[nodiscard]] Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions options);
 
   void start();
 
-  // Ends every stream, publishes what the rings hold as far as stop_limit allows, says ENDED and waits for acknowledgments. Idempotent.
+  // Ends every stream, publishes what the rings hold as far as stop_limit allows, says ENDED and
+  // waits for acknowledgments. Idempotent.
   void stop();
 
 private:

@@ -37,50 +37,96 @@ tl::unexpected<Error> refuse(std::string message) {
 
 void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   const auto probability = CLI::Range(0.0, 1.0);
-  app.add_option("--preset", words.preset, fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))->capture_default_str();
-  app.add_option("--seed", options.bench.seed, "everything drawn follows from it")->capture_default_str();
+  app.add_option("--preset", words.preset,
+                 fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))
+      ->capture_default_str();
+  app.add_option("--seed", options.bench.seed, "everything drawn follows from it")
+      ->capture_default_str();
   app.add_option("--speed", words.speed, "times real time, or max")->capture_default_str();
-  app.add_option("--duration", options.server.duration_s, "end after so many seconds of bench time (0: never)");
-  app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")->capture_default_str();
-  app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")->capture_default_str();
-  app.add_option("--generator-listen", words.generator, "HOST:PORT of the generator's SCPI (port 0: chosen)")->capture_default_str();
-  app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")->capture_default_str();
-  app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")->capture_default_str();
-  app.add_flag("--tss-free-running", words.free_running, "the time series sensor starts with its next own sample");
+  app.add_option("--duration", options.server.duration_s,
+                 "end after so many seconds of bench time (0: never)");
+  app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")
+      ->capture_default_str();
+  app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")
+      ->capture_default_str();
+  app.add_option("--generator-listen", words.generator,
+                 "HOST:PORT of the generator's SCPI (port 0: chosen)")
+      ->capture_default_str();
+  app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")
+      ->capture_default_str();
+  app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")
+      ->capture_default_str();
+  app.add_flag("--tss-free-running", words.free_running,
+               "the time series sensor starts with its next own sample");
   app.add_option("--scope-fault", words.scope_faults,
-                 fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}", fmt::join(device::scope_fault_names(), ", ")));
-  app.add_option("--scope-pieces", words.scope_pieces, "the oscilloscope's answers come in pieces of so many bytes (0: whole)");
-  app.add_option("--ports-file", options.ports_file, "write the ports to this file as JSON once they are open");
+                 fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}",
+                             fmt::join(device::scope_fault_names(), ", ")));
+  app.add_option("--scope-pieces", words.scope_pieces,
+                 "the oscilloscope's answers come in pieces of so many bytes (0: whole)");
+  app.add_option("--ports-file", options.ports_file,
+                 "write the ports to this file as JSON once they are open");
   app.add_option("--truth", options.truth_file, "write what is true to this file");
-  app.add_option("--adc-file", options.adc_file, "write the calibration of the sync ADC to this file");
+  app.add_option("--adc-file", options.adc_file,
+                 "write the calibration of the sync ADC to this file");
   app.add_option("--can", options.can_interface,
-                 "put a sensor with CAN output on this interface; all instruments then keep the UTC of this host, in real time");
-  app.add_option("--can-bus", words.can_bus, "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")->capture_default_str();
-  app.add_option("--can-load", options.can.background_load, "share of the bus's time that other devices take")->check(CLI::Range(0.0, 0.8));
-  app.add_option("--dbc-file", options.dbc_file, "write the DBC file of the sensor with CAN output to this file");
-  app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")->delimiter(',');
-  app.add_option("--levels", words.levels, "in m/s^2, one or one per frequency; the highest decides the ranges")->delimiter(',');
-  app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")->check(CLI::Range(100, 1000000))->capture_default_str();
+                 "put a sensor with CAN output on this interface; all instruments then keep the "
+                 "UTC of this host, in real time");
+  app.add_option("--can-bus", words.can_bus,
+                 "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
+      ->capture_default_str();
+  app.add_option("--can-load", options.can.background_load,
+                 "share of the bus's time that other devices take")
+      ->check(CLI::Range(0.0, 0.8));
+  app.add_option("--dbc-file", options.dbc_file,
+                 "write the DBC file of the sensor with CAN output to this file");
+  app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")
+      ->delimiter(',');
+  app.add_option("--levels", words.levels,
+                 "in m/s^2, one or one per frequency; the highest decides the ranges")
+      ->delimiter(',');
+  app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")
+      ->check(CLI::Range(100, 1000000))
+      ->capture_default_str();
   app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
-  app.add_flag("--sync-is-first-output", options.bench.sync_is_first_output,
-               "sync is the output that drives the exciter, not a second one of constant amplitude");
-  app.add_option("--thermal-cycle", options.bench.thermal_cycle_s, "seconds for the sensor's warm-up")->check(CLI::PositiveNumber);
-  app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel, "standard uncertainty, relative")->check(probability);
-  app.add_option("--reference-phase-rad", options.bench.reference_phase_rad, "standard uncertainty in rad")->check(probability);
+  app.add_flag(
+      "--sync-is-first-output", options.bench.sync_is_first_output,
+      "sync is the output that drives the exciter, not a second one of constant amplitude");
+  app.add_option("--thermal-cycle", options.bench.thermal_cycle_s,
+                 "seconds for the sensor's warm-up")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel,
+                 "standard uncertainty, relative")
+      ->check(probability);
+  app.add_option("--reference-phase-rad", options.bench.reference_phase_rad,
+                 "standard uncertainty in rad")
+      ->check(probability);
   app.add_option("--sensor", words.sensor, "id of the sensor in the unit")->capture_default_str();
   app.add_flag("--ticks", options.server.with_ticks, "send time_ticks, as units do since 2021-07");
-  app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")->check(probability);
-  app.add_option("--duplicate", options.server.path.duplicate, "probability that a datagram comes twice")->check(probability);
-  app.add_option("--reorder", options.server.path.reorder, "probability that a datagram comes after the next one")->check(probability);
-  app.add_option("--fault", words.faults, fmt::format("NAME=PROBABILITY per sample: {}", fmt::join(device::fault_names(), ", ")));
-  app.add_option("--datagrams-per-second", options.server.datagrams_per_s, "most datagrams in a second of this host")
+  app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")
+      ->check(probability);
+  app.add_option("--duplicate", options.server.path.duplicate,
+                 "probability that a datagram comes twice")
+      ->check(probability);
+  app.add_option("--reorder", options.server.path.reorder,
+                 "probability that a datagram comes after the next one")
+      ->check(probability);
+  app.add_option(
+      "--fault", words.faults,
+      fmt::format("NAME=PROBABILITY per sample: {}", fmt::join(device::fault_names(), ", ")));
+  app.add_option("--datagrams-per-second", options.server.datagrams_per_s,
+                 "most datagrams in a second of this host")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--record-csv", options.record_folder, "write acs.csv and dau.csv into this folder instead of opening sockets");
-  app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")->check(CLI::PositiveNumber);
-  app.add_option("--settling", options.programme.settling_s, "with --record-csv, seconds")->check(CLI::NonNegativeNumber);
-  app.add_option("--duration-per-step", options.programme.duration_s, "with --record-csv, seconds")->check(CLI::PositiveNumber);
-  app.add_flag("--exit-with-parent", options.exit_with_parent, "end when the process that started this one ends");
+  app.add_option("--record-csv", options.record_folder,
+                 "write acs.csv and dau.csv into this folder instead of opening sockets");
+  app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--settling", options.programme.settling_s, "with --record-csv, seconds")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--duration-per-step", options.programme.duration_s, "with --record-csv, seconds")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--exit-with-parent", options.exit_with_parent,
+               "end when the process that started this one ends");
 }
 
 template <class Number>
@@ -97,7 +143,9 @@ bool read_whole(const std::string& text, Number& value, int base_or_unused = 10)
 
 Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
   const std::pair<const std::string*, drivers::Address*> addresses[] = {
-      {&words.dau, &server.dau}, {&words.acs, &server.acs_listen}, {&words.generator, &server.generator_listen}};
+      {&words.dau, &server.dau},
+      {&words.acs, &server.acs_listen},
+      {&words.generator, &server.generator_listen}};
   for (const auto& [text, address] : addresses) {
     auto parsed = drivers::parse_address(*text);
     if (!parsed) {
@@ -108,17 +156,21 @@ Expected<void> read_addresses(const Words& words, device::ServerSettings& server
   return {};
 }
 
-Expected<void> read_faults(const std::string& option, const std::vector<std::string>& texts, const std::vector<std::string>& known,
+Expected<void> read_faults(const std::string& option, const std::vector<std::string>& texts,
+                           const std::vector<std::string>& known,
                            std::map<std::string, double>& faults) {
   for (const std::string& text : texts) {
     const std::size_t sign = text.find('=');
     const std::string name = text.substr(0, sign);
     double probability = 0.0;
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      return refuse(fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
+      return refuse(
+          fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
     }
-    if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) || !(probability >= 0.0 && probability <= 1.0)) {
-      return refuse(fmt::format("{} {}: write NAME=PROBABILITY with a probability from 0 to 1", option, text));
+    if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) ||
+        !(probability >= 0.0 && probability <= 1.0)) {
+      return refuse(fmt::format("{} {}: write NAME=PROBABILITY with a probability from 0 to 1",
+                                option, text));
     }
     faults[name] = probability;
   }
@@ -129,11 +181,13 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
   for (const std::string& text : words.frequencies) {
     double frequency_hz = 0.0;
     if (!read_whole(text, frequency_hz) || !(frequency_hz > 0.0 && frequency_hz <= 5000.0)) {
-      return refuse(fmt::format("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text));
+      return refuse(
+          fmt::format("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text));
     }
   }
   if (words.levels.size() != 1 && words.levels.size() != words.frequencies.size()) {
-    return refuse(fmt::format("--levels: give one level, or one for each of the {} frequencies", words.frequencies.size()));
+    return refuse(fmt::format("--levels: give one level, or one for each of the {} frequencies",
+                              words.frequencies.size()));
   }
   for (const double level : words.levels) {
     if (!(level > 0.0 && level <= 500.0)) {
@@ -142,22 +196,26 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
   }
   options.programme.frequencies_hz = words.frequencies;
   options.programme.levels_m_s2 =
-      words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front()) : words.levels;
+      words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front())
+                               : words.levels;
   options.bench.highest_level_m_s2 = *std::max_element(words.levels.begin(), words.levels.end());
   return {};
 }
 
 Expected<void> read_can(const Words& words, BenchOptions& options) {
   const auto& kinds = can_bus_kinds();
-  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const CanBusKind& one) { return one.name == words.can_bus; });
+  const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                 [&](const CanBusKind& one) { return one.name == words.can_bus; });
   if (kind == kinds.end()) {
-    return refuse(fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));
+    return refuse(
+        fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));
   }
   options.can.bus = *kind;
   options.can.preset = options.bench.preset;
   options.can.seed = options.bench.seed;
   if (!options.can_interface.empty() && options.bench.preset.triggered) {
-    return refuse("--can: the sensor of preset tss records series and has no CAN output; choose another preset");
+    return refuse("--can: the sensor of preset tss records series and has no CAN output; choose "
+                  "another preset");
   }
   return {};
 }
@@ -180,25 +238,31 @@ Expected<void> read_triggered(const Words& words, BenchOptions& options) {
   triggered.sensor_listen = *sensor;
   options.server.triggered = triggered;
   options.free_running_sensor = words.free_running;
-  return read_faults("--scope-fault", words.scope_faults, device::scope_fault_names(), options.server.triggered->faults);
+  return read_faults("--scope-fault", words.scope_faults, device::scope_fault_names(),
+                     options.server.triggered->faults);
 }
 
 Expected<void> read_words(const Words& words, BenchOptions& options) {
   const auto preset = device::preset_by_name(words.preset);
   if (!preset) {
-    return refuse(fmt::format("--preset {}: no such sensor; there are: {}", words.preset, fmt::join(device::preset_names(), ", ")));
+    return refuse(fmt::format("--preset {}: no such sensor; there are: {}", words.preset,
+                              fmt::join(device::preset_names(), ", ")));
   }
   options.bench.preset = *preset;
   options.server.speed = 0.0;
-  if (words.speed != "max" && (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
+  if (words.speed != "max" &&
+      (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
     return refuse(fmt::format("--speed {}: write a number above 0, or max", words.speed));
   }
   const bool hexadecimal = words.sensor.starts_with("0x");
-  if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id, hexadecimal ? 16 : 10)) {
+  if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id,
+                  hexadecimal ? 16 : 10)) {
     return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
   }
   return read_addresses(words, options.server)
-      .and_then([&] { return read_faults("--fault", words.faults, device::fault_names(), options.bench.faults); })
+      .and_then([&] {
+        return read_faults("--fault", words.faults, device::fault_names(), options.bench.faults);
+      })
       .and_then([&] { return read_programme(words, options); })
       .and_then([&] { return read_triggered(words, options); })
       .and_then([&] { return read_can(words, options); });
@@ -207,7 +271,8 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
 } // namespace
 
 Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) {
-  CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration system and SmartUp Unit, reached through "
+  CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration "
+               "system and SmartUp Unit, reached through "
                "their real protocols."};
   Words words;
   BenchOptions options;

@@ -6,30 +6,33 @@
 #include <string>
 #include <vector>
 
-#include "drivers/virtual_bench/wire/bench_server.hpp"
+#include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/recording.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
+#include "drivers/virtual_bench/wire/bench_server.hpp"
 #include "services/error.hpp"
-#include "drivers/virtual_bench/can/can_sensor.hpp"
 
 namespace dyncal::services::virtual_bench {
 
 struct BenchOptions {
   drivers::virtual_bench::BenchSettings bench;
   drivers::virtual_bench::ServerSettings server;
-  drivers::virtual_bench::Programme programme; // its frequencies are those of the truth and ADC files as well
-  std::filesystem::path truth_file;            // empty: not wanted
+  drivers::virtual_bench::Programme
+      programme;                    // its frequencies are those of the truth and ADC files as well
+  std::filesystem::path truth_file; // empty: not wanted
   std::filesystem::path adc_file;
   std::filesystem::path ports_file;
   std::filesystem::path record_folder; // set: files instead of sockets
-  bool free_running_sensor = false;    // of the time series sensor, whose other settings follow from the bench
-  std::string can_interface;           // of a sensor with CAN output; empty: none
-  CanSensorSettings can;               // its preset and seed are those of the bench
+  bool free_running_sensor =
+      false; // of the time series sensor, whose other settings follow from the bench
+  std::string can_interface; // of a sensor with CAN output; empty: none
+  CanSensorSettings can;     // its preset and seed are those of the bench
   std::filesystem::path dbc_file;
   bool exit_with_parent = false;
 };
 
-// Nothing when the command line asked for help only, which has been printed then. Fails (bad_argument).
+// Nothing when the command line asked for help only, which has been printed then. Fails
+// (bad_argument).
 [[nodiscard]] Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv);
 
 } // namespace dyncal::services::virtual_bench

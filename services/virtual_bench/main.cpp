@@ -9,11 +9,11 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include "drivers/virtual_bench/model/truth.hpp"
 #include "drivers/utc_clock.hpp"
-#include "services/virtual_bench/bench_options.hpp"
 #include "drivers/virtual_bench/can/can_line.hpp"
 #include "drivers/virtual_bench/can/can_sensor.hpp"
+#include "drivers/virtual_bench/model/truth.hpp"
+#include "services/virtual_bench/bench_options.hpp"
 
 namespace {
 
@@ -50,7 +50,9 @@ Expected<void> write_file(const std::filesystem::path& path, const std::string& 
   std::error_code problem;
   std::filesystem::rename(unfinished, path, problem);
   if (problem) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: cannot be written ({})", path.string(), problem.message())});
+    return tl::unexpected(
+        Error{ErrorCode::bad_file,
+              fmt::format("{}: cannot be written ({})", path.string(), problem.message())});
   }
   return {};
 }
@@ -58,9 +60,10 @@ Expected<void> write_file(const std::filesystem::path& path, const std::string& 
 Expected<void> record(device::VirtualBench& bench, const BenchOptions& options) {
   std::error_code problem;
   std::filesystem::create_directories(options.record_folder, problem);
-  return device::record_csv(bench, options.programme, options.record_folder).map_error([](const dyncal::drivers::Error& error) {
-    return Error{ErrorCode::bad_file, error.message};
-  });
+  return device::record_csv(bench, options.programme, options.record_folder)
+      .map_error([](const dyncal::drivers::Error& error) {
+        return Error{ErrorCode::bad_file, error.message};
+      });
 }
 
 // The sensor with CAN output and its line, which lives in UTC.
@@ -69,10 +72,11 @@ struct CanPart {
       : origin_ns(*options.bench.utc_origin_ns), sensor(options.can), line(std::move(sender)) {}
 
   void advance_to(double time_s, const device::VirtualBench& bench) {
-    sensor.advance_to(time_s, bench.excitation(), [this](const dyncal::services::virtual_bench::SentFrame& sent) {
-      const bool exact = sent.frame.id == dyncal::services::virtual_bench::CanSensor::id;
-      line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9), exact);
-    });
+    sensor.advance_to(
+        time_s, bench.excitation(), [this](const dyncal::services::virtual_bench::SentFrame& sent) {
+          const bool exact = sent.frame.id == dyncal::services::virtual_bench::CanSensor::id;
+          line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9), exact);
+        });
   }
 
   std::int64_t origin_ns;
@@ -99,7 +103,8 @@ Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
 Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   device::ServerSettings settings = options.server;
   if (settings.triggered) {
-    settings.triggered->sensor = device::series_sensor_of(options.bench.preset, options.bench.seed, bench.unit().range_m_s2());
+    settings.triggered->sensor = device::series_sensor_of(options.bench.preset, options.bench.seed,
+                                                          bench.unit().range_m_s2());
     settings.triggered->sensor.free_running = options.free_running_sensor;
   }
   auto can = open_can(options);
@@ -114,7 +119,8 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   if (auto opened = server.open(); !opened) {
     return tl::unexpected(Error{ErrorCode::device, opened.error().message});
   }
-  nlohmann::json ports = {{"acs", server.acs_port()}, {"generator", server.generator_port()}, {"process_id", getpid()}};
+  nlohmann::json ports = {
+      {"acs", server.acs_port()}, {"generator", server.generator_port()}, {"process_id", getpid()}};
   if (server.triggered()) {
     ports["dso"] = server.triggered()->scope_port();
     ports["tss"] = server.triggered()->sensor_port();
@@ -122,13 +128,15 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   if (auto written = write_file(options.ports_file, ports.dump() + "\n"); !written) {
     return written;
   }
-  fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n", options.bench.preset.name, ports.dump(),
-             options.server.dau.text());
+  fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n",
+             options.bench.preset.name, ports.dump(), options.server.dau.text());
   server.run(stop_signal());
   if (*can) {
     const auto& line = (*can)->line;
-    fmt::print(stderr, "dyncal-virtual-bench: {} frames on {}, {} of the {} of the sensor late, {} refused\n", line.sent(),
-               options.can_interface, line.late(), line.exact(), line.refused());
+    fmt::print(
+        stderr,
+        "dyncal-virtual-bench: {} frames on {}, {} of the {} of the sensor late, {} refused\n",
+        line.sent(), options.can_interface, line.late(), line.exact(), line.refused());
   }
   return {};
 }
@@ -141,10 +149,14 @@ Expected<void> run(BenchOptions options) {
     options.bench.utc_origin_ns = dyncal::services::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
-  if (auto written = write_file(options.truth_file, device::truth_json(bench, options.programme.frequencies_hz)); !written) {
+  if (auto written = write_file(options.truth_file,
+                                device::truth_json(bench, options.programme.frequencies_hz));
+      !written) {
     return written;
   }
-  if (auto written = write_file(options.adc_file, device::adc_calibration_json(bench, options.programme.frequencies_hz)); !written) {
+  if (auto written = write_file(
+          options.adc_file, device::adc_calibration_json(bench, options.programme.frequencies_hz));
+      !written) {
     return written;
   }
   return options.record_folder.empty() ? serve(bench, options) : record(bench, options);

@@ -1,8 +1,9 @@
-// How fast `dyncal analyse` evaluates recorded files, beside the time that only looking at every byte of them takes (the lines of a CSV
-// file counted in one thread): all in one run, on the same files, which lie in the page cache; the quickest of some runs counts.
+// How fast `dyncal analyse` evaluates recorded files, beside the time that only looking at every
+// byte of them takes (the lines of a CSV file counted in one thread): all in one run, on the same
+// files, which lie in the page cache; the quickest of some runs counts.
 //   analyse_speed [--program P] [--folder F] [--only KIND] [--step-s 20] [--runs 5] [--disturbed]
-// A step lasts 20 s in the full form: 9.5 million samples. With --disturbed harmonics and hum are found and taken out as well.
-// Exit status 1 when a run does not give every result.
+// A step lasts 20 s in the full form: 9.5 million samples. With --disturbed harmonics and hum are
+// found and taken out as well. Exit status 1 when a run does not give every result.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -44,7 +45,8 @@ struct Options {
   bool disturbed = false;
 };
 
-// One source's samples, made as they are asked for: the excitation, seen by channels that differ in size and noise.
+// One source's samples, made as they are asked for: the excitation, seen by channels that differ in
+// size and noise.
 class Series {
 public:
   Series(const Options& options, double rate_hz, std::size_t channels)
@@ -63,11 +65,15 @@ public:
     const double t_s = static_cast<double>(i) / rate_hz_;
     const double in_step_s = std::fmod(t_s, options_.step_s + off_s) - off_s;
     const auto step = static_cast<std::size_t>(t_s / (options_.step_s + off_s));
-    const double phase = 2.0 * std::numbers::pi * frequencies_hz[step % std::size(frequencies_hz)] * t_s;
+    const double phase =
+        2.0 * std::numbers::pi * frequencies_hz[step % std::size(frequencies_hz)] * t_s;
     const double sine = in_step_s < 0.0 ? 0.0 : std::sin(phase);
-    const double hum = options_.disturbed ? 1e-3 * std::sin(2.0 * std::numbers::pi * 50.0 * t_s) + 1e-3 * std::sin(2.0 * phase) : 0.0;
+    const double hum = options_.disturbed ? 1e-3 * std::sin(2.0 * std::numbers::pi * 50.0 * t_s) +
+                                                1e-3 * std::sin(2.0 * phase)
+                                          : 0.0;
     for (std::size_t channel = 0; channel < channels_; ++channel) {
-      values[channel] = (1.0 + static_cast<double>(channel)) * (sine + hum + 1e-3 * noise_(random_));
+      values[channel] =
+          (1.0 + static_cast<double>(channel)) * (sine + hum + 1e-3 * noise_(random_));
     }
   }
 
@@ -111,7 +117,8 @@ void write_npy(const std::filesystem::path& path, Series series) {
   for (std::size_t channel = 0; channel < series.channels(); ++channel) {
     fields += ", ('" + name_of(channel) + "', '<f8')";
   }
-  const std::string header = fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}\n", fields, series.samples());
+  const std::string header = fmt::format(
+      "{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}\n", fields, series.samples());
   std::string text = "\x93NUMPY" + std::string("\x01\x00", 2);
   text += static_cast<char>(header.size() % 256);
   text += static_cast<char>(header.size() / 256);
@@ -134,8 +141,11 @@ void write_npy(const std::filesystem::path& path, Series series) {
 // One bench with its files in a folder of its own, which goes with the object.
 class Bench {
 public:
-  Bench(const Options& options, std::string name, std::size_t channels, const std::string& ending, bool with_dau)
-      : name_(std::move(name)), folder_(options.folder / ("dyncal_analyse_speed_" + std::to_string(::getpid()) + "_" + name_)),
+  Bench(const Options& options, std::string name, std::size_t channels, const std::string& ending,
+        bool with_dau)
+      : name_(std::move(name)),
+        folder_(options.folder /
+                ("dyncal_analyse_speed_" + std::to_string(::getpid()) + "_" + name_)),
         samples_(Series(options, acs_rate_hz, channels).samples()) {
     std::filesystem::create_directories(folder_);
     const auto write = ending == "npy" ? write_npy : write_csv;
@@ -166,20 +176,24 @@ public:
 
 private:
   static std::string text(const Options& options, const std::string& ending, bool with_dau) {
-    std::string text = fmt::format("bench = \"speed\"\n[excitation]\nfrequencies_hz = [\"20\", \"80\", \"160\"]\nlevel = 1.0\n"
-                                   "repetitions = {}\nsettling_s = 0.2\nduration_s = {}\n",
-                                   repetitions, options.step_s - 1.0);
+    std::string text = fmt::format(
+        "bench = \"speed\"\n[excitation]\nfrequencies_hz = [\"20\", \"80\", \"160\"]\nlevel = 1.0\n"
+        "repetitions = {}\nsettling_s = 0.2\nduration_s = {}\n",
+        repetitions, options.step_s - 1.0);
     const auto source = [&](const char* name) {
-      text += fmt::format("[sources.{0}]\ndriver = \"file\"\npath = \"{0}.{1}\"\nunits = {{ channel_0 = \"m/s^2\", channel_1 = \"V\" }}\n",
+      text += fmt::format("[sources.{0}]\ndriver = \"file\"\npath = \"{0}.{1}\"\nunits = {{ "
+                          "channel_0 = \"m/s^2\", channel_1 = \"V\" }}\n",
                           name, ending);
     };
     source("acs");
     if (with_dau) {
       source("dau");
-      text += "[method]\nkind = \"sample-timestamping\"\nreference = \"acs/channel_0\"\nsync_acs = \"acs/channel_1\"\n"
+      text += "[method]\nkind = \"sample-timestamping\"\nreference = \"acs/channel_0\"\nsync_acs = "
+              "\"acs/channel_1\"\n"
               "sync_dau = \"dau/channel_1\"\ndut = [\"dau/channel_0\"]\n";
     } else {
-      text += "[method]\nkind = \"analogue\"\nreference = \"acs/channel_0\"\ndut = [\"acs/channel_1\"]\n";
+      text += "[method]\nkind = \"analogue\"\nreference = \"acs/channel_0\"\ndut = "
+              "[\"acs/channel_1\"]\n";
     }
     return text;
   }
@@ -207,10 +221,14 @@ double reading_s(const Bench& bench, int runs) {
     std::ptrdiff_t lines = 0;
     for (const auto& path : bench.files()) {
       const auto file = drivers::acs::MappedFile::open(path);
-      if (!file) throw std::runtime_error(file.error().message);
+      if (!file) {
+        throw std::runtime_error(file.error().message);
+      }
       lines += std::count(file->text().begin(), file->text().end(), '\n');
     }
-    if (lines == 0) throw std::runtime_error(bench.name() + ": an empty file");
+    if (lines == 0) {
+      throw std::runtime_error(bench.name() + ": an empty file");
+    }
     quickest = std::min(quickest, seconds_since(begin));
   }
   return quickest;
@@ -220,11 +238,14 @@ Cost analysing(const Options& options, const Bench& bench) {
   Cost quickest{1e9, 1e9};
   for (int run = 0; run < options.runs; ++run) {
     const auto begin = Clock::now();
-    tests::ChildProcess process(
-        {"/bin/sh", "-c", R"(exec "$0" analyse "$1" --json "$2" > /dev/null)", options.program, bench.bench_file(), bench.result_file()});
+    tests::ChildProcess process({"/bin/sh", "-c",
+                                 R"(exec "$0" analyse "$1" --json "$2" > /dev/null)",
+                                 options.program, bench.bench_file(), bench.result_file()});
     const auto exit = process.wait_for(std::chrono::seconds(600));
     const double wall_s = seconds_since(begin);
-    if (!exit || exit->status != 0) throw std::runtime_error(bench.name() + ": " + process.said());
+    if (!exit || exit->status != 0) {
+      throw std::runtime_error(bench.name() + ": " + process.said());
+    }
     quickest = {std::min(quickest.wall_s, wall_s), std::min(quickest.cpu_s, exit->cpu_s)};
   }
   return quickest;
@@ -234,8 +255,9 @@ void measure(const Options& options, const Bench& bench) {
   const double read_s = reading_s(bench, options.runs);
   const Cost cost = analysing(options, bench);
   const double megabytes = static_cast<double>(bench.bytes()) * 1e-6;
-  fmt::print("{:12} {:8.1f} {:10.2f} {:10.3f} {:10.3f} {:10.3f} {:8.0f} {:10.1f} {:9.1f}\n", bench.name(), megabytes,
-             static_cast<double>(bench.samples()) * 1e-6, read_s, cost.wall_s, cost.cpu_s, megabytes / cost.wall_s,
+  fmt::print("{:12} {:8.1f} {:10.2f} {:10.3f} {:10.3f} {:10.3f} {:8.0f} {:10.1f} {:9.1f}\n",
+             bench.name(), megabytes, static_cast<double>(bench.samples()) * 1e-6, read_s,
+             cost.wall_s, cost.cpu_s, megabytes / cost.wall_s,
              static_cast<double>(bench.samples()) * 1e-6 / cost.wall_s, cost.wall_s / read_s);
 }
 
@@ -246,15 +268,21 @@ int main(int argc, char** argv) try {
   CLI::App app("Measures dyncal analyse on recorded files.");
   app.add_option("--program", options.program, "dyncal");
   app.add_option("--folder", options.folder, "where the files are made; 2.5 GB in the full form");
-  app.add_option("--only", options.only, "one kind of files alone")->check(CLI::IsMember({"narrow csv", "wide csv", "npy"}));
-  app.add_option("--step-s", options.step_s, "how long a step lasts, in seconds")->check(CLI::Range(2.5, 1000.0));
-  app.add_option("--runs", options.runs, "of which the quickest counts")->check(CLI::Range(1, 1000));
+  app.add_option("--only", options.only, "one kind of files alone")
+      ->check(CLI::IsMember({"narrow csv", "wide csv", "npy"}));
+  app.add_option("--step-s", options.step_s, "how long a step lasts, in seconds")
+      ->check(CLI::Range(2.5, 1000.0));
+  app.add_option("--runs", options.runs, "of which the quickest counts")
+      ->check(CLI::Range(1, 1000));
   app.add_flag("--disturbed", options.disturbed, "with harmonics and hum");
   CLI11_PARSE(app, argc, argv);
-  fmt::print("{:12} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "files", "MB", "1e6 rows", "reading/s", "analyse/s", "CPU/s",
-             "MB/s", "1e6 rows/s", "/ reading");
-  const auto measure_kind = [&](const char* name, std::size_t channels, const char* ending, bool with_dau) {
-    if (options.only.empty() || options.only == name) measure(options, Bench(options, name, channels, ending, with_dau));
+  fmt::print("{:12} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "files", "MB",
+             "1e6 rows", "reading/s", "analyse/s", "CPU/s", "MB/s", "1e6 rows/s", "/ reading");
+  const auto measure_kind = [&](const char* name, std::size_t channels, const char* ending,
+                                bool with_dau) {
+    if (options.only.empty() || options.only == name) {
+      measure(options, Bench(options, name, channels, ending, with_dau));
+    }
   };
   measure_kind("narrow csv", 2, "csv", true);
   measure_kind("wide csv", 12, "csv", false);

@@ -1,5 +1,6 @@
-// Load of dyncal-dau: units send real datagrams over UDP at their real pace to a running dyncal-dau while one subscriber reads all of it.
-// Reports lost samples, the CPU of dyncal-dau as a fraction of one core, and the latency from datagram to reader.
+// Load of dyncal-dau: units send real datagrams over UDP at their real pace to a running dyncal-dau
+// while one subscriber reads all of it. Reports lost samples, the CPU of dyncal-dau as a fraction
+// of one core, and the latency from datagram to reader.
 //   dau_load [--dds V] [--units 16] [--sensors 4] [--rate 1000] [--channels 13] [--seconds 20]
 // Exit status 1 when a sample was lost.
 #include <sys/resource.h>
@@ -17,10 +18,10 @@
 #include "drivers/smartup/sensor_id.hpp"
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
-#include "tests/unit/services/dau/bench_text.hpp"
-#include "tests/unit/services/dau/child_process.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
+#include "tests/unit/services/dau/bench_text.hpp"
+#include "tests/unit/services/dau/child_process.hpp"
 
 namespace {
 
@@ -43,22 +44,28 @@ std::uint32_t sensor_id(std::uint32_t unit, std::uint32_t sensor) {
 }
 
 std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
-// One unit: fills datagrams as the firmware does, up to 873 bytes and more, and sends them from its own port.
+// One unit: fills datagrams as the firmware does, up to 873 bytes and more, and sends them from its
+// own port.
 class Unit {
 public:
-  Unit(const Load& load, std::uint32_t number, std::uint16_t port) : load_(load), number_(number), sender_(port) {
-    for (int channel = 1; channel <= load.channels; ++channel)
+  Unit(const Load& load, std::uint32_t number, std::uint16_t port)
+      : load_(load), number_(number), sender_(port) {
+    for (int channel = 1; channel <= load.channels; ++channel) {
       data_.values.emplace_back(channel, 0.25F * static_cast<float>(channel));
+    }
     data_.time_uncertainty_ns = 84;
   }
 
   void describe() {
     for (std::uint32_t sensor = 0; sensor < load_.sensors; ++sensor) {
-      for (const auto& bytes : tests::mpu9250_descriptions(sensor_id(number_, sensor)))
+      for (const auto& bytes : tests::mpu9250_descriptions(sensor_id(number_, sensor))) {
         sender_.send(bytes);
+      }
     }
   }
 
@@ -69,7 +76,9 @@ public:
     for (std::uint32_t sensor = 0; sensor < load_.sensors; ++sensor) {
       data_.sensor = sensor_id(number_, sensor);
       datagram_.data(data_);
-      if (datagram_.bytes().size() < full_datagram) continue;
+      if (datagram_.bytes().size() < full_datagram) {
+        continue;
+      }
       sender_.send(datagram_.bytes());
       datagram_ = tests::DatagramWriter("DATA");
     }
@@ -90,8 +99,9 @@ private:
 // Sends for the whole time, in steps of two milliseconds; returns samples sent per sensor.
 std::uint32_t send_all(const Load& load, std::uint16_t port) {
   std::vector<std::unique_ptr<Unit>> units;
-  for (std::uint32_t i = 0; i < load.units; ++i)
+  for (std::uint32_t i = 0; i < load.units; ++i) {
     units.push_back(std::make_unique<Unit>(load, i, port));
+  }
   const auto begin = Clock::now();
   const std::int64_t begin_ns = utc_now_ns();
   const auto total = static_cast<std::uint32_t>(load.seconds * load.rate_hz);
@@ -101,16 +111,22 @@ std::uint32_t send_all(const Load& load, std::uint16_t port) {
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
     const auto due = std::min(total, static_cast<std::uint32_t>(elapsed_s * load.rate_hz));
     for (auto& unit : units) {
-      for (std::uint32_t n = sent; n < due; ++n)
+      for (std::uint32_t n = sent; n < due; ++n) {
         unit->sample(begin_ns + std::int64_t{n} * 1'000'000'000 / load.rate_hz);
-      if (elapsed_s >= next_description_s) unit->describe();
+      }
+      if (elapsed_s >= next_description_s) {
+        unit->describe();
+      }
     }
-    if (elapsed_s >= next_description_s) next_description_s += 4.0;
+    if (elapsed_s >= next_description_s) {
+      next_description_s += 4.0;
+    }
     sent = due;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  for (auto& unit : units)
+  for (auto& unit : units) {
     unit->flush();
+  }
   return sent;
 }
 
@@ -118,8 +134,10 @@ std::uint32_t send_all(const Load& load, std::uint16_t port) {
 class Subscriber {
 public:
   Subscriber(const Load& load, bus::Participant& network)
-      : reader_(*network.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", wake_up_)),
-        status_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, "*", wake_up_)),
+      : reader_(*network.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*",
+                                             wake_up_)),
+        status_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, "*",
+                                              wake_up_)),
         sources_(load.units * load.sensors) {}
 
   void take() {
@@ -127,9 +145,11 @@ public:
     reader_.take([&](const SampleBlock& block, const bus::SampleInfo&) { add(block); });
     status_.take([&](const SourceStatus& status, const bus::SampleInfo&) {
       const std::string name = std::string(status.bench().c_str()) + "/" + status.source().c_str();
-      lost_by_account_[name] = status.lost_in_device() + status.lost_on_way() + status.dropped_in_service();
-      for (const auto& cause : status.causes())
+      lost_by_account_[name] =
+          status.lost_in_device() + status.lost_on_way() + status.dropped_in_service();
+      for (const auto& cause : status.causes()) {
         causes_[cause.name()] = std::max(causes_[cause.name()], cause.value());
+      }
     });
   }
 
@@ -142,17 +162,23 @@ public:
       received += account.samples;
       gaps += account.gaps;
     }
-    const std::uint64_t by_account = std::accumulate(lost_by_account_.begin(), lost_by_account_.end(), std::uint64_t{0},
-                                                     [](auto sum, const auto& entry) { return sum + entry.second; });
-    fmt::print("sent {} samples, received {}, gaps seen by the reader {}, lost by the service's account {}\n",
+    const std::uint64_t by_account =
+        std::accumulate(lost_by_account_.begin(), lost_by_account_.end(), std::uint64_t{0},
+                        [](auto sum, const auto& entry) { return sum + entry.second; });
+    fmt::print("sent {} samples, received {}, gaps seen by the reader {}, lost by the service's "
+               "account {}\n",
                std::uint64_t{sent} * sources_, received, gaps, by_account);
-    for (const auto& [cause, count] : causes_)
+    for (const auto& [cause, count] : causes_) {
       fmt::print("  {}: {}\n", cause, count);
+    }
     auto latencies = latencies_s_;
     std::ranges::sort(latencies);
-    if (!latencies.empty())
-      fmt::print("latency from the last datagram of a block to the reader: median {:.1f} ms, 99 % {:.1f} ms, largest {:.1f} ms\n",
-                 latencies[latencies.size() / 2] * 1e3, latencies[latencies.size() * 99 / 100] * 1e3, latencies.back() * 1e3);
+    if (!latencies.empty()) {
+      fmt::print("latency from the last datagram of a block to the reader: median {:.1f} ms, 99 % "
+                 "{:.1f} ms, largest {:.1f} ms\n",
+                 latencies[latencies.size() / 2] * 1e3,
+                 latencies[latencies.size() * 99 / 100] * 1e3, latencies.back() * 1e3);
+    }
   }
 
   [[nodiscard]] std::uint64_t received() const {
@@ -168,9 +194,13 @@ private:
   };
 
   void add(const SampleBlock& block) {
-    if (block.sample_count() == 0) return;
+    if (block.sample_count() == 0) {
+      return;
+    }
     Account& account = accounts_[std::string(block.bench().c_str()) + "/" + block.source().c_str()];
-    if (block.first_sample() != account.next) ++account.gaps;
+    if (block.first_sample() != account.next) {
+      ++account.gaps;
+    }
     account.next = block.first_sample() + block.sample_count();
     account.samples += block.sample_count();
     latencies_s_.push_back(static_cast<double>(utc_now_ns() - block.received_utc_ns()) * 1e-9);
@@ -186,13 +216,16 @@ private:
   std::vector<double> latencies_s_;
 };
 
-std::vector<std::string> write_benches(const Load& load, const tests::TemporaryFolder& folder, std::uint16_t port) {
+std::vector<std::string> write_benches(const Load& load, const tests::TemporaryFolder& folder,
+                                       std::uint16_t port) {
   std::vector<std::string> files;
   const std::string listen = "127.0.0.1:" + std::to_string(port);
   for (std::uint32_t unit = 0; unit < load.units; ++unit) {
     std::string sources;
-    for (std::uint32_t sensor = 0; sensor < load.sensors; ++sensor)
-      sources += tests::smartup_source("dau-" + std::to_string(sensor), listen, drivers::smartup::sensor_text(sensor_id(unit, sensor)));
+    for (std::uint32_t sensor = 0; sensor < load.sensors; ++sensor) {
+      sources += tests::smartup_source("dau-" + std::to_string(sensor), listen,
+                                       drivers::smartup::sensor_text(sensor_id(unit, sensor)));
+    }
     const std::string bench = "load-" + std::to_string(getpid()) + "-" + std::to_string(unit);
     files.push_back(folder.write(bench + ".toml", tests::bench_text(bench, sources, "dau-0")));
   }
@@ -211,13 +244,16 @@ int run(const Load& load) {
   Subscriber subscriber(load, *network);
   const tests::TemporaryFolder folder;
   const std::uint16_t port = tests::free_udp_port();
-  std::vector<std::string> command{load.program, "--dds", load.dds, "--domain", std::to_string(load.domain)};
-  for (auto& file : write_benches(load, folder, port))
+  std::vector<std::string> command{load.program, "--dds", load.dds, "--domain",
+                                   std::to_string(load.domain)};
+  for (auto& file : write_benches(load, folder, port)) {
     command.push_back(std::move(file));
+  }
   tests::ChildProcess program(command);
   const auto ready_by = Clock::now() + std::chrono::seconds(30);
-  while (!subscriber.all_ready() && Clock::now() < ready_by)
+  while (!subscriber.all_ready() && Clock::now() < ready_by) {
     subscriber.take();
+  }
   if (!subscriber.all_ready()) {
     fmt::print(stderr, "dyncal-dau is not there:\n{}", program.said());
     return 2;
@@ -226,24 +262,34 @@ int run(const Load& load) {
   const auto begin = Clock::now();
   std::atomic<std::uint32_t> sent{0};
   std::jthread sender([&] { sent = send_all(load, port); });
-  const auto limit = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(load.seconds + 20.0));
-  const std::uint64_t expected = std::uint64_t{static_cast<std::uint32_t>(load.seconds * load.rate_hz)} * load.units * load.sensors;
-  while (subscriber.received() < expected && Clock::now() < limit)
+  const auto limit = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                        std::chrono::duration<double>(load.seconds + 20.0));
+  const std::uint64_t expected =
+      std::uint64_t{static_cast<std::uint32_t>(load.seconds * load.rate_hz)} * load.units *
+      load.sensors;
+  while (subscriber.received() < expected && Clock::now() < limit) {
     subscriber.take();
+  }
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
   sender.join();
   const auto settled_by = Clock::now() + std::chrono::seconds(1); // the last status
-  while (Clock::now() < settled_by)
+  while (Clock::now() < settled_by) {
     subscriber.take();
+  }
   program.signal(SIGTERM);
   const auto exit = program.wait_for(std::chrono::seconds(20));
 
-  fmt::print("{}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds, load.units, load.sensors, load.rate_hz, load.channels,
-             load.seconds);
+  fmt::print("{}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds, load.units,
+             load.sensors, load.rate_hz, load.channels, load.seconds);
   subscriber.report(sent);
-  if (exit) fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n", exit->cpu_s / elapsed_s);
+  if (exit) {
+    fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n",
+               exit->cpu_s / elapsed_s);
+  }
   const bool whole = subscriber.received() == expected;
-  if (!whole) fmt::print("LOST {} samples\n{}", expected - subscriber.received(), program.said());
+  if (!whole) {
+    fmt::print("LOST {} samples\n{}", expected - subscriber.received(), program.said());
+  }
   return whole && exit && exit->status == 0 ? 0 : 1;
 }
 

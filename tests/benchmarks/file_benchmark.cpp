@@ -1,5 +1,6 @@
-// How fast recorded series of stamps and four columns become blocks of samples, as sources play them: CSV with 17 digits, and NumPy.
-// The files lie in the page cache. Bytes per second are those of the file, by the wall clock; CPU is that of all threads.
+// How fast recorded series of stamps and four columns become blocks of samples, as sources play
+// them: CSV with 17 digits, and NumPy. The files lie in the page cache. Bytes per second are those
+// of the file, by the wall clock; CPU is that of all threads.
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -42,7 +43,8 @@ std::string csv() {
 }
 
 std::string npy() {
-  std::string header = "{'descr': [('t_ns', '<i8'), ('a', '<f8'), ('b', '<f8'), ('c', '<f8'), ('d', '<f8')], 'fortran_order': False, "
+  std::string header = "{'descr': [('t_ns', '<i8'), ('a', '<f8'), ('b', '<f8'), ('c', '<f8'), "
+                       "('d', '<f8')], 'fortran_order': False, "
                        "'shape': (" +
                        std::to_string(rows) + ",), }\n";
   std::string text = "\x93NUMPY" + std::string("\x01\x00", 2);
@@ -72,20 +74,29 @@ public:
 
 void play(benchmark::State& state, const char* extension, std::string (*make)()) {
   acs::FileSettings settings;
-  settings.path = std::filesystem::temp_directory_path() / ("dyncal_file_benchmark_" + std::to_string(::getpid()) + extension);
+  settings.path = std::filesystem::temp_directory_path() /
+                  ("dyncal_file_benchmark_" + std::to_string(::getpid()) + extension);
   const std::string text = make();
   std::ofstream(settings.path, std::ios::binary) << text;
   for (auto unused : state) {
     (void)unused;
     acs::FileSource source(settings);
     Counter counter;
-    if (!source.describe() || !source.run(counter) || counter.samples != rows) std::abort();
+    if (!source.describe() || !source.run(counter) || counter.samples != rows) {
+      std::abort();
+    }
   }
   std::filesystem::remove(settings.path);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
-BENCHMARK_CAPTURE(play, csv, ".csv", csv)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::millisecond);
-BENCHMARK_CAPTURE(play, npy, ".npy", npy)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::millisecond);
+BENCHMARK_CAPTURE(play, csv, ".csv", csv)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::millisecond);
+BENCHMARK_CAPTURE(play, npy, ".npy", npy)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::millisecond);
 
 } // namespace
 

@@ -1,4 +1,5 @@
-// What reading costs when nothing else is done with the samples: the measure that the fits are compared with.
+// What reading costs when nothing else is done with the samples: the measure that the fits are
+// compared with.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +13,17 @@ inline Number sum_of(const Number* data, std::size_t n) {
   Number sums[width] = {};
   std::size_t i = 0;
   for (; i + width <= n; i += width) {
-    for (std::size_t k = 0; k < width; ++k)
+    for (std::size_t k = 0; k < width; ++k) {
       sums[k] += data[i + k];
+    }
   }
-  for (; i < n; ++i)
+  for (; i < n; ++i) {
     sums[0] += data[i];
+  }
   Number total = 0;
-  for (const Number one : sums)
+  for (const Number one : sums) {
     total += one;
+  }
   return total;
 }
 

@@ -1,4 +1,5 @@
-// Every sample that is lost in an adapter, on its bus or while nobody reads is in the counts, and no sample is stamped wrong for it.
+// Every sample that is lost in an adapter, on its bus or while nobody reads is in the counts, and
+// no sample is stamped wrong for it.
 #include <ctime>
 
 #include <gtest/gtest.h>
@@ -71,13 +72,16 @@ TEST_F(AdapterLosses, OfABusOffAreCounted) {
   expect_true_stamps();
 }
 
-// What came before and what came after stand in one queue when the reader gets to it, and the adapter's clock has jumped between them.
+// What came before and what came after stand in one queue when the reader gets to it, and the
+// adapter's clock has jumped between them.
 TEST_F(AdapterLosses, OfALinkThatWentDownAndUpWhileNobodyReadAreCountedAndLeaveNoWrongStamp) {
   open_with_counter(400.0);
   send(5'000);
   const auto unheard = [&](int frames) {
     for (int i = 0; i < frames; ++i, next_start_ns += second_ns / 1000) {
-      if (next_start_ns >= now_ns()) adapter->put(next_frame(), next_start_ns);
+      if (next_start_ns >= now_ns()) {
+        adapter->put(next_frame(), next_start_ns);
+      }
       starts_ns.push_back(next_start_ns);
     }
   };
@@ -85,8 +89,9 @@ TEST_F(AdapterLosses, OfALinkThatWentDownAndUpWhileNobodyReadAreCountedAndLeaveN
   pass(second_ns / 25);
   ip("set " + adapter->name(0) + " down");
   ip("set " + adapter->name(0) + " up");
-  while (next_start_ns < now_ns())
+  while (next_start_ns < now_ns()) {
     unheard(1);
+  }
   unheard(40);
   pass(second_ns / 25);
   send(5'000);

@@ -1,4 +1,5 @@
-// Interfaces with a controller's states: the kernel's serial adapters (slcan, on can-dev), and two interfaces on one bus (vxcan).
+// Interfaces with a controller's states: the kernel's serial adapters (slcan, on can-dev), and two
+// interfaces on one bus (vxcan).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,12 +67,13 @@ TEST(SerialCan, TellsStatesCountersAndFaultsOfTheController) {
   BusState worst = BusState::unknown;
   bool counters = false;
   bool frames_lost = false;
-  for (const BusEvent& event : events)
+  for (const BusEvent& event : events) {
     if (const auto* fault = std::get_if<BusFault>(&event)) {
       worst = fault->state == BusState::error_passive ? fault->state : worst;
       counters = counters || (fault->transmit_errors == 130 && fault->receive_errors == 128);
       frames_lost = frames_lost || fault->frames_lost;
     }
+  }
   EXPECT_EQ(worst, BusState::error_passive);
   EXPECT_TRUE(counters);
   EXPECT_TRUE(frames_lost);

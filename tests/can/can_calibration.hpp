@@ -1,5 +1,6 @@
-// A whole calibration of the virtual bench's sensor on CAN, by the programs of the build: virtual bench on the interface vcan0 -> sources
-// of dyncal-can and dyncal-acs -> DDS -> dyncal-analysis -> result of dyncal run, held against the truth of the virtual bench.
+// A whole calibration of the virtual bench's sensor on CAN, by the programs of the build: virtual
+// bench on the interface vcan0 -> sources of dyncal-can and dyncal-acs -> DDS -> dyncal-analysis ->
+// result of dyncal run, held against the truth of the virtual bench.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +31,8 @@ struct Bus {
 // How long the sensor's frames are on the bus, on average over their contents.
 [[nodiscard]] double mean_frame_s(const Bus& bus);
 
-// True, with a line that the test was skipped, when the virtual bench says that it could not keep the time of a bus. `said`: at its end.
+// True, with a line that the test was skipped, when the virtual bench says that it could not keep
+// the time of a bus. `said`: at its end.
 [[nodiscard]] bool starved(const std::string& said);
 
 class CanCalibration {
@@ -41,16 +43,19 @@ public:
   // Starts the virtual bench. A test failure when it does not start.
   CanCalibration(const std::string& test, const Bus& bus, int dds_domain);
 
-  // A source of the bench file of driver "can" for the virtual bench's sensor; `settings`: further lines of it.
-  void add_source(const std::string& name, const std::string& interface_name, const std::string& settings);
+  // A source of the bench file of driver "can" for the virtual bench's sensor; `settings`: further
+  // lines of it.
+  void add_source(const std::string& name, const std::string& interface_name,
+                  const std::string& settings);
   // Calibrates the channels. Nothing when the machine had no time for it.
   [[nodiscard]] std::optional<Points> run(const std::vector<std::string>& channels);
 
-  // All three axes of a source within `max_in_u` of the truth in phase and magnitude, with a line for each frequency of the axis of
-  // excitation.
+  // All three axes of a source within `max_in_u` of the truth in phase and magnitude, with a line
+  // for each frequency of the axis of excitation.
   void expect_truth(const Points& points, const std::string& source, double max_in_u) const;
   // The second source is wrong by the duration of the sensor's frames against the first.
-  void expect_late_by_a_frame(const Points& points, const std::string& corrected, const std::string& uncorrected) const;
+  void expect_late_by_a_frame(const Points& points, const std::string& corrected,
+                              const std::string& uncorrected) const;
 
 private:
   void write_bench_file(const std::vector<std::string>& channels) const;

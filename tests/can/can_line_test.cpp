@@ -37,7 +37,9 @@ protected:
     return frame;
   }
 
-  std::vector<CanFrame> receive(std::size_t wanted) { return frames_of(read_until(source, frames(wanted))); }
+  std::vector<CanFrame> receive(std::size_t wanted) {
+    return frames_of(read_until(source, frames(wanted)));
+  }
 
   const tests::VirtualCan link{"vcan0"};
   SocketCanSource source{on("vcan0")};
@@ -47,13 +49,15 @@ protected:
 TEST_F(Line, PutsEveryFrameOnTheInterfaceNotBeforeItsEndAndInOrder) {
   const std::int64_t first_ns = now_ns() + 20 * millisecond_ns;
   constexpr int sent = 100;
-  for (int i = 0; i < sent; ++i)
+  for (int i = 0; i < sent; ++i) {
     line->put(numbered(i), first_ns + i * 2 * millisecond_ns, i % 3 != 0);
+  }
   const auto received = receive(sent);
   ASSERT_EQ(received.size(), std::size_t{sent});
   for (int i = 0; i < sent; ++i) {
     EXPECT_EQ(received[static_cast<std::size_t>(i)].data[0], i);
-    EXPECT_GE(received[static_cast<std::size_t>(i)].kernel_ns, first_ns + i * 2 * millisecond_ns) << i;
+    EXPECT_GE(received[static_cast<std::size_t>(i)].kernel_ns, first_ns + i * 2 * millisecond_ns)
+        << i;
   }
   EXPECT_EQ(line->sent(), std::uint64_t{sent});
   EXPECT_EQ(line->exact(), 66U);
@@ -73,8 +77,9 @@ TEST_F(Line, CountsFramesThatTheInterfaceDoesNotTakeAndGoesOn) {
   line->put(numbered(1), now_ns(), true);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   std::vector<tests::BusEvent> events;
-  while (line->refused() == 0 && std::chrono::steady_clock::now() < deadline)
+  while (line->refused() == 0 && std::chrono::steady_clock::now() < deadline) {
     ASSERT_TRUE(source.read(events, std::chrono::milliseconds(10)));
+  }
   EXPECT_EQ(line->refused(), 1U);
   tests::ip("set vcan0 up");
   line->put(numbered(2), now_ns(), true);

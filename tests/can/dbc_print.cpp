@@ -1,6 +1,7 @@
 // Decodes frames with a DBC file, for the comparison with another implementation:
 //   dbc_print FILE.dbc < frames
-// A line of input is "id(hex) extended(0|1) data(hex)"; a line of output "frame signal state raw_bits value", value as its 64 bits in hex.
+// A line of input is "id(hex) extended(0|1) data(hex)"; a line of output "frame signal state
+// raw_bits value", value as its 64 bits in hex.
 #include <bit>
 #include <cstdio>
 #include <iostream>
@@ -8,8 +9,8 @@
 #include <vector>
 
 #include "drivers/can/dbc/dbc.hpp"
-#include "drivers/can/message_index.hpp"
 #include "drivers/can/dbc/signal_decoder.hpp"
+#include "drivers/can/message_index.hpp"
 
 using namespace dyncal::drivers::can;
 
@@ -20,8 +21,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::vector<const DbcMessage*> messages;
-  for (const DbcMessage& message : file->messages)
+  for (const DbcMessage& message : file->messages) {
     messages.push_back(&message);
+  }
   const MessageIndex index(messages);
   std::string id;
   std::string extended;
@@ -32,18 +34,21 @@ int main(int argc, char** argv) {
     frame.id = static_cast<std::uint32_t>(std::stoul(id, nullptr, 16));
     frame.extended = extended == "1";
     frame.length = static_cast<std::uint8_t>(data.size() / 2);
-    for (std::size_t i = 0; i < frame.length; ++i)
+    for (std::size_t i = 0; i < frame.length; ++i) {
       frame.data[i] = static_cast<std::uint8_t>(std::stoul(data.substr(2 * i, 2), nullptr, 16));
+    }
     const DbcMessage* message = index.find(frame);
     if (message == nullptr) {
       std::printf("%zu - unknown 0 0\n", number);
       continue;
     }
     decode_message(*message, frame.payload(), signals);
-    for (std::size_t i = 0; i < signals.size(); ++i)
-      std::printf("%zu %s %d %llu %016llx\n", number, message->signals[i].name.c_str(), static_cast<int>(signals[i].state),
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      std::printf("%zu %s %d %llu %016llx\n", number, message->signals[i].name.c_str(),
+                  static_cast<int>(signals[i].state),
                   static_cast<unsigned long long>(signals[i].raw_bits),
                   static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(signals[i].value)));
+    }
   }
   return 0;
 }

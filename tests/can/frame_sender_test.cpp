@@ -20,8 +20,9 @@ CanFrame frame(std::uint32_t id, std::uint8_t length) {
   CanFrame made;
   made.id = id;
   made.length = length;
-  for (std::size_t i = 0; i < length; ++i)
+  for (std::size_t i = 0; i < length; ++i) {
     made.data[i] = static_cast<std::uint8_t>(3 * i + 1);
+  }
   return made;
 }
 
@@ -31,7 +32,8 @@ TEST(FrameSender, SendsFramesOfEveryFormatAsTheyAre) {
   ASSERT_TRUE(source.open({{0x123, 0x7FF, false}, {0x1ABCDEF, 0x1FFFFFFF, true}}));
   auto sender = FrameSender::open("vcan0");
   ASSERT_TRUE(sender) << sender.error().message;
-  std::vector<CanFrame> all = {frame(0x123, 0), frame(0x123, 8), frame(0x1ABCDEF, 5), frame(0x123, 64), frame(0x123, 12)};
+  std::vector<CanFrame> all = {frame(0x123, 0), frame(0x123, 8), frame(0x1ABCDEF, 5),
+                               frame(0x123, 64), frame(0x123, 12)};
   all[2].extended = true;
   all[3].fd = all[3].bit_rate_switch = true;
   all[4].fd = all[4].error_state_indicator = true;
@@ -39,7 +41,8 @@ TEST(FrameSender, SendsFramesOfEveryFormatAsTheyAre) {
     const auto sent = sender->send(one);
     ASSERT_TRUE(sent) << sent.error().message;
   }
-  const auto received = frames_of(read_until(source, [&](const auto& events) { return events.size() >= all.size(); }));
+  const auto received = frames_of(
+      read_until(source, [&](const auto& events) { return events.size() >= all.size(); }));
   ASSERT_EQ(received.size(), all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(received[i].id, all[i].id) << i;
@@ -59,14 +62,16 @@ TEST(FrameSender, ReceivesNothingItself) {
   ASSERT_TRUE(listener);
   ASSERT_TRUE(sender);
   // Far more than a socket's buffer holds: nothing piles up.
-  for (int i = 0; i < 2000; ++i)
+  for (int i = 0; i < 2000; ++i) {
     ASSERT_TRUE(sender->send(frame(0x123, 8))) << i;
+  }
 }
 
 TEST(FrameSender, SaysInOneLineWhyItCannotSend) {
   const auto missing = FrameSender::open("can7");
   ASSERT_FALSE(missing);
-  EXPECT_THAT(missing.error().message, HasSubstr("there is no interface 'can7'; 'ip link add can7 type vcan'"));
+  EXPECT_THAT(missing.error().message,
+              HasSubstr("there is no interface 'can7'; 'ip link add can7 type vcan'"));
   const auto other = FrameSender::open("lo");
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error().message, HasSubstr("interface 'lo' is no CAN interface"));

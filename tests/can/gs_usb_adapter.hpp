@@ -1,11 +1,13 @@
-// A CAN FD adapter on USB with hardware stamps (gs_usb), played by a test: the kernel's own driver makes CAN interfaces of it, and the test
-// says what happens on the bus and in the adapter.
+// A CAN FD adapter on USB with hardware stamps (gs_usb), played by a test: the kernel's own driver
+// makes CAN interfaces of it, and the test says what happens on the bus and in the adapter.
 //
-// All channels are on one bus, with other devices that acknowledge and that send what the test puts on it. Each frame lasts as long as its
-// bits; the adapter stamps its start or its end with a clock of its own (1 us, 32 bits, off by `clock_ppm`), and the host gets it after
-// a latency drawn anew for every frame (USB keeps the order). A channel that runs at another bit rate than the bus hears errors in place of
-// frames, counts them and becomes error passive. Times are CLOCK_REALTIME, ns. The adapter has a thread of its own; all functions from any
-// other. Throws std::runtime_error where the kernel has no virtual USB controller or no gs_usb.
+// All channels are on one bus, with other devices that acknowledge and that send what the test puts
+// on it. Each frame lasts as long as its bits; the adapter stamps its start or its end with a clock
+// of its own (1 us, 32 bits, off by `clock_ppm`), and the host gets it after a latency drawn anew
+// for every frame (USB keeps the order). A channel that runs at another bit rate than the bus hears
+// errors in place of frames, counts them and becomes error passive. Times are CLOCK_REALTIME, ns.
+// The adapter has a thread of its own; all functions from any other. Throws std::runtime_error
+// where the kernel has no virtual USB controller or no gs_usb.
 #pragma once
 
 #include <array>
@@ -20,8 +22,8 @@
 #include <vector>
 
 #include "drivers/can/bus/file_descriptor.hpp"
-#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/gs_usb_protocol.hpp"
 #include "tests/can/usbip_device.hpp"
 
@@ -33,7 +35,7 @@ struct GsUsbSettings {
   drivers::can::StampPoint stamp_point = drivers::can::StampPoint::end_of_frame;
   double clock_ppm = 0.0;
   std::uint32_t clock_start_us = 5'000'000; // when it is plugged in
-  double min_latency_s = 100e-6;          // from the end of a frame to the host
+  double min_latency_s = 100e-6;            // from the end of a frame to the host
   double max_latency_s = 2e-3;
   std::uint32_t seed = 1;
 };
@@ -55,10 +57,12 @@ public:
   void unplug();
   void plug_in();
 
-  // Another device's frame begins at `start_ns`, or when the bus is idle then. Nobody hears it while the adapter is out.
+  // Another device's frame begins at `start_ns`, or when the bus is idle then. Nobody hears it
+  // while the adapter is out.
   void put(const drivers::can::CanFrame& frame, std::int64_t start_ns);
   // An error frame of the controller, at once (linux/can/error.h).
-  void say_error(std::size_t channel, std::uint32_t classes, const std::array<std::uint8_t, 8>& data);
+  void say_error(std::size_t channel, std::uint32_t classes,
+                 const std::array<std::uint8_t, 8>& data);
   // The controller leaves the bus; the firmware brings it back.
   void bus_off(std::size_t channel);
   void recover(std::size_t channel);
@@ -87,9 +91,11 @@ private:
     std::uint8_t channel = 0;
   };
 
-  std::optional<std::vector<std::uint8_t>> control(const ControlRequest& request, std::span<const std::uint8_t> sent) override;
+  std::optional<std::vector<std::uint8_t>> control(const ControlRequest& request,
+                                                   std::span<const std::uint8_t> sent) override;
   void bulk_out(std::span<const std::uint8_t> sent) override;
-  std::optional<std::vector<std::uint8_t>> vendor_request(const ControlRequest& request, std::span<const std::uint8_t> sent);
+  std::optional<std::vector<std::uint8_t>> vendor_request(const ControlRequest& request,
+                                                          std::span<const std::uint8_t> sent);
 
   void run(const std::stop_token& stop);
   void wake_up() const;
@@ -99,7 +105,8 @@ private:
   void transmit(const OnBus& sent);
   void mishear(std::size_t channel, std::int64_t end_ns);
   void tell_host(gs_usb::HostFrame said, std::int64_t stamped_ns, std::int64_t end_ns);
-  [[nodiscard]] bool at_the_bus_rate(const Channel& channel, const drivers::can::CanFrame& frame) const;
+  [[nodiscard]] bool at_the_bus_rate(const Channel& channel,
+                                     const drivers::can::CanFrame& frame) const;
   void find_interfaces();
 
   GsUsbSettings settings_;

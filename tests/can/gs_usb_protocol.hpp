@@ -1,5 +1,7 @@
-// What a USB adapter of the gs_usb family says to the kernel's driver (drivers/net/can/usb/gs_usb.c; candleLight firmware): control
-// requests, and one frame a bulk transfer, little-endian, with the adapter's stamp behind the space for the longest data of the format.
+// What a USB adapter of the gs_usb family says to the kernel's driver
+// (drivers/net/can/usb/gs_usb.c; candleLight firmware): control requests, and one frame a bulk
+// transfer, little-endian, with the adapter's stamp behind the space for the longest data of the
+// format.
 #pragma once
 
 #include <algorithm>
@@ -50,16 +52,19 @@ struct HostFrame {
   drivers::can::CanFrame frame;
 };
 
-inline constexpr std::array<std::uint8_t, 16> fd_lengths = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+inline constexpr std::array<std::uint8_t, 16> fd_lengths = {0, 1,  2,  3,  4,  5,  6,  7,
+                                                            8, 12, 16, 20, 24, 32, 48, 64};
 inline constexpr std::size_t header_bytes = 12;
 
 inline void put_32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
-  for (unsigned shift = 0; shift < 32; shift += 8)
+  for (unsigned shift = 0; shift < 32; shift += 8) {
     bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+  }
 }
 
 inline std::uint32_t get_32(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return bytes[at] | std::uint32_t{bytes[at + 1]} << 8U | std::uint32_t{bytes[at + 2]} << 16U | std::uint32_t{bytes[at + 3]} << 24U;
+  return bytes[at] | std::uint32_t{bytes[at + 1]} << 8U | std::uint32_t{bytes[at + 2]} << 16U |
+         std::uint32_t{bytes[at + 3]} << 24U;
 }
 
 // `stamped`: by an adapter that stamps.
@@ -68,22 +73,29 @@ inline std::vector<std::uint8_t> pack(const HostFrame& said, bool stamped) {
   std::vector<std::uint8_t> bytes;
   put_32(bytes, said.echo);
   put_32(bytes, said.error != 0 ? CAN_ERR_FLAG | said.error
-                                : frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) | (frame.remote ? CAN_RTR_FLAG : 0U));
+                                : frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) |
+                                      (frame.remote ? CAN_RTR_FLAG : 0U));
   const auto code = std::lower_bound(fd_lengths.begin(), fd_lengths.end(), frame.length);
   bytes.push_back(static_cast<std::uint8_t>(code - fd_lengths.begin()));
   bytes.push_back(said.channel);
-  bytes.push_back(static_cast<std::uint8_t>((said.overflow ? flag_overflow : 0) | (frame.fd ? flag_fd : 0) |
+  bytes.push_back(static_cast<std::uint8_t>((said.overflow ? flag_overflow : 0) |
+                                            (frame.fd ? flag_fd : 0) |
                                             (frame.bit_rate_switch ? flag_bit_rate_switch : 0) |
                                             (frame.error_state_indicator ? flag_error_state : 0)));
   bytes.push_back(0);
-  bytes.insert(bytes.end(), frame.data.begin(), frame.data.begin() + (frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN));
-  if (stamped) put_32(bytes, said.stamp_us);
+  bytes.insert(bytes.end(), frame.data.begin(),
+               frame.data.begin() + (frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN));
+  if (stamped) {
+    put_32(bytes, said.stamp_us);
+  }
   return bytes;
 }
 
 // Nothing where the host has said less than a frame.
 inline std::optional<HostFrame> unpack(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < header_bytes) return std::nullopt;
+  if (bytes.size() < header_bytes) {
+    return std::nullopt;
+  }
   HostFrame said;
   said.echo = get_32(bytes, 0);
   const std::uint32_t id = get_32(bytes, 4);
@@ -97,8 +109,12 @@ inline std::optional<HostFrame> unpack(std::span<const std::uint8_t> bytes) {
   frame.bit_rate_switch = (flags & flag_bit_rate_switch) != 0;
   frame.error_state_indicator = (flags & flag_error_state) != 0;
   frame.length = fd_lengths[bytes[8] & 15U];
-  if (!frame.fd) frame.length = std::min<std::uint8_t>(frame.length, CAN_MAX_DLEN);
-  if (bytes.size() < header_bytes + frame.length) return std::nullopt;
+  if (!frame.fd) {
+    frame.length = std::min<std::uint8_t>(frame.length, CAN_MAX_DLEN);
+  }
+  if (bytes.size() < header_bytes + frame.length) {
+    return std::nullopt;
+  }
   std::copy_n(bytes.begin() + header_bytes, frame.length, frame.data.begin());
   return said;
 }

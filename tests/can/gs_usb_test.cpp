@@ -1,12 +1,13 @@
-// A USB adapter with hardware stamps and CAN FD, by the kernel's own driver (gs_usb): what it tells, and what is told of its faults.
+// A USB adapter with hardware stamps and CAN FD, by the kernel's own driver (gs_usb): what it
+// tells, and what is told of its faults.
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
-#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/gs_usb_adapter.hpp"
 #include "tests/can/kernel_can.hpp"
 
@@ -33,8 +34,9 @@ CanFrame sensor_frame(std::uint8_t length = 8, bool fd = false) {
   frame.id = 0x123;
   frame.length = length;
   frame.fd = frame.bit_rate_switch = fd;
-  for (std::size_t i = 0; i < length; ++i)
+  for (std::size_t i = 0; i < length; ++i) {
     frame.data[i] = static_cast<std::uint8_t>(17 * i);
+  }
   return frame;
 }
 
@@ -56,7 +58,9 @@ Scatter scatter_about_line(const std::vector<CanFrame>& received, Stamp stamp_ns
   double sum = 0.0;
   double weighted = 0.0;
   double squares = 0.0;
-  const auto value_us = [&](std::size_t i) { return static_cast<double>(stamp_ns(received[i]) - stamp_ns(received[0])) * 1e-3; };
+  const auto value_us = [&](std::size_t i) {
+    return static_cast<double>(stamp_ns(received[i]) - stamp_ns(received[0])) * 1e-3;
+  };
   for (std::size_t i = 0; i < received.size(); ++i) {
     const double x = static_cast<double>(i) - middle;
     sum += value_us(i);
@@ -65,7 +69,8 @@ Scatter scatter_about_line(const std::vector<CanFrame>& received, Stamp stamp_ns
   }
   Scatter scatter{weighted / squares, 0.0};
   for (std::size_t i = 0; i < received.size(); ++i) {
-    const double residual_us = value_us(i) - sum / n - scatter.slope_us * (static_cast<double>(i) - middle);
+    const double residual_us =
+        value_us(i) - sum / n - scatter.slope_us * (static_cast<double>(i) - middle);
     scatter.rms_us += residual_us * residual_us;
   }
   scatter.rms_us = std::sqrt(scatter.rms_us / n);
@@ -92,17 +97,21 @@ TEST(GsUsb, GivesEveryFrameTheAdaptersStampWithTheKernels) {
   EXPECT_FALSE(link->fd);
   const std::int64_t first_ns = now_ns() + millisecond_ns;
   constexpr std::size_t sent = 50;
-  for (std::size_t i = 0; i < sent; ++i)
+  for (std::size_t i = 0; i < sent; ++i) {
     adapter.put(sensor_frame(), first_ns + static_cast<std::int64_t>(i) * millisecond_ns);
+  }
   const auto received = frames_of(read_until(source, frames(sent)));
   ASSERT_EQ(received.size(), sent);
-  const std::int64_t duration_ns = std::llround(frame_duration_s(sensor_frame(), settings.bus) * 1e9);
+  const std::int64_t duration_ns =
+      std::llround(frame_duration_s(sensor_frame(), settings.bus) * 1e9);
   for (std::size_t i = 0; i < sent; ++i) {
-    const std::int64_t end_ns = first_ns + static_cast<std::int64_t>(i) * millisecond_ns + duration_ns;
+    const std::int64_t end_ns =
+        first_ns + static_cast<std::int64_t>(i) * millisecond_ns + duration_ns;
     EXPECT_GT(received[i].hardware_ns, 0);
     EXPECT_GE(received[i].kernel_ns - end_ns, 100'000);
     EXPECT_LE(received[i].kernel_ns - end_ns, 3 * millisecond_ns);
-    EXPECT_NEAR(static_cast<double>(received[i].hardware_ns - received[0].hardware_ns), static_cast<double>(i) * 1e6, 1000.0);
+    EXPECT_NEAR(static_cast<double>(received[i].hardware_ns - received[0].hardware_ns),
+                static_cast<double>(i) * 1e6, 1000.0);
   }
 }
 
@@ -115,14 +124,17 @@ TEST(GsUsb, StampsWithTheRateAndTheResolutionOfItsClock) {
   ASSERT_TRUE(source.open(sensor_only));
   constexpr std::size_t sent = 5000;
   const std::int64_t first_ns = now_ns() + millisecond_ns;
-  for (std::size_t i = 0; i < sent; ++i)
+  for (std::size_t i = 0; i < sent; ++i) {
     adapter.put(sensor_frame(), first_ns + static_cast<std::int64_t>(i) * millisecond_ns);
+  }
   const auto received = frames_of(read_until(source, frames(sent)));
   ASSERT_EQ(received.size(), sent);
-  const Scatter hardware = scatter_about_line(received, [](const CanFrame& frame) { return frame.hardware_ns; });
-  const Scatter kernel = scatter_about_line(received, [](const CanFrame& frame) { return frame.kernel_ns; });
-  std::printf("slope %.4f us, residual rms %.3f us; kernel's stamps: slope %.4f us, rms %.1f us\n", hardware.slope_us, hardware.rms_us,
-              kernel.slope_us, kernel.rms_us);
+  const Scatter hardware =
+      scatter_about_line(received, [](const CanFrame& frame) { return frame.hardware_ns; });
+  const Scatter kernel =
+      scatter_about_line(received, [](const CanFrame& frame) { return frame.kernel_ns; });
+  std::printf("slope %.4f us, residual rms %.3f us; kernel's stamps: slope %.4f us, rms %.1f us\n",
+              hardware.slope_us, hardware.rms_us, kernel.slope_us, kernel.rms_us);
   EXPECT_NEAR(hardware.slope_us, 1000.05, 1e-4);
   EXPECT_NEAR(hardware.rms_us, 1.0 / std::sqrt(12.0), 0.01);
   EXPECT_GT(kernel.rms_us, 300.0);
@@ -159,11 +171,13 @@ TEST(GsUsb, RefusesBitRatesOtherThanTheBenchFilesInOneLine) {
   SocketCanSettings nominal = on(adapter.name(0));
   nominal.bit_rate_per_s = 500'000;
   EXPECT_THAT(failure(nominal),
-              HasSubstr("interface '" + adapter.name(0) + "' runs at a bit rate of 1000000 bit/s, the bench file says 500000"));
+              HasSubstr("interface '" + adapter.name(0) +
+                        "' runs at a bit rate of 1000000 bit/s, the bench file says 500000"));
   SocketCanSettings data = on(adapter.name(0));
   data.bit_rate_per_s = 1'000'000;
   data.data_bit_rate_per_s = 2'000'000;
-  EXPECT_THAT(failure(data), HasSubstr("runs at a data bit rate of 5000000 bit/s, the bench file says 2000000; change one of them"));
+  EXPECT_THAT(failure(data), HasSubstr("runs at a data bit rate of 5000000 bit/s, the bench file "
+                                       "says 2000000; change one of them"));
 }
 
 TEST(GsUsb, SaysThatTheBusDoesNotRunAtTheBitRateThatTheInterfaceHas) {
@@ -173,8 +187,9 @@ TEST(GsUsb, SaysThatTheBusDoesNotRunAtTheBitRateThatTheInterfaceHas) {
   adapter.set_up(0, "bitrate 500000");
   SocketCanSource source(on(adapter.name(0)));
   ASSERT_TRUE(source.open(sensor_only));
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 20; ++i) {
     adapter.put(sensor_frame(), now_ns() + i * millisecond_ns);
+  }
   const auto events = read_until(source, says("error passive"));
   ASSERT_TRUE(says("error passive")(events)) << told(events);
   EXPECT_TRUE(says("stuff error")(events)) << told(events);
@@ -191,14 +206,35 @@ TEST(GsUsb, TellsEveryStateAndErrorOfTheController) {
   ASSERT_TRUE(source.open(sensor_only));
   constexpr std::uint32_t counted = 0x200; // CAN_ERR_CNT
   const std::vector<Told> all = {
-      {CAN_ERR_CRTL | counted, {0, CAN_ERR_CRTL_RX_WARNING, 0, 0, 0, 0, 20, 100}, "error warning", BusState::error_warning},
-      {CAN_ERR_CRTL | counted, {0, CAN_ERR_CRTL_TX_PASSIVE, 0, 0, 0, 0, 130, 10}, "error passive", BusState::error_passive},
-      {CAN_ERR_CRTL | counted, {0, CAN_ERR_CRTL_ACTIVE, 0, 0, 0, 0, 90, 9}, "error active again", BusState::error_active},
+      {CAN_ERR_CRTL | counted,
+       {0, CAN_ERR_CRTL_RX_WARNING, 0, 0, 0, 0, 20, 100},
+       "error warning",
+       BusState::error_warning},
+      {CAN_ERR_CRTL | counted,
+       {0, CAN_ERR_CRTL_TX_PASSIVE, 0, 0, 0, 0, 130, 10},
+       "error passive",
+       BusState::error_passive},
+      {CAN_ERR_CRTL | counted,
+       {0, CAN_ERR_CRTL_ACTIVE, 0, 0, 0, 0, 90, 9},
+       "error active again",
+       BusState::error_active},
       {CAN_ERR_ACK | counted, {0, 0, 0, 0, 0, 0, 8, 0}, "no acknowledgment", BusState::unknown},
-      {CAN_ERR_PROT | CAN_ERR_BUSERROR | counted, {0, 0, CAN_ERR_PROT_STUFF, 0x0A, 0, 0, 0, 1}, "stuff error", BusState::unknown},
-      {CAN_ERR_PROT | counted, {0, 0, CAN_ERR_PROT_FORM, 0, 0, 0, 0, 2}, "form error", BusState::unknown},
-      {CAN_ERR_PROT | counted, {0, 0, CAN_ERR_PROT_BIT0, 0, 0, 0, 3, 0}, "bit error", BusState::unknown},
-      {CAN_ERR_PROT | counted, {0, 0, 0, CAN_ERR_PROT_LOC_CRC_SEQ, 0, 0, 0, 3}, "checksum error", BusState::unknown},
+      {CAN_ERR_PROT | CAN_ERR_BUSERROR | counted,
+       {0, 0, CAN_ERR_PROT_STUFF, 0x0A, 0, 0, 0, 1},
+       "stuff error",
+       BusState::unknown},
+      {CAN_ERR_PROT | counted,
+       {0, 0, CAN_ERR_PROT_FORM, 0, 0, 0, 0, 2},
+       "form error",
+       BusState::unknown},
+      {CAN_ERR_PROT | counted,
+       {0, 0, CAN_ERR_PROT_BIT0, 0, 0, 0, 3, 0},
+       "bit error",
+       BusState::unknown},
+      {CAN_ERR_PROT | counted,
+       {0, 0, 0, CAN_ERR_PROT_LOC_CRC_SEQ, 0, 0, 0, 3},
+       "checksum error",
+       BusState::unknown},
   };
   for (const Told& one : all) {
     adapter.say_error(0, one.classes, one.data);
@@ -219,11 +255,13 @@ TEST(GsUsb, TellsOfFramesThatTheAdapterHadNoRoomFor) {
   SocketCanSource source(on(adapter.name(0)));
   ASSERT_TRUE(source.open(sensor_only));
   adapter.overrun(3);
-  for (int i = 0; i < 5; ++i)
+  for (int i = 0; i < 5; ++i) {
     adapter.put(sensor_frame(), now_ns() + i * millisecond_ns);
+  }
   const auto events = read_until(source, frames(2));
   EXPECT_EQ(frames_of(events).size(), 2U);
-  const auto with_overrun = read_until(source, [&](const auto& more) { return says("overrun")(events) || says("overrun")(more); });
+  const auto with_overrun = read_until(
+      source, [&](const auto& more) { return says("overrun")(events) || says("overrun")(more); });
   EXPECT_TRUE(says("controller overrun")(events) || says("controller overrun")(with_overrun));
 }
 

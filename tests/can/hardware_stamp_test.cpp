@@ -1,6 +1,7 @@
-// From a USB adapter with a clock of its own to time-stamped samples, against the instants at which the frames began: drift, latency,
-// interruptions, wrap of the adapter's clock. In simulated time; of the long run numbers, values, losses and the adapter's stamps are the
-// same to the last bit every time.
+// From a USB adapter with a clock of its own to time-stamped samples, against the instants at which
+// the frames began: drift, latency, interruptions, wrap of the adapter's clock. In simulated time;
+// of the long run numbers, values, losses and the adapter's stamps are the same to the last bit
+// every time.
 #include <cinttypes>
 #include <cmath>
 
@@ -81,23 +82,29 @@ TEST_F(HardwareStamps, LeadToTheRateOfTheAdaptersClockAndTheLeastLatency) {
     std::size_t compared = 0;
     const double duration_ns = frame_duration_s(next_frame(), played.bus) * 1e9;
     const std::int64_t first_ns = now_ns();
-    for (std::int64_t i = 0; i < 10'000; ++i)
+    for (std::int64_t i = 0; i < 10'000; ++i) {
       adapter->put(next_frame(), first_ns + i * 1'000'000);
+    }
     std::int64_t number = 0;
     for (std::vector<BusEvent> events; number < 10'000; events.clear()) {
       ASSERT_TRUE(source->read(events, std::chrono::milliseconds(100)));
       for (const CanFrame& frame : tests::frames_of(events)) {
         line.add(frame.hardware_ns, frame.kernel_ns);
         const double end_ns = static_cast<double>(number * 1'000'000) + duration_ns;
-        if (number++ < 5'000) continue;
-        latency_sum_s += (static_cast<double>(line.to_host(frame.hardware_ns) - first_ns) - end_ns) * 1e-9;
+        if (number++ < 5'000) {
+          continue;
+        }
+        latency_sum_s +=
+            (static_cast<double>(line.to_host(frame.hardware_ns) - first_ns) - end_ns) * 1e-9;
         ++compared;
       }
     }
     const double latency_s = latency_sum_s / static_cast<double>(compared);
-    std::printf("%+.0f ppm: rate %+.3f ppm, latency %.2f us, u %.2f us\n", ppm, line.rate() * 1e6, latency_s * 1e6, line.u_s() * 1e6);
+    std::printf("%+.0f ppm: rate %+.3f ppm, latency %.2f us, u %.2f us\n", ppm, line.rate() * 1e6,
+                latency_s * 1e6, line.u_s() * 1e6);
     EXPECT_NEAR(line.rate(), -ppm * 1e-6 / (1.0 + ppm * 1e-6), limit_in_u * line.u_s() / 10.0);
-    EXPECT_NEAR(latency_s, played.min_latency_s, limit_in_u * std::hypot(line.u_s(), 1e-6 / std::sqrt(12.0)));
+    EXPECT_NEAR(latency_s, played.min_latency_s,
+                limit_in_u * std::hypot(line.u_s(), 1e-6 / std::sqrt(12.0)));
     EXPECT_LT(line.u_s(), 5e-6);
     source.reset();
     adapter.reset();
@@ -122,10 +129,12 @@ TEST_F(HardwareStamps, AreWrongByTheFramesDurationWhereItIsNotCorrected) {
   send(5'000);
   finish();
   double sum_us = 0.0;
-  for (const tests::Sample& sample : samples.all)
+  for (const tests::Sample& sample : samples.all) {
     sum_us += static_cast<double>(sample.stamp_ns - starts_ns.at(sample.serial)) * 1e-3;
+  }
   const double duration_us = frame_duration_s(next_frame(), played.bus) * 1e6;
-  std::printf("late by %.1f us, a frame has %.1f us\n", sum_us / static_cast<double>(samples.all.size()), duration_us);
+  std::printf("late by %.1f us, a frame has %.1f us\n",
+              sum_us / static_cast<double>(samples.all.size()), duration_us);
   EXPECT_NEAR(sum_us / static_cast<double>(samples.all.size()), duration_us, 0.1 * duration_us);
 }
 
@@ -183,8 +192,9 @@ TEST_F(HardwareStamps, AreDemandedInOneLineWhereTheAdapterHasNone) {
   open();
   adapter->put(next_frame(), now_ns());
   std::vector<BusEvent> events;
-  while (tests::frames_of(events).empty())
+  while (tests::frames_of(events).empty()) {
     ASSERT_TRUE(source->read(events, std::chrono::milliseconds(100)));
+  }
   const auto taken = stream->take(events.back(), samples);
   ASSERT_FALSE(taken);
   EXPECT_THAT(taken.error().message, HasSubstr("the adapter stamps no frames"));
@@ -224,9 +234,12 @@ TEST_F(LongRun, OfAnHourAndAHalfCountsEverySampleAndStampsItTrueAcrossEveryWrapA
     digest.add(sample.serial);
     digest.add(sample.flags);
   }
-  for (const std::uint64_t count : {stream->counts().frames, stream->counts().lost, stream->counts().interruptions})
+  for (const std::uint64_t count :
+       {stream->counts().frames, stream->counts().lost, stream->counts().interruptions}) {
     digest.add(count);
-  std::printf("digest %016" PRIx64 " of the adapter's stamps, numbers, values, losses\n", digest.value());
+  }
+  std::printf("digest %016" PRIx64 " of the adapter's stamps, numbers, values, losses\n",
+              digest.value());
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// What tests on a real CAN kernel need: links made and removed with iproute2, a socket to send frames with, and what a source hears of
-// them.
+// What tests on a real CAN kernel need: links made and removed with iproute2, a socket to send
+// frames with, and what a source hears of them.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,9 @@ inline std::int64_t now_ns() {
 }
 
 inline void ip(const std::string& arguments) {
-  if (std::system(("ip link " + arguments).c_str()) != 0) throw std::runtime_error("ip link " + arguments);
+  if (std::system(("ip link " + arguments).c_str()) != 0) {
+    throw std::runtime_error("ip link " + arguments);
+  }
 }
 
 // A virtual interface for the time of a test. FD frames pass.
@@ -40,7 +42,9 @@ public:
     ip("add " + name_ + " type vcan");
     ip("set " + name_ + " mtu 72 up");
   }
-  ~VirtualCan() { static_cast<void>(std::system(("ip link del " + name_ + " 2>/dev/null").c_str())); }
+  ~VirtualCan() {
+    static_cast<void>(std::system(("ip link del " + name_ + " 2>/dev/null").c_str()));
+  }
   VirtualCan(const VirtualCan&) = delete;
   VirtualCan& operator=(const VirtualCan&) = delete;
 
@@ -50,15 +54,17 @@ private:
 
 class Sender {
 public:
-  explicit Sender(const std::string& interface_name) : socket_(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)) {
+  explicit Sender(const std::string& interface_name)
+      : socket_(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)) {
     const int on = 1;
     ::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
     ::setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(::if_nametoindex(interface_name.c_str()));
-    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       throw std::runtime_error("bind " + interface_name);
+    }
   }
   ~Sender() { ::close(socket_); }
   Sender(const Sender&) = delete;
@@ -90,38 +96,50 @@ inline drivers::can::SocketCanSettings on(const std::string& interface_name) {
 }
 
 // Reads until `enough` or ten seconds have passed; what was read.
-inline std::vector<BusEvent> read_until(FrameSource& source, const std::function<bool(const std::vector<BusEvent>&)>& enough) {
+inline std::vector<BusEvent>
+read_until(FrameSource& source, const std::function<bool(const std::vector<BusEvent>&)>& enough) {
   std::vector<BusEvent> events;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (!enough(events) && std::chrono::steady_clock::now() < deadline)
+  while (!enough(events) && std::chrono::steady_clock::now() < deadline) {
     static_cast<void>(source.read(events, std::chrono::milliseconds(20)));
+  }
   return events;
 }
 
 inline std::vector<CanFrame> frames_of(const std::vector<BusEvent>& events) {
   std::vector<CanFrame> frames;
-  for (const BusEvent& event : events)
-    if (const auto* frame = std::get_if<CanFrame>(&event)) frames.push_back(*frame);
+  for (const BusEvent& event : events) {
+    if (const auto* frame = std::get_if<CanFrame>(&event)) {
+      frames.push_back(*frame);
+    }
+  }
   return frames;
 }
 
 // For read_until().
 inline auto frames(std::size_t wanted) {
-  return [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
+  return
+      [wanted](const std::vector<BusEvent>& events) { return frames_of(events).size() >= wanted; };
 }
 
 // Every change and fault so far, in words.
 inline std::string told(const std::vector<BusEvent>& events) {
   std::string all;
   for (const BusEvent& event : events) {
-    if (const auto* change = std::get_if<drivers::can::LinkChange>(&event)) all += change->what + "; ";
-    if (const auto* fault = std::get_if<drivers::can::BusFault>(&event)) all += fault->cause + "; ";
+    if (const auto* change = std::get_if<drivers::can::LinkChange>(&event)) {
+      all += change->what + "; ";
+    }
+    if (const auto* fault = std::get_if<drivers::can::BusFault>(&event)) {
+      all += fault->cause + "; ";
+    }
   }
   return all;
 }
 
 inline auto says(const std::string& words) {
-  return [words](const std::vector<BusEvent>& events) { return told(events).find(words) != std::string::npos; };
+  return [words](const std::vector<BusEvent>& events) {
+    return told(events).find(words) != std::string::npos;
+  };
 }
 
 } // namespace dyncal::tests

@@ -1,11 +1,12 @@
-// Every sample that is lost on purpose is in the counts of the sensor: link down, interface pulled out, overload.
+// Every sample that is lost on purpose is in the counts of the sensor: link down, interface pulled
+// out, overload.
 #include <cstring>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "drivers/can/sensor_stream.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
+#include "drivers/can/sensor_stream.hpp"
 #include "tests/can/kernel_can.hpp"
 
 namespace dyncal::drivers::can {
@@ -41,18 +42,22 @@ protected:
     settings.nominal_rate_hz = 2000.0;
     settings.bit_rates.nominal_per_s = 1e6;
     settings.time_source = TimeSource::kernel_stamp;
-    stream = *SensorStream::create(settings, *parse_dbc("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (1,0) [0|0] \"m/s^2\" S\n"
-                                                        " SG_ counter : 16|32@1+ (1,0) [0|0] \"\" S\n",
-                                                        "sensor.dbc"));
+    stream = *SensorStream::create(
+        settings, *parse_dbc("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (1,0) [0|0] \"m/s^2\" S\n"
+                             " SG_ counter : 16|32@1+ (1,0) [0|0] \"\" S\n",
+                             "sensor.dbc"));
     const auto state = source->open(stream->filters());
     ASSERT_TRUE(state) << state.error().message;
     ASSERT_TRUE(stream->begin(*state, numbers));
   }
 
-  // Sends the next samples of the sensor at its pace; it counts on whether or not the bus takes them.
+  // Sends the next samples of the sensor at its pace; it counts on whether or not the bus takes
+  // them.
   void send(int samples, bool somebody_hears) {
     std::optional<Sender> sender;
-    if (somebody_hears) sender.emplace("vcan0");
+    if (somebody_hears) {
+      sender.emplace("vcan0");
+    }
     auto due = std::chrono::steady_clock::now();
     for (int i = 0; i < samples; ++i, ++counter) {
       std::vector<std::uint8_t> data(8, 0);
@@ -70,8 +75,9 @@ protected:
     for (bool more = true; more;) {
       std::vector<BusEvent> events;
       ASSERT_TRUE(source->read(events, std::chrono::milliseconds(100)));
-      for (const BusEvent& event : events)
+      for (const BusEvent& event : events) {
         ASSERT_TRUE(stream->take(event, numbers));
+      }
       more = !events.empty();
     }
     stream->flush(numbers);
@@ -121,9 +127,11 @@ TEST_F(Losses, OfAnOverloadAreCountedBySocketAndCounter) {
   take_all();
   send(3000, true); // nobody reads meanwhile
   std::vector<BusEvent> events;
-  ASSERT_TRUE(source->read(events, std::chrono::milliseconds(100))); // makes room for what tells of the loss
-  for (const BusEvent& event : events)
+  ASSERT_TRUE(source->read(
+      events, std::chrono::milliseconds(100))); // makes room for what tells of the loss
+  for (const BusEvent& event : events) {
     ASSERT_TRUE(stream->take(event, numbers));
+  }
   send(20, true);
   take_all();
   EXPECT_LT(numbers.samples, 3040U);

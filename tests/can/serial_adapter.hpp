@@ -1,6 +1,6 @@
-// A CAN adapter on a serial line (LAWICEL protocol), played by a test: the kernel's slcan driver makes a CAN interface of a pseudo
-// terminal, and the test says what the adapter would say. A thread of its own hears what the kernel tells the adapter, as the driver waits
-// for that.
+// A CAN adapter on a serial line (LAWICEL protocol), played by a test: the kernel's slcan driver
+// makes a CAN interface of a pseudo terminal, and the test says what the adapter would say. A
+// thread of its own hears what the kernel tells the adapter, as the driver waits for that.
 #pragma once
 
 #include <mutex>
@@ -26,14 +26,18 @@ class SerialAdapter {
 public:
   // At 500 kbit/s; up.
   SerialAdapter() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
-    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) throw std::runtime_error("no pseudo terminal");
+    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) {
+      throw std::runtime_error("no pseudo terminal");
+    }
     slave_ = ::open(::ptsname(master_), O_RDWR | O_NOCTTY);
     termios raw{};
     ::tcgetattr(slave_, &raw);
     ::cfmakeraw(&raw);
     ::tcsetattr(slave_, TCSANOW, &raw);
     const int discipline = N_SLCAN;
-    if (::ioctl(slave_, TIOCSETD, &discipline) != 0) throw std::runtime_error("this kernel has no slcan");
+    if (::ioctl(slave_, TIOCSETD, &discipline) != 0) {
+      throw std::runtime_error("this kernel has no slcan");
+    }
     char name[IFNAMSIZ] = "";
     ::ioctl(slave_, SIOCGIFNAME, name);
     name_ = name;
@@ -50,8 +54,9 @@ public:
   // One message of the adapter, e.g. "t1232AABB".
   void say(const std::string& message) {
     const std::string line = message + "\r";
-    if (::write(master_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    if (::write(master_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
       throw std::runtime_error("pseudo terminal is full");
+    }
   }
 
   // Everything the kernel has told the adapter since the last call.
@@ -62,8 +67,12 @@ public:
 
   void unplug() {
     listener_ = {};
-    if (master_ >= 0) ::close(master_);
-    if (slave_ >= 0) ::close(slave_);
+    if (master_ >= 0) {
+      ::close(master_);
+    }
+    if (slave_ >= 0) {
+      ::close(slave_);
+    }
     master_ = slave_ = -1;
   }
 
@@ -72,9 +81,13 @@ private:
     while (!stop.stop_requested()) {
       pollfd waited{master_, POLLIN, 0};
       char some[512];
-      if (::poll(&waited, 1, 20) <= 0) continue;
+      if (::poll(&waited, 1, 20) <= 0) {
+        continue;
+      }
       const ssize_t got = ::read(master_, some, sizeof some);
-      if (got <= 0) return;
+      if (got <= 0) {
+        return;
+      }
       const std::scoped_lock lock(mutex_);
       heard_.append(some, static_cast<std::size_t>(got));
     }

@@ -30,10 +30,12 @@ std::string failure(SocketCanSource source) {
 }
 
 TEST(SocketCan, SaysInOneLineWhyAnInterfaceCannotBeUsed) {
-  EXPECT_THAT(failure(SocketCanSource(on("can7"))), HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
+  EXPECT_THAT(failure(SocketCanSource(on("can7"))),
+              HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
   const VirtualCan link("vcan0");
   ip("set vcan0 down");
-  EXPECT_THAT(failure(SocketCanSource(on("vcan0"))), HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
+  EXPECT_THAT(failure(SocketCanSource(on("vcan0"))),
+              HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
   EXPECT_THAT(failure(SocketCanSource(on("lo"))), HasSubstr("interface 'lo' is no CAN interface"));
 }
 
@@ -83,9 +85,10 @@ TEST(SocketCan, TellsWhatErrorFramesSay) {
   SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
   Sender sender("vcan0");
-  sender.send(CAN_ERR_FLAG | 0x004 | 0x200, {0, 0x20, 0, 0, 0, 0, 130, 10}); // transmit passive, with counters
-  sender.send(CAN_ERR_FLAG | 0x008, {0, 0, 0x04, 0x0A, 0, 0, 0, 0});         // stuff error
-  sender.send(CAN_ERR_FLAG | 0x040, std::vector<std::uint8_t>(8, 0));        // bus-off
+  sender.send(CAN_ERR_FLAG | 0x004 | 0x200,
+              {0, 0x20, 0, 0, 0, 0, 130, 10}); // transmit passive, with counters
+  sender.send(CAN_ERR_FLAG | 0x008, {0, 0, 0x04, 0x0A, 0, 0, 0, 0});  // stuff error
+  sender.send(CAN_ERR_FLAG | 0x040, std::vector<std::uint8_t>(8, 0)); // bus-off
   const auto events = read_until(source, [](const auto& all) { return all.size() >= 3; });
   ASSERT_EQ(events.size(), 3U);
   const auto& passive = std::get<BusFault>(events[0]);
@@ -111,12 +114,14 @@ TEST(SocketCan, PutsFramesThatWaitedAcrossADownAndUpBetweenTwoInterruptions) {
   const VirtualCan link("vcan0");
   SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
-  for (std::uint8_t i = 0; i < 3; ++i)
+  for (std::uint8_t i = 0; i < 3; ++i) {
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  }
   ip("set vcan0 down");
   ip("set vcan0 up");
-  for (std::uint8_t i = 3; i < 100; ++i)
+  for (std::uint8_t i = 3; i < 100; ++i) {
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  }
   const auto events = read_until(source, says("is up"));
   ASSERT_TRUE(says("is up")(events));
   const auto* before = std::get_if<LinkChange>(&events.front());
@@ -134,8 +139,9 @@ TEST(SocketCan, ReadsOutWhatCameBeforeTheInterfaceWent) {
   auto link = std::make_unique<VirtualCan>("vcan0");
   SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
-  for (std::uint8_t i = 0; i < 100; ++i)
+  for (std::uint8_t i = 0; i < 100; ++i) {
     ASSERT_TRUE(Sender("vcan0").send(0x123, {i}));
+  }
   link.reset();
   const auto events = read_until(source, says("has gone"));
   ASSERT_TRUE(says("has gone")(events));
@@ -179,17 +185,22 @@ TEST(SocketCan, CountsEveryFrameThatOverloadLost) {
   ASSERT_TRUE(source.open(sensor_only));
   Sender sender("vcan0");
   constexpr std::size_t sent = 5000;
-  for (std::size_t i = 0; i < sent; ++i)
+  for (std::size_t i = 0; i < sent; ++i) {
     ASSERT_TRUE(sender.send(0x123, {static_cast<std::uint8_t>(i)}));
+  }
   std::vector<BusEvent> events;
-  static_cast<void>(source.read(events, std::chrono::milliseconds(20))); // makes room for the frame that carries the count
+  static_cast<void>(source.read(
+      events, std::chrono::milliseconds(20))); // makes room for the frame that carries the count
   sender.send(0x123, {0});
   std::uint64_t received = 0;
   std::uint64_t lost = 0;
   const auto take = [&](const std::vector<BusEvent>& some) {
     received += frames_of(some).size();
-    for (const BusEvent& event : some)
-      if (const auto* dropped = std::get_if<FramesLost>(&event)) lost += dropped->frames;
+    for (const BusEvent& event : some) {
+      if (const auto* dropped = std::get_if<FramesLost>(&event)) {
+        lost += dropped->frames;
+      }
+    }
   };
   take(events);
   for (bool more = true; more;) {
@@ -208,8 +219,9 @@ TEST(SocketCan, StopsFromAnotherThreadWhileItWaits) {
   ASSERT_TRUE(source.open(sensor_only));
   std::jthread stopper([&] { source.stop(); });
   std::vector<BusEvent> events;
-  for (auto state = ReadState::more; state != ReadState::stopped;)
+  for (auto state = ReadState::more; state != ReadState::stopped;) {
     state = source.read(events, std::chrono::seconds(10)).value();
+  }
 }
 
 TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
@@ -225,11 +237,16 @@ TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
     Sender sender("vcan0");
     const auto start = std::chrono::steady_clock::now();
     for (std::uint32_t i = 0; i < sent && !stop.stop_requested(); ++i) {
-      if (i % 8 == 0)
-        std::this_thread::sleep_until(start + std::chrono::microseconds(1'000'000LL * i / rate_hz)); // bursts of a millisecond
+      if (i % 8 == 0) {
+        std::this_thread::sleep_until(
+            start +
+            std::chrono::microseconds(1'000'000LL * i / rate_hz)); // bursts of a millisecond
+      }
       std::vector<std::uint8_t> data(8, 0);
       std::memcpy(data.data(), &i, sizeof i);
-      if (!sender.send(0x123, data)) ++not_sent;
+      if (!sender.send(0x123, data)) {
+        ++not_sent;
+      }
     }
   });
   std::uint32_t next = 0;
@@ -241,9 +258,13 @@ TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
     events.clear();
     ASSERT_TRUE(source.read(events, std::chrono::milliseconds(100)));
     for (const BusEvent& event : events) {
-      if (const auto* lost = std::get_if<FramesLost>(&event)) dropped += lost->frames;
+      if (const auto* lost = std::get_if<FramesLost>(&event)) {
+        dropped += lost->frames;
+      }
       const auto* frame = std::get_if<CanFrame>(&event);
-      if (frame == nullptr) continue;
+      if (frame == nullptr) {
+        continue;
+      }
       std::uint32_t number = 0;
       std::memcpy(&number, frame->data.data(), sizeof number);
       out_of_order += number == next ? 0 : 1;
@@ -255,9 +276,11 @@ TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
   EXPECT_EQ(out_of_order, 0U);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   // A machine that has no time for the sender says nothing about the reader.
-  if (!HasFailure() && (next < sent || taken.count() > 1.1 * seconds))
-    std::printf("skipped: this machine was too busy to send %d frames/s; of %u frames in %.0f s none was lost\n", rate_hz, next,
-                taken.count());
+  if (!HasFailure() && (next < sent || taken.count() > 1.1 * seconds)) {
+    std::printf("skipped: this machine was too busy to send %d frames/s; of %u frames in %.0f s "
+                "none was lost\n",
+                rate_hz, next, taken.count());
+  }
 }
 
 } // namespace

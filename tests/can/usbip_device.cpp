@@ -32,8 +32,12 @@ constexpr std::uint32_t no_packets = 0xFFFFFFFF;
 bool write_all(int socket, std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      return false;
+    }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
   return true;
@@ -42,8 +46,12 @@ bool write_all(int socket, std::span<const std::uint8_t> bytes) {
 bool read_all(int socket, std::span<std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t got = ::recv(socket, bytes.data(), bytes.size(), 0);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got <= 0) {
+      return false;
+    }
     bytes = bytes.subspan(static_cast<std::size_t>(got));
   }
   return true;
@@ -53,10 +61,14 @@ bool read_all(int socket, std::span<std::uint8_t> bytes) {
 bool attach(int socket) {
   for (int port = 0; port < high_speed_ports; ++port) {
     const drivers::can::FileDescriptor file(::open(attach_file, O_WRONLY | O_CLOEXEC));
-    if (!file.open()) return false;
-    const std::string line =
-        std::to_string(port) + " " + std::to_string(socket) + " " + std::to_string(device_id) + " " + std::to_string(usb_speed_high);
-    if (::write(file.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) return true;
+    if (!file.open()) {
+      return false;
+    }
+    const std::string line = std::to_string(port) + " " + std::to_string(socket) + " " +
+                             std::to_string(device_id) + " " + std::to_string(usb_speed_high);
+    if (::write(file.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) {
+      return true;
+    }
   }
   return false;
 }
@@ -81,15 +93,21 @@ struct UsbipDevice::Header {
 UsbipDevice::UsbipDevice(UsbFirmware& firmware) : firmware_(firmware) {
   static_assert(sizeof(Header) == 48);
   std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw std::runtime_error("no socket pair");
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    throw std::runtime_error("no socket pair");
+  }
   socket_ = drivers::can::FileDescriptor(ends[0]);
   const drivers::can::FileDescriptor of_the_kernel(ends[1]);
-  if (!attach(of_the_kernel.get())) throw std::runtime_error("this kernel has no vhci_hcd with a free port");
+  if (!attach(of_the_kernel.get())) {
+    throw std::runtime_error("this kernel has no vhci_hcd with a free port");
+  }
 }
 
 bool UsbipDevice::serve() {
   std::array<std::uint8_t, sizeof(Header)> bytes{};
-  if (!read_all(socket_.get(), bytes)) return false;
+  if (!read_all(socket_.get(), bytes)) {
+    return false;
+  }
   const auto header = std::bit_cast<Header>(bytes);
   if (ntohl(header.command) == command_unlink) {
     unlink(header);
@@ -105,7 +123,9 @@ void UsbipDevice::submit(const Header& header) {
   const std::uint32_t length = ntohl(header.length);
   const bool in = ntohl(header.direction) == direction_in;
   std::vector<std::uint8_t> sent(in ? 0 : length);
-  if (!read_all(socket_.get(), sent)) return; // the next serve() says so
+  if (!read_all(socket_.get(), sent)) {
+    return; // the next serve() says so
+  }
   if (ntohl(header.endpoint) != 0) {
     if (in) {
       reads_.push_back({header.sequence, length});
@@ -116,28 +136,35 @@ void UsbipDevice::submit(const Header& header) {
     }
     return;
   }
-  const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(header.setup[at] | header.setup[at + 1] << 8U); };
+  const auto word = [&](std::size_t at) {
+    return static_cast<std::uint16_t>(header.setup[at] | header.setup[at + 1] << 8U);
+  };
   const ControlRequest request{header.setup[0], header.setup[1], word(2), word(4), word(6)};
   const auto said = firmware_.control(request, sent);
   if (!said) {
     answer(header.sequence, -EPIPE, {}, 0);
   } else if (request.to_host()) {
-    answer(header.sequence, 0, std::span(*said).first(std::min<std::size_t>(said->size(), request.length)), said->size());
+    answer(header.sequence, 0,
+           std::span(*said).first(std::min<std::size_t>(said->size(), request.length)),
+           said->size());
   } else {
     answer(header.sequence, 0, {}, length);
   }
 }
 
 void UsbipDevice::unlink(const Header& header) {
-  const auto erased = std::erase_if(reads_, [&](const PendingRead& read) { return read.sequence == header.flags_or_status; });
+  const auto erased = std::erase_if(
+      reads_, [&](const PendingRead& read) { return read.sequence == header.flags_or_status; });
   Header said{};
   said.command = htonl(answer_unlink);
   said.sequence = header.sequence;
   said.flags_or_status = htonl(static_cast<std::uint32_t>(erased > 0 ? -ECONNRESET : 0));
-  static_cast<void>(write_all(socket_.get(), std::bit_cast<std::array<std::uint8_t, sizeof said>>(said)));
+  static_cast<void>(
+      write_all(socket_.get(), std::bit_cast<std::array<std::uint8_t, sizeof said>>(said)));
 }
 
-void UsbipDevice::answer(std::uint32_t sequence, int status, std::span<const std::uint8_t> data, std::size_t actual_length) {
+void UsbipDevice::answer(std::uint32_t sequence, int status, std::span<const std::uint8_t> data,
+                         std::size_t actual_length) {
   Header said{};
   said.command = htonl(answer_submit);
   said.sequence = sequence;
@@ -147,7 +174,8 @@ void UsbipDevice::answer(std::uint32_t sequence, int status, std::span<const std
   const auto head = std::bit_cast<std::array<std::uint8_t, sizeof said>>(said);
   std::vector<std::uint8_t> message(head.begin(), head.end());
   message.insert(message.end(), data.begin(), data.end());
-  static_cast<void>(write_all(socket_.get(), message)); // a host that has gone is seen by the next serve()
+  static_cast<void>(
+      write_all(socket_.get(), message)); // a host that has gone is seen by the next serve()
 }
 
 void UsbipDevice::bulk_in(std::vector<std::uint8_t> transfer) {
@@ -158,7 +186,8 @@ void UsbipDevice::bulk_in(std::vector<std::uint8_t> transfer) {
 void UsbipDevice::answer_reads() {
   for (; !reads_.empty() && !transfers_.empty(); reads_.pop_front(), transfers_.pop_front()) {
     const std::span<const std::uint8_t> whole(transfers_.front());
-    answer(reads_.front().sequence, 0, whole.first(std::min<std::size_t>(whole.size(), reads_.front().length)), 0);
+    answer(reads_.front().sequence, 0,
+           whole.first(std::min<std::size_t>(whole.size(), reads_.front().length)), 0);
   }
 }
 

@@ -1,9 +1,11 @@
-// A USB device that a program plays: plugged into the kernel's virtual host controller (vhci_hcd) over a socket pair that speaks USB/IP
-// (Documentation/usb/usbip_protocol.rst), so that the kernel's own driver binds to it as to a real one.
+// A USB device that a program plays: plugged into the kernel's virtual host controller (vhci_hcd)
+// over a socket pair that speaks USB/IP (Documentation/usb/usbip_protocol.rst), so that the
+// kernel's own driver binds to it as to a real one.
 //
-// The host's control requests and what it writes to bulk endpoint 2 go to the firmware; what the firmware queues answers the host's reads
-// of bulk endpoint 1 in their order. Plugged in by the constructor, which throws std::runtime_error where the kernel has no free port;
-// pulled out by the destructor. Everything in one thread but the constructor. High speed.
+// The host's control requests and what it writes to bulk endpoint 2 go to the firmware; what the
+// firmware queues answers the host's reads of bulk endpoint 1 in their order. Plugged in by the
+// constructor, which throws std::runtime_error where the kernel has no free port; pulled out by the
+// destructor. Everything in one thread but the constructor. High speed.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +34,8 @@ class UsbFirmware {
 public:
   virtual ~UsbFirmware() = default;
   // What the device says to it; nothing: it does not know the request (stall).
-  virtual std::optional<std::vector<std::uint8_t>> control(const ControlRequest& request, std::span<const std::uint8_t> sent) = 0;
+  virtual std::optional<std::vector<std::uint8_t>> control(const ControlRequest& request,
+                                                           std::span<const std::uint8_t> sent) = 0;
   virtual void bulk_out(std::span<const std::uint8_t> sent) = 0;
 };
 
@@ -55,7 +58,8 @@ private:
 
   void submit(const Header& header);
   void unlink(const Header& header);
-  void answer(std::uint32_t sequence, int status, std::span<const std::uint8_t> data, std::size_t actual_length);
+  void answer(std::uint32_t sequence, int status, std::span<const std::uint8_t> data,
+              std::size_t actual_length);
   void answer_reads();
 
   UsbFirmware& firmware_;

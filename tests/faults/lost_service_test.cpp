@@ -1,4 +1,5 @@
-// A service that dies or ends in the middle of a run: the run stops soon, says which one, and keeps what was measured.
+// A service that dies or ends in the middle of a run: the run stops soon, says which one, and keeps
+// what was measured.
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -18,7 +19,8 @@ struct Loss {
 };
 
 std::string loss_name(const testing::TestParamInfo<Loss>& loss) {
-  return loss.param.program.substr(std::string("dyncal-").size()) + (loss.param.signal == SIGKILL ? "_killed" : "_ended");
+  return loss.param.program.substr(std::string("dyncal-").size()) +
+         (loss.param.signal == SIGKILL ? "_killed" : "_ended");
 }
 
 class LostService : public testing::TestWithParam<Loss> {};

@@ -1,6 +1,8 @@
-// Whatever an instrument answers: no crash, no hang, no memory beyond what was allowed, and never a block of another length than announced.
+// Whatever an instrument answers: no crash, no hang, no memory beyond what was allowed, and never a
+// block of another length than announced.
 //
-// The input is what the instrument sends, byte by byte; the conversation asks as the oscilloscope driver does.
+// The input is what the instrument sends, byte by byte; the conversation asks as the oscilloscope
+// driver does.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -52,7 +54,8 @@ void require(bool condition) {
 
 void converse(std::string_view bytes) {
   constexpr std::size_t longest = 100'000;
-  ScpiConnection connection("oscilloscope", "recording", std::chrono::milliseconds(1), std::make_unique<Recording>(bytes));
+  ScpiConnection connection("oscilloscope", "recording", std::chrono::milliseconds(1),
+                            std::make_unique<Recording>(bytes));
   while (!connection.lost()) {
     static_cast<void>(connection.command(":SINGle"));
     const auto preamble = connection.query(":WAVeform:PREamble?");

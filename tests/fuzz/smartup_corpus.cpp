@@ -11,14 +11,17 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 void append(Bytes& bytes, const Bytes& more) {
-  if (!bytes.empty()) bytes.insert(bytes.end(), {0xf8, 0xf9, 0xfa, 0xfb});
+  if (!bytes.empty()) {
+    bytes.insert(bytes.end(), {0xf8, 0xf9, 0xfa, 0xfb});
+  }
   bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
 bool write(const std::filesystem::path& path, const Bytes& bytes) {
   std::ofstream file(path, std::ios::binary);
-  for (const auto byte : bytes)
+  for (const auto byte : bytes) {
     file.put(static_cast<char>(byte));
+  }
   return file.good();
 }
 
@@ -32,20 +35,24 @@ Bytes stream() {
       stamp_ns += 1'000'000;
       const std::uint32_t number = i > 40 ? i - 40 : i;
       const std::int64_t fault_ns = i % 17 == 16 ? 1'000'000'000 : 0;
-      for (const std::uint32_t sensor : {0xbccb0100U, 0xbccb0200U, 0xbccb0a00U})
+      for (const std::uint32_t sensor : {0xbccb0100U, 0xbccb0200U, 0xbccb0a00U}) {
         datagram.data({.sensor = sensor, .sample_number = number, .stamp_ns = stamp_ns + fault_ns});
+      }
     }
     append(bytes, datagram.bytes());
   }
-  for (const auto& description : dyncal::tests::mpu9250_descriptions(0xbccb0100))
+  for (const auto& description : dyncal::tests::mpu9250_descriptions(0xbccb0100)) {
     append(bytes, description);
+  }
   return bytes;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 2) {
+    return 2;
+  }
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   Bytes all;

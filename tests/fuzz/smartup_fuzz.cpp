@@ -1,5 +1,6 @@
-// Any bytes at the receiver of SmartUp Units: they may be counted, they may not break anything. The input is a series of datagrams, parted
-// by separator, from two senders in turn. After them the accounts must agree with what was handed on.
+// Any bytes at the receiver of SmartUp Units: they may be counted, they may not break anything. The
+// input is a series of datagrams, parted by separator, from two senders in turn. After them the
+// accounts must agree with what was handed on.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -20,21 +21,27 @@ constexpr std::uint32_t sync_id = 0xbccb0a00;
 constexpr std::uint8_t separator[] = {0xf8, 0xf9, 0xfa, 0xfb};
 
 void require(bool condition) {
-  if (!condition) std::abort();
+  if (!condition) {
+    std::abort();
+  }
 }
 
 class CheckingSink : public SampleSink {
 public:
   void on_description(std::uint32_t sensor, const SourceDescription& description) override {
-    for (const auto& channel : description.channels)
+    for (const auto& channel : description.channels) {
       require(!channel.name.empty());
+    }
     channels_[sensor] = description.channels.size();
   }
-  void on_warning(std::uint32_t, const std::string& sentence) override { require(!sentence.empty()); }
+  void on_warning(std::uint32_t, const std::string& sentence) override {
+    require(!sentence.empty());
+  }
   void on_new_session(std::uint32_t sensor) override { next_[sensor] = 0; }
   void on_block(std::uint32_t sensor, SampleBlock block) override {
     require(block.samples > 0 && block.samples <= 4096);
-    require(block.stamps_ns.size() == block.samples && block.stamp_uncertainty_ns.size() == block.samples);
+    require(block.stamps_ns.size() == block.samples &&
+            block.stamp_uncertainty_ns.size() == block.samples);
     require(block.flags.empty() || block.flags.size() == block.samples);
     require(!block.values.empty() && block.values.size() % block.samples == 0);
     require(block.first_sample >= next_[sensor]);
@@ -45,8 +52,9 @@ public:
   void on_report(const ReceptionCounts&) override {}
 
   void check_accounts() {
-    for (const std::uint32_t sensor : {wanted_id, with_sync_id})
+    for (const std::uint32_t sensor : {wanted_id, with_sync_id}) {
       require(samples_[sensor] == counts_[sensor].received);
+    }
   }
 
 private:
@@ -70,13 +78,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::span<const std::uint8_t> rest(data, size);
   HostTime now{1, 1};
   for (std::uint32_t turn = 0; !rest.empty(); ++turn) {
-    const auto end = std::search(rest.begin(), rest.end(), std::begin(separator), std::end(separator));
+    const auto end =
+        std::search(rest.begin(), rest.end(), std::begin(separator), std::end(separator));
     const auto length = static_cast<std::size_t>(end - rest.begin());
-    reception.take(rest.first(length), {0x7f000001, static_cast<std::uint16_t>(turn % 5 == 4 ? 2 : 1)}, now);
+    reception.take(rest.first(length),
+                   {0x7f000001, static_cast<std::uint16_t>(turn % 5 == 4 ? 2 : 1)}, now);
     rest = rest.subspan(std::min(rest.size(), length + sizeof separator));
     now.monotonic_ns += 40'000'000;
     now.utc_ns += 40'000'000;
-    if (turn % 2 == 0) reception.tick(now);
+    if (turn % 2 == 0) {
+      reception.tick(now);
+    }
   }
   reception.finish(now);
   sink.check_accounts();

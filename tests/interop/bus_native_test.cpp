@@ -1,5 +1,6 @@
-// The bus and programs that know the contract from its IDL file and its page alone, one made with each vendor's own tools. They write
-// back what they read, so that equal samples show both ways to work.
+// The bus and programs that know the contract from its IDL file and its page alone, one made with
+// each vendor's own tools. They write back what they read, so that equal samples show both ways to
+// work.
 #include <csignal>
 #include <gtest/gtest.h>
 #include <map>
@@ -25,10 +26,12 @@ struct Native {
 std::vector<Native> natives() {
   std::vector<Native> programs;
 #ifdef DYNCAL_NATIVE_FAST_PEER
-  programs.push_back({"fastddsgen", DYNCAL_NATIVE_FAST_PEER, "FASTRTPS_DEFAULT_PROFILES_FILE=" DYNCAL_PROFILES "/fast_dds.xml"});
+  programs.push_back({"fastddsgen", DYNCAL_NATIVE_FAST_PEER,
+                      "FASTRTPS_DEFAULT_PROFILES_FILE=" DYNCAL_PROFILES "/fast_dds.xml"});
 #endif
 #ifdef DYNCAL_NATIVE_CYCLONE_PEER
-  programs.push_back({"idlc", DYNCAL_NATIVE_CYCLONE_PEER, "CYCLONEDDS_URI=file://" DYNCAL_PROFILES "/cyclone_dds.xml"});
+  programs.push_back({"idlc", DYNCAL_NATIVE_CYCLONE_PEER,
+                      "CYCLONEDDS_URI=file://" DYNCAL_PROFILES "/cyclone_dds.xml"});
 #endif
   return programs;
 }
@@ -40,16 +43,20 @@ public:
     std::vector<std::string> words{native.program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
-    for (std::string& word : words)
+    for (std::string& word : words) {
       argv.push_back(word.data());
+    }
     argv.push_back(nullptr);
     std::string setting = native.setting;
     std::vector<char*> environment{setting.data()};
-    for (char** inherited = environ; *inherited != nullptr; ++inherited)
+    for (char** inherited = environ; *inherited != nullptr; ++inherited) {
       environment.push_back(*inherited);
+    }
     environment.push_back(nullptr);
     pid_ = fork();
-    if (pid_ != 0) return;
+    if (pid_ != 0) {
+      return;
+    }
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     execve(argv[0], argv.data(), environment.data());
     _exit(127);
@@ -57,7 +64,9 @@ public:
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process() {
-    if (!started()) return;
+    if (!started()) {
+      return;
+    }
     kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
@@ -72,7 +81,8 @@ protected:
   static constexpr int domain = 45;
   const std::string to_native_ = "to-native-" + std::to_string(getpid());
   const std::string from_native_ = "from-native-" + std::to_string(getpid());
-  const Process process_{std::get<0>(GetParam()), {std::to_string(domain), to_native_, from_native_}};
+  const Process process_{std::get<0>(GetParam()),
+                         {std::to_string(domain), to_native_, from_native_}};
   Participant participant_ = join();
   std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
 
@@ -90,14 +100,17 @@ protected:
   std::vector<T> echoes_of(const std::vector<T>& samples, const char* topic, Profile profile) {
     auto reader = participant_.reader<T>(topic, profile, from_native_, bell_).value();
     auto writer = participant_.writer<T>(topic, profile, to_native_).value();
-    for (const T& sample : samples)
+    for (const T& sample : samples) {
       EXPECT_EQ(writer.write(sample), WriteOutcome::written);
+    }
     std::vector<T> echoes;
     const auto give_up = Clock::now() + 30s;
     while (echoes.size() < samples.size() && Clock::now() < give_up) {
       bell_->wait_until(Clock::now() + 50ms);
       reader.take([&](const T& sample, const SampleInfo& info) {
-        if (info.valid) echoes.push_back(sample);
+        if (info.valid) {
+          echoes.push_back(sample);
+        }
       });
     }
     return echoes;
@@ -117,7 +130,7 @@ SineFit example_fit(const std::string& series) {
 
 TEST_P(BusNative, ExchangesSampleBlocks) {
   std::vector<SampleBlock> blocks;
-  for (const std::string& source : {std::string("a"), std::string(64, 'z')})
+  for (const std::string& source : {std::string("a"), std::string(64, 'z')}) {
     for (std::uint64_t number = 0; number < 50; ++number) {
       SampleBlock block;
       block.bench("acc-1");
@@ -135,10 +148,12 @@ TEST_P(BusNative, ExchangesSampleBlocks) {
       block.stamps_ns({1, 2, 3});
       block.stamp_uncertainty_ns({4, 5, 0xffffffffU});
       block.flags({0, 1, 128});
-      block.values(std::vector<double>(number == 7 ? 10'000 : 6, 0.1 * static_cast<double>(number)));
+      block.values(
+          std::vector<double>(number == 7 ? 10'000 : 6, 0.1 * static_cast<double>(number)));
       block.received_utc_ns(1'700'000'000'000'000'000);
       blocks.push_back(block);
     }
+  }
   EXPECT_EQ(echoes_of(blocks, topics::dau_samples, Profile::samples), blocks);
 }
 
@@ -163,7 +178,8 @@ TEST_P(BusNative, ExchangesMeasurements) {
   measurement.adc_calibration({point});
   measurement.recipe(std::string(3000, '#'));
   measurement.message("a sentence");
-  EXPECT_EQ(echoes_of<Measurement>({measurement}, topics::measurement, Profile::state), std::vector<Measurement>{measurement});
+  EXPECT_EQ(echoes_of<Measurement>({measurement}, topics::measurement, Profile::state),
+            std::vector<Measurement>{measurement});
 }
 
 TEST_P(BusNative, ExchangesCalibrationResults) {
@@ -192,13 +208,17 @@ TEST_P(BusNative, ExchangesCalibrationResults) {
     results.push_back(result);
   }
   auto echoes = echoes_of(results, topics::calibration_result, Profile::results);
-  std::sort(echoes.begin(), echoes.end(), [](const auto& a, const auto& b) { return a.step() < b.step(); });
+  std::sort(echoes.begin(), echoes.end(),
+            [](const auto& a, const auto& b) { return a.step() < b.step(); });
   EXPECT_EQ(echoes, results);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryTool, BusNative, testing::Combine(testing::ValuesIn(natives()), testing::ValuesIn(vendors_in_this_build())),
+INSTANTIATE_TEST_SUITE_P(EveryTool, BusNative,
+                         testing::Combine(testing::ValuesIn(natives()),
+                                          testing::ValuesIn(vendors_in_this_build())),
                          [](const auto& parameters) {
-                           return std::get<0>(parameters.param).name + "_with_" + vendor_word(std::get<1>(parameters.param));
+                           return std::get<0>(parameters.param).name + "_with_" +
+                                  vendor_word(std::get<1>(parameters.param));
                          });
 
 } // namespace

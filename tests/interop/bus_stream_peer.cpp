@@ -1,10 +1,12 @@
-// One end of a stream of sample blocks for bus_netns_test.sh: writes two sources, with the shortest and the longest name there can
-// be, or reads them and says what is missing.
+// One end of a stream of sample blocks for bus_netns_test.sh: writes two sources, with the shortest
+// and the longest name there can be, or reads them and says what is missing.
 //
-//   bus_stream_peer write --blocks N --rate HZ --readers N   waits for so many readers, writes, then waits to be ended (SIGTERM)
-//   bus_stream_peer read                                     until both sources have said that they are at their end
+//   bus_stream_peer write --blocks N --rate HZ --readers N   waits for so many readers, writes,
+//   then waits to be ended (SIGTERM) bus_stream_peer read                                     until
+//   both sources have said that they are at their end
 //
-// It prints one line of figures. Exit status 0: all written in time, or all read, in order, from block 0 on.
+// It prints one line of figures. Exit status 0: all written in time, or all read, in order, from
+// block 0 on.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -41,7 +43,8 @@ double value_of(std::uint64_t block, std::size_t index) {
   return static_cast<double>(block) + static_cast<double>(index) * 1e-4;
 }
 
-SampleBlock make_block(const std::string& source, std::uint64_t session, std::uint64_t number, bool last) {
+SampleBlock make_block(const std::string& source, std::uint64_t session, std::uint64_t number,
+                       bool last) {
   SampleBlock block;
   block.bench(bench);
   block.source(source);
@@ -52,8 +55,9 @@ SampleBlock make_block(const std::string& source, std::uint64_t session, std::ui
   block.channel_count(1);
   block.end_of_stream(last);
   block.values().resize(values_per_block);
-  for (std::size_t i = 0; i < values_per_block; ++i)
+  for (std::size_t i = 0; i < values_per_block; ++i) {
     block.values()[i] = value_of(number, i);
+  }
   return block;
 }
 
@@ -72,10 +76,13 @@ void wait_until_ended() {
 
 int write_stream(bus::Participant& participant, const Options& options) {
   std::vector<bus::Writer<SampleBlock>> writers;
-  for (std::size_t i = 0; i < source_names().size(); ++i)
-    writers.push_back(participant.writer<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, bench).value());
+  for (std::size_t i = 0; i < source_names().size(); ++i) {
+    writers.push_back(
+        participant.writer<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, bench)
+            .value());
+  }
   const auto give_up = Clock::now() + patience;
-  for (const auto& writer : writers)
+  for (const auto& writer : writers) {
     while (writer.matched_readers() < options.readers) {
       if (Clock::now() > give_up) {
         std::printf("only %d of %d readers\n", writer.matched_readers(), options.readers);
@@ -83,26 +90,32 @@ int write_stream(bus::Participant& participant, const Options& options) {
       }
       std::this_thread::sleep_for(5ms);
     }
+  }
 
-  const auto session = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  const auto session =
+      static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
   const auto names = source_names();
   const std::uint64_t rounds = options.blocks / names.size();
   const auto begin = Clock::now();
   WriteFigures figures;
   for (std::uint64_t i = 0; i < rounds * names.size(); ++i) {
     std::this_thread::sleep_until(
-        begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(static_cast<double>(i) / options.rate_hz)));
+        begin + std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>(static_cast<double>(i) / options.rate_hz)));
     const std::size_t source = i % names.size();
     const std::uint64_t number = i / names.size();
     const SampleBlock block = make_block(names[source], session, number, number + 1 == rounds);
     const auto before = Clock::now();
-    if (writers[source].write(block, 60s) != bus::WriteOutcome::written) ++figures.not_written;
+    if (writers[source].write(block, 60s) != bus::WriteOutcome::written) {
+      ++figures.not_written;
+    }
     figures.max_write = std::max(figures.max_write, Clock::now() - before);
   }
   const double lasted_s = std::chrono::duration<double>(Clock::now() - begin).count();
   std::printf("wrote %llu blocks in %.1f s, longest write %.3f s, not written %llu\n",
               static_cast<unsigned long long>(rounds * names.size()), lasted_s,
-              std::chrono::duration<double>(figures.max_write).count(), static_cast<unsigned long long>(figures.not_written));
+              std::chrono::duration<double>(figures.max_write).count(),
+              static_cast<unsigned long long>(figures.not_written));
   std::fflush(stdout);
   wait_until_ended();
   return figures.not_written == 0 && figures.max_write < 60s ? 0 : 1;
@@ -110,20 +123,35 @@ int write_stream(bus::Participant& participant, const Options& options) {
 
 int read_stream(bus::Participant& participant) {
   auto bell = std::make_shared<bus::WakeUp>();
-  auto reader = participant.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", bell).value();
+  auto reader =
+      participant.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", bell)
+          .value();
   bus::SampleContinuity continuity;
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
   const auto consume = [&](const SampleBlock& block, const bus::SampleInfo& info) {
-    if (!info.valid) return;
+    if (!info.valid) {
+      return;
+    }
     const auto finding = continuity.add(block);
-    if (finding.first) begun_late += block.block();
-    if (!finding.continuous()) ++wrong;
-    for (std::size_t i = 0; i < block.values().size(); i += 777)
-      if (block.values()[i] != value_of(block.block(), i)) ++wrong;
-    if (block.values().size() != values_per_block) ++wrong;
-    if (block.end_of_stream()) ++ended;
+    if (finding.first) {
+      begun_late += block.block();
+    }
+    if (!finding.continuous()) {
+      ++wrong;
+    }
+    for (std::size_t i = 0; i < block.values().size(); i += 777) {
+      if (block.values()[i] != value_of(block.block(), i)) {
+        ++wrong;
+      }
+    }
+    if (block.values().size() != values_per_block) {
+      ++wrong;
+    }
+    if (block.end_of_stream()) {
+      ++ended;
+    }
   };
   const auto give_up = Clock::now() + patience;
   while (ended < source_names().size() && Clock::now() < give_up) {
@@ -137,8 +165,9 @@ int read_stream(bus::Participant& participant) {
     blocks += counts.blocks;
     lost += counts.missing_blocks + counts.duplicates;
   }
-  std::printf("read %llu blocks, lost %llu, wrong %llu, at the end of %zu sources\n", static_cast<unsigned long long>(blocks),
-              static_cast<unsigned long long>(lost), static_cast<unsigned long long>(wrong), ended);
+  std::printf("read %llu blocks, lost %llu, wrong %llu, at the end of %zu sources\n",
+              static_cast<unsigned long long>(blocks), static_cast<unsigned long long>(lost),
+              static_cast<unsigned long long>(wrong), ended);
   return ended == source_names().size() && lost == 0 && wrong == 0 ? 0 : 1;
 }
 
@@ -164,7 +193,9 @@ int main(int argc, char** argv) {
   write->add_option("--readers", options.readers);
   app.add_subcommand("read")->fallthrough();
   CLI11_PARSE(app, argc, argv);
-  if (write->parsed()) pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  if (write->parsed()) {
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  }
 
   const auto vendor = bus::parse_vendor(options.dds);
   if (!vendor) {

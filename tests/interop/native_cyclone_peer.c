@@ -1,9 +1,10 @@
-/* Another tool on the bus: made from dyncal.idl by idlc and from idl/README.md, with nothing of dyncal.
+/* Another tool on the bus: made from dyncal.idl by idlc and from idl/README.md, with nothing of
+ * dyncal.
  *
  *   native_cyclone_peer DOMAIN FROM_PARTITION TO_PARTITION
  *
- * Reads three topics in one partition and writes what it reads into another, unchanged; an instance that ends there ends here.
- * Runs until it is killed.
+ * Reads three topics in one partition and writes what it reads into another, unchanged; an instance
+ * that ends there ends here. Runs until it is killed.
  */
 #include <dds/dds.h>
 #include <stdbool.h>
@@ -41,8 +42,10 @@ static dds_qos_t* make_qos(bool keep_all, const char* partition) {
   return qos;
 }
 
-static void open_echo(struct echo* echo, dds_entity_t participant, const char* from, const char* to) {
-  const dds_entity_t topic = checked(dds_create_topic(participant, echo->type, echo->topic, NULL, NULL), echo->topic);
+static void open_echo(struct echo* echo, dds_entity_t participant, const char* from,
+                      const char* to) {
+  const dds_entity_t topic =
+      checked(dds_create_topic(participant, echo->type, echo->topic, NULL, NULL), echo->topic);
   dds_qos_t* reading = make_qos(echo->keep_all, from);
   dds_qos_t* writing = make_qos(echo->keep_all, to);
   echo->reader = checked(dds_create_reader(participant, topic, reading, NULL), "reader");
@@ -56,12 +59,15 @@ static void run_echo(const struct echo* echo) {
   dds_sample_info_t infos[most_taken];
   const int taken = dds_take(echo->reader, samples, infos, most_taken, most_taken);
   for (int i = 0; i < taken; ++i) {
-    if (infos[i].valid_data)
+    if (infos[i].valid_data) {
       checked(dds_write(echo->writer, samples[i]), "write");
-    else if (infos[i].instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE)
+    } else if (infos[i].instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE) {
       checked(dds_dispose(echo->writer, samples[i]), "dispose");
+    }
   }
-  if (taken > 0) dds_return_loan(echo->reader, samples, taken);
+  if (taken > 0) {
+    dds_return_loan(echo->reader, samples, taken);
+  }
 }
 
 int main(int argc, char** argv) {
@@ -75,15 +81,19 @@ int main(int argc, char** argv) {
       {"CalibrationResult", &dyncal_CalibrationResult_desc, false, 0, 0},
   };
   const size_t count = sizeof echoes / sizeof echoes[0];
-  const dds_entity_t participant = checked(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
+  const dds_entity_t participant =
+      checked(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
   const dds_entity_t waitset = checked(dds_create_waitset(participant), "waitset");
   for (size_t i = 0; i < count; ++i) {
     open_echo(&echoes[i], participant, argv[2], argv[3]);
-    checked(dds_waitset_attach(waitset, dds_create_readcondition(echoes[i].reader, DDS_ANY_STATE), 0), "attach");
+    checked(
+        dds_waitset_attach(waitset, dds_create_readcondition(echoes[i].reader, DDS_ANY_STATE), 0),
+        "attach");
   }
   for (;;) {
     checked(dds_waitset_wait(waitset, NULL, 0, DDS_SECS(1)), "wait");
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
       run_echo(&echoes[i]);
+    }
   }
 }

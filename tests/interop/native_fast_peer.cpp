@@ -1,8 +1,10 @@
-// Another tool on the bus: made from dyncal.idl by fastddsgen and from idl/README.md, with nothing of dyncal.
+// Another tool on the bus: made from dyncal.idl by fastddsgen and from idl/README.md, with nothing
+// of dyncal.
 //
 //   native_fast_peer DOMAIN FROM_PARTITION TO_PARTITION
 //
-// Reads three topics in one partition and writes what it reads into another, unchanged. Runs until it is killed.
+// Reads three topics in one partition and writes what it reads into another, unchanged. Runs until
+// it is killed.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +26,9 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 template <class Thing>
 Thing* checked(Thing* thing, const char* what) {
-  if (thing != nullptr) return thing;
+  if (thing != nullptr) {
+    return thing;
+  }
   std::fprintf(stderr, "Fast DDS refuses the %s\n", what);
   std::exit(1);
 }
@@ -42,7 +46,8 @@ Qos make_qos(History history) {
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = history == History::keep_all ? 1500 : 1;
   qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy =
+      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
   return qos;
 }
@@ -50,18 +55,21 @@ Qos make_qos(History history) {
 template <class Sample, class PubSubType>
 class Echo {
 public:
-  Echo(DomainParticipant* participant, const char* topic_name, History history, const char* from, const char* to) {
+  Echo(DomainParticipant* participant, const char* topic_name, History history, const char* from,
+       const char* to) {
     auto* type = new PubSubType;
     type->auto_fill_type_information(false);
     type->auto_fill_type_object(false);
     TypeSupport support(type);
     support.register_type(participant);
-    Topic* topic = checked(participant->create_topic(topic_name, support.get_type_name(), TOPIC_QOS_DEFAULT), "topic");
+    Topic* topic = checked(
+        participant->create_topic(topic_name, support.get_type_name(), TOPIC_QOS_DEFAULT), "topic");
 
     SubscriberQos reading;
     reading.partition().push_back(from);
     Subscriber* subscriber = checked(participant->create_subscriber(reading), "subscriber");
-    reader_ = checked(subscriber->create_datareader(topic, make_qos<DataReaderQos>(history)), "reader");
+    reader_ =
+        checked(subscriber->create_datareader(topic, make_qos<DataReaderQos>(history)), "reader");
 
     PublisherQos writing;
     writing.partition().push_back(to);
@@ -77,10 +85,13 @@ public:
   void run() {
     SampleInfo info;
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data) continue;
+      if (!info.valid_data) {
+        continue;
+      }
       // It may give up before its time, so it is asked again.
-      while (!writer_->write(&sample_))
+      while (!writer_->write(&sample_)) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
     }
   }
 
@@ -101,11 +112,15 @@ int main(int argc, char** argv) {
   factory->load_profiles();
   DomainParticipantQos qos;
   factory->get_default_participant_qos(qos);
-  auto* participant = checked(factory->create_participant(static_cast<std::uint32_t>(std::atoi(argv[1])), qos), "participant");
-  Echo<dyncal::SampleBlock, dyncal::SampleBlockPubSubType> blocks(participant, "DauSamples", History::keep_all, argv[2], argv[3]);
-  Echo<dyncal::Measurement, dyncal::MeasurementPubSubType> measurements(participant, "Measurement", History::keep_last, argv[2], argv[3]);
-  Echo<dyncal::CalibrationResult, dyncal::CalibrationResultPubSubType> results(participant, "CalibrationResult", History::keep_last,
-                                                                               argv[2], argv[3]);
+  auto* participant =
+      checked(factory->create_participant(static_cast<std::uint32_t>(std::atoi(argv[1])), qos),
+              "participant");
+  Echo<dyncal::SampleBlock, dyncal::SampleBlockPubSubType> blocks(
+      participant, "DauSamples", History::keep_all, argv[2], argv[3]);
+  Echo<dyncal::Measurement, dyncal::MeasurementPubSubType> measurements(
+      participant, "Measurement", History::keep_last, argv[2], argv[3]);
+  Echo<dyncal::CalibrationResult, dyncal::CalibrationResultPubSubType> results(
+      participant, "CalibrationResult", History::keep_last, argv[2], argv[3]);
   while (true) {
     blocks.run();
     measurements.run();

@@ -1,4 +1,5 @@
-// dyncal analyse on files of shots made by formula: series time stamping without network and without noise.
+// dyncal analyse on files of shots made by formula: series time stamping without network and
+// without noise.
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -24,7 +25,8 @@ constexpr double rate_factor = 1.00305;
 constexpr double beta_rad[] = {-0.021, -0.012, 0.004}; // of the three triggers
 
 std::string trace_file(double beta) {
-  std::string text = "# nominal_rate_hz = 200000\n# first_sample_s = -0.0125\n# unit = \\volt\nCH1\n";
+  std::string text =
+      "# nominal_rate_hz = 200000\n# first_sample_s = -0.0125\n# unit = \\volt\nCH1\n";
   for (int i = 0; i < 5000; ++i) {
     text += fmt::format("{}\n", 5.0 * std::sin(w * (-0.0125 + i * 5e-6) + beta));
   }
@@ -35,7 +37,9 @@ std::string series_file(double beta) {
   std::string text = "# device = recorder\n# nominal_rate_hz = 1000\ntemperature,z\n";
   for (int n = 0; n < 1000; ++n) {
     const double t = dso_delay_s + n / (1000.0 * rate_factor);
-    text += fmt::format("25,{}\n", 10.0 * magnitude * std::sin(w * (t - delay_s) + beta + reference_against_sync) + 0.1);
+    text += fmt::format(
+        "25,{}\n",
+        10.0 * magnitude * std::sin(w * (t - delay_s) + beta + reference_against_sync) + 0.1);
   }
   return text;
 }
@@ -43,12 +47,15 @@ std::string series_file(double beta) {
 class AnalyseSeries : public testing::Test {
 protected:
   void SetUp() override {
-    folder_ = fresh_folder(std::string("analyse-series-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fresh_folder(std::string("analyse-series-") +
+                           testing::UnitTest::GetInstance()->current_test_info()->name());
     std::ofstream acs(folder_ / "acs.csv");
     acs << "t_ns,ref,sync\n";
     for (std::int64_t i = 0; i < 20'000; ++i) {
       const double t = static_cast<double>(i) * 50e-6;
-      acs << fmt::format("{},{},{}\n", 50'000 * i, 10.0 * std::sin(w * t + 0.3 + reference_against_sync), std::sin(w * t + 0.3));
+      acs << fmt::format("{},{},{}\n", 50'000 * i,
+                         10.0 * std::sin(w * t + 0.3 + reference_against_sync),
+                         std::sin(w * t + 0.3));
     }
     for (const char* part : {"dso", "tss"}) {
       std::filesystem::create_directories(folder_ / part);
@@ -89,7 +96,8 @@ dso_delay = { value_s = 236e-9, u_s = 1e-9 }
   }
 
   int analyse() {
-    ProgramRun run("dyncal", {"analyse", folder_ / "bench.toml", "--json", folder_ / "result.json"}, folder_);
+    ProgramRun run("dyncal", {"analyse", folder_ / "bench.toml", "--json", folder_ / "result.json"},
+                   folder_);
     const auto status = run.wait(std::chrono::seconds(30));
     errors_ = run.errors();
     return status.value_or(-1);
@@ -105,7 +113,9 @@ TEST_F(AnalyseSeries, ShotsInFilesAreMetWithin1e10Radians) {
   ASSERT_EQ(json["points"].size(), 1U);
   const auto& point = json["points"][0];
   EXPECT_TRUE(point["valid"].get<bool>()) << point;
-  EXPECT_NEAR(std::remainder(point["phase_rad"].get<double>() + w * delay_s, 2.0 * std::numbers::pi), 0.0, 1e-10);
+  EXPECT_NEAR(
+      std::remainder(point["phase_rad"].get<double>() + w * delay_s, 2.0 * std::numbers::pi), 0.0,
+      1e-10);
   EXPECT_NEAR(point["magnitude"].get<double>(), magnitude, 1e-10);
   EXPECT_NEAR(point["sample_rate_hz"].get<double>(), 1000.0 * rate_factor, 1e-8);
   EXPECT_EQ(point["samples"]["tss"], 3000);
@@ -123,10 +133,14 @@ TEST_F(AnalyseSeries, TheDelayFileOfTheOscilloscopeIsTakenOutWithItsUncertainty)
   std::ofstream(folder_ / "bench.toml") << text;
   ASSERT_EQ(analyse(), 0) << errors_;
   const auto after = read_json(folder_ / "result.json")["points"][0];
-  EXPECT_NEAR(after["phase_rad"].get<double>() - before["phase_rad"].get<double>(), -w * 500e-9, 1e-12);
+  EXPECT_NEAR(after["phase_rad"].get<double>() - before["phase_rad"].get<double>(), -w * 500e-9,
+              1e-12);
   const auto u_of_delay = [](const nlohmann::json& point) {
-    for (const auto& row : point["budget"])
-      if (row["name"] == "trigger delay of the oscilloscope") return row["u_phase_rad"].get<double>();
+    for (const auto& row : point["budget"]) {
+      if (row["name"] == "trigger delay of the oscilloscope") {
+        return row["u_phase_rad"].get<double>();
+      }
+    }
     return -1.0;
   };
   EXPECT_NEAR(u_of_delay(before), w * 1e-9, 1e-15);
@@ -149,7 +163,8 @@ TEST_F(AnalyseSeries, AFolderWithoutShotsIsNamed) {
 TEST_F(AnalyseSeries, AShotOfWhichOneFileIsMissingIsLeftOutAndCounted) {
   std::filesystem::remove(folder_ / "tss" / "step-1-shot-3.csv");
   ASSERT_EQ(analyse(), 0) << errors_;
-  EXPECT_THAT(read_json(folder_ / "result.json")["points"][0]["flags"].dump(), HasSubstr("2 of 3 shots"));
+  EXPECT_THAT(read_json(folder_ / "result.json")["points"][0]["flags"].dump(),
+              HasSubstr("2 of 3 shots"));
 }
 
 } // namespace

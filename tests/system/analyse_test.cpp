@@ -18,17 +18,18 @@ double digits(const nlohmann::json& value) {
 double exact_phase_rad(const nlohmann::json& vector) {
   const auto& fits = vector["ls3"];
   const double lag = std::stod(vector["adc_correction_at_f"]["phase_lag_rad"].get<std::string>());
-  return digits(fits["dos_dau"]["theta_rad"]) - (digits(fits["sync_dau"]["theta_rad"]) + lag) + digits(fits["sync_acs"]["theta_rad"]) -
-         digits(fits["ref_acs"]["theta_rad"]);
+  return digits(fits["dos_dau"]["theta_rad"]) - (digits(fits["sync_dau"]["theta_rad"]) + lag) +
+         digits(fits["sync_acs"]["theta_rad"]) - digits(fits["ref_acs"]["theta_rad"]);
 }
 
-std::filesystem::path bench_of_vector(const std::filesystem::path& folder, const std::filesystem::path& vectors,
+std::filesystem::path bench_of_vector(const std::filesystem::path& folder,
+                                      const std::filesystem::path& vectors,
                                       const nlohmann::json& vector) {
   const std::string frequency = vector["frequency_hz"];
   const auto& adc = vector["adc_correction_at_f"];
   std::ofstream(folder / "adc.json") << fmt::format(
-      R"({{"ADC1": {{"{0}": [{{"Freq": {0}, "Amplitude": {1}, "Phase": {2}, "TestAmplVPP.": 19.5}}]}}}})", frequency,
-      adc["gain"].get<std::string>(), adc["phase_lag_rad"].get<std::string>());
+      R"({{"ADC1": {{"{0}": [{{"Freq": {0}, "Amplitude": {1}, "Phase": {2}, "TestAmplVPP.": 19.5}}]}}}})",
+      frequency, adc["gain"].get<std::string>(), adc["phase_lag_rad"].get<std::string>());
   const std::filesystem::path path = folder / "bench.toml";
   std::ofstream(path) << fmt::format(R"(bench = "vector"
 [excitation]
@@ -54,7 +55,8 @@ frequency_search_rel = 0
 file = "adc.json"
 channel = "ADC1"
 )",
-                                     frequency, (vectors / "07_sync_link_acs.csv").string(), (vectors / "07_sync_link_dau.csv").string());
+                                     frequency, (vectors / "07_sync_link_acs.csv").string(),
+                                     (vectors / "07_sync_link_dau.csv").string());
   return path;
 }
 
@@ -65,14 +67,20 @@ TEST(Analyse, MeetsTheExactAnswerOfTheSyncLink) {
   }
   const auto folder = fresh_folder("analyse-vector");
   const nlohmann::json vector = read_json(vectors / "07_sync_link.json");
-  ProgramRun run("dyncal", {"analyse", bench_of_vector(folder, vectors, vector), "--json", folder / "result.json"}, folder);
+  ProgramRun run(
+      "dyncal",
+      {"analyse", bench_of_vector(folder, vectors, vector), "--json", folder / "result.json"},
+      folder);
   ASSERT_EQ(run.wait(std::chrono::seconds(30)), 0) << run.output() << run.errors();
   const nlohmann::json result = read_json(folder / "result.json");
   ASSERT_EQ(result["points"].size(), 1U);
   const auto& point = result["points"][0];
   EXPECT_EQ(point["samples"]["acs"], vector["ls3"]["ref_acs"]["dof"].get<int>() + 3);
-  EXPECT_NEAR(std::remainder(point["phase_rad"].get<double>() - exact_phase_rad(vector), 2.0 * std::numbers::pi), 0.0, 1e-11);
-  const double magnitude = digits(vector["ls3"]["dos_dau"]["amplitude"]) / digits(vector["ls3"]["ref_acs"]["amplitude"]);
+  EXPECT_NEAR(std::remainder(point["phase_rad"].get<double>() - exact_phase_rad(vector),
+                             2.0 * std::numbers::pi),
+              0.0, 1e-11);
+  const double magnitude =
+      digits(vector["ls3"]["dos_dau"]["amplitude"]) / digits(vector["ls3"]["ref_acs"]["amplitude"]);
   EXPECT_NEAR(point["magnitude"].get<double>() / magnitude, 1.0, 1e-12);
 }
 

@@ -1,4 +1,5 @@
-// `dyncal calibrate dso-delay` at the virtual bench's oscilloscope, whose trigger output comes 236(1) ns after the trigger.
+// `dyncal calibrate dso-delay` at the virtual bench's oscilloscope, whose trigger output comes
+// 236(1) ns after the trigger.
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -16,7 +17,8 @@ using testing::HasSubstr;
 class CalibrateDsoDelay : public testing::TestWithParam<const char*> {
 protected:
   void start_bench(const std::vector<std::string>& options) {
-    folder_ = fresh_folder(std::string("calibrate-dso-delay-") + GetParam() + std::to_string(options.size()));
+    folder_ = fresh_folder(std::string("calibrate-dso-delay-") + GetParam() +
+                           std::to_string(options.size()));
     std::vector<std::string> arguments{"--preset", "tss", "--ports-file", folder_ / "ports.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     bench_.emplace("dyncal-virtual-bench", arguments, folder_);
@@ -37,8 +39,8 @@ TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
   const auto file = folder_ / "dso-delay.json";
   const auto work = fresh_folder(std::string("calibrate-dso-delay-run-") + GetParam());
   ProgramRun calibrate("dyncal",
-                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
-                        "25", "--output", file},
+                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator",
+                        generator_, "--by", GetParam(), "--shots", "25", "--output", file},
                        work);
   ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
   const auto json = read_json(file);
@@ -56,8 +58,9 @@ TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
   start_bench({"--scope-fault", "garbage=0.003", "--scope-fault", "other-answer=0.003"});
   const auto work = fresh_folder(std::string("calibrate-dso-delay-bad-") + GetParam());
   ProgramRun calibrate("dyncal",
-                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator", generator_, "--by", GetParam(), "--shots",
-                        "20", "--output", work / "delay.json"},
+                       {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator",
+                        generator_, "--by", GetParam(), "--shots", "20", "--output",
+                        work / "delay.json"},
                        work);
   ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
   const auto json = read_json(work / "delay.json");

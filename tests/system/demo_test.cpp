@@ -1,5 +1,5 @@
-// `dyncal demo` for every preset, over either DDS implementation and both mixed: it ends in time, and every value agrees with the bench's
-// truth.
+// `dyncal demo` for every preset, over either DDS implementation and both mixed: it ends in time,
+// and every value agrees with the bench's truth.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -37,23 +37,28 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-// Largest deviation from the truth in standard uncertainties, over all frequencies of all channels excited.
-double worst_deviation(const nlohmann::json& result, const nlohmann::json& truth, std::size_t& compared) {
+// Largest deviation from the truth in standard uncertainties, over all frequencies of all channels
+// excited.
+double worst_deviation(const nlohmann::json& result, const nlohmann::json& truth,
+                       std::size_t& compared) {
   double worst = 0.0;
   std::map<std::pair<std::string, double>, nlohmann::json> measured;
   for (const auto& point : result["transfer_function"]) {
     measured[{point["channel"], point["frequency_hz"]}] = point;
   }
   for (const auto& point : truth["transfer_function"]) {
-    const auto found = measured.find({"dau/" + point["channel"].get<std::string>(), point["frequency_hz"]});
+    const auto found =
+        measured.find({"dau/" + point["channel"].get<std::string>(), point["frequency_hz"]});
     EXPECT_NE(found, measured.end()) << point;
     if (found == measured.end()) {
       continue;
     }
     const double phase =
-        std::remainder(found->second["phase_rad"].get<double>() - point["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
+        std::remainder(found->second["phase_rad"].get<double>() - point["phase_rad"].get<double>(),
+                       2.0 * std::numbers::pi);
     worst = std::max(worst, std::abs(phase) / found->second["u_phase_rad"].get<double>());
-    const double magnitude = found->second["magnitude"].get<double>() - point["magnitude"].get<double>();
+    const double magnitude =
+        found->second["magnitude"].get<double>() - point["magnitude"].get<double>();
     worst = std::max(worst, std::abs(magnitude) / found->second["u_magnitude"].get<double>());
     ++compared;
   }
@@ -64,7 +69,10 @@ class Demo : public testing::TestWithParam<Case> {};
 
 TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
   const auto folder = fresh_folder("demo-" + case_name({GetParam(), 0}));
-  ProgramRun demo("dyncal", {"demo", "--preset", GetParam().preset, "--dds", GetParam().dds, "--output", folder / "files"}, folder);
+  ProgramRun demo("dyncal",
+                  {"demo", "--preset", GetParam().preset, "--dds", GetParam().dds, "--output",
+                   folder / "files"},
+                  folder);
   const auto status = demo.wait(demo_limit);
   ASSERT_TRUE(status) << "not ended within " << demo_limit.count() << " s\n" << demo.errors();
   EXPECT_EQ(*status, 0) << demo.output() << demo.errors();
@@ -84,21 +92,23 @@ TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
   EXPECT_GT(result["sample_clock"][0]["count"], 10'000);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllPresetsAndVendors, Demo,
-                         testing::Values(Case{"mpu9250-paper", "fastdds"}, Case{"mpu9250-paper", "cyclonedds"},
-                                         Case{"mpu9250-paper", "dau=cyclonedds,acs=fastdds,analysis=cyclonedds"},
-                                         Case{"mpu9250-ptb", "fastdds"}, Case{"mpu9250-ptb", "cyclonedds"},
-                                         Case{"mpu9250-ptb", "dau=fastdds,acs=cyclonedds,analysis=fastdds,run=cyclonedds"},
-                                         Case{"bma280", "fastdds"}, Case{"bma280", "cyclonedds"},
-                                         Case{"bma280", "dau=fastdds,acs=cyclonedds,analysis=cyclonedds"}),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(
+    AllPresetsAndVendors, Demo,
+    testing::Values(Case{"mpu9250-paper", "fastdds"}, Case{"mpu9250-paper", "cyclonedds"},
+                    Case{"mpu9250-paper", "dau=cyclonedds,acs=fastdds,analysis=cyclonedds"},
+                    Case{"mpu9250-ptb", "fastdds"}, Case{"mpu9250-ptb", "cyclonedds"},
+                    Case{"mpu9250-ptb",
+                         "dau=fastdds,acs=cyclonedds,analysis=fastdds,run=cyclonedds"},
+                    Case{"bma280", "fastdds"}, Case{"bma280", "cyclonedds"},
+                    Case{"bma280", "dau=fastdds,acs=cyclonedds,analysis=cyclonedds"}),
+    case_name);
 
 TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
   const auto folder = fresh_folder("demo-figures");
   ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
   ASSERT_EQ(demo.wait(demo_limit), 0) << demo.errors();
-  for (const char* name :
-       {"transfer-function-dau-acceleration_z", "interval-histogram-dau", "interval-over-temperature-dau", "interval-over-time-dau"}) {
+  for (const char* name : {"transfer-function-dau-acceleration_z", "interval-histogram-dau",
+                           "interval-over-temperature-dau", "interval-over-time-dau"}) {
     for (const char* ending : {".svg", ".csv"}) {
       const auto path = folder / "files" / (std::string(name) + ending);
       EXPECT_TRUE(std::filesystem::exists(path)) << path;
@@ -112,7 +122,10 @@ TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
 
 TEST(DemoFigures, CountsLostAndDoubledDatagramsAndStillAgreesWithTheTruth) {
   const auto folder = fresh_folder("demo-loss");
-  ProgramRun demo("dyncal", {"demo", "--repetitions", "1", "--loss", "0.02", "--duplicate", "0.02", "--output", folder / "files"}, folder);
+  ProgramRun demo("dyncal",
+                  {"demo", "--repetitions", "1", "--loss", "0.02", "--duplicate", "0.02",
+                   "--output", folder / "files"},
+                  folder);
   EXPECT_EQ(demo.wait(demo_limit), 0) << demo.output() << demo.errors();
   const nlohmann::json result = read_json(folder / "files" / "result.json");
   ASSERT_FALSE(result.is_discarded());

@@ -1,4 +1,5 @@
-// How a run excites: the level in closed loop and its limits, the output off however the run ends, the generator set by hand.
+// How a run excites: the level in closed loop and its limits, the output off however the run ends,
+// the generator set by hand.
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -18,8 +19,10 @@ constexpr int domain = 93;
 constexpr std::chrono::seconds run_limit{120};
 
 LiveBenchSettings settings_with(const std::string& generator, const std::string& speed = "max") {
-  return {.bench_arguments = {"--speed", speed, "--seed", "12", "--frequencies", "40,200", "--levels", "20"},
-          .excitation = "frequencies_hz = [\"40\", \"200\"]\nlevel = 20.0\nrepetitions = 2\nsettling_s = 0.4\nduration_s = 1.5\n",
+  return {.bench_arguments = {"--speed", speed, "--seed", "12", "--frequencies", "40,200",
+                              "--levels", "20"},
+          .excitation = "frequencies_hz = [\"40\", \"200\"]\nlevel = 20.0\nrepetitions = "
+                        "2\nsettling_s = 0.4\nduration_s = 1.5\n",
           .generator = generator,
           .source_dau = "time_base = \"local\"",
           .rest = ""};
@@ -32,11 +35,16 @@ double exciter_response(double frequency_hz) { // of the virtual bench: m/s^2 pe
 TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
   const auto folder = fresh_folder("excitation-level");
   // The bench file is wrong by 60 % about the exciter.
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 80.0\nlevel_tolerance_rel = 0.005\nmaximum_level_m_s2 = 40.0\n"));
+  LiveBench bench(
+      folder, domain,
+      settings_with(
+          "level_per_volt = 80.0\nlevel_tolerance_rel = 0.005\nmaximum_level_m_s2 = 40.0\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
   ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
-  const double amplitude_v = 0.5 * std::stod(bench.ask_generator(":SOURce1:VOLTage?")); // of the last step, 200 Hz
-  EXPECT_NEAR(amplitude_v * exciter_response(200.0), 20.0, 20.0 * (0.005 + 4e-3));      // 4 u of the ACS's reference
+  const double amplitude_v =
+      0.5 * std::stod(bench.ask_generator(":SOURce1:VOLTage?")); // of the last step, 200 Hz
+  EXPECT_NEAR(amplitude_v * exciter_response(200.0), 20.0,
+              20.0 * (0.005 + 4e-3)); // 4 u of the ACS's reference
   EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
   const auto result = read_json(folder / "result.json");
   EXPECT_EQ(result["points"].size(), 3U * 4U);
@@ -44,10 +52,18 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
   int compared = 0;
   for (const auto& point : result["transfer_function"]) {
     for (const auto& known : truth["transfer_function"]) {
-      if ("dau/" + known["channel"].get<std::string>() != point["channel"] || known["frequency_hz"] != point["frequency_hz"]) continue;
-      const double phase = std::remainder(point["phase_rad"].get<double>() - known["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
-      EXPECT_LE(std::abs(phase), 4.0 * point["u_phase_rad"].get<double>() + 6e-4) << point; // the ADC's lag is not corrected here
-      EXPECT_NEAR(point["magnitude"].get<double>(), known["magnitude"].get<double>(), 4.0 * point["u_magnitude"].get<double>()) << point;
+      if ("dau/" + known["channel"].get<std::string>() != point["channel"] ||
+          known["frequency_hz"] != point["frequency_hz"]) {
+        continue;
+      }
+      const double phase =
+          std::remainder(point["phase_rad"].get<double>() - known["phase_rad"].get<double>(),
+                         2.0 * std::numbers::pi);
+      EXPECT_LE(std::abs(phase), 4.0 * point["u_phase_rad"].get<double>() + 6e-4)
+          << point; // the ADC's lag is not corrected here
+      EXPECT_NEAR(point["magnitude"].get<double>(), known["magnitude"].get<double>(),
+                  4.0 * point["u_magnitude"].get<double>())
+          << point;
       ++compared;
     }
   }
@@ -56,15 +72,20 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
 
 TEST(Excitation, ALevelThatNeedsTooMuchVoltageIsRefusedBeforeTheOutputIsOn) {
   const auto folder = fresh_folder("excitation-voltage");
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 50.0\nmaximum_voltage_v = 0.3\n"));
+  LiveBench bench(folder, domain,
+                  settings_with("level_per_volt = 50.0\nmaximum_voltage_v = 0.3\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   EXPECT_EQ(run.wait(std::chrono::seconds(30)), 2);
-  EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: a level of 20 m/s^2 needs 0.4 V, above generator.maximum_voltage_v = 0.3"));
+  EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: a level of 20 m/s^2 needs 0.4 V, above "
+                                      "generator.maximum_voltage_v = 0.3"));
 }
 
 TEST(Excitation, AnExciterThatIsTooLivelyIsSwitchedOff) {
   const auto folder = fresh_folder("excitation-lively");
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 10.0\nlevel_tolerance_rel = 0.01\nmaximum_level_m_s2 = 30.0\n"));
+  LiveBench bench(
+      folder, domain,
+      settings_with(
+          "level_per_volt = 10.0\nlevel_tolerance_rel = 0.01\nmaximum_level_m_s2 = 30.0\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   EXPECT_NE(run.wait(run_limit).value_or(0), 0);
   EXPECT_THAT(run.errors(), HasSubstr("above generator.maximum_level_m_s2 = 30"));
@@ -84,8 +105,11 @@ TEST_P(ExcitationKilled, LeavesTheOutputOff) {
   EXPECT_TRUE(bench.wait_for_output("OFF", std::chrono::seconds(10)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, ExcitationKilled, testing::Values(SIGINT, SIGTERM, SIGKILL, SIGSEGV),
-                         [](const auto& signal) { return "Signal" + std::to_string(signal.param); });
+INSTANTIATE_TEST_SUITE_P(Signals, ExcitationKilled,
+                         testing::Values(SIGINT, SIGTERM, SIGKILL, SIGSEGV),
+                         [](const auto& signal) {
+                           return "Signal" + std::to_string(signal.param);
+                         });
 
 // Standard input of the programs that a test starts.
 class OperatorLine {
@@ -96,8 +120,9 @@ public:
   }
   ~OperatorLine() {
     dup2(before_, STDIN_FILENO);
-    for (const int number : {before_, ends_[0], ends_[1]})
+    for (const int number : {before_, ends_[0], ends_[1]}) {
       close(number);
+    }
   }
   OperatorLine(const OperatorLine&) = delete;
   OperatorLine& operator=(const OperatorLine&) = delete;
@@ -120,12 +145,16 @@ TEST(Excitation, ByHandFollowsTheOperator) {
   }();
   const OperatorLine operator_line;
   ProgramRun& run = bench.start({"run", folder / "hand.toml", "--json", folder / "result.json"});
-  ASSERT_TRUE(run.wait_for_error_text("set sine, 40 Hz, 0.4 V amplitude (0.8 V peak to peak)", std::chrono::seconds(30))) << run.errors();
-  for (const char* line : {":SOURce1:FREQuency 40", ":SOURce1:VOLTage 0.8", ":OUTPut1 ON"})
+  ASSERT_TRUE(run.wait_for_error_text("set sine, 40 Hz, 0.4 V amplitude (0.8 V peak to peak)",
+                                      std::chrono::seconds(30)))
+      << run.errors();
+  for (const char* line : {":SOURce1:FREQuency 40", ":SOURce1:VOLTage 0.8", ":OUTPut1 ON"}) {
     bench.tell_generator(line);
+  }
   ASSERT_TRUE(bench.wait_for_output("ON", std::chrono::seconds(10)));
   operator_line.confirm();
-  ASSERT_TRUE(run.wait_for_error_text("switch the output off", std::chrono::seconds(60))) << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("switch the output off", std::chrono::seconds(60)))
+      << run.errors();
   bench.tell_generator(":OUTPut1 OFF");
   operator_line.confirm();
   EXPECT_EQ(run.wait(run_limit), 0) << run.errors();
@@ -136,8 +165,10 @@ TEST(Excitation, ByHandEndsCleanlyWhenInterrupted) {
   const auto folder = fresh_folder("excitation-by-hand-interrupted");
   LiveBench bench(folder, domain, settings_with("level_per_volt = 50.0\n", "1"));
   const OperatorLine operator_line;
-  ProgramRun& run = bench.start({"run", bench.changed_bench_file("hand.toml", "driver = \"scpi\"", "driver = \"by-hand\"")});
-  ASSERT_TRUE(run.wait_for_error_text("switch the output on", std::chrono::seconds(30))) << run.errors();
+  ProgramRun& run = bench.start(
+      {"run", bench.changed_bench_file("hand.toml", "driver = \"scpi\"", "driver = \"by-hand\"")});
+  ASSERT_TRUE(run.wait_for_error_text("switch the output on", std::chrono::seconds(30)))
+      << run.errors();
   run.send(SIGINT);
   EXPECT_EQ(run.wait(std::chrono::seconds(30)), 130) << run.errors();
   EXPECT_THAT(run.errors(), HasSubstr("switch the output off"));

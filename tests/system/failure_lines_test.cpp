@@ -1,4 +1,5 @@
-// What does not exist or does not fit gives one clear line within ten seconds and an exit status that is not 0.
+// What does not exist or does not fit gives one clear line within ten seconds and an exit status
+// that is not 0.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -45,11 +46,15 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 class FailureLine : public testing::Test {
 protected:
-  std::filesystem::path folder = fresh_folder(std::string("failure-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path folder = fresh_folder(
+      std::string("failure-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 
-  void SetUp() override { write(folder / "acs.csv", "t_ns,reference,sync\n0,1,2\n100000,1,2\n200000,1,2\n"); }
+  void SetUp() override {
+    write(folder / "acs.csv", "t_ns,reference,sync\n0,1,2\n100000,1,2\n200000,1,2\n");
+  }
 
-  // Runs the program, expects it to fail in time, and returns the one line that does not come from the log.
+  // Runs the program, expects it to fail in time, and returns the one line that does not come from
+  // the log.
   std::string line_of(const std::string& program, std::vector<std::string> arguments) {
     ProgramRun run(program, arguments, folder);
     const auto status = run.wait(limit);
@@ -68,31 +73,41 @@ protected:
   }
 
   std::string run_line(const std::string& text) {
-    return line_of("dyncal", {"run", write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
+    return line_of("dyncal",
+                   {"run", write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
   }
 };
 
 // On a kernel without CAN, and on one that has it but no interface of this name.
 TEST_F(FailureLine, DemoWithoutACanInterface) {
   const std::string line =
-      line_of("dyncal", {"demo", "--preset", "can", "--can", "nocan0", "--output", folder / "demo", "--domain", std::to_string(domain)});
-  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"), HasSubstr("there is no interface 'nocan0'; 'ip link add")));
+      line_of("dyncal", {"demo", "--preset", "can", "--can", "nocan0", "--output", folder / "demo",
+                         "--domain", std::to_string(domain)});
+  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"),
+                                   HasSubstr("there is no interface 'nocan0'; 'ip link add")));
 }
 
 TEST_F(FailureLine, CanSourceWithoutItsInterface) {
-  write(folder / "sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n");
-  const std::string text =
-      replaced(bench_text, "[method]", "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
-  const std::string line = line_of("dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
+  write(folder / "sensor.dbc",
+        "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n");
+  const std::string text = replaced(
+      bench_text, "[method]",
+      "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
+  const std::string line = line_of(
+      "dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)});
   EXPECT_THAT(line, HasSubstr("bench.toml:13: source 'can': "));
-  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"), HasSubstr("there is no interface 'nocan0'")));
+  EXPECT_THAT(line, testing::AnyOf(HasSubstr("this kernel has no CAN sockets"),
+                                   HasSubstr("there is no interface 'nocan0'")));
 }
 
 TEST_F(FailureLine, DbcFileThatIsWrong) {
   write(folder / "sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"m/s^2\" S\n");
-  const std::string text =
-      replaced(bench_text, "[method]", "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
-  EXPECT_THAT(line_of("dyncal-can", {write(folder / "bench.toml", text), "--domain", std::to_string(domain)}), HasSubstr("sensor.dbc:2: "));
+  const std::string text = replaced(
+      bench_text, "[method]",
+      "[sources.can]\ndriver = \"can\"\ninterface = \"nocan0\"\ndbc = \"sensor.dbc\"\n[method]");
+  EXPECT_THAT(line_of("dyncal-can",
+                      {write(folder / "bench.toml", text), "--domain", std::to_string(domain)}),
+              HasSubstr("sensor.dbc:2: "));
 }
 
 TEST_F(FailureLine, BenchFileThatDoesNotExist) {
@@ -105,7 +120,8 @@ TEST_F(FailureLine, WrongKey) {
 }
 
 TEST_F(FailureLine, WrongUnit) {
-  EXPECT_THAT(run_line(replaced(bench_text, "path = \"acs.csv\"", "path = \"acs.csv\"\nunits = { sync = \"volts\" }")),
+  EXPECT_THAT(run_line(replaced(bench_text, "path = \"acs.csv\"",
+                                "path = \"acs.csv\"\nunits = { sync = \"volts\" }")),
               HasSubstr("the unit \"volts\""));
 }
 
@@ -115,7 +131,8 @@ TEST_F(FailureLine, RoleWithoutSource) {
 }
 
 TEST_F(FailureLine, SourceFileThatDoesNotExist) {
-  EXPECT_THAT(run_line(replaced(bench_text, "acs.csv", "gone.csv")), HasSubstr("gone.csv, which does not exist"));
+  EXPECT_THAT(run_line(replaced(bench_text, "acs.csv", "gone.csv")),
+              HasSubstr("gone.csv, which does not exist"));
 }
 
 TEST_F(FailureLine, AnalysisThatIsNotThere) {
@@ -138,27 +155,32 @@ TEST_F(FailureLine, SourceThatStaysSilent) {
 }
 
 TEST_F(FailureLine, ChannelThatDoesNotExist) {
-  const std::string files = replaced(bench_text, "driver = \"smartup\"\nlisten = \"127.0.0.1:0\"\nsensor = \"0xbccb0100\"",
-                                     "driver = \"file\"\npath = \"dau.csv\"");
+  const std::string files = replaced(
+      bench_text, "driver = \"smartup\"\nlisten = \"127.0.0.1:0\"\nsensor = \"0xbccb0100\"",
+      "driver = \"file\"\npath = \"dau.csv\"");
   write(folder / "dau.csv", "t_ns,acceleration_z,sync\n0,1,2\n1000000,1,2\n2000000,1,2\n");
   const std::string text = replaced(files, "acs/reference", "acs/referense");
   const auto bench = write(folder / "bench.toml", text);
   Laboratory laboratory(folder, domain);
   laboratory.start("dyncal-analysis", {}, "fastdds");
   laboratory.start("dyncal-acs", {bench}, "fastdds");
-  EXPECT_THAT(run_line(text), HasSubstr("source 'acs' has no channel 'referense'; it has: reference, sync"));
+  EXPECT_THAT(run_line(text),
+              HasSubstr("source 'acs' has no channel 'referense'; it has: reference, sync"));
 }
 
 TEST_F(FailureLine, PortInUse) {
-  const auto bench = write(folder / "bench.toml", replaced(bench_text, "127.0.0.1:0", "127.0.0.1:17654"));
+  const auto bench =
+      write(folder / "bench.toml", replaced(bench_text, "127.0.0.1:0", "127.0.0.1:17654"));
   Laboratory laboratory(folder, domain);
   ProgramRun& first = laboratory.start("dyncal-dau", {bench}, "fastdds");
   ASSERT_TRUE(first.wait_for_error_text("17654", limit)) << first.errors();
-  EXPECT_THAT(line_of("dyncal-dau", {bench, "--domain", std::to_string(domain)}), HasSubstr("17654"));
+  EXPECT_THAT(line_of("dyncal-dau", {bench, "--domain", std::to_string(domain)}),
+              HasSubstr("17654"));
 }
 
 TEST_F(FailureLine, GeneratorThatIsNotThere) {
-  EXPECT_THAT(run_line(bench_text + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"), HasSubstr("127.0.0.1:9"));
+  EXPECT_THAT(run_line(bench_text + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"),
+              HasSubstr("127.0.0.1:9"));
 }
 
 TEST_F(FailureLine, SensorIdThatIsNone) {

@@ -18,7 +18,8 @@ constexpr double frequency_hz = 79.8;
 constexpr double amplitude = 2.5;
 constexpr double phase_rad = 0.7;
 
-// 2000 samples at uneven instants about 1 ms apart, with an offset and, if wanted, a second harmonic.
+// 2000 samples at uneven instants about 1 ms apart, with an offset and, if wanted, a second
+// harmonic.
 std::filesystem::path sine_file(const std::filesystem::path& folder, double harmonic = 0.0) {
   const std::filesystem::path path = folder / "sine.csv";
   std::ofstream stream(path);
@@ -26,15 +27,17 @@ std::filesystem::path sine_file(const std::filesystem::path& folder, double harm
   for (int i = 0; i < 2000; ++i) {
     const std::int64_t dt_ns = std::int64_t{997'000} * i + (i * 7919) % 5000;
     const double angle = 2.0 * std::numbers::pi * frequency_hz * static_cast<double>(dt_ns) * 1e-9;
-    stream << fmt::format("{},{:.17g},{}\n", epoch_ns + dt_ns,
-                          amplitude * std::sin(angle + phase_rad) + 0.25 + harmonic * std::sin(2.0 * angle), 4);
+    stream << fmt::format(
+        "{},{:.17g},{}\n", epoch_ns + dt_ns,
+        amplitude * std::sin(angle + phase_rad) + 0.25 + harmonic * std::sin(2.0 * angle), 4);
   }
   return path;
 }
 
 class FileCommands : public testing::Test {
 protected:
-  std::filesystem::path folder = fresh_folder(std::string("file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path folder = fresh_folder(
+      std::string("file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 
   nlohmann::json json_of(std::vector<std::string> arguments) {
     ProgramRun run("dyncal", arguments, folder);
@@ -49,7 +52,8 @@ protected:
 };
 
 TEST_F(FileCommands, FitFindsAmplitudePhaseAndOffsetAtAKnownFrequency) {
-  const auto json = json_of({"fit", sine_file(folder), "--frequency", "79.8", "--column", "y", "--json"});
+  const auto json =
+      json_of({"fit", sine_file(folder), "--frequency", "79.8", "--column", "y", "--json"});
   ASSERT_FALSE(json.is_discarded());
   EXPECT_FALSE(json.contains("u_frequency_hz"));
   const auto& y = json["columns"]["y"];
@@ -68,8 +72,10 @@ TEST_F(FileCommands, FitWithoutAFrequencyEstimatesItAndItsUncertainty) {
 
 TEST_F(FileCommands, FitMovesThePhaseToTheReferenceTime) {
   const std::string later = std::to_string(epoch_ns + 1'000'000'000);
-  const auto json = json_of({"fit", sine_file(folder), "--frequency", "79.8", "--column", "y", "--reference-time", later, "--json"});
-  EXPECT_NEAR(std::remainder(json["columns"]["y"]["phase_rad"].get<double>() - phase_rad - 2.0 * std::numbers::pi * frequency_hz,
+  const auto json = json_of({"fit", sine_file(folder), "--frequency", "79.8", "--column", "y",
+                             "--reference-time", later, "--json"});
+  EXPECT_NEAR(std::remainder(json["columns"]["y"]["phase_rad"].get<double>() - phase_rad -
+                                 2.0 * std::numbers::pi * frequency_hz,
                              2.0 * std::numbers::pi),
               0.0, 1e-9);
 }
@@ -77,8 +83,8 @@ TEST_F(FileCommands, FitMovesThePhaseToTheReferenceTime) {
 TEST_F(FileCommands, FitTakesHarmonicsOutOfTheResiduals) {
   const auto file = sine_file(folder, 0.1);
   const auto plain = json_of({"fit", file, "--frequency", "79.8", "--column", "y", "--json"});
-  const auto extended =
-      json_of({"fit", file, "--frequency", "79.8", "--column", "y", "--harmonics", "2", "--drift", "1", "--hum", "50", "--json"});
+  const auto extended = json_of({"fit", file, "--frequency", "79.8", "--column", "y", "--harmonics",
+                                 "2", "--drift", "1", "--hum", "50", "--json"});
   EXPECT_GT(plain["columns"]["y"]["rss"].get<double>(), 1.0);
   EXPECT_LT(extended["columns"]["y"]["rss"].get<double>(), 1e-12);
   EXPECT_NEAR(extended["columns"]["y"]["amplitude"], amplitude, 1e-9);
@@ -90,7 +96,8 @@ TEST_F(FileCommands, FitSaysWhatIsWrongWithAFileAndWhere) {
               HasSubstr("there is no column 'z'; the columns are: y, constant"));
   EXPECT_THAT(error_of({"fit", file, "--frequency", "79,8"}), HasSubstr("79,8"));
   std::ofstream(folder / "broken.csv") << "t_ns,y\n0,1\n1000,x\n";
-  EXPECT_THAT(error_of({"fit", folder / "broken.csv", "--frequency", "10"}), HasSubstr("broken.csv:3:"));
+  EXPECT_THAT(error_of({"fit", folder / "broken.csv", "--frequency", "10"}),
+              HasSubstr("broken.csv:3:"));
   std::ofstream(folder / "short.csv") << "t_ns,y\n0,1\n1000000,2\n";
   EXPECT_NE(error_of({"fit", folder / "short.csv", "--frequency", "10"}), "");
 }
@@ -115,7 +122,8 @@ TEST_F(FileCommands, IntervalsFindsAGapAndALateEarlyPair) {
   EXPECT_EQ(json["events"][1]["missing"], 1);
 }
 
-std::filesystem::path result_file(const std::filesystem::path& path, double magnitude, double phase, const char* unit = "\\\\one") {
+std::filesystem::path result_file(const std::filesystem::path& path, double magnitude, double phase,
+                                  const char* unit = "\\\\one") {
   std::ofstream(path) << fmt::format(
       R"({{"transfer_function": [{{"channel": "dau/acceleration_z", "frequency_hz": 80, "magnitude": {}, "u_magnitude": 0.003,
            "phase_rad": {}, "u_phase_rad": 0.004, "unit": "{}"}}]}})",
@@ -130,16 +138,20 @@ TEST_F(FileCommands, CompareGivesTheNormalisedErrorOfTwoResults) {
   const auto& point = json["points"][0];
   EXPECT_NEAR(point["en_magnitude"], 0.01 / (2.0 * 0.003 * std::sqrt(2.0)), 1e-12);
   EXPECT_NEAR(point["phase_difference_rad"], 6.28 - 2.0 * std::numbers::pi, 1e-12);
-  EXPECT_NEAR(point["en_phase"], (6.28 - 2.0 * std::numbers::pi) / (2.0 * 0.004 * std::sqrt(2.0)), 1e-12);
+  EXPECT_NEAR(point["en_phase"], (6.28 - 2.0 * std::numbers::pi) / (2.0 * 0.004 * std::sqrt(2.0)),
+              1e-12);
   EXPECT_FALSE(point["agrees"]);
   const auto shared = json_of({"compare", a, b, "--common-magnitude", "0.002", "--json"});
-  EXPECT_NEAR(shared["points"][0]["en_magnitude"], 0.01 / (2.0 * std::sqrt(2.0 * 9e-6 - 2.0 * 4e-6 * 1.01)), 1e-12);
+  EXPECT_NEAR(shared["points"][0]["en_magnitude"],
+              0.01 / (2.0 * std::sqrt(2.0 * 9e-6 - 2.0 * 4e-6 * 1.01)), 1e-12);
 }
 
 TEST_F(FileCommands, CompareRefusesWhatCannotBeCompared) {
   const auto a = result_file(folder / "a.json", 1.01, 3.14);
-  EXPECT_THAT(error_of({"compare", a, result_file(folder / "b.json", 1.0, 3.1, "V")}), HasSubstr("different units"));
-  EXPECT_THAT(error_of({"compare", a, a, "--channel", "acs/none"}), HasSubstr("no channel and frequency in common"));
+  EXPECT_THAT(error_of({"compare", a, result_file(folder / "b.json", 1.0, 3.1, "V")}),
+              HasSubstr("different units"));
+  EXPECT_THAT(error_of({"compare", a, a, "--channel", "acs/none"}),
+              HasSubstr("no channel and frequency in common"));
   std::ofstream(folder / "c.json") << "[1, 2";
   EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("is no result of dyncal"));
 }

@@ -1,4 +1,5 @@
-// The services of a laboratory for a test: source programs and an analysis service on a DDS domain of the test's own.
+// The services of a laboratory for a test: source programs and an analysis service on a DDS domain
+// of the test's own.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +20,10 @@ inline nlohmann::json read_json(const std::filesystem::path& path) {
   return nlohmann::json::parse(stream, nullptr, false);
 }
 
-// Records of a virtual bench as files, the same at every call: acs.csv, dau.csv, truth.json, adc.json and a bench file that plays them.
-inline std::filesystem::path recorded_bench(const std::filesystem::path& folder, const std::string& bench, const std::string& seed) {
+// Records of a virtual bench as files, the same at every call: acs.csv, dau.csv, truth.json,
+// adc.json and a bench file that plays them.
+inline std::filesystem::path recorded_bench(const std::filesystem::path& folder,
+                                            const std::string& bench, const std::string& seed) {
   ProgramRun record("dyncal-virtual-bench",
                     {"--preset",
                      "mpu9250-ptb",
@@ -77,12 +80,15 @@ reference_phase_rad = 5e-4
 
 class Laboratory {
 public:
-  Laboratory(std::filesystem::path folder, int domain) : folder_(std::move(folder)), domain_(std::to_string(domain)) {}
+  Laboratory(std::filesystem::path folder, int domain)
+      : folder_(std::move(folder)), domain_(std::to_string(domain)) {}
 
   // Starts a service and returns it; it lives as long as the laboratory.
-  ProgramRun& start(const std::string& program, std::vector<std::string> arguments, const std::string& dds) {
+  ProgramRun& start(const std::string& program, std::vector<std::string> arguments,
+                    const std::string& dds) {
     arguments.insert(arguments.end(), {"--domain", domain_, "--dds", dds});
-    const std::filesystem::path place = folder_ / (program + "-" + std::to_string(services_.size()));
+    const std::filesystem::path place =
+        folder_ / (program + "-" + std::to_string(services_.size()));
     std::filesystem::create_directories(place);
     return services_.emplace_back(program, arguments, place);
   }

@@ -1,4 +1,5 @@
-// A virtual bench with its source services and an analysis service on a DDS domain of the test's own, for commands that conduct runs.
+// A virtual bench with its source services and an analysis service on a DDS domain of the test's
+// own, for commands that conduct runs.
 #pragma once
 
 #include <arpa/inet.h>
@@ -43,11 +44,14 @@ public:
   LiveBench(const std::filesystem::path& folder, int domain, const LiveBenchSettings& settings)
       : folder_(folder), domain_(domain), laboratory_(folder, domain) {
     const std::string dau = fmt::format("127.0.0.1:{}", free_udp_port());
-    std::vector<std::string> arguments{"--preset",     "mpu9250-ptb",         "--dau",   dau,
-                                       "--ports-file", folder / "ports.json", "--truth", folder / "truth.json"};
-    arguments.insert(arguments.end(), settings.bench_arguments.begin(), settings.bench_arguments.end());
+    std::vector<std::string> arguments{"--preset", "mpu9250-ptb",        "--dau",
+                                       dau,        "--ports-file",       folder / "ports.json",
+                                       "--truth",  folder / "truth.json"};
+    arguments.insert(arguments.end(), settings.bench_arguments.begin(),
+                     settings.bench_arguments.end());
     virtual_bench_ = std::make_unique<ProgramRun>("dyncal-virtual-bench", arguments, folder);
-    EXPECT_TRUE(virtual_bench_->wait_for_error_text("datagrams to", std::chrono::seconds(20))) << virtual_bench_->errors();
+    EXPECT_TRUE(virtual_bench_->wait_for_error_text("datagrams to", std::chrono::seconds(20)))
+        << virtual_bench_->errors();
     const auto ports = read_json(folder / "ports.json");
     generator_port_ = ports["generator"].get<int>();
     write_bench_file(settings, dau, ports["acs"].get<int>());
@@ -69,14 +73,19 @@ public:
     std::string answer;
     const std::string line = query + "\n";
     if (connect(socket_number, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0 &&
-        send(socket_number, line.data(), line.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(line.size())) {
-      for (char byte = 0; query.ends_with('?') && recv(socket_number, &byte, 1, 0) == 1 && byte != '\n';)
+        send(socket_number, line.data(), line.size(), MSG_NOSIGNAL) ==
+            static_cast<ssize_t>(line.size())) {
+      for (char byte = 0;
+           query.ends_with('?') && recv(socket_number, &byte, 1, 0) == 1 && byte != '\n';) {
         answer += byte;
+      }
     }
     close(socket_number);
     return answer;
   }
-  void tell_generator(const std::string& command) const { static_cast<void>(ask_generator(command)); }
+  void tell_generator(const std::string& command) const {
+    static_cast<void>(ask_generator(command));
+  }
   // True as soon as the generator's output is in this state, "ON" or "OFF".
   [[nodiscard]] bool wait_for_output(const std::string& state, std::chrono::seconds limit) const {
     const auto deadline = std::chrono::steady_clock::now() + limit;
@@ -87,25 +96,31 @@ public:
     }
     return false;
   }
-  ProgramRun& start(const std::vector<std::string>& arguments) { return laboratory_.start("dyncal", arguments, "fastdds"); }
+  ProgramRun& start(const std::vector<std::string>& arguments) {
+    return laboratory_.start("dyncal", arguments, "fastdds");
+  }
   // The bench file once more, with `text` in place of what one of its lines begins with.
-  std::filesystem::path changed_bench_file(const std::string& name, const std::string& line_begin, const std::string& text) const {
+  std::filesystem::path changed_bench_file(const std::string& name, const std::string& line_begin,
+                                           const std::string& text) const {
     std::ifstream in(bench_file());
     std::ofstream out(folder_ / name);
-    for (std::string line; std::getline(in, line);)
+    for (std::string line; std::getline(in, line);) {
       out << (line.starts_with(line_begin) ? text : line) << '\n';
+    }
     return folder_ / name;
   }
 
 private:
-  void write_bench_file(const LiveBenchSettings& settings, const std::string& dau, int acs_port) const {
-    std::ofstream(bench_file()) << "bench = \"live-" << domain_ << "\"\n[excitation]\n"
-                                << settings.excitation << "\n[generator]\n"
-                                << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\n", generator_port_) << settings.generator
-                                << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
-                                << "listen = \"" << dau << "\"\nchannels = { Data_11 = \"sync\" }\n"
-                                << settings.source_dau << "\n[sources.acs]\ndriver = \"socket\"\n"
-                                << fmt::format("address = \"127.0.0.1:{}\"\n", acs_port) << R"([method]
+  void write_bench_file(const LiveBenchSettings& settings, const std::string& dau,
+                        int acs_port) const {
+    std::ofstream(bench_file())
+        << "bench = \"live-" << domain_ << "\"\n[excitation]\n"
+        << settings.excitation << "\n[generator]\n"
+        << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\n", generator_port_)
+        << settings.generator << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
+        << "listen = \"" << dau << "\"\nchannels = { Data_11 = \"sync\" }\n"
+        << settings.source_dau << "\n[sources.acs]\ndriver = \"socket\"\n"
+        << fmt::format("address = \"127.0.0.1:{}\"\n", acs_port) << R"([method]
 kind = "sample-timestamping"
 reference = "acs/reference"
 sync_acs = "acs/sync"

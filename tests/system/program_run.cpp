@@ -24,8 +24,10 @@ std::string read(const std::filesystem::path& path) {
 
 } // namespace
 
-ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder)
-    : output_(folder / (program + ".out")), errors_(folder / (program + ".err")), began_(std::chrono::steady_clock::now()) {
+ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
+                       const std::filesystem::path& folder)
+    : output_(folder / (program + ".out")), errors_(folder / (program + ".err")),
+      began_(std::chrono::steady_clock::now()) {
   const std::string path = std::string(DYNCAL_PROGRAMS) + "/" + program;
   std::vector<char*> words{const_cast<char*>(path.c_str())};
   for (const std::string& argument : arguments) {
@@ -61,7 +63,8 @@ void ProgramRun::send(int signal) {
 }
 
 bool ProgramRun::send_to_child(const std::string& program, int signal) {
-  std::istringstream children(read("/proc/" + std::to_string(process_) + "/task/" + std::to_string(process_) + "/children"));
+  std::istringstream children(read("/proc/" + std::to_string(process_) + "/task/" +
+                                   std::to_string(process_) + "/children"));
   for (pid_t child = 0; children >> child;) {
     const std::string command = read("/proc/" + std::to_string(child) + "/cmdline");
     if (std::filesystem::path(command.substr(0, command.find('\0'))).filename() == program) {
@@ -106,7 +109,8 @@ std::string ProgramRun::errors() const {
 }
 
 double ProgramRun::seconds() const {
-  return std::chrono::duration<double>(ended_.value_or(std::chrono::steady_clock::now()) - began_).count();
+  return std::chrono::duration<double>(ended_.value_or(std::chrono::steady_clock::now()) - began_)
+      .count();
 }
 
 std::filesystem::path fresh_folder(const std::string& name) {

@@ -1,5 +1,5 @@
-// A program of the build as a test runs it: with arguments, a deadline, its outputs in files, and signals.
-// It is killed when the object goes. One thread.
+// A program of the build as a test runs it: with arguments, a deadline, its outputs in files, and
+// signals. It is killed when the object goes. One thread.
 #pragma once
 
 #include <sys/types.h>
@@ -15,7 +15,8 @@ namespace dyncal::tests {
 class ProgramRun {
 public:
   // Starts `program` of the build's folder of programs; its outputs go to files in `folder`.
-  ProgramRun(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
+             const std::filesystem::path& folder);
   ~ProgramRun();
   ProgramRun(const ProgramRun&) = delete;
   ProgramRun& operator=(const ProgramRun&) = delete;
@@ -23,7 +24,8 @@ public:
   void send(int signal);
   // To a process that the program has started; false when it has none of that name.
   bool send_to_child(const std::string& program, int signal);
-  // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as 128 + N.
+  // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as
+  // 128 + N.
   std::optional<int> wait(std::chrono::seconds limit);
   // True as soon as standard error contains the text.
   bool wait_for_error_text(const std::string& text, std::chrono::seconds limit);

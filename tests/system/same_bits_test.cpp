@@ -6,14 +6,16 @@
 namespace dyncal::tests {
 namespace {
 
-nlohmann::json result_over(const std::filesystem::path& folder, const std::filesystem::path& bench, const std::string& name, int domain,
-                           const std::string& acs, const std::string& analysis, const std::string& run) {
+nlohmann::json result_over(const std::filesystem::path& folder, const std::filesystem::path& bench,
+                           const std::string& name, int domain, const std::string& acs,
+                           const std::string& analysis, const std::string& run) {
   Laboratory laboratory(folder, domain);
   laboratory.start("dyncal-analysis", {}, analysis);
   laboratory.start("dyncal-acs", {bench}, acs);
   const std::filesystem::path json = folder / (name + ".json");
   ProgramRun& command = laboratory.start("dyncal", {"run", bench, "--json", json}, run);
-  EXPECT_EQ(command.wait(std::chrono::seconds(60)), 0) << name << command.output() << command.errors();
+  EXPECT_EQ(command.wait(std::chrono::seconds(60)), 0)
+      << name << command.output() << command.errors();
   return read_json(json);
 }
 
@@ -21,7 +23,8 @@ TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsOverBothAndWithoutANetwork) {
   const auto folder = fresh_folder("same-bits");
   const auto bench = recorded_bench(folder, "files", "3");
   const auto fast = result_over(folder, bench, "fast", 90, "fastdds", "fastdds", "fastdds");
-  const auto cyclone = result_over(folder, bench, "cyclone", 91, "cyclonedds", "cyclonedds", "cyclonedds");
+  const auto cyclone =
+      result_over(folder, bench, "cyclone", 91, "cyclonedds", "cyclonedds", "cyclonedds");
   const auto mixed = result_over(folder, bench, "mixed", 92, "cyclonedds", "fastdds", "cyclonedds");
   ProgramRun analyse("dyncal", {"analyse", bench, "--json", folder / "analyse.json"}, folder);
   EXPECT_EQ(analyse.wait(std::chrono::seconds(60)), 0) << analyse.errors();

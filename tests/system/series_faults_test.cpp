@@ -1,4 +1,5 @@
-// A run by series time stamping over bad instruments: every shot that fails is repeated, and the run reaches its result.
+// A run by series time stamping over bad instruments: every shot that fails is repeated, and the
+// run reaches its result.
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -40,21 +41,26 @@ protected:
   }
 
   void write_bench_file(const nlohmann::json& ports) const {
-    const auto address = [&](const char* port) { return "\"127.0.0.1:" + ports[port].dump() + "\"\n"; };
-    std::ofstream(folder_ / "bench.toml") << "bench = \"series-faults\"\n[excitation]\nfrequencies_hz = [\"40\", \"160\"]\n"
-                                          << "level = 100.0\nsettling_s = 0.5\nduration_s = 2.0\n"
-                                          << "[generator]\ndriver = \"scpi\"\nlevel_per_volt = 50.0\naddress = " << address("generator")
-                                          << "[sources.dso]\ndriver = \"oscilloscope\"\naddress = " << address("dso")
-                                          << "[sources.tss]\ndriver = \"series\"\naddress = " << address("tss")
-                                          << "[sources.acs]\ndriver = \"socket\"\naddress = " << address("acs")
-                                          << "[method]\nkind = \"series-timestamping\"\nreference = \"acs/reference\"\n"
-                                          << "sync_acs = \"acs/sync\"\nsync_dso = \"dso/sync\"\ndut = [\"tss/acceleration_z\"]\n"
-                                          << "shots = 4\n[corrections]\ndso_delay = { value_s = 236e-9, u_s = 1e-9 }\n"
-                                          << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n";
+    const auto address = [&](const char* port) {
+      return "\"127.0.0.1:" + ports[port].dump() + "\"\n";
+    };
+    std::ofstream(folder_ / "bench.toml")
+        << "bench = \"series-faults\"\n[excitation]\nfrequencies_hz = [\"40\", \"160\"]\n"
+        << "level = 100.0\nsettling_s = 0.5\nduration_s = 2.0\n"
+        << "[generator]\ndriver = \"scpi\"\nlevel_per_volt = 50.0\naddress = "
+        << address("generator")
+        << "[sources.dso]\ndriver = \"oscilloscope\"\naddress = " << address("dso")
+        << "[sources.tss]\ndriver = \"series\"\naddress = " << address("tss")
+        << "[sources.acs]\ndriver = \"socket\"\naddress = " << address("acs")
+        << "[method]\nkind = \"series-timestamping\"\nreference = \"acs/reference\"\n"
+        << "sync_acs = \"acs/sync\"\nsync_dso = \"dso/sync\"\ndut = [\"tss/acceleration_z\"]\n"
+        << "shots = 4\n[corrections]\ndso_delay = { value_s = 236e-9, u_s = 1e-9 }\n"
+        << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n";
   }
 
   nlohmann::json run() {
-    ProgramRun& run = laboratory_->start("dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
+    ProgramRun& run = laboratory_->start(
+        "dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
     EXPECT_EQ(run.wait(std::chrono::seconds(120)), 0) << run.errors();
     return read_json(folder_ / "result.json");
   }
@@ -76,8 +82,9 @@ protected:
 };
 
 TEST_F(SeriesFaults, ShotsSpoiledByABadLineAreRepeatedUntilTheStepHasAll) {
-  start({"line", 96}, {"--scope-fault", "garbage=0.01", "--scope-fault", "half-answer=0.005", "--scope-fault", "other-answer=0.01",
-                       "--scope-fault", "wrong-length=0.05", "--scope-fault", "disconnect=0.01", "--scope-pieces", "1500"});
+  start({"line", 96}, {"--scope-fault", "garbage=0.01", "--scope-fault", "half-answer=0.005",
+                       "--scope-fault", "other-answer=0.01", "--scope-fault", "wrong-length=0.05",
+                       "--scope-fault", "disconnect=0.01", "--scope-pieces", "1500"});
   expect_complete(run());
   EXPECT_THAT(dso_->errors(), HasSubstr("oscilloscope 127.0.0.1:")); // clear lines about it
 }
@@ -88,7 +95,8 @@ TEST_F(SeriesFaults, ASensorThatRunsFreeIsNoticedAndCorrected) {
   ASSERT_FALSE(result.is_discarded());
   const auto truth = read_json(folder_ / "truth.json");
   for (const auto& point : result["points"]) {
-    EXPECT_THAT(point["series_start"].get<std::string>(), AnyOf(HasSubstr("uniform over one sample"), HasSubstr("undecided")));
+    EXPECT_THAT(point["series_start"].get<std::string>(),
+                AnyOf(HasSubstr("uniform over one sample"), HasSubstr("undecided")));
     EXPECT_GT(point["series_start_scatter_s"].get<double>(), 20e-6);
     EXPECT_GT(point["u_phase_rad"].get<double>(), 0.01); // four shots of a start that is not known
   }

@@ -1,4 +1,5 @@
-// Two benches at once on one network with one analysis service: each gets its own results, as if it were alone.
+// Two benches at once on one network with one analysis service: each gets its own results, as if it
+// were alone.
 #include <gtest/gtest.h>
 
 #include "tests/system/laboratory.hpp"
@@ -19,7 +20,8 @@ TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
   laboratory.start("dyncal-analysis", {}, "fastdds");
   laboratory.start("dyncal-acs", {bench_a}, "fastdds");
   laboratory.start("dyncal-acs", {bench_b}, "cyclonedds");
-  const auto run = [&](const std::filesystem::path& bench, const std::filesystem::path& json) -> ProgramRun& {
+  const auto run = [&](const std::filesystem::path& bench,
+                       const std::filesystem::path& json) -> ProgramRun& {
     return laboratory.start("dyncal", {"run", bench, "--json", json}, "fastdds");
   };
   ProgramRun& alone = run(bench_a, folder / "alone.json");

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "analysis/clock/allan_deviation.hpp"
-#include "analysis/response/group_delay.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "analysis/method/series_stamping.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "analysis/response/triaxial.hpp"
 #include "analysis/uncertainty/law_of_propagation.hpp"
 #include "tests/vectors/recipe_series.hpp"
@@ -28,9 +28,11 @@ void expect_phase(double phase_rad, const Json& exact, double limit_rad) {
 // The channels of one recorder, made by recipe.
 struct Recorder {
   explicit Recorder(const Json& recipe)
-      : frequency(*Frequency::parse(recipe["frequency_hz"].get<std::string>())), stamps_ns(stamps_of(recipe)) {
-    for (const Json& channel : recipe["channels"])
+      : frequency(*Frequency::parse(recipe["frequency_hz"].get<std::string>())),
+        stamps_ns(stamps_of(recipe)) {
+    for (const Json& channel : recipe["channels"]) {
       values.push_back(values_of(recipe, channel, stamps_ns));
+    }
   }
 
   Frequency frequency;
@@ -74,8 +76,10 @@ TEST(ResultVectors, SeriesOfThreeShots) {
   input.dso_delay_s = number(recipe["dso_delay_s"]);
   for (std::size_t j = 0; j < traces.size(); ++j) {
     const Json& trace = recipe["traces"][j];
-    input.shots.push_back(
-        {trace["first_ns"].get<double>() * 1e-9, trace["interval_ns"].get<double>() * 1e-9, traces[j].values[0], {series.values[j]}});
+    input.shots.push_back({trace["first_ns"].get<double>() * 1e-9,
+                           trace["interval_ns"].get<double>() * 1e-9,
+                           traces[j].values[0],
+                           {series.values[j]}});
   }
   const auto result = evaluate_series_stamping(input);
   ASSERT_TRUE(result) << result.error().message;
@@ -92,8 +96,9 @@ TEST(ResultVectors, SeriesOfThreeShots) {
 
 Axes axes_of(const Json& texts) {
   Axes axes;
-  for (std::size_t i = 0; i < axes.size(); ++i)
+  for (std::size_t i = 0; i < axes.size(); ++i) {
     axes[i] = {number(texts[i][0]), number(texts[i][1])};
+  }
   return axes;
 }
 
@@ -122,13 +127,15 @@ TEST(ResultVectors, AllanDeviation) {
   const Json& vector = vector_of("allan_deviation");
   const std::vector<std::int64_t> stamps = stamps_of(vector["recipe"]);
   StreamingAllan stream(stamps.size());
-  for (const std::int64_t stamp : stamps)
+  for (const std::int64_t stamp : stamps) {
     stream.add(stamp);
+  }
   const double tau0_s = vector["recipe"]["interval_ns"].get<double>() * 1e-9;
   const auto points = stream.points(tau0_s);
   ASSERT_GE(points.size(), vector["answer"]["deviations"].size());
   for (std::size_t i = 0; i < vector["answer"]["deviations"].size(); ++i) {
-    EXPECT_NEAR(points[i].tau_s / (tau0_s * vector["recipe"]["factors"][i].get<double>()), 1.0, 1e-15);
+    EXPECT_NEAR(points[i].tau_s / (tau0_s * vector["recipe"]["factors"][i].get<double>()), 1.0,
+                1e-15);
     EXPECT_NEAR(points[i].deviation / number(vector["answer"]["deviations"][i]), 1.0, 1e-12);
   }
 }
@@ -144,8 +151,9 @@ TEST(ResultVectors, Budget) {
     inputs.push_back(input);
   }
   std::vector<InputCorrelation> correlations;
-  for (const Json& row : vector["recipe"]["correlations"])
+  for (const Json& row : vector["recipe"]["correlations"]) {
     correlations.push_back({row["first"], row["second"], number(row["coefficient"])});
+  }
   const auto combined = propagate_uncertainty(inputs, correlations);
   ASSERT_TRUE(combined) << combined.error().message;
   const Json& answer = vector["answer"];
@@ -158,9 +166,12 @@ TEST(ResultVectors, Budget) {
 TEST(ResultVectors, GroupDelayOfWrappedPhases) {
   const Json& vector = vector_of("group_delay_of_wrapped_phases");
   std::vector<PhasePoint> points;
-  for (const Json& point : vector["recipe"]["points"])
-    points.push_back({number(point["frequency_hz"]), number(point["phase_rad"]), number(point["u_phase_rad"])});
-  const auto delay = evaluate_group_delay(points, {number(vector["recipe"]["u_delay_s"]), number(vector["recipe"]["u_phase_rad"])});
+  for (const Json& point : vector["recipe"]["points"]) {
+    points.push_back(
+        {number(point["frequency_hz"]), number(point["phase_rad"]), number(point["u_phase_rad"])});
+  }
+  const auto delay = evaluate_group_delay(
+      points, {number(vector["recipe"]["u_delay_s"]), number(vector["recipe"]["u_phase_rad"])});
   ASSERT_TRUE(delay) << delay.error().message;
   const Json& answer = vector["answer"];
   EXPECT_NEAR(delay->delay_s, number(answer["delay_s"]), 1e-16);
@@ -168,9 +179,11 @@ TEST(ResultVectors, GroupDelayOfWrappedPhases) {
   EXPECT_NEAR(delay->u_delay_s / number(answer["u_delay_s"]), 1.0, 1e-9);
   EXPECT_NEAR(delay->u_intercept_rad / number(answer["u_intercept_rad"]), 1.0, 1e-9);
   EXPECT_NEAR(delay->chi_squared / number(answer["chi_squared"]), 1.0, 1e-7);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_EQ(std::lround((delay->unwrapped_rad[i] - points[i].phase_rad) / (2.0 * std::numbers::pi)),
-              vector["recipe"]["points"][i]["turns"].get<long>());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(
+        std::lround((delay->unwrapped_rad[i] - points[i].phase_rad) / (2.0 * std::numbers::pi)),
+        vector["recipe"]["points"][i]["turns"].get<long>());
+  }
 }
 
 } // namespace

@@ -54,9 +54,11 @@ Json read_json(const std::string& name) {
   return Json::parse(std::ifstream(folder / name));
 }
 
-SineFit fit(const Table& table, const std::string& column, const std::string& frequency_hz, std::int64_t reference_ns) {
+SineFit fit(const Table& table, const std::string& column, const std::string& frequency_hz,
+            std::int64_t reference_ns) {
   const std::span<const double> channels[] = {table.columns.at(column)};
-  const auto result = fit_sine(*Frequency::parse(frequency_hz), reference_ns, table.stamps_ns, channels);
+  const auto result =
+      fit_sine(*Frequency::parse(frequency_hz), reference_ns, table.stamps_ns, channels);
   EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
   return result ? result->front() : SineFit{};
 }
@@ -74,7 +76,8 @@ void expect_answer(const SineFit& fit, const Json& answer, Limits limits = {}) {
   const double amplitude = number(answer["amplitude"]);
   EXPECT_NEAR(fit.sine, number(answer["A_sin"]), limits.value * amplitude);
   EXPECT_NEAR(fit.cosine, number(answer["B_cos"]), limits.value * amplitude);
-  EXPECT_NEAR(fit.offset, number(answer["C"]), limits.value * std::max(amplitude, std::abs(number(answer["C"]))));
+  EXPECT_NEAR(fit.offset, number(answer["C"]),
+              limits.value * std::max(amplitude, std::abs(number(answer["C"]))));
   EXPECT_NEAR(fit.amplitude(), amplitude, limits.value * amplitude);
   EXPECT_NEAR(fit.phase_rad(), number(answer["theta_rad"]), limits.value);
   EXPECT_NEAR(fit.rss / number(answer["rss"]), 1.0, limits.uncertainty);
@@ -88,13 +91,16 @@ void expect_answer(const SineFit& fit, const Json& answer, Limits limits = {}) {
 class SharedVectors : public testing::Test {
 protected:
   void SetUp() override {
-    if (!std::filesystem::exists(folder / "01_pure_sine_nonequidistant.json")) GTEST_SKIP() << "no shared check vectors in " << folder;
+    if (!std::filesystem::exists(folder / "01_pure_sine_nonequidistant.json")) {
+      GTEST_SKIP() << "no shared check vectors in " << folder;
+    }
   }
 };
 
 TEST_F(SharedVectors, PureSineOnUnevenStamps) {
   const Json json = read_json("01_pure_sine_nonequidistant.json");
-  const SineFit result = fit(read_csv("01_pure_sine_nonequidistant.csv"), "y", json["frequency_hz"], json["t_ref_ns"]);
+  const SineFit result =
+      fit(read_csv("01_pure_sine_nonequidistant.csv"), "y", json["frequency_hz"], json["t_ref_ns"]);
   const Json& answer = json["ls3"];
   EXPECT_NEAR(result.amplitude() / number(answer["amplitude"]), 1.0, 1e-15);
   EXPECT_NEAR(result.phase_rad(), number(answer["theta_rad"]), 1e-15);
@@ -106,7 +112,8 @@ TEST_F(SharedVectors, FewerThanTwoCyclesWithOffsetAndNoise) {
   const Json json = read_json("03_low_cycles.json");
   for (const Json& one : json["cases"]) {
     SCOPED_TRACE(one["file"].get<std::string>());
-    expect_answer(fit(read_csv(one["file"]), "y", one["frequency_hz"], one["t_ref_ns"]), one["ls3"]);
+    expect_answer(fit(read_csv(one["file"]), "y", one["frequency_hz"], one["t_ref_ns"]),
+                  one["ls3"]);
   }
 }
 
@@ -114,9 +121,11 @@ TEST_F(SharedVectors, FourSeriesOfTheSyncLink) {
   const Json json = read_json("07_sync_link.json");
   const Table acs = read_csv("07_sync_link_acs.csv");
   const Table dau = read_csv("07_sync_link_dau.csv");
-  const auto evaluate = [&](const Table& table, const char* column, const char* system, const char* answer) {
+  const auto evaluate = [&](const Table& table, const char* column, const char* system,
+                            const char* answer) {
     SCOPED_TRACE(answer);
-    expect_answer(fit(table, column, json["frequency_hz"], json["t_ref_ns"][system]), json["ls3"][answer]);
+    expect_answer(fit(table, column, json["frequency_hz"], json["t_ref_ns"][system]),
+                  json["ls3"][answer]);
   };
   evaluate(acs, "ref", "acs", "ref_acs");
   evaluate(acs, "sync", "acs", "sync_acs");

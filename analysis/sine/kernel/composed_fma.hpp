@@ -1,8 +1,10 @@
-// a b + c with one rounding, composed of exact operations, for processors without a fused multiply-add.
+// a b + c with one rounding, composed of exact operations, for processors without a fused
+// multiply-add.
 //
-// After Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums: proved algorithms using rounding to odd", IEEE
-// Trans. Computers 57 (2008): Dekker's product, two exact sums, and one sum rounded to odd. The result equals std::fma bit for
-// bit while |a|, |b| < 2^990 and neither product nor sums come near the subnormal range; otherwise it may differ in the last place.
+// After Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums: proved algorithms
+// using rounding to odd", IEEE Trans. Computers 57 (2008): Dekker's product, two exact sums, and
+// one sum rounded to odd. The result equals std::fma bit for bit while |a|, |b| < 2^990 and neither
+// product nor sums come near the subnormal range; otherwise it may differ in the last place.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +33,12 @@ inline ExactPair exact_product(Double2 a, Double2 b) {
   const Double2 a_low = a - a_high;
   const Double2 b_low = b - b_high;
   const Double2 product = a * b;
-  return {product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)};
+  return {product,
+          a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)};
 }
 
-// The sum, or its odd neighbour on the side of the exact value when it is inexact: a later rounding cannot go wrong twice.
+// The sum, or its odd neighbour on the side of the exact value when it is inexact: a later rounding
+// cannot go wrong twice.
 inline Double2 sum_rounded_to_odd(Double2 a, Double2 b) {
   const ExactPair sum = exact_sum(a, b);
   const Bits2 bits = reinterpret_cast<Bits2>(sum.high);
@@ -42,8 +46,9 @@ inline Double2 sum_rounded_to_odd(Double2 a, Double2 b) {
   const Bits2 one = {1, 1};
   const Bits2 inexact = (sum.low != zero);
   const Bits2 even = (bits & one) != one;
-  const Bits2 away = (sum.low > zero) ^ (sum.high < zero); // -1: the exact value has the larger magnitude
-  const Bits2 step = (away & one) | ~away;                 // +1 or -1
+  const Bits2 away =
+      (sum.low > zero) ^ (sum.high < zero); // -1: the exact value has the larger magnitude
+  const Bits2 step = (away & one) | ~away;  // +1 or -1
   return reinterpret_cast<Double2>(bits + (step & inexact & even));
 }
 

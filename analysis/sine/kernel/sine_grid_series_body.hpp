@@ -1,8 +1,11 @@
-// Sums weighted with powers of time for the refinement of the frequency, in the fast form of sine_grid_body.hpp; included after it.
+// Sums weighted with powers of time for the refinement of the frequency, in the fast form of
+// sine_grid_body.hpp; included after it.
 //
-// v is the time from the block's anchor, u that from the origin, in units of the axis. Turning to the origin is as there.
+// v is the time from the block's anchor, u that from the origin, in units of the axis. Turning to
+// the origin is as there.
 
-// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own, without linkage
+// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own,
+// without linkage
 
 namespace {
 
@@ -12,7 +15,8 @@ struct alignas(64) GridSeriesBasis {
   double v[grid_samples];
 };
 
-// Lanes of sums weighted with one power of time: of the weight, weight s, weight c, weight cos 2x, weight sin 2x.
+// Lanes of sums weighted with one power of time: of the weight, weight s, weight c, weight cos 2x,
+// weight sin 2x.
 struct WeightedLanes {
   Lanes one, s, c, cosine_twice, sine_twice;
 };
@@ -27,8 +31,9 @@ struct SeriesLanes {
 
   SeriesLanes() {
     const Lanes zero = Lanes::all(0.0);
-    for (WeightedLanes& one : order)
+    for (WeightedLanes& one : order) {
       one = {zero, zero, zero, zero, zero};
+    }
   }
 
   // A block's own sums, turned, then with (anchor + v)^m for v^m.
@@ -37,7 +42,8 @@ struct SeriesLanes {
       const Lanes zero = Lanes::all(0.0);
       WeightedLanes turned{one.one, zero, zero, zero, zero};
       add_turned(anchors.sine[b], anchors.cosine[b], one.s, one.c, turned.s, turned.c);
-      add_turned(anchors.sine_twice[b], anchors.cosine_twice[b], one.sine_twice, one.cosine_twice, turned.sine_twice, turned.cosine_twice);
+      add_turned(anchors.sine_twice[b], anchors.cosine_twice[b], one.sine_twice, one.cosine_twice,
+                 turned.sine_twice, turned.cosine_twice);
       one = turned;
     }
     add_moved(anchor, own, [](auto& lanes_of) -> Lanes& { return lanes_of.one; });
@@ -63,14 +69,18 @@ struct SeriesLanes {
       sc[m] = 0.5 * order[m].sine_twice.total();
     }
     design = {order[0].s.total(), order[0].c.total(), ss[0], sc[0]};
-    slope = {one[1], one[2], order[1].s.total(), order[1].c.total(), ss[1], sc[1], order[2].s.total(), order[2].c.total(), ss[2], sc[2]};
+    slope = {one[1], one[2], order[1].s.total(), order[1].c.total(),
+             ss[1],  sc[1],  order[2].s.total(), order[2].c.total(),
+             ss[2],  sc[2]};
   }
 };
 
-// Sine, cosine and time of a block and their sums; false when not all samples are near enough for the order.
+// Sine, cosine and time of a block and their sums; false when not all samples are near enough for
+// the order.
 template <Order order>
-inline bool grid_series_design(const std::int64_t* stamps, const GridPlace& place, const TimeAxis& axis, const SampleGrid& grid,
-                               GridSeriesBasis& basis, WeightedLanes (&sums)[3]) {
+inline bool grid_series_design(const std::int64_t* stamps, const GridPlace& place,
+                               const TimeAxis& axis, const SampleGrid& grid, GridSeriesBasis& basis,
+                               WeightedLanes (&sums)[3]) {
   const std::int64_t* from = stamps + place.first;
   const std::int64_t anchor_ns = stamps[place.anchor()];
   const std::int64_t* offsets_ns = grid.offsets_ns + place.on_grid;
@@ -78,14 +88,16 @@ inline bool grid_series_design(const std::int64_t* stamps, const GridPlace& plac
   const double* grid_cosine = grid.cosine + place.on_grid;
   const Lanes scale = Lanes::all(grid.scaled_radians_per_ns);
   const Lanes inverse_scale = Lanes::all(axis.inverse_scale);
-  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s, v1 = s, vs = s, vc = s, vss = s, vsc = s, v2 = s, vvs = s, vvc = s, vvss = s, vvsc = s;
+  Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s, v1 = s, vs = s, vc = s, vss = s, vsc = s,
+        v2 = s, vvs = s, vvc = s, vvss = s, vvsc = s;
   Lanes largest = s;
   for (std::size_t i = 0; i < place.n; i += lanes) {
     prefetch_ahead(from + i);
     const Lanes d = time_difference(from + i, offsets_ns + i, anchor_ns);
     const Lanes v = time_difference(from + i, anchor_ns) * inverse_scale;
     largest = larger_magnitude(largest, d);
-    const SineCosine one = turned_from_grid<order>(d * scale, Lanes::load(grid_sine + i), Lanes::load(grid_cosine + i));
+    const SineCosine one = turned_from_grid<order>(d * scale, Lanes::load(grid_sine + i),
+                                                   Lanes::load(grid_cosine + i));
     one.sine.store(basis.sine + i);
     one.cosine.store(basis.cosine + i);
     v.store(basis.v + i);
@@ -120,8 +132,10 @@ struct SeriesResidualLanes {
 };
 
 template <std::size_t count>
-inline void grid_series_residuals(const double* const* values, const GridPlace& place, const Anchors& anchors, std::size_t b, double anchor,
-                                  const GridSeriesBasis& basis, const TurnedStart* start, SeriesResidualLanes* sums) {
+inline void grid_series_residuals(const double* const* values, const GridPlace& place,
+                                  const Anchors& anchors, std::size_t b, double anchor,
+                                  const GridSeriesBasis& basis, const TurnedStart* start,
+                                  SeriesResidualLanes* sums) {
   const Lanes zero = Lanes::all(0.0);
   const double* from[count];
   Parameters p[count];
@@ -159,9 +173,11 @@ inline void grid_series_residuals(const double* const* values, const GridPlace& 
   }
 }
 
-std::size_t series_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const SampleGrid& grid,
-                           const double* const* values, std::size_t channels, const Parameters* start, DesignSums& design, SlopeSums& slope,
-                           ResidualSums* residuals, ResidualSlopeSums* residual_slopes) {
+std::size_t series_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                           const SampleGrid& grid, const double* const* values,
+                           std::size_t channels, const Parameters* start, DesignSums& design,
+                           SlopeSums& slope, ResidualSums* residuals,
+                           ResidualSlopeSums* residual_slopes) {
   const Anchors anchors = anchors_of(stamps, n, axis);
   const Lanes zero = Lanes::all(0.0);
   SeriesLanes series;
@@ -177,17 +193,25 @@ std::size_t series_on_grid(const std::int64_t* stamps, std::size_t n, const Time
   for (std::size_t b = 0; taken < n; ++b) {
     const GridPlace place(b, n);
     WeightedLanes own[3];
-    if (third_order) third_order = grid_series_design<Order::third>(stamps, place, axis, grid, basis, own);
-    if (!third_order && !grid_series_design<Order::fifth>(stamps, place, axis, grid, basis, own)) break;
-    const double anchor = static_cast<double>(stamps[place.anchor()] - axis.origin_ns) * axis.inverse_scale;
+    if (third_order) {
+      third_order = grid_series_design<Order::third>(stamps, place, axis, grid, basis, own);
+    }
+    if (!third_order && !grid_series_design<Order::fifth>(stamps, place, axis, grid, basis, own)) {
+      break;
+    }
+    const double anchor =
+        static_cast<double>(stamps[place.anchor()] - axis.origin_ns) * axis.inverse_scale;
     series.add(anchors, b, anchor, own);
     std::size_t j = 0;
     if constexpr (Lanes::channels_at_once == 4) {
-      for (; j + 2 <= channels; j += 2)
-        grid_series_residuals<2>(values + j, place, anchors, b, anchor, basis, turned + j, sums + j);
+      for (; j + 2 <= channels; j += 2) {
+        grid_series_residuals<2>(values + j, place, anchors, b, anchor, basis, turned + j,
+                                 sums + j);
+      }
     }
-    for (; j < channels; ++j)
+    for (; j < channels; ++j) {
       grid_series_residuals<1>(values + j, place, anchors, b, anchor, basis, turned + j, sums + j);
+    }
     taken += place.n;
   }
   series.totals(design, slope);

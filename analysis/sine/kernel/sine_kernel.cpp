@@ -9,8 +9,12 @@ struct Choice {
 
   Choice() {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) supported[count++] = &avx2_kernel;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) supported[count++] = &avx512_kernel;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+      supported[count++] = &avx2_kernel;
+    }
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+      supported[count++] = &avx512_kernel;
+    }
 #endif
   }
 };

@@ -1,12 +1,14 @@
-// The inner loops of the sine approximation: sums over one block of samples, by the widest instructions the processor has.
+// The inner loops of the sine approximation: sums over one block of samples, by the widest
+// instructions the processor has.
 //
-// Phase of sample i in turns: x_i = frac((t_i - origin) * (high + low)), by an error-free product, so that no digit is lost
-// however long the record; s_i = sin(2 pi x_i), c_i = cos(2 pi x_i), u_i = (t_i - origin) * inverse_scale.
-// Every variant keeps eight logical lanes (sample i in lane i mod 8), uses the fused multiply-add at the same places and
-// adds the lanes up as ((0+1)+(2+3))+((4+5)+(6+7)): the bits do not depend on the instruction set. Without fused
-// multiply-add in hardware it is composed of exact additions and products (correct for |products| in 1e-290..1e290).
-// Blocks hold at most block_samples. REQUIRES: |t_i - origin| < 2^51 ns (26 days), less than 2^40 turns.
-// No state but what the caller passes; any thread.
+// Phase of sample i in turns: x_i = frac((t_i - origin) * (high + low)), by an error-free product,
+// so that no digit is lost however long the record; s_i = sin(2 pi x_i), c_i = cos(2 pi x_i), u_i =
+// (t_i - origin) * inverse_scale. Every variant keeps eight logical lanes (sample i in lane i mod
+// 8), uses the fused multiply-add at the same places and adds the lanes up as
+// ((0+1)+(2+3))+((4+5)+(6+7)): the bits do not depend on the instruction set. Without fused
+// multiply-add in hardware it is composed of exact additions and products (correct for |products|
+// in 1e-290..1e290). Blocks hold at most block_samples. REQUIRES: |t_i - origin| < 2^51 ns (26
+// days), less than 2^40 turns. No state but what the caller passes; any thread.
 #pragma once
 
 #include <cstddef>
@@ -74,34 +76,48 @@ inline constexpr std::size_t grid_call_channels = 4;
 
 struct SineKernel {
   const char* name;
-  // The same sums as fit_block's, by sine_grid.hpp: n a multiple of eight, at most grid_call_samples, channels at most
-  // grid_call_channels. Takes whole blocks of the grid (the last one may be shorter) as long as their samples are near enough, and
-  // returns how many samples these are; stamps within a block then increase, those across are for the caller to compare.
-  std::size_t (*fit_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const SampleGrid& grid,
-                             const double* const* values, std::size_t channels, const Parameters* start, DesignSums& sums,
+  // The same sums as fit_block's, by sine_grid.hpp: n a multiple of eight, at most
+  // grid_call_samples, channels at most grid_call_channels. Takes whole blocks of the grid (the
+  // last one may be shorter) as long as their samples are near enough, and returns how many samples
+  // these are; stamps within a block then increase, those across are for the caller to compare.
+  std::size_t (*fit_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                             const SampleGrid& grid, const double* const* values,
+                             std::size_t channels, const Parameters* start, DesignSums& sums,
                              ResidualSums* residual_sums);
   // Likewise with the sums weighted with u.
-  std::size_t (*series_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const SampleGrid& grid,
-                                const double* const* values, std::size_t channels, const Parameters* start, DesignSums& design,
-                                SlopeSums& slope, ResidualSums* residuals, ResidualSlopeSums* residual_slopes);
-  // Design and residual sums of several channels at once; as design() and residuals() give them, bit for bit.
-  bool (*fit_block)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
-                    const Parameters* start, DesignSums& sums, ResidualSums* residual_sums);
+  std::size_t (*series_on_grid)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                                const SampleGrid& grid, const double* const* values,
+                                std::size_t channels, const Parameters* start, DesignSums& design,
+                                SlopeSums& slope, ResidualSums* residuals,
+                                ResidualSlopeSums* residual_slopes);
+  // Design and residual sums of several channels at once; as design() and residuals() give them,
+  // bit for bit.
+  bool (*fit_block)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                    const double* const* values, std::size_t channels, const Parameters* start,
+                    DesignSums& sums, ResidualSums* residual_sums);
   // Fills sine and cosine (and u). False when the stamps do not increase strictly within the block.
-  bool (*design)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums);
-  bool (*design_with_slope)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,
-                            SlopeSums& slope);
-  void (*residuals)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums);
-  void (*residuals_with_slope)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums,
+  bool (*design)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis,
+                 DesignSums& sums);
+  bool (*design_with_slope)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                            BlockBasis& basis, DesignSums& sums, SlopeSums& slope);
+  void (*residuals)(const double* values, std::size_t n, const BlockBasis& basis,
+                    const Parameters& start, ResidualSums& sums);
+  void (*residuals_with_slope)(const double* values, std::size_t n, const BlockBasis& basis,
+                               const Parameters& start, ResidualSums& sums,
                                ResidualSlopeSums& slope);
-  bool (*design_moments)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments);
-  void (*residual_moments)(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualMoments& moments);
-  // Models of `count` columns, `block_samples` apart; columns are zero past the last row up to a multiple of eight, and so are the
-  // residuals that are left: y - sum of coefficient times column, and the sum of their squares.
-  void (*model_residuals)(const double* values, std::size_t n, const double* columns, std::size_t count, const double* coefficients,
-                          double* residuals, double& squares);
+  bool (*design_moments)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                         BlockBasis& basis, DesignMoments& moments);
+  void (*residual_moments)(const double* values, std::size_t n, const BlockBasis& basis,
+                           const Parameters& start, ResidualMoments& moments);
+  // Models of `count` columns, `block_samples` apart; columns are zero past the last row up to a
+  // multiple of eight, and so are the residuals that are left: y - sum of coefficient times column,
+  // and the sum of their squares.
+  void (*model_residuals)(const double* values, std::size_t n, const double* columns,
+                          std::size_t count, const double* coefficients, double* residuals,
+                          double& squares);
   // Of one column with each of `count` others.
-  void (*model_products)(const double* one, std::size_t n, const double* columns, std::size_t count, double* products);
+  void (*model_products)(const double* one, std::size_t n, const double* columns, std::size_t count,
+                         double* products);
 };
 
 extern const SineKernel baseline_kernel;

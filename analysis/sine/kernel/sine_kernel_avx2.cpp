@@ -11,7 +11,9 @@ struct Lanes {
   static constexpr std::size_t channels_at_once = 1;
 
   static Lanes all(double value) { return {_mm256_set1_pd(value), _mm256_set1_pd(value)}; }
-  static Lanes load(const double* from) { return {_mm256_loadu_pd(from), _mm256_loadu_pd(from + 4)}; }
+  static Lanes load(const double* from) {
+    return {_mm256_loadu_pd(from), _mm256_loadu_pd(from + 4)};
+  }
   static Lanes mask(std::size_t count) {
     const __m256i n = _mm256_set1_epi64x(static_cast<long long>(count));
     return {_mm256_castsi256_pd(_mm256_cmpgt_epi64(n, _mm256_setr_epi64x(0, 1, 2, 3))),
@@ -24,12 +26,14 @@ struct Lanes {
 
   bool all_at_most(double limit) const {
     const __m256d most = _mm256_set1_pd(limit);
-    return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(a, most, _CMP_LE_OQ), _mm256_cmp_pd(b, most, _CMP_LE_OQ))) == 0xf;
+    return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(a, most, _CMP_LE_OQ),
+                                            _mm256_cmp_pd(b, most, _CMP_LE_OQ))) == 0xf;
   }
 
   double total() const {
     const __m256d pairs = _mm256_hadd_pd(a, b); // 0+1, 4+5, 2+3, 6+7
-    const __m128d fours = _mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1));
+    const __m128d fours =
+        _mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1));
     return _mm_cvtsd_f64(_mm_add_sd(fours, _mm_unpackhi_pd(fours, fours)));
   }
 };
@@ -63,23 +67,28 @@ inline __m256i load_four(const std::int64_t* stamps) {
 // |integer| < 2^51: it is put into the mantissa of rounding_shift.
 inline __m256d four_doubles(__m256i integers) {
   const __m256d shift = _mm256_set1_pd(dyncal::analysis::kernel::rounding_shift);
-  return _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(integers, _mm256_castpd_si256(shift))), shift);
+  return _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(integers, _mm256_castpd_si256(shift))),
+                       shift);
 }
 
 inline __m256d four_differences(const std::int64_t* stamps, std::int64_t origin) {
   return four_doubles(_mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin)));
 }
 
-inline __m256d four_differences(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
-  return four_doubles(_mm256_sub_epi64(_mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin)), load_four(offsets)));
+inline __m256d four_differences(const std::int64_t* stamps, const std::int64_t* offsets,
+                                std::int64_t origin) {
+  return four_doubles(_mm256_sub_epi64(
+      _mm256_sub_epi64(load_four(stamps), _mm256_set1_epi64x(origin)), load_four(offsets)));
 }
 
 inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
   return {four_differences(stamps, origin), four_differences(stamps + 4, origin)};
 }
 
-inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
-  return {four_differences(stamps, offsets, origin), four_differences(stamps + 4, offsets + 4, origin)};
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets,
+                             std::int64_t origin) {
+  return {four_differences(stamps, offsets, origin),
+          four_differences(stamps + 4, offsets + 4, origin)};
 }
 
 inline __m256d larger_magnitude_of_four(__m256d a, __m256d b) {
@@ -111,7 +120,8 @@ struct StepCheck {
   __m256i forward = _mm256_set1_epi64x(-1);
   void see(const std::int64_t* stamps, const std::int64_t* next) {
     forward = _mm256_and_si256(forward, _mm256_cmpgt_epi64(load_four(next), load_four(stamps)));
-    forward = _mm256_and_si256(forward, _mm256_cmpgt_epi64(load_four(next + 4), load_four(stamps + 4)));
+    forward =
+        _mm256_and_si256(forward, _mm256_cmpgt_epi64(load_four(next + 4), load_four(stamps + 4)));
   }
   bool increasing() const { return _mm256_movemask_pd(_mm256_castsi256_pd(forward)) == 0xf; }
 };
@@ -127,6 +137,8 @@ struct StepCheck {
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel avx2_kernel{"avx2",    fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
-                             residuals, residuals_with_slope, design_moments, residual_moments, model_residuals, model_products};
+const SineKernel avx2_kernel{
+    "avx2",         fit_on_grid,       series_on_grid,  fit_block,
+    design,         design_with_slope, residuals,       residuals_with_slope,
+    design_moments, residual_moments,  model_residuals, model_products};
 }

@@ -13,16 +13,21 @@ struct Lanes {
   static Lanes all(double value) { return {_mm512_set1_pd(value)}; }
   static Lanes load(const double* from) { return {_mm512_loadu_pd(from)}; }
   static Lanes mask(std::size_t count) {
-    return {_mm512_castsi512_pd(_mm512_maskz_set1_epi64(static_cast<__mmask8>(count >= 8 ? 0xff : (1u << count) - 1u), -1))};
+    return {_mm512_castsi512_pd(_mm512_maskz_set1_epi64(
+        static_cast<__mmask8>(count >= 8 ? 0xff : (1u << count) - 1u), -1))};
   }
   void store(double* to) const { _mm512_storeu_pd(to, v); }
 
-  bool all_at_most(double limit) const { return _mm512_cmp_pd_mask(v, _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff; }
+  bool all_at_most(double limit) const {
+    return _mm512_cmp_pd_mask(v, _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff;
+  }
 
   double total() const {
-    const __m512d pairs = _mm512_add_pd(v, _mm512_permute_pd(v, 0x55));                   // 0+1, 2+3, ...
-    const __m512d fours = _mm512_add_pd(pairs, _mm512_shuffle_f64x2(pairs, pairs, 0xb1)); // (0+1)+(2+3)
-    const __m256d sum = _mm256_add_pd(_mm512_castpd512_pd256(fours), _mm512_extractf64x4_pd(fours, 1));
+    const __m512d pairs = _mm512_add_pd(v, _mm512_permute_pd(v, 0x55)); // 0+1, 2+3, ...
+    const __m512d fours =
+        _mm512_add_pd(pairs, _mm512_shuffle_f64x2(pairs, pairs, 0xb1)); // (0+1)+(2+3)
+    const __m256d sum =
+        _mm256_add_pd(_mm512_castpd512_pd256(fours), _mm512_extractf64x4_pd(fours, 1));
     return _mm256_cvtsd_f64(sum);
   }
 };
@@ -50,11 +55,14 @@ inline Lanes fused_minus(Lanes a, Lanes b, Lanes c) {
 }
 
 inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
-  return {_mm512_cvtepi64_pd(_mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin)))};
+  return {
+      _mm512_cvtepi64_pd(_mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin)))};
 }
 
-inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
-  const __m512i difference = _mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin));
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets,
+                             std::int64_t origin) {
+  const __m512i difference =
+      _mm512_sub_epi64(_mm512_loadu_si512(stamps), _mm512_set1_epi64(origin));
   return {_mm512_cvtepi64_pd(_mm512_sub_epi64(difference, _mm512_loadu_si512(offsets)))};
 }
 
@@ -76,7 +84,8 @@ inline void turn_quadrants(Lanes shifted, Lanes& sine, Lanes& cosine) {
 struct StepCheck {
   __mmask8 backward = 0;
   void see(const std::int64_t* stamps, const std::int64_t* next) {
-    backward = static_cast<__mmask8>(backward | _mm512_cmple_epi64_mask(_mm512_loadu_si512(next), _mm512_loadu_si512(stamps)));
+    backward = static_cast<__mmask8>(
+        backward | _mm512_cmple_epi64_mask(_mm512_loadu_si512(next), _mm512_loadu_si512(stamps)));
   }
   bool increasing() const { return backward == 0; }
 };
@@ -92,6 +101,8 @@ struct StepCheck {
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel avx512_kernel{"avx512",  fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
-                               residuals, residuals_with_slope, design_moments, residual_moments, model_residuals, model_products};
+const SineKernel avx512_kernel{
+    "avx512",       fit_on_grid,       series_on_grid,  fit_block,
+    design,         design_with_slope, residuals,       residuals_with_slope,
+    design_moments, residual_moments,  model_residuals, model_products};
 }

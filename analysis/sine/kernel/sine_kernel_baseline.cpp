@@ -1,4 +1,5 @@
-// For every processor: two lanes a register (SSE2, NEON), and the fused multiply-add composed when there is none.
+// For every processor: two lanes a register (SSE2, NEON), and the fused multiply-add composed when
+// there is none.
 #include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine/kernel/sine_polynomial.hpp"
 
@@ -24,8 +25,9 @@ struct Lanes {
   }
   static Lanes mask(std::size_t count) {
     std::int64_t bits[8];
-    for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t i = 0; i < 8; ++i) {
       bits[i] = i < count ? -1 : 0;
+    }
     Lanes result;
     __builtin_memcpy(&result, bits, sizeof(result));
     return result;
@@ -34,12 +36,16 @@ struct Lanes {
 
   bool all_at_most(double limit) const {
     bool all = true;
-    for (const Double2 two : v)
+    for (const Double2 two : v) {
       all &= two[0] <= limit && two[1] <= limit;
+    }
     return all;
   }
 
-  double total() const { return ((v[0][0] + v[0][1]) + (v[1][0] + v[1][1])) + ((v[2][0] + v[2][1]) + (v[3][0] + v[3][1])); }
+  double total() const {
+    return ((v[0][0] + v[0][1]) + (v[1][0] + v[1][1])) +
+           ((v[2][0] + v[2][1]) + (v[3][0] + v[3][1]));
+  }
 };
 
 template <class Operation>
@@ -85,18 +91,24 @@ inline Lanes fused_minus(const Lanes& x, const Lanes& y, const Lanes& z) {
 
 inline Lanes time_difference(const std::int64_t* stamps, std::int64_t origin) {
   return each([&](std::ptrdiff_t i) {
-    return Double2{static_cast<double>(stamps[2 * i] - origin), static_cast<double>(stamps[2 * i + 1] - origin)};
+    return Double2{static_cast<double>(stamps[2 * i] - origin),
+                   static_cast<double>(stamps[2 * i + 1] - origin)};
   });
 }
 
-inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets, std::int64_t origin) {
+inline Lanes time_difference(const std::int64_t* stamps, const std::int64_t* offsets,
+                             std::int64_t origin) {
   const auto one = [&](int i) { return static_cast<double>(stamps[i] - origin - offsets[i]); };
   return each([&](int i) { return Double2{one(2 * i), one(2 * i + 1)}; });
 }
 
 inline Lanes larger_magnitude(const Lanes& x, const Lanes& y) {
-  const auto larger = [](double a, double b) { return __builtin_fmax(__builtin_fabs(a), __builtin_fabs(b)); };
-  return each([&](int i) { return Double2{larger(x.v[i][0], y.v[i][0]), larger(x.v[i][1], y.v[i][1])}; });
+  const auto larger = [](double a, double b) {
+    return __builtin_fmax(__builtin_fabs(a), __builtin_fabs(b));
+  };
+  return each([&](int i) {
+    return Double2{larger(x.v[i][0], y.v[i][0]), larger(x.v[i][1], y.v[i][1])};
+  });
 }
 
 inline void turn_quadrants(const Lanes& shifted, Lanes& sine, Lanes& cosine) {
@@ -114,8 +126,9 @@ inline void turn_quadrants(const Lanes& shifted, Lanes& sine, Lanes& cosine) {
 struct StepCheck {
   bool all_increase = true;
   void see(const std::int64_t* stamps, const std::int64_t* next) {
-    for (std::size_t i = 0; i < dyncal::analysis::kernel::lanes; ++i)
+    for (std::size_t i = 0; i < dyncal::analysis::kernel::lanes; ++i) {
       all_increase &= next[i] > stamps[i];
+    }
   }
   bool increasing() const { return all_increase; }
 };
@@ -131,6 +144,8 @@ struct StepCheck {
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
 namespace dyncal::analysis::kernel {
-const SineKernel baseline_kernel{"baseline", fit_on_grid,          series_on_grid, fit_block,        design,          design_with_slope,
-                                 residuals,  residuals_with_slope, design_moments, residual_moments, model_residuals, model_products};
+const SineKernel baseline_kernel{
+    "baseline",     fit_on_grid,       series_on_grid,  fit_block,
+    design,         design_with_slope, residuals,       residuals_with_slope,
+    design_moments, residual_moments,  model_residuals, model_products};
 }

@@ -1,12 +1,14 @@
-// The loops of sine_kernel.hpp, written once over a type of eight lanes. Each translation unit that includes this file is
-// compiled for one instruction set and defines `Lanes` in an unnamed namespace before; nothing here has external linkage and
-// nothing of the standard library is instantiated, so that no wide instruction leaks into shared inline functions.
+// The loops of sine_kernel.hpp, written once over a type of eight lanes. Each translation unit that
+// includes this file is compiled for one instruction set and defines `Lanes` in an unnamed
+// namespace before; nothing here has external linkage and nothing of the standard library is
+// instantiated, so that no wide instruction leaks into shared inline functions.
 //
-// Lanes provides: load, store, all(value), mask(count), operators + - * &, fused(a,b,c) = a b + c, fused_less(a,b,c) = c - a b,
-// fused_minus(a,b,c) = a b - c, time_difference(stamps, origin), turn_quadrants(k, s, c), total(), and StepCheck with see(stamps, next) and
-// increasing().
+// Lanes provides: load, store, all(value), mask(count), operators + - * &, fused(a,b,c) = a b + c,
+// fused_less(a,b,c) = c - a b, fused_minus(a,b,c) = a b - c, time_difference(stamps, origin),
+// turn_quadrants(k, s, c), total(), and StepCheck with see(stamps, next) and increasing().
 
-// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own, without linkage
+// NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own,
+// without linkage
 
 namespace {
 
@@ -46,8 +48,9 @@ struct StampTail {
 struct ValueTail {
   double values[lanes];
   ValueTail(const double* from, std::size_t count) {
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < lanes; ++i) {
       values[i] = i < count ? from[i] : 0.0;
+    }
   }
 };
 
@@ -73,9 +76,11 @@ inline Lanes masked(Lanes x, PartOfRow part) {
   return x & Lanes::mask(part.count);
 }
 
-// Calls row(first index, sine and cosine of eight samples, dt, AllOfRow or PartOfRow) for every eight samples.
+// Calls row(first index, sine and cosine of eight samples, dt, AllOfRow or PartOfRow) for every
+// eight samples.
 template <class Row>
-inline bool for_each_time_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, Row row) {
+inline bool for_each_time_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                              Row row) {
   const Lanes high = Lanes::all(axis.turns_per_ns_high);
   const Lanes low = Lanes::all(axis.turns_per_ns_low);
   const std::size_t full = full_groups(n);
@@ -96,50 +101,56 @@ inline bool for_each_time_row(const std::int64_t* stamps, std::size_t n, const T
 
 // The same, after storing sine and cosine.
 template <class Row>
-inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, Row row) {
-  return for_each_time_row(stamps, n, axis, [&](std::size_t i, const SineCosine& sc, Lanes dt, auto) {
-    sc.sine.store(basis.sine + i);
-    sc.cosine.store(basis.cosine + i);
-    row(i, sc, dt);
-  });
+inline bool for_each_basis_row(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                               BlockBasis& basis, Row row) {
+  return for_each_time_row(stamps, n, axis,
+                           [&](std::size_t i, const SineCosine& sc, Lanes dt, auto) {
+                             sc.sine.store(basis.sine + i);
+                             sc.cosine.store(basis.cosine + i);
+                             row(i, sc, dt);
+                           });
 }
 
 // `also` is called with the first index of every row.
 template <class Also>
-inline bool design_and(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums, Also also) {
+inline bool design_and(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                       BlockBasis& basis, DesignSums& sums, Also also) {
   Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
-  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine& row, Lanes) {
-    also(i);
-    s = s + row.sine;
-    c = c + row.cosine;
-    ss = fused(row.sine, row.sine, ss);
-    sc = fused(row.sine, row.cosine, sc);
-  });
+  const bool increasing =
+      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine& row, Lanes) {
+        also(i);
+        s = s + row.sine;
+        c = c + row.cosine;
+        ss = fused(row.sine, row.sine, ss);
+        sc = fused(row.sine, row.cosine, sc);
+      });
   sums = {s.total(), c.total(), ss.total(), sc.total()};
   return increasing;
 }
 
-bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums) {
+bool design(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis,
+            DesignSums& sums) {
   return design_and(stamps, n, axis, basis, sums, [](std::size_t) {});
 }
 
-bool design_with_slope(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignSums& sums,
-                       SlopeSums& slope) {
+bool design_with_slope(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                       BlockBasis& basis, DesignSums& sums, SlopeSums& slope) {
   const Lanes scale = Lanes::all(axis.inverse_scale);
   Lanes s = Lanes::all(0.0), c = s, ss = s, sc = s;
   Lanes u1 = s, u2 = s, us = s, uc = s;
-  const bool increasing = for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine& row, Lanes dt) {
-    const Lanes u = dt * scale;
-    u.store(basis.u + i);
-    s = s + row.sine;
-    c = c + row.cosine;
-    ss = fused(row.sine, row.sine, ss);
-    sc = fused(row.sine, row.cosine, sc);
-    u1 = u1 + u;
-    u2 = fused(u, u, u2);
-    us = fused(u, row.sine, us);
-    uc = fused(u, row.cosine, uc);
-  });
+  const bool increasing = for_each_basis_row(stamps, n, axis, basis,
+                                             [&](std::size_t i, const SineCosine& row, Lanes dt) {
+                                               const Lanes u = dt * scale;
+                                               u.store(basis.u + i);
+                                               s = s + row.sine;
+                                               c = c + row.cosine;
+                                               ss = fused(row.sine, row.sine, ss);
+                                               sc = fused(row.sine, row.cosine, sc);
+                                               u1 = u1 + u;
+                                               u2 = fused(u, u, u2);
+                                               us = fused(u, row.sine, us);
+                                               uc = fused(u, row.cosine, uc);
+                                             });
   sums = {s.total(), c.total(), ss.total(), sc.total()};
   Lanes uss = Lanes::all(0.0), usc = uss, uus = uss, uuc = uss, uuss = uss, uusc = uss;
   for (std::size_t i = 0; i < n; i += lanes) {
@@ -153,19 +164,24 @@ bool design_with_slope(const std::int64_t* stamps, std::size_t n, const TimeAxis
     uuss = fused(us_i, us_i, uuss);
     uusc = fused(us_i, uc_i, uusc);
   }
-  slope = {u1.total(), u2.total(), us.total(), uc.total(), uss.total(), usc.total(), uus.total(), uuc.total(), uuss.total(), uusc.total()};
+  slope = {u1.total(),  u2.total(),  us.total(),  uc.total(),   uss.total(),
+           usc.total(), uus.total(), uuc.total(), uuss.total(), uusc.total()};
   return increasing;
 }
 
 struct StartLanes {
   Lanes sine, cosine, offset;
-  explicit StartLanes(const Parameters& p) : sine(Lanes::all(p.sine)), cosine(Lanes::all(p.cosine)), offset(Lanes::all(p.offset)) {}
-  Lanes residual(Lanes y, Lanes s, Lanes c) const { return fused_less(sine, s, fused_less(cosine, c, y - offset)); }
+  explicit StartLanes(const Parameters& p)
+      : sine(Lanes::all(p.sine)), cosine(Lanes::all(p.cosine)), offset(Lanes::all(p.offset)) {}
+  Lanes residual(Lanes y, Lanes s, Lanes c) const {
+    return fused_less(sine, s, fused_less(cosine, c, y - offset));
+  }
 };
 
 // Calls row(i, e, s, c) for every eight samples of a channel.
 template <class Row>
-inline void for_each_residual_row(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, Row row) {
+inline void for_each_residual_row(const double* values, std::size_t n, const BlockBasis& basis,
+                                  const Parameters& start, Row row) {
   const StartLanes model(start);
   const std::size_t full = full_groups(n);
   for (std::size_t i = 0; i < full; i += lanes) {
@@ -179,7 +195,8 @@ inline void for_each_residual_row(const double* values, std::size_t n, const Blo
   row(full, model.residual(Lanes::load(tail.values), s, c) & Lanes::mask(n - full), s, c);
 }
 
-void residuals(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums) {
+void residuals(const double* values, std::size_t n, const BlockBasis& basis,
+               const Parameters& start, ResidualSums& sums) {
   Lanes sum = Lanes::all(0.0), es = sum, ec = sum, ee = sum;
   for_each_residual_row(values, n, basis, start, [&](std::size_t, Lanes e, Lanes s, Lanes c) {
     sum = sum + e;
@@ -192,16 +209,19 @@ void residuals(const double* values, std::size_t n, const BlockBasis& basis, con
 
 // Residuals of several channels in one go: the basis is loaded once.
 template <std::size_t count>
-inline void residuals_of(const double* const* values, std::size_t n, const BlockBasis& basis, const Parameters* start, ResidualSums* sums) {
+inline void residuals_of(const double* const* values, std::size_t n, const BlockBasis& basis,
+                         const Parameters* start, ResidualSums* sums) {
   const Lanes zero = Lanes::all(0.0);
   Lanes e[count], es[count], ec[count], ee[count];
-  for (std::size_t j = 0; j < count; ++j)
+  for (std::size_t j = 0; j < count; ++j) {
     e[j] = es[j] = ec[j] = ee[j] = zero;
+  }
   const auto row = [&](std::size_t i, auto rows) {
     const Lanes s = Lanes::load(basis.sine + i);
     const Lanes c = Lanes::load(basis.cosine + i);
     for (std::size_t j = 0; j < count; ++j) {
-      const Lanes r = masked(StartLanes(start[j]).residual(load_row(values[j] + i, rows), s, c), rows);
+      const Lanes r =
+          masked(StartLanes(start[j]).residual(load_row(values[j] + i, rows), s, c), rows);
       e[j] = e[j] + r;
       es[j] = fused(r, s, es[j]);
       ec[j] = fused(r, c, ec[j]);
@@ -209,31 +229,37 @@ inline void residuals_of(const double* const* values, std::size_t n, const Block
     }
   };
   const std::size_t full = full_groups(n);
-  for (std::size_t i = 0; i < full; i += lanes)
+  for (std::size_t i = 0; i < full; i += lanes) {
     row(i, AllOfRow{});
+  }
   row(full, PartOfRow{n - full});
-  for (std::size_t j = 0; j < count; ++j)
+  for (std::size_t j = 0; j < count; ++j) {
     sums[j] = {e[j].total(), es[j].total(), ec[j].total(), ee[j].total()};
+  }
 }
 
-bool fit_block(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, const double* const* values, std::size_t channels,
-               const Parameters* start, DesignSums& sums, ResidualSums* residual_sums) {
+bool fit_block(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+               const double* const* values, std::size_t channels, const Parameters* start,
+               DesignSums& sums, ResidualSums* residual_sums) {
   BlockBasis basis;
   // While the sines are computed, the values come from memory.
   const bool increasing = design_and(stamps, n, axis, basis, sums, [&](std::size_t i) {
-    for (std::size_t j = 0; j < channels; ++j)
+    for (std::size_t j = 0; j < channels; ++j) {
       __builtin_prefetch(values[j] + i);
+    }
   });
   std::size_t j = 0;
-  for (; j + 2 <= channels; j += 2)
+  for (; j + 2 <= channels; j += 2) {
     residuals_of<2>(values + j, n, basis, start + j, residual_sums + j);
-  for (; j < channels; ++j)
+  }
+  for (; j < channels; ++j) {
     residuals_of<1>(values + j, n, basis, start + j, residual_sums + j);
+  }
   return increasing;
 }
 
-void residuals_with_slope(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualSums& sums,
-                          ResidualSlopeSums& slope) {
+void residuals_with_slope(const double* values, std::size_t n, const BlockBasis& basis,
+                          const Parameters& start, ResidualSums& sums, ResidualSlopeSums& slope) {
   Lanes sum = Lanes::all(0.0), es = sum, ec = sum, ee = sum, eus = sum, euc = sum;
   for_each_residual_row(values, n, basis, start, [&](std::size_t i, Lanes e, Lanes s, Lanes c) {
     const Lanes eu = e * Lanes::load(basis.u + i);
@@ -250,12 +276,14 @@ void residuals_with_slope(const double* values, std::size_t n, const BlockBasis&
 
 // Moments first <= m < last; `power` holds u^first of every row and leaves with u^last.
 template <std::size_t first, std::size_t last>
-inline void design_moment_sums(std::size_t n, const BlockBasis& basis, Lanes* power, DesignMoments& moments) {
+inline void design_moment_sums(std::size_t n, const BlockBasis& basis, Lanes* power,
+                               DesignMoments& moments) {
   constexpr std::size_t count = last - first;
   const Lanes zero = Lanes::all(0.0);
   Lanes um[count], us[count], uc[count], uss[count], usc[count];
-  for (std::size_t m = 0; m < count; ++m)
+  for (std::size_t m = 0; m < count; ++m) {
     um[m] = us[m] = uc[m] = uss[m] = usc[m] = zero;
+  }
   for (std::size_t i = 0; i < n; i += lanes) {
     const Lanes u = Lanes::load(basis.u + i);
     const Lanes s = Lanes::load(basis.sine + i);
@@ -281,25 +309,31 @@ inline void design_moment_sums(std::size_t n, const BlockBasis& basis, Lanes* po
   }
 }
 
-bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis, BlockBasis& basis, DesignMoments& moments) {
+bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                    BlockBasis& basis, DesignMoments& moments) {
   const Lanes scale = Lanes::all(axis.inverse_scale);
   const bool increasing =
-      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) { (dt * scale).store(basis.u + i); });
+      for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) {
+        (dt * scale).store(basis.u + i);
+      });
   // Two goes, so that the sums stay in registers.
   constexpr std::size_t half = (moment_count + 1) / 2;
   Lanes power[block_samples / lanes];
-  for (std::size_t i = 0; i < n; i += lanes)
+  for (std::size_t i = 0; i < n; i += lanes) {
     power[i / lanes] = Lanes::all(1.0) & Lanes::mask(n - i);
+  }
   design_moment_sums<0, half>(n, basis, power, moments);
   design_moment_sums<half, moment_count>(n, basis, power, moments);
   return increasing;
 }
 
-void residual_moments(const double* values, std::size_t n, const BlockBasis& basis, const Parameters& start, ResidualMoments& moments) {
+void residual_moments(const double* values, std::size_t n, const BlockBasis& basis,
+                      const Parameters& start, ResidualMoments& moments) {
   const Lanes zero = Lanes::all(0.0);
   Lanes sum = zero, ee = zero, us[moment_count], uc[moment_count];
-  for (std::size_t m = 0; m < moment_count; ++m)
+  for (std::size_t m = 0; m < moment_count; ++m) {
     us[m] = uc[m] = zero;
+  }
   for_each_residual_row(values, n, basis, start, [&](std::size_t i, Lanes e, Lanes s, Lanes c) {
     const Lanes u = Lanes::load(basis.u + i);
     sum = sum + e;

@@ -21,7 +21,9 @@ struct CanFrame {
   std::int64_t kernel_ns = 0;   // system clock when the kernel got the frame; 0: none
   std::int64_t hardware_ns = 0; // clock of the adapter, own epoch and rate; 0: none
 
-  [[nodiscard]] std::span<const std::uint8_t> payload() const { return std::span(data).first(length); }
+  [[nodiscard]] std::span<const std::uint8_t> payload() const {
+    return std::span(data).first(length);
+  }
 };
 
 } // namespace dyncal::drivers::can

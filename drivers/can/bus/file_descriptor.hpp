@@ -10,7 +10,8 @@ namespace dyncal::drivers::can {
 class FileDescriptor {
 public:
   explicit FileDescriptor(int descriptor = -1) : descriptor_(descriptor) {}
-  FileDescriptor(FileDescriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  FileDescriptor(FileDescriptor&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)) {}
   FileDescriptor& operator=(FileDescriptor&& other) noexcept {
     std::swap(descriptor_, other.descriptor_);
     return *this;
@@ -18,7 +19,9 @@ public:
   ~FileDescriptor() { reset(); }
 
   void reset() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);
+    }
     descriptor_ = -1;
   }
   [[nodiscard]] int get() const { return descriptor_; }

@@ -1,8 +1,10 @@
-// Sends frames on a CAN interface: for virtual sensors and tests, never for a bus with a sensor under calibration.
+// Sends frames on a CAN interface: for virtual sensors and tests, never for a bus with a sensor
+// under calibration.
 //
-// One raw socket that receives nothing. send() gives the frame to the kernel, which on a virtual interface stamps it at once. Fails at
-// open() when the kernel has no CAN or the interface is not there or is no CAN interface; at send() when the kernel refuses the frame (the
-// interface is down; an FD frame on an interface with the MTU of classic CAN). Belongs to one thread.
+// One raw socket that receives nothing. send() gives the frame to the kernel, which on a virtual
+// interface stamps it at once. Fails at open() when the kernel has no CAN or the interface is not
+// there or is no CAN interface; at send() when the kernel refuses the frame (the interface is down;
+// an FD frame on an interface with the MTU of classic CAN). Belongs to one thread.
 #pragma once
 
 #include <string>
@@ -20,7 +22,8 @@ public:
   [[nodiscard]] Expected<void> send(const CanFrame& frame);
 
 private:
-  FrameSender(std::string interface_name, FileDescriptor socket) : interface_name_(std::move(interface_name)), socket_(std::move(socket)) {}
+  FrameSender(std::string interface_name, FileDescriptor socket)
+      : interface_name_(std::move(interface_name)), socket_(std::move(socket)) {}
 
   std::string interface_name_;
   FileDescriptor socket_;

@@ -1,7 +1,9 @@
-// Where frames come from: a CAN interface of the kernel, a recorded log, or a test that scripts them.
+// Where frames come from: a CAN interface of the kernel, a recorded log, or a test that scripts
+// them.
 //
-// Frames, losses, bus errors and changes of the link come as one stream in the order in which they happened as far as the source can tell.
-// open() once, then read() from one thread; stop() from any thread, at any time.
+// Frames, losses, bus errors and changes of the link come as one stream in the order in which they
+// happened as far as the source can tell. open() once, then read() from one thread; stop() from any
+// thread, at any time.
 #pragma once
 
 #include <chrono>
@@ -17,7 +19,15 @@
 
 namespace dyncal::drivers::can {
 
-enum class BusState { unknown, error_active, error_warning, error_passive, bus_off, stopped, sleeping };
+enum class BusState {
+  unknown,
+  error_active,
+  error_warning,
+  error_passive,
+  bus_off,
+  stopped,
+  sleeping
+};
 
 [[nodiscard]] const char* to_text(BusState state);
 
@@ -36,7 +46,8 @@ struct LinkState {
   bool fd = false;
   bool listen_only = false;
   std::string kind;       // of the driver's link: "can", "vcan", "vxcan" ...
-  std::string device_bus; // on which its controller is: "usb", "pci", "spi" ...; "" where it has none or the kernel does not say
+  std::string device_bus; // on which its controller is: "usb", "pci", "spi" ...; "" where it has
+                          // none or the kernel does not say
 
   friend bool operator==(const LinkState&, const LinkState&) = default;
 };
@@ -47,7 +58,8 @@ struct FramesLost {
 };
 
 struct BusFault {
-  std::string cause;                  // in words: "stuff error", "no acknowledgment", "bus-off", "controller overrun" ...
+  std::string
+      cause; // in words: "stuff error", "no acknowledgment", "bus-off", "controller overrun" ...
   BusState state = BusState::unknown; // unknown: unchanged
   std::optional<std::uint16_t> transmit_errors;
   std::optional<std::uint16_t> receive_errors;
@@ -67,10 +79,12 @@ enum class ReadState { more, stopped, ended };
 class FrameSource {
 public:
   virtual ~FrameSource() = default;
-  // Frames that pass none of the filters are not delivered. Fails with what the user can do about it.
+  // Frames that pass none of the filters are not delivered. Fails with what the user can do about
+  // it.
   [[nodiscard]] virtual Expected<LinkState> open(const std::vector<FrameFilter>& filters) = 0;
   // Waits for events up to `limit` and appends what there is.
-  [[nodiscard]] virtual Expected<ReadState> read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) = 0;
+  [[nodiscard]] virtual Expected<ReadState> read(std::vector<BusEvent>& events,
+                                                 std::chrono::milliseconds limit) = 0;
   virtual void stop() = 0;
 };
 

@@ -28,10 +28,15 @@ void each_attribute(const std::uint8_t* data, std::size_t length, Visit visit) {
   while (length >= sizeof(rtattr)) {
     rtattr attribute{};
     std::memcpy(&attribute, data, sizeof attribute);
-    if (attribute.rta_len < sizeof attribute || attribute.rta_len > length) return;
-    visit(attribute.rta_type & NLA_TYPE_MASK, data + sizeof attribute, attribute.rta_len - sizeof attribute);
+    if (attribute.rta_len < sizeof attribute || attribute.rta_len > length) {
+      return;
+    }
+    visit(attribute.rta_type & NLA_TYPE_MASK, data + sizeof attribute,
+          attribute.rta_len - sizeof attribute);
     const std::size_t step = RTA_ALIGN(attribute.rta_len);
-    if (step >= length) return;
+    if (step >= length) {
+      return;
+    }
     data += step;
     length -= step;
   }
@@ -102,17 +107,21 @@ struct LinkRequest {
     link.ifi_family = AF_UNSPEC;
     link.ifi_index = index;
   }
-  // Appends an attribute; returns where it begins, so that one that holds others can be given its length afterwards.
+  // Appends an attribute; returns where it begins, so that one that holds others can be given its
+  // length afterwards.
   std::size_t append(std::uint16_t type, const void* data, std::size_t size) {
     const std::size_t at = header.nlmsg_len - NLMSG_LENGTH(sizeof link);
     const rtattr attribute{static_cast<std::uint16_t>(sizeof(rtattr) + size), type};
     std::memcpy(attributes.data() + at, &attribute, sizeof attribute);
-    if (size > 0) std::memcpy(attributes.data() + at + sizeof attribute, data, size);
+    if (size > 0) {
+      std::memcpy(attributes.data() + at + sizeof attribute, data, size);
+    }
     header.nlmsg_len += RTA_ALIGN(attribute.rta_len);
     return at;
   }
   void close(std::size_t at) {
-    const auto length = static_cast<std::uint16_t>(header.nlmsg_len - NLMSG_LENGTH(sizeof link) - at);
+    const auto length =
+        static_cast<std::uint16_t>(header.nlmsg_len - NLMSG_LENGTH(sizeof link) - at);
     std::memcpy(attributes.data() + at, &length, sizeof length);
   }
 };
@@ -120,23 +129,32 @@ struct LinkRequest {
 } // namespace
 
 Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
-  FileDescriptor socket(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
+  FileDescriptor socket(
+      ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
   sockaddr_nl address{};
   address.nl_family = AF_NETLINK;
   address.nl_groups = RTMGRP_LINK;
-  if (!socket.open() || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (!socket.open() ||
+      ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::make_unexpected(
-        Error{ErrorCode::refused, "the kernel gives no access to the state of interfaces (" + system_text(errno) + ")"});
+        Error{ErrorCode::refused, "the kernel gives no access to the state of interfaces (" +
+                                      system_text(errno) + ")"});
+  }
   LinkMonitor monitor(interface_name, std::move(socket));
-  if (auto asked = monitor.ask(); !asked) return tl::make_unexpected(asked.error());
+  if (auto asked = monitor.ask(); !asked) {
+    return tl::make_unexpected(asked.error());
+  }
   monitor.changes_.clear();
   return monitor;
 }
 
 Expected<void> LinkMonitor::request_links() {
   LinkRequest request(RTM_GETLINK, NLM_F_DUMP);
-  if (::send(socket_.get(), &request, request.header.nlmsg_len, 0) < 0)
-    return tl::make_unexpected(Error{ErrorCode::refused, "the kernel does not answer about its interfaces (" + system_text(errno) + ")"});
+  if (::send(socket_.get(), &request, request.header.nlmsg_len, 0) < 0) {
+    return tl::make_unexpected(
+        Error{ErrorCode::refused,
+              "the kernel does not answer about its interfaces (" + system_text(errno) + ")"});
+  }
   return {};
 }
 
@@ -146,46 +164,71 @@ Expected<void> LinkMonitor::ask() {
   state_ = {};
   state_.name = before.name;
   index_ = 0;
-  if (auto sent = request_links(); !sent) return sent;
-  if (auto read = read_messages(true); !read) return read;
-  if (!state_.present) state_.name = wanted_name_;
-  if (!(state_ == before) || index_ != index_before) changes_.push_back({state_, index_});
+  if (auto sent = request_links(); !sent) {
+    return sent;
+  }
+  if (auto read = read_messages(true); !read) {
+    return read;
+  }
+  if (!state_.present) {
+    state_.name = wanted_name_;
+  }
+  if (!(state_ == before) || index_ != index_before) {
+    changes_.push_back({state_, index_});
+  }
   return {};
 }
 
 Expected<std::vector<LinkMonitor::Change>> LinkMonitor::update() {
-  if (auto read = read_messages(false); !read) return tl::make_unexpected(read.error());
+  if (auto read = read_messages(false); !read) {
+    return tl::make_unexpected(read.error());
+  }
   return std::exchange(changes_, {});
 }
 
 Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
   alignas(nlmsghdr) std::array<std::uint8_t, 32768> buffer{};
   for (bool done = false; !done;) {
-    const ssize_t got = ::recv(socket_.get(), buffer.data(), buffer.size(), wait_for_answer ? 0 : MSG_DONTWAIT);
-    if (got < 0 && errno == EINTR) continue;
+    const ssize_t got =
+        ::recv(socket_.get(), buffer.data(), buffer.size(), wait_for_answer ? 0 : MSG_DONTWAIT);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
     if (got < 0 && errno == EAGAIN) {
-      if (!wait_for_answer) break;
-      const timespec pause{0, 200'000}; // the answer to a dump is there as soon as it was asked for; only a loaded machine comes here
+      if (!wait_for_answer) {
+        break;
+      }
+      const timespec pause{0, 200'000}; // the answer to a dump is there as soon as it was asked
+                                        // for; only a loaded machine comes here
       ::nanosleep(&pause, nullptr);
       continue;
     }
     if (got < 0 && errno == ENOBUFS) { // announcements were lost: ask for everything
-      if (wait_for_answer) continue;
+      if (wait_for_answer) {
+        continue;
+      }
       return ask();
     }
-    if (got <= 0)
+    if (got <= 0) {
       return tl::make_unexpected(
-          Error{ErrorCode::disconnected, "the kernel says no more about its interfaces (" + system_text(errno) + ")"});
+          Error{ErrorCode::disconnected,
+                "the kernel says no more about its interfaces (" + system_text(errno) + ")"});
+    }
     std::size_t left = static_cast<std::size_t>(got);
     for (std::size_t at = 0; left >= sizeof(nlmsghdr);) {
       nlmsghdr header{};
       std::memcpy(&header, buffer.data() + at, sizeof header);
-      if (header.nlmsg_len < sizeof header || header.nlmsg_len > left) break;
-      done = done || (wait_for_answer && (header.nlmsg_type == NLMSG_DONE || header.nlmsg_type == NLMSG_ERROR));
+      if (header.nlmsg_len < sizeof header || header.nlmsg_len > left) {
+        break;
+      }
+      done = done || (wait_for_answer &&
+                      (header.nlmsg_type == NLMSG_DONE || header.nlmsg_type == NLMSG_ERROR));
       const LinkState before = state_;
       const int index_before = index_;
       take_message(buffer.data() + at);
-      if (!wait_for_answer && (!(state_ == before) || index_ != index_before)) changes_.push_back({state_, index_});
+      if (!wait_for_answer && (!(state_ == before) || index_ != index_before)) {
+        changes_.push_back({state_, index_});
+      }
       const std::size_t step = std::min<std::size_t>(NLMSG_ALIGN(header.nlmsg_len), left);
       at += step;
       left -= step;
@@ -200,30 +243,38 @@ void LinkMonitor::take_message(const void* message) {
   ifinfomsg link{};
   std::memcpy(&header, bytes, sizeof header);
   const bool about_a_link = header.nlmsg_type == RTM_NEWLINK || header.nlmsg_type == RTM_DELLINK;
-  if (!about_a_link || header.nlmsg_len < NLMSG_LENGTH(sizeof link)) return;
+  if (!about_a_link || header.nlmsg_len < NLMSG_LENGTH(sizeof link)) {
+    return;
+  }
   std::memcpy(&link, bytes + NLMSG_HDRLEN, sizeof link);
-  if (link.ifi_family != AF_UNSPEC) return; // bridges and the like speak of the same interfaces
+  if (link.ifi_family != AF_UNSPEC) {
+    return; // bridges and the like speak of the same interfaces
+  }
   const std::uint8_t* attributes = bytes + NLMSG_LENGTH(sizeof link);
   const std::size_t length = header.nlmsg_len - NLMSG_LENGTH(sizeof link);
   LinkState state;
   each_attribute(attributes, length, [&](int type, const std::uint8_t* value, std::size_t size) {
-    if (type == IFLA_IFNAME)
+    if (type == IFLA_IFNAME) {
       state.name = read_text(value, size);
-    else if (type == IFLA_MTU)
+    } else if (type == IFLA_MTU) {
       state.fd = read_as<std::uint32_t>(value, size) >= 72; // CANFD_MTU
-    else if (type == IFLA_PARENT_DEV_BUS_NAME)
+    } else if (type == IFLA_PARENT_DEV_BUS_NAME) {
       state.device_bus = read_text(value, size);
-    else if (type == IFLA_LINKINFO)
+    } else if (type == IFLA_LINKINFO) {
       each_attribute(value, size, [&](int inner, const std::uint8_t* data, std::size_t bytes_left) {
-        if (inner == IFLA_INFO_KIND)
+        if (inner == IFLA_INFO_KIND) {
           state.kind = read_text(data, bytes_left);
-        else if (inner == IFLA_INFO_XSTATS)
+        } else if (inner == IFLA_INFO_XSTATS) {
           state.restarts = read_as<can_device_stats>(data, bytes_left).restarts;
-        else if (inner == IFLA_INFO_DATA)
+        } else if (inner == IFLA_INFO_DATA) {
           read_controller(data, bytes_left, state);
+        }
       });
+    }
   });
-  if (link.ifi_index != index_ && (index_ != 0 || state.name != wanted_name_)) return;
+  if (link.ifi_index != index_ && (index_ != 0 || state.name != wanted_name_)) {
+    return;
+  }
   if (header.nlmsg_type == RTM_DELLINK) {
     state_ = {};
     state_.name = wanted_name_;
@@ -253,10 +304,13 @@ Expected<void> LinkMonitor::change(const void* request, const std::string& what)
   } else {
     error = EIO;
   }
-  if (error == 0) return {};
+  if (error == 0) {
+    return {};
+  }
   const std::string advice = error == EPERM ? "; it needs CAP_NET_ADMIN" : "";
-  return tl::make_unexpected(
-      Error{ErrorCode::refused, state_.name + ": the kernel does not " + what + " (" + system_text(error) + ")" + advice});
+  return tl::make_unexpected(Error{ErrorCode::refused, state_.name + ": the kernel does not " +
+                                                           what + " (" + system_text(error) + ")" +
+                                                           advice});
 }
 
 Expected<void> LinkMonitor::restart_controller() {

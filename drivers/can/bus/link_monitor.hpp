@@ -1,9 +1,11 @@
-// What the kernel says about one network interface, by rtnetlink: whether it is there, up, connected, and for a CAN controller its state,
-// error counters, bit rates; and the two changes that a driver may need: restart after bus-off, down and up.
+// What the kernel says about one network interface, by rtnetlink: whether it is there, up,
+// connected, and for a CAN controller its state, error counters, bit rates; and the two changes
+// that a driver may need: restart after bus-off, down and up.
 //
-// The interface is known by the name it had at open(); when the kernel renames it, it is followed under its new name, until it goes; then
-// the first name is waited for again. open() in one thread, everything else in one thread too. The descriptor becomes readable when
-// update() has something to read.
+// The interface is known by the name it had at open(); when the kernel renames it, it is followed
+// under its new name, until it goes; then the first name is waited for again. open() in one thread,
+// everything else in one thread too. The descriptor becomes readable when update() has something to
+// read.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +31,8 @@ public:
     LinkState state;
     int interface_index = 0;
   };
-  // Reads what has come: every change by itself, in its order, so that down and up between two calls are both seen.
+  // Reads what has come: every change by itself, in its order, so that down and up between two
+  // calls are both seen.
   [[nodiscard]] Expected<std::vector<Change>> update();
   // Asks the kernel for everything anew.
   [[nodiscard]] Expected<void> ask();
@@ -39,7 +42,8 @@ public:
   [[nodiscard]] Expected<void> set_up(bool up);
 
 private:
-  LinkMonitor(std::string name, FileDescriptor socket) : wanted_name_(std::move(name)), socket_(std::move(socket)) {
+  LinkMonitor(std::string name, FileDescriptor socket)
+      : wanted_name_(std::move(name)), socket_(std::move(socket)) {
     state_.name = wanted_name_;
   }
 

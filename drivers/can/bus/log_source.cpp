@@ -15,16 +15,25 @@ constexpr std::size_t batch = 256; // frames given at a time
 
 Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
   auto events = read_candump_log(path_, interface_name_);
-  if (!events) return tl::make_unexpected(events.error());
+  if (!events) {
+    return tl::make_unexpected(events.error());
+  }
   for (const BusEvent& event : *events) {
     const auto* frame = std::get_if<CanFrame>(&event);
-    const auto passes = [&](const FrameFilter& filter) { return frame != nullptr && filter.passes(*frame); };
-    if (std::any_of(filters.begin(), filters.end(), passes)) frames_.push_back(*frame);
+    const auto passes = [&](const FrameFilter& filter) {
+      return frame != nullptr && filter.passes(*frame);
+    };
+    if (std::any_of(filters.begin(), filters.end(), passes)) {
+      frames_.push_back(*frame);
+    }
   }
-  if (frames_.empty())
-    return tl::make_unexpected(Error{ErrorCode::not_found, path_.string() + " has none of the sensor's messages" +
-                                                               (interface_name_.empty() ? "" : " on interface '" + interface_name_ + "'") +
-                                                               "; check 'messages', 'dbc' and 'interface'"});
+  if (frames_.empty()) {
+    return tl::make_unexpected(
+        Error{ErrorCode::not_found,
+              path_.string() + " has none of the sensor's messages" +
+                  (interface_name_.empty() ? "" : " on interface '" + interface_name_ + "'") +
+                  "; check 'messages', 'dbc' and 'interface'"});
+  }
   LinkState link;
   link.name = path_.filename().string();
   link.present = link.up = link.carrier = true;
@@ -33,25 +42,37 @@ Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
 }
 
 LogSource::Clock::time_point LogSource::due(const CanFrame& frame) const {
-  const double after_s = static_cast<double>(frame.kernel_ns - frames_.front().kernel_ns) * 1e-9 / speed_;
-  return begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::max(0.0, after_s)));
+  const double after_s =
+      static_cast<double>(frame.kernel_ns - frames_.front().kernel_ns) * 1e-9 / speed_;
+  return begin_ + std::chrono::duration_cast<Clock::duration>(
+                      std::chrono::duration<double>(std::max(0.0, after_s)));
 }
 
 bool LogSource::wait_for_next(std::chrono::milliseconds limit) {
-  if (begin_ == Clock::time_point{}) begin_ = Clock::now();
+  if (begin_ == Clock::time_point{}) {
+    begin_ = Clock::now();
+  }
   std::unique_lock lock(mutex_);
-  if (speed_ <= 0.0) return true;
+  if (speed_ <= 0.0) {
+    return true;
+  }
   const Clock::time_point when = due(frames_[next_]);
-  stopped_changed_.wait_until(lock, std::min(when, Clock::now() + limit), [this] { return stopped_; });
+  stopped_changed_.wait_until(lock, std::min(when, Clock::now() + limit),
+                              [this] { return stopped_; });
   return Clock::now() >= when;
 }
 
-Expected<ReadState> LogSource::read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) {
+Expected<ReadState> LogSource::read(std::vector<BusEvent>& events,
+                                    std::chrono::milliseconds limit) {
   const bool something = next_ < frames_.size() && wait_for_next(limit);
-  if (const std::scoped_lock lock(mutex_); stopped_) return ReadState::stopped;
+  if (const std::scoped_lock lock(mutex_); stopped_) {
+    return ReadState::stopped;
+  }
   const Clock::time_point now = Clock::now();
   for (std::size_t given = 0; something && given < batch && next_ < frames_.size(); ++given) {
-    if (speed_ > 0.0 && due(frames_[next_]) > now) break;
+    if (speed_ > 0.0 && due(frames_[next_]) > now) {
+      break;
+    }
     events.emplace_back(frames_[next_++]);
   }
   return next_ < frames_.size() ? ReadState::more : ReadState::ended;

@@ -1,5 +1,6 @@
-// A frame source whose events were written down beforehand, with their own stamps: for tests and for logs. Gives them in order, `batch` at
-// a time, then says that it has ended. Same rules of threads as FrameSource.
+// A frame source whose events were written down beforehand, with their own stamps: for tests and
+// for logs. Gives them in order, `batch` at a time, then says that it has ended. Same rules of
+// threads as FrameSource.
 #pragma once
 
 #include <atomic>
@@ -17,7 +18,8 @@ public:
       : link_(std::move(link)), events_(std::move(events)), batch_(batch) {}
 
   [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
-  [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) override;
+  [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events,
+                                         std::chrono::milliseconds limit) override;
   void stop() override { stopped_ = true; }
 
 private:

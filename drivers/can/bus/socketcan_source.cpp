@@ -59,134 +59,198 @@ struct SocketCanSource::Buffers {
 };
 
 SocketCanSource::SocketCanSource(SocketCanSettings settings)
-    : settings_(std::move(settings)), buffers_(std::make_unique<Buffers>()), stop_event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+    : settings_(std::move(settings)), buffers_(std::make_unique<Buffers>()),
+      stop_event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
 SocketCanSource::~SocketCanSource() = default;
 
 void SocketCanSource::stop() {
   const std::uint64_t one = 1;
-  static_cast<void>(::write(stop_event_.get(), &one, sizeof one)); // fails only when it is signalled already
+  static_cast<void>(
+      ::write(stop_event_.get(), &one, sizeof one)); // fails only when it is signalled already
 }
 
 Expected<void> SocketCanSource::check_link(const LinkState& link) const {
   const std::string& name = settings_.interface_name;
-  if (!link.present) return failed(ErrorCode::not_found, "there is no interface '" + name + "'; 'ip link' lists those there are");
-  if (!link.up)
-    return failed(ErrorCode::refused, "interface '" + name + "' is down; 'ip link set " + name + " up" +
-                                          (link.kind == "can" ? " type can bitrate 500000' sets it up at 500 kbit/s" : "' sets it up"));
+  if (!link.present) {
+    return failed(ErrorCode::not_found,
+                  "there is no interface '" + name + "'; 'ip link' lists those there are");
+  }
+  if (!link.up) {
+    return failed(ErrorCode::refused,
+                  "interface '" + name + "' is down; 'ip link set " + name + " up" +
+                      (link.kind == "can" ? " type can bitrate 500000' sets it up at 500 kbit/s"
+                                          : "' sets it up"));
+  }
   const auto disagrees = [&](const char* what, std::uint32_t wanted, std::uint32_t is) {
-    return failed(ErrorCode::invalid_setting, "interface '" + name + "' runs at a " + what + " of " + std::to_string(is) +
-                                                  " bit/s, the bench file says " + std::to_string(wanted) + "; change one of them");
+    return failed(ErrorCode::invalid_setting, "interface '" + name + "' runs at a " + what +
+                                                  " of " + std::to_string(is) +
+                                                  " bit/s, the bench file says " +
+                                                  std::to_string(wanted) + "; change one of them");
   };
-  if (settings_.bit_rate_per_s != 0 && link.bit_rate_per_s != 0 && link.bit_rate_per_s != settings_.bit_rate_per_s)
+  if (settings_.bit_rate_per_s != 0 && link.bit_rate_per_s != 0 &&
+      link.bit_rate_per_s != settings_.bit_rate_per_s) {
     return disagrees("bit rate", settings_.bit_rate_per_s, link.bit_rate_per_s);
-  if (settings_.data_bit_rate_per_s != 0 && link.data_bit_rate_per_s != 0 && link.data_bit_rate_per_s != settings_.data_bit_rate_per_s)
+  }
+  if (settings_.data_bit_rate_per_s != 0 && link.data_bit_rate_per_s != 0 &&
+      link.data_bit_rate_per_s != settings_.data_bit_rate_per_s) {
     return disagrees("data bit rate", settings_.data_bit_rate_per_s, link.data_bit_rate_per_s);
+  }
   return {};
 }
 
 Expected<LinkState> SocketCanSource::open(const std::vector<FrameFilter>& filters) {
   filters_ = filters;
-  // Before the interface is looked for: a kernel without CAN has no CAN interface either, and this is the reason.
-  if (const FileDescriptor probe(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)); !probe.open()) {
-    if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT)
-      return failed(ErrorCode::refused,
-                    settings_.interface_name + ": this kernel has no CAN sockets; 'modprobe can-raw', or a kernel with CONFIG_CAN_RAW");
-    return failed(ErrorCode::refused, settings_.interface_name + ": no CAN socket may be opened (" + system_text(errno) +
-                                          "); does the program run where raw sockets of CAN are allowed?");
+  // Before the interface is looked for: a kernel without CAN has no CAN interface either, and this
+  // is the reason.
+  if (const FileDescriptor probe(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
+      !probe.open()) {
+    if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
+      return failed(ErrorCode::refused, settings_.interface_name +
+                                            ": this kernel has no CAN sockets; 'modprobe "
+                                            "can-raw', or a kernel with CONFIG_CAN_RAW");
+    }
+    return failed(ErrorCode::refused,
+                  settings_.interface_name + ": no CAN socket may be opened (" +
+                      system_text(errno) +
+                      "); does the program run where raw sockets of CAN are allowed?");
   }
   auto monitor = LinkMonitor::open(settings_.interface_name);
-  if (!monitor) return tl::make_unexpected(monitor.error());
+  if (!monitor) {
+    return tl::make_unexpected(monitor.error());
+  }
   monitor_.emplace(std::move(*monitor));
-  if (auto good = check_link(monitor_->state()); !good) return tl::make_unexpected(good.error());
+  if (auto good = check_link(monitor_->state()); !good) {
+    return tl::make_unexpected(good.error());
+  }
   link_ = monitor_->state();
-  if (auto opened = open_socket(); !opened) return tl::make_unexpected(opened.error());
+  if (auto opened = open_socket(); !opened) {
+    return tl::make_unexpected(opened.error());
+  }
   return link_;
 }
 
 Expected<void> SocketCanSource::set_options(int socket) const {
   std::vector<can_filter> kernel_filters;
-  for (const FrameFilter& filter : filters_)
-    kernel_filters.push_back({filter.id | (filter.extended ? CAN_EFF_FLAG : 0U), filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
+  for (const FrameFilter& filter : filters_) {
+    kernel_filters.push_back({filter.id | (filter.extended ? CAN_EFF_FLAG : 0U),
+                              filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
+  }
   const auto set = [&](int level, int option, const void* value, std::size_t size) {
     return ::setsockopt(socket, level, option, value, static_cast<socklen_t>(size)) == 0;
   };
   const int on = 1;
   const can_err_mask_t errors = CAN_ERR_MASK;
-  const int stamps =
-      SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
-  if (!set(SOL_CAN_RAW, CAN_RAW_FILTER, kernel_filters.data(), kernel_filters.size() * sizeof(can_filter)))
-    return failed(ErrorCode::refused, settings_.interface_name + ": the kernel does not take the filters of " +
-                                          std::to_string(filters_.size()) + " messages (" + system_text(errno) + "); name fewer messages");
-  if (!set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) || !set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) ||
-      !set(SOL_SOCKET, SO_TIMESTAMPING, &stamps, sizeof stamps) || !set(SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on))
+  const int stamps = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE |
+                     SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
+  if (!set(SOL_CAN_RAW, CAN_RAW_FILTER, kernel_filters.data(),
+           kernel_filters.size() * sizeof(can_filter))) {
+    return failed(ErrorCode::refused, settings_.interface_name +
+                                          ": the kernel does not take the filters of " +
+                                          std::to_string(filters_.size()) + " messages (" +
+                                          system_text(errno) + "); name fewer messages");
+  }
+  if (!set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) ||
+      !set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) ||
+      !set(SOL_SOCKET, SO_TIMESTAMPING, &stamps, sizeof stamps) ||
+      !set(SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on)) {
     return failed(ErrorCode::refused,
-                  settings_.interface_name + ": the kernel is too old for what is needed of its CAN sockets (" + system_text(errno) + ")");
+                  settings_.interface_name +
+                      ": the kernel is too old for what is needed of its CAN sockets (" +
+                      system_text(errno) + ")");
+  }
   // Beyond the system's limit only the superuser may go; others get what the limit allows.
-  if (!set(SOL_SOCKET, SO_RCVBUFFORCE, &settings_.receive_buffer_bytes, sizeof(int)))
+  if (!set(SOL_SOCKET, SO_RCVBUFFORCE, &settings_.receive_buffer_bytes, sizeof(int))) {
     set(SOL_SOCKET, SO_RCVBUF, &settings_.receive_buffer_bytes, sizeof(int));
+  }
   return {};
 }
 
 Expected<void> SocketCanSource::open_socket() {
   FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
-  if (!socket.open())
-    return failed(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" + system_text(errno) + ")");
-  if (auto set = set_options(socket.get()); !set) return set;
+  if (!socket.open()) {
+    return failed(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" +
+                                          system_text(errno) + ")");
+  }
+  if (auto set = set_options(socket.get()); !set) {
+    return set;
+  }
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = monitor_->interface_index();
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failed(errno == ENODEV ? ErrorCode::not_found : ErrorCode::refused,
-                  "interface '" + settings_.interface_name + "' is no CAN interface or has gone (" + system_text(errno) + ")");
+                  "interface '" + settings_.interface_name + "' is no CAN interface or has gone (" +
+                      system_text(errno) + ")");
+  }
   socket_ = std::move(socket);
   bound_index_ = monitor_->interface_index();
   dropped_ = 0;
   return {};
 }
 
-Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) {
-  std::array<pollfd, 3> waited = {pollfd{stop_event_.get(), POLLIN, 0}, pollfd{monitor_->descriptor(), POLLIN, 0},
+Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
+                                          std::chrono::milliseconds limit) {
+  std::array<pollfd, 3> waited = {pollfd{stop_event_.get(), POLLIN, 0},
+                                  pollfd{monitor_->descriptor(), POLLIN, 0},
                                   pollfd{socket_.get(), POLLIN, 0}};
-  const bool some = ::poll(waited.data(), socket_.open() ? 3 : 2, static_cast<int>(limit.count())) > 0;
-  if (some && waited[0].revents != 0) return ReadState::stopped;
+  const bool some =
+      ::poll(waited.data(), socket_.open() ? 3 : 2, static_cast<int>(limit.count())) > 0;
+  if (some && waited[0].revents != 0) {
+    return ReadState::stopped;
+  }
   // Frames before announcements: what came before a change stands before it.
   const std::size_t first = events.size();
   const bool went_down = some && socket_.open() && waited[2].revents != 0 && receive(events);
   if (went_down || (some && waited[1].revents != 0)) {
     const auto changes = monitor_->update();
-    if (!changes) return tl::make_unexpected(changes.error());
-    // Down and up again since the last read: which of the frames came before it nobody can tell, and an adapter's clock has jumped.
-    const bool back = std::any_of(changes->begin(), changes->end(), [](const auto& announced) { return announced.state.up; });
-    if (went_down && back && events.size() > first)
-      events.insert(events.begin() + static_cast<std::ptrdiff_t>(first),
-                    LinkChange{link_, true, "interface '" + link_.name + "' was down while frames waited to be read"});
-    for (const LinkMonitor::Change& announced : *changes)
+    if (!changes) {
+      return tl::make_unexpected(changes.error());
+    }
+    // Down and up again since the last read: which of the frames came before it nobody can tell,
+    // and an adapter's clock has jumped.
+    const bool back = std::any_of(changes->begin(), changes->end(),
+                                  [](const auto& announced) { return announced.state.up; });
+    if (went_down && back && events.size() > first) {
+      events.insert(
+          events.begin() + static_cast<std::ptrdiff_t>(first),
+          LinkChange{link_, true,
+                     "interface '" + link_.name + "' was down while frames waited to be read"});
+    }
+    for (const LinkMonitor::Change& announced : *changes) {
       follow_link(announced, events);
+    }
   }
   restart_when_due(events);
   return ReadState::more;
 }
 
-// ENETDOWN comes once when the interface goes down, before the frames that are still to be read, and the socket lives on; ENODEV when it
-// has gone. Both are announced by the monitor too; a socket whose interface has gone is dropped here already, so that it does not wake us
-// again and again, but not before it has been read out.
+// ENETDOWN comes once when the interface goes down, before the frames that are still to be read,
+// and the socket lives on; ENODEV when it has gone. Both are announced by the monitor too; a socket
+// whose interface has gone is dropped here already, so that it does not wake us again and again,
+// but not before it has been read out.
 bool SocketCanSource::receive(std::vector<BusEvent>& events) {
   bool went_down = false;
   bool gone = false;
   for (int errors = 0; errors < max_errors;) {
     buffers_->prepare();
-    const int got = ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
-    for (int i = 0; i < got; ++i)
+    const int got =
+        ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
+    for (int i = 0; i < got; ++i) {
       take(static_cast<std::size_t>(i), events);
+    }
     const bool down = got < 0 && errno == ENETDOWN;
     const bool no_device = got < 0 && (errno == ENODEV || errno == ENXIO);
     went_down = went_down || down || no_device;
     gone = gone || no_device;
     errors += down || no_device ? 1 : 0;
-    if (!down && !no_device && (!went_down || got < static_cast<int>(batch))) break;
+    if (!down && !no_device && (!went_down || got < static_cast<int>(batch))) {
+      break;
+    }
   }
-  if (gone) socket_.reset();
+  if (gone) {
+    socket_.reset();
+  }
   return went_down;
 }
 
@@ -196,8 +260,11 @@ void SocketCanSource::take(std::size_t message, std::vector<BusEvent>& events) {
   CanFrame frame;
   std::uint32_t dropped = dropped_;
   msghdr header = received.msg_hdr;
-  for (const cmsghdr* control = CMSG_FIRSTHDR(&header); control != nullptr; control = CMSG_NXTHDR(&header, const_cast<cmsghdr*>(control))) {
-    if (control->cmsg_level != SOL_SOCKET) continue;
+  for (const cmsghdr* control = CMSG_FIRSTHDR(&header); control != nullptr;
+       control = CMSG_NXTHDR(&header, const_cast<cmsghdr*>(control))) {
+    if (control->cmsg_level != SOL_SOCKET) {
+      continue;
+    }
     if (control->cmsg_type == SO_RXQ_OVFL) {
       std::memcpy(&dropped, CMSG_DATA(control), sizeof dropped);
     } else if (control->cmsg_type == SO_TIMESTAMPING) {
@@ -207,13 +274,19 @@ void SocketCanSource::take(std::size_t message, std::vector<BusEvent>& events) {
       frame.hardware_ns = to_ns(stamps.ts[2]);
     }
   }
-  if (dropped != dropped_) events.emplace_back(FramesLost{std::uint32_t{dropped - dropped_}}); // modulo 2^32
+  if (dropped != dropped_) {
+    events.emplace_back(FramesLost{std::uint32_t{dropped - dropped_}}); // modulo 2^32
+  }
   dropped_ = dropped;
   // Classic or FD is told by the size of what was read, never by the length in it.
   frame.fd = received.msg_len == CANFD_MTU;
-  if ((!frame.fd && received.msg_len != CAN_MTU) || raw.len > (frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN)) return;
+  if ((!frame.fd && received.msg_len != CAN_MTU) ||
+      raw.len > (frame.fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN)) {
+    return;
+  }
   if ((raw.can_id & CAN_ERR_FLAG) != 0) {
-    const BusFault fault = bus_fault(raw.can_id & CAN_ERR_MASK, std::span<const std::uint8_t, 8>(raw.data, 8));
+    const BusFault fault =
+        bus_fault(raw.can_id & CAN_ERR_MASK, std::span<const std::uint8_t, 8>(raw.data, 8));
     note_fault(fault);
     events.emplace_back(fault);
     return;
@@ -230,42 +303,57 @@ void SocketCanSource::take(std::size_t message, std::vector<BusEvent>& events) {
 }
 
 void SocketCanSource::note_fault(const BusFault& fault) {
-  if (fault.state == BusState::bus_off && !bus_off_since_)
+  if (fault.state == BusState::bus_off && !bus_off_since_) {
     bus_off_since_ = Clock::now();
-  else if (fault.state != BusState::unknown && fault.state != BusState::bus_off)
+  } else if (fault.state != BusState::unknown && fault.state != BusState::bus_off) {
     bus_off_since_.reset();
+  }
 }
 
-void SocketCanSource::follow_link(const LinkMonitor::Change& announced, std::vector<BusEvent>& events) {
+void SocketCanSource::follow_link(const LinkMonitor::Change& announced,
+                                  std::vector<BusEvent>& events) {
   const LinkState before = link_;
   link_ = announced.state;
   // Once bound_index_ is another interface, or none, the socket hears nothing more.
   const bool gone_or_other = announced.interface_index != bound_index_;
-  if (gone_or_other) socket_.reset();
+  if (gone_or_other) {
+    socket_.reset();
+  }
   LinkChange change{link_, false, ""};
-  if (!link_.present && before.present)
+  if (!link_.present && before.present) {
     change.what = "interface '" + before.name + "' has gone";
-  else if (link_.present && gone_or_other && !open_socket()) // tried again with the next announcement
+  } else if (link_.present && gone_or_other &&
+             !open_socket()) { // tried again with the next announcement
     change.what = "interface '" + link_.name + "' is there but cannot be opened";
-  else if (link_.present && (gone_or_other || !before.present))
+  } else if (link_.present && (gone_or_other || !before.present)) {
     change.what = "interface '" + link_.name + "' is back";
-  else if (link_.up != before.up)
+  } else if (link_.up != before.up) {
     change.what = "interface '" + link_.name + "' is " + (link_.up ? "up" : "down");
-  else if (link_.carrier != before.carrier)
-    change.what = "interface '" + link_.name + "' has " + (link_.carrier ? "its bus back" : "lost its bus");
-  else if (link_.bus == BusState::bus_off && before.bus != BusState::bus_off)
+  } else if (link_.carrier != before.carrier) {
+    change.what =
+        "interface '" + link_.name + "' has " + (link_.carrier ? "its bus back" : "lost its bus");
+  } else if (link_.bus == BusState::bus_off && before.bus != BusState::bus_off) {
     change.what = "bus-off";
+  }
   change.interrupted = !change.what.empty();
-  if (link_.bus == BusState::bus_off && !bus_off_since_)
+  if (link_.bus == BusState::bus_off && !bus_off_since_) {
     bus_off_since_ = Clock::now();
-  else if (link_.bus == BusState::error_active || !link_.up)
+  } else if (link_.bus == BusState::error_active || !link_.up) {
     bus_off_since_.reset();
-  if (change.what.empty() && link_.name != before.name) change.what = "interface '" + before.name + "' is now called '" + link_.name + "'";
-  if (!(link_ == before) || change.interrupted) events.emplace_back(std::move(change));
+  }
+  if (change.what.empty() && link_.name != before.name) {
+    change.what = "interface '" + before.name + "' is now called '" + link_.name + "'";
+  }
+  if (!(link_ == before) || change.interrupted) {
+    events.emplace_back(std::move(change));
+  }
 }
 
 void SocketCanSource::restart_when_due(std::vector<BusEvent>& events) {
-  if (!bus_off_since_ || !settings_.restart_after_bus_off || Clock::now() - *bus_off_since_ < *settings_.restart_after_bus_off) return;
+  if (!bus_off_since_ || !settings_.restart_after_bus_off ||
+      Clock::now() - *bus_off_since_ < *settings_.restart_after_bus_off) {
+    return;
+  }
   bus_off_since_ = Clock::now(); // again after the same time, should this not help
   auto restarted = monitor_->restart_controller();
   std::string how = "controller restarted after bus-off";
@@ -273,7 +361,9 @@ void SocketCanSource::restart_when_due(std::vector<BusEvent>& events) {
     restarted = monitor_->set_up(false).and_then([this] { return monitor_->set_up(true); });
     how = "interface set down and up after bus-off";
   }
-  if (restarted) bus_off_since_.reset();
+  if (restarted) {
+    bus_off_since_.reset();
+  }
   events.emplace_back(LinkChange{link_, true, restarted ? how : restarted.error().message});
 }
 

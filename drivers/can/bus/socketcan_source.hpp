@@ -1,15 +1,19 @@
 // Frames from a CAN interface of the Linux kernel (SocketCAN, classic and FD).
 //
-// One raw socket, read with recvmmsg: every frame comes with its kernel stamp, its hardware stamp where the adapter has one, and the
-// count of frames that the socket had to drop, in the same call (SO_TIMESTAMPING, SO_RXQ_OVFL). The count of drops stands on the next frame
-// after them: drops at the very end are only seen with one more frame. Error frames become BusFault, rtnetlink's announcements LinkChange.
+// One raw socket, read with recvmmsg: every frame comes with its kernel stamp, its hardware stamp
+// where the adapter has one, and the count of frames that the socket had to drop, in the same call
+// (SO_TIMESTAMPING, SO_RXQ_OVFL). The count of drops stands on the next frame after them: drops at
+// the very end are only seen with one more frame. Error frames become BusFault, rtnetlink's
+// announcements LinkChange.
 //
-// The source goes on through: interface down and up (the socket stays bound), interface gone (it is opened again as soon as one of the
-// name is there), interface renamed (followed), bus-off (the kernel's or the adapter's own restart is waited for; with
-// `restart_after_bus_off` the controller is restarted after that time, by IFLA_CAN_RESTART or, where the driver has none, by down and up).
-// Each of these is a LinkChange with `interrupted`, nothing is filled. Frames that waited to be read while the interface was down and up
-// again stand between two of them: which side they belong to cannot be told. Fails at open() when the kernel has no CAN, the interface is
-// not there, is no CAN interface or is down, or the user may not.
+// The source goes on through: interface down and up (the socket stays bound), interface gone (it is
+// opened again as soon as one of the name is there), interface renamed (followed), bus-off (the
+// kernel's or the adapter's own restart is waited for; with `restart_after_bus_off` the controller
+// is restarted after that time, by IFLA_CAN_RESTART or, where the driver has none, by down and up).
+// Each of these is a LinkChange with `interrupted`, nothing is filled. Frames that waited to be
+// read while the interface was down and up again stand between two of them: which side they belong
+// to cannot be told. Fails at open() when the kernel has no CAN, the interface is not there, is no
+// CAN interface or is down, or the user may not.
 #pragma once
 
 #include <array>
@@ -40,7 +44,8 @@ public:
   ~SocketCanSource() override;
 
   [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
-  [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events, std::chrono::milliseconds limit) override;
+  [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events,
+                                         std::chrono::milliseconds limit) override;
   void stop() override;
 
 private:

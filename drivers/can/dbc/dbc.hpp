@@ -1,11 +1,14 @@
 // A CAN database (DBC file): which frames a device sends, and where in them its signals stand.
 //
-// Reads BU_, BO_, SG_ (simple and extended multiplexing), SIG_VALTYPE_, SG_MUL_VAL_ and of BA_ the attributes VFrameFormat,
-// GenMsgCycleTime, SystemMessageLongSymbol and SystemSignalLongSymbol; knows and passes over the other statements of the format. A
-// statement it does not know is passed over up to its ';' with a warning. Text that is not UTF-8 is taken for Windows-1252. What would
-// change the decoding and cannot be understood (BO_, SG_, SIG_VALTYPE_, SG_MUL_VAL_) refuses the file with one sentence that begins
-// "FILE:LINE:". Bits are numbered byte * 8 + bit, bit 0 the least significant of its byte; Intel signals start at their least significant
-// bit, Motorola signals at their most significant one. value = raw * factor + offset. Plain data and plain functions: any thread.
+// Reads BU_, BO_, SG_ (simple and extended multiplexing), SIG_VALTYPE_, SG_MUL_VAL_ and of BA_ the
+// attributes VFrameFormat, GenMsgCycleTime, SystemMessageLongSymbol and SystemSignalLongSymbol;
+// knows and passes over the other statements of the format. A statement it does not know is passed
+// over up to its ';' with a warning. Text that is not UTF-8 is taken for Windows-1252. What would
+// change the decoding and cannot be understood (BO_, SG_, SIG_VALTYPE_, SG_MUL_VAL_) refuses the
+// file with one sentence that begins "FILE:LINE:". Bits are numbered byte * 8 + bit, bit 0 the
+// least significant of its byte; Intel signals start at their least significant bit, Motorola
+// signals at their most significant one. value = raw * factor + offset. Plain data and plain
+// functions: any thread.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +26,8 @@ namespace dyncal::drivers::can {
 enum class ByteOrder { intel, motorola };
 enum class RawType { unsigned_integer, signed_integer, float32, float64 };
 
-// The signal is in a frame only when the raw bits of another signal of it, the switch, are in one of these ranges (both ends included).
+// The signal is in a frame only when the raw bits of another signal of it, the switch, are in one
+// of these ranges (both ends included).
 struct Multiplexing {
   std::size_t switch_signal = 0; // index into DbcMessage::signals
   std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;

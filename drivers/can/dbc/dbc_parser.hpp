@@ -1,5 +1,5 @@
-// Turns the statements of a DBC file into messages and signals; dbc.hpp says what is read and what is refused.
-// One use: DbcParser(text, path).parse(). Belongs to one thread.
+// Turns the statements of a DBC file into messages and signals; dbc.hpp says what is read and what
+// is refused. One use: DbcParser(text, path).parse(). Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,8 @@ private:
   void nodes();
   void message();
   void signal();
-  void multiplex_mark(const std::string& mark, DbcSignal& signal, std::optional<std::uint64_t>& condition);
+  void multiplex_mark(const std::string& mark, DbcSignal& signal,
+                      std::optional<std::uint64_t>& condition);
   void layout(DbcSignal& signal);
   void scaling(DbcSignal& signal);
   void check(const DbcSignal& signal);
@@ -62,7 +63,8 @@ private:
   void warn_about_repeated_ids();
 
   [[nodiscard]] Draft* draft(std::uint64_t file_id);
-  [[nodiscard]] static std::optional<std::size_t> signal_index(const Draft& draft, const std::string& short_name);
+  [[nodiscard]] static std::optional<std::size_t> signal_index(const Draft& draft,
+                                                               const std::string& short_name);
   void refuse(std::size_t line, const std::string& sentence);
   void warn(std::size_t line, const std::string& sentence);
 

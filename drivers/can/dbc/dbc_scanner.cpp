@@ -21,8 +21,11 @@ bool ends_name(char c) {
 } // namespace
 
 void DbcScanner::skip_space() {
-  for (; at_ < text_.size() && is_space(text_[at_]); ++at_)
-    if (text_[at_] == '\n') ++line_;
+  for (; at_ < text_.size() && is_space(text_[at_]); ++at_) {
+    if (text_[at_] == '\n') {
+      ++line_;
+    }
+  }
 }
 
 bool DbcScanner::at_end() {
@@ -41,7 +44,9 @@ bool DbcScanner::next_is(char character) {
 }
 
 bool DbcScanner::character(char wanted) {
-  if (!next_is(wanted)) return false;
+  if (!next_is(wanted)) {
+    return false;
+  }
   ++at_;
   last_line_ = line_;
   return true;
@@ -50,9 +55,12 @@ bool DbcScanner::character(char wanted) {
 std::optional<std::string> DbcScanner::name() {
   skip_space();
   const std::size_t begin = at_;
-  while (at_ < text_.size() && !ends_name(text_[at_]))
+  while (at_ < text_.size() && !ends_name(text_[at_])) {
     ++at_;
-  if (at_ == begin) return std::nullopt;
+  }
+  if (at_ == begin) {
+    return std::nullopt;
+  }
   last_line_ = line_;
   return std::string(text_.substr(begin, at_ - begin));
 }
@@ -62,7 +70,9 @@ std::optional<std::uint64_t> DbcScanner::unsigned_integer() {
   std::uint64_t value = 0;
   const char* begin = text_.data() + at_;
   const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
-  if (error != std::errc()) return std::nullopt;
+  if (error != std::errc()) {
+    return std::nullopt;
+  }
   at_ += static_cast<std::size_t>(end - begin);
   last_line_ = line_;
   return value;
@@ -71,12 +81,20 @@ std::optional<std::uint64_t> DbcScanner::unsigned_integer() {
 std::optional<double> DbcScanner::number() {
   skip_space();
   std::size_t begin = at_;
-  if (begin < text_.size() && text_[begin] == '+') ++begin;
-  const bool digits_follow = begin < text_.size() && (is_digit(text_[begin]) || text_[begin] == '-' || text_[begin] == '.');
-  if (!digits_follow) return std::nullopt;
+  if (begin < text_.size() && text_[begin] == '+') {
+    ++begin;
+  }
+  const bool digits_follow = begin < text_.size() &&
+                             (is_digit(text_[begin]) || text_[begin] == '-' || text_[begin] == '.');
+  if (!digits_follow) {
+    return std::nullopt;
+  }
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text_.data() + begin, text_.data() + text_.size(), value);
-  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  const auto [end, error] =
+      std::from_chars(text_.data() + begin, text_.data() + text_.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
   at_ = static_cast<std::size_t>(end - text_.data());
   last_line_ = line_;
   return value;
@@ -85,17 +103,23 @@ std::optional<double> DbcScanner::number() {
 std::optional<std::string> DbcScanner::string() {
   skip_space();
   const Place before = place();
-  if (!character('"')) return std::nullopt;
+  if (!character('"')) {
+    return std::nullopt;
+  }
   std::string content;
   for (; at_ < text_.size(); ++at_) {
     const char c = text_[at_];
     if (c == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
-      // A backslash at the end of a string is a backslash: what ends a statement or separates follows the quote.
+      // A backslash at the end of a string is a backslash: what ends a statement or separates
+      // follows the quote.
       const std::size_t behind = at_ + 2;
       const bool ends_there =
-          behind < text_.size() && (text_[behind] == ';' || text_[behind] == ',' || text_[behind] == '\r' || text_[behind] == '\n');
+          behind < text_.size() && (text_[behind] == ';' || text_[behind] == ',' ||
+                                    text_[behind] == '\r' || text_[behind] == '\n');
       content += ends_there ? '\\' : '"';
-      if (!ends_there) ++at_;
+      if (!ends_there) {
+        ++at_;
+      }
       continue;
     }
     if (c == '"') {
@@ -103,7 +127,9 @@ std::optional<std::string> DbcScanner::string() {
       last_line_ = line_;
       return content;
     }
-    if (c == '\n') ++line_;
+    if (c == '\n') {
+      ++line_;
+    }
     content += c;
   }
   go_back(before);
@@ -113,17 +139,22 @@ std::optional<std::string> DbcScanner::string() {
 void DbcScanner::skip_statement() {
   while (!at_end()) {
     if (next_is('"')) {
-      if (!string()) at_ = text_.size(); // a string that never ends takes the rest of the file with it
+      if (!string()) {
+        at_ = text_.size(); // a string that never ends takes the rest of the file with it
+      }
       continue;
     }
     last_line_ = line_;
-    if (text_[at_++] == ';') return;
+    if (text_[at_++] == ';') {
+      return;
+    }
   }
 }
 
 void DbcScanner::skip_line() {
-  while (at_ < text_.size() && text_[at_] != '\n')
+  while (at_ < text_.size() && text_[at_] != '\n') {
     ++at_;
+  }
 }
 
 void DbcScanner::go_back(Place place) {
@@ -133,10 +164,13 @@ void DbcScanner::go_back(Place place) {
 }
 
 std::string DbcScanner::next_text() {
-  if (at_end()) return "the end of the file";
+  if (at_end()) {
+    return "the end of the file";
+  }
   std::size_t end = at_;
-  while (end < text_.size() && end - at_ < 12 && text_[end] != '\n' && text_[end] != '\r')
+  while (end < text_.size() && end - at_ < 12 && text_[end] != '\n' && text_[end] != '\r') {
     ++end;
+  }
   return "'" + std::string(text_.substr(at_, end - at_)) + "'";
 }
 

@@ -1,7 +1,9 @@
-// Reads the words, numbers and strings of a DBC file one after the other, and knows the line it is in.
+// Reads the words, numbers and strings of a DBC file one after the other, and knows the line it is
+// in.
 //
-// Every reader passes over white space first and leaves the place unchanged when what stands there is not what was asked for. White space
-// separates; line ends mean nothing but to `same_line`. Belongs to one thread; the text must outlive it.
+// Every reader passes over white space first and leaves the place unchanged when what stands there
+// is not what was asked for. White space separates; line ends mean nothing but to `same_line`.
+// Belongs to one thread; the text must outlive it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +18,9 @@ public:
   explicit DbcScanner(std::string_view text) : text_(text) {}
 
   [[nodiscard]] bool at_end();
-  [[nodiscard]] std::size_t line() const { return line_; } // of the next character that was not read, from 1
+  [[nodiscard]] std::size_t line() const {
+    return line_;
+  } // of the next character that was not read, from 1
   // Whether what comes next stands in the line in which the last thing ended.
   [[nodiscard]] bool same_line();
   [[nodiscard]] bool next_is(char character);

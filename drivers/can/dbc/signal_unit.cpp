@@ -86,11 +86,19 @@ constexpr std::array table = {
 
 std::optional<SignalUnit> signal_unit(const std::string& dbc_unit) {
   std::string written;
-  for (const char c : dbc_unit)
-    if (c != ' ' && c != '\t') written += c;
-  if (written.starts_with('\\')) return SignalUnit{written, "", 1.0}; // D-SI already
-  const auto* const found = std::find_if(table.begin(), table.end(), [&](const Entry& entry) { return entry.written == written; });
-  if (found == table.end()) return std::nullopt;
+  for (const char c : dbc_unit) {
+    if (c != ' ' && c != '\t') {
+      written += c;
+    }
+  }
+  if (written.starts_with('\\')) {
+    return SignalUnit{written, "", 1.0}; // D-SI already
+  }
+  const auto* const found = std::find_if(
+      table.begin(), table.end(), [&](const Entry& entry) { return entry.written == written; });
+  if (found == table.end()) {
+    return std::nullopt;
+  }
   return SignalUnit{std::string(found->d_si), std::string(found->quantity), found->factor};
 }
 

@@ -6,7 +6,8 @@
 
 namespace dyncal::drivers::can {
 
-// UTF-8 as it is (without a byte order mark); anything else is taken for Windows-1252, whose five unassigned bytes become U+FFFD.
+// UTF-8 as it is (without a byte order mark); anything else is taken for Windows-1252, whose five
+// unassigned bytes become U+FFFD.
 [[nodiscard]] std::string to_utf8(std::string_view text);
 
 } // namespace dyncal::drivers::can

@@ -1,15 +1,19 @@
-// The line between a free clock and the host's, from pairs of readings that are late by an amount that is never negative.
+// The line between a free clock and the host's, from pairs of readings that are late by an amount
+// that is never negative.
 //
-// Model: host = free * (1 + rate) + offset + delay, delay >= 0 (arbitration, interrupts, USB), 0 often enough. The line that lies below
-// every point and has the least sum of distances to them is the edge of the lower convex hull of (free, host - free) above the mean of the
-// points (Moon, Skelly, Towsley 1999): it follows the smallest delays and no mean of them. What remains is the smallest delay itself, which
-// no reading can tell from the offset; the user of the line has to know it.
+// Model: host = free * (1 + rate) + offset + delay, delay >= 0 (arbitration, interrupts, USB), 0
+// often enough. The line that lies below every point and has the least sum of distances to them is
+// the edge of the lower convex hull of (free, host - free) above the mean of the points (Moon,
+// Skelly, Towsley 1999): it follows the smallest delays and no mean of them. What remains is the
+// smallest delay itself, which no reading can tell from the offset; the user of the line has to
+// know it.
 //
-// Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered before `settle_s` and
-// `settle_points`; at low rates older points are kept for it. A point
-// that lies more than `step_s` below the line, or in the free clock before its predecessor, means that one of the clocks was set: the
-// estimate begins anew. A point far above is a late frame and changes nothing; but when all points of `step_points` in a row are that far
-// above, the host clock was set forward. Times are int64 ns; only their differences become double. Belongs to one thread.
+// Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered
+// before `settle_s` and `settle_points`; at low rates older points are kept for it. A point that
+// lies more than `step_s` below the line, or in the free clock before its predecessor, means that
+// one of the clocks was set: the estimate begins anew. A point far above is a late frame and
+// changes nothing; but when all points of `step_points` in a row are that far above, the host clock
+// was set forward. Times are int64 ns; only their differences become double. Belongs to one thread.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +30,8 @@ struct ClockLineOptions {
   std::size_t settle_points = 32;
   double step_s = 5e-3;
   std::size_t step_points = 200;
-  double max_rate = 500e-6; // of a clock that is no worse than its quartz, and of a nominal rate that is meant
+  double max_rate =
+      500e-6; // of a clock that is no worse than its quartz, and of a nominal rate that is meant
 };
 
 class ClockLine {
@@ -41,8 +46,8 @@ public:
   // REQUIRES: ready()
   [[nodiscard]] std::int64_t to_host(std::int64_t free_ns) const;
   [[nodiscard]] double rate() const { return rate_; }
-  // Standard uncertainty of the line at its worse end, from the distance to it of four lines through every fourth chunk of the points. The
-  // least delay of all is not in it.
+  // Standard uncertainty of the line at its worse end, from the distance to it of four lines
+  // through every fourth chunk of the points. The least delay of all is not in it.
   [[nodiscard]] double u_s() const { return u_s_; }
   // How far the last point lay above the line.
   [[nodiscard]] double last_delay_s() const { return last_delay_s_; }

@@ -9,7 +9,8 @@ namespace {
 
 constexpr unsigned same_bits_before_stuffing = 5;
 
-// Follows the bits of a frame as they go over the bus: counts the stuff bits and forms the classic checksum.
+// Follows the bits of a frame as they go over the bus: counts the stuff bits and forms the classic
+// checksum.
 class BitStream {
 public:
   void put(bool bit) {
@@ -22,17 +23,21 @@ public:
     }
     const bool feedback = bit != ((crc15_ >> 14U & 1U) != 0);
     crc15_ = (crc15_ << 1U) & 0x7FFFU;
-    if (feedback) crc15_ ^= 0x4599U;
+    if (feedback) {
+      crc15_ ^= 0x4599U;
+    }
     ++count_;
     run_ = count_ > 1 && bit == last_ ? run_ + 1 : 1;
     last_ = bit;
     stuff_due_ = run_ == same_bits_before_stuffing;
   }
   void put(std::uint32_t value, unsigned bits) {
-    while (bits > 0)
+    while (bits > 0) {
       put((value >> --bits & 1U) != 0);
+    }
   }
-  // The stuff bit behind the last bit, which classic frames have and FD frames do not: there a fixed stuff bit stands in its place.
+  // The stuff bit behind the last bit, which classic frames have and FD frames do not: there a
+  // fixed stuff bit stands in its place.
   void finish() {
     if (stuff_due_) {
       ++count_;
@@ -54,11 +59,13 @@ private:
   bool stuff_due_ = false;
 };
 
-constexpr std::array<unsigned, 16> fd_lengths = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+constexpr std::array<unsigned, 16> fd_lengths = {0, 1,  2,  3,  4,  5,  6,  7,
+                                                 8, 12, 16, 20, 24, 32, 48, 64};
 
 std::uint32_t fd_dlc(unsigned length_bytes) {
-  return static_cast<std::uint32_t>(std::lower_bound(fd_lengths.begin(), fd_lengths.end(), std::min(length_bytes, 64U)) -
-                                    fd_lengths.begin());
+  return static_cast<std::uint32_t>(
+      std::lower_bound(fd_lengths.begin(), fd_lengths.end(), std::min(length_bytes, 64U)) -
+      fd_lengths.begin());
 }
 
 // SOF, identifier and the bits up to IDE (base) or RTR/RRS (extended).
@@ -82,8 +89,9 @@ FrameBits classic_bits(const CanFrame& frame) {
   stream.put(0, frame.extended ? 2 : 1); // reserved
   const unsigned length = std::min<unsigned>(frame.length, 8);
   stream.put(length, 4);
-  for (unsigned i = 0; !frame.remote && i < length; ++i)
+  for (unsigned i = 0; !frame.remote && i < length; ++i) {
     stream.put(frame.data[i], 8);
+  }
   const std::uint32_t crc = stream.crc15();
   stream.put(crc, 15);
   stream.finish();
@@ -101,11 +109,16 @@ FrameBits fd_bits(const CanFrame& frame) {
   const std::uint32_t dlc = fd_dlc(frame.length);
   stream.put(dlc, 4);
   const unsigned length = fd_lengths[dlc];
-  for (unsigned i = 0; i < length; ++i)
+  for (unsigned i = 0; i < length; ++i) {
     stream.put(frame.data[i], 8);
+  }
   const unsigned crc = length > 16 ? 21 : 17;
-  const unsigned fixed_stuff = length > 16 ? 7 : 6; // before the stuff count and behind every fourth bit of it and of the checksum
-  const unsigned data_phase = stream.count() - arbitration + 4 + crc + fixed_stuff + 1; // stuff count, CRC, CRC delimiter
+  const unsigned fixed_stuff =
+      length > 16
+          ? 7
+          : 6; // before the stuff count and behind every fourth bit of it and of the checksum
+  const unsigned data_phase =
+      stream.count() - arbitration + 4 + crc + fixed_stuff + 1; // stuff count, CRC, CRC delimiter
   constexpr unsigned behind = 2 + 7;
   FrameBits bits{arbitration + behind, data_phase, stream.stuff() + fixed_stuff};
   if (!frame.bit_rate_switch) {
@@ -127,7 +140,8 @@ double frame_duration_s(const CanFrame& frame, const BitRates& rates) {
 }
 
 double max_frame_s(bool fd, bool bit_rate_switch, unsigned length_bytes, const BitRates& rates) {
-  if (!fd) { // extended id; every fifth bit from SOF to the checksum may bring a stuff bit, which counts for the next five
+  if (!fd) { // extended id; every fifth bit from SOF to the checksum may bring a stuff bit, which
+             // counts for the next five
     const unsigned stuffed = 54 + 8 * std::min(length_bytes, 8U);
     const unsigned max_stuff_bits = (stuffed - 1) / 4;
     return (stuffed + max_stuff_bits + 10) / rates.nominal_per_s;

@@ -1,19 +1,20 @@
 // When a frame began on the bus, on the host's clock.
 //
-// The kernel's stamp is taken after the end of the frame: start = stamp - latency - duration, with the duration counted from the frame's
-// own bits. The adapter's stamp marks the start or the end of the frame (settings) on a clock of its own, which ClockLine relates to the
-// kernel's stamps; both are moved to the start of the frame before they are compared, so that stuffing does not tilt the line. Which of the
-// two is used is decided by the first frame: the adapter's where it has one and the settings do not name the kernel's. Belongs to one
-// thread.
+// The kernel's stamp is taken after the end of the frame: start = stamp - latency - duration, with
+// the duration counted from the frame's own bits. The adapter's stamp marks the start or the end of
+// the frame (settings) on a clock of its own, which ClockLine relates to the kernel's stamps; both
+// are moved to the start of the frame before they are compared, so that stuffing does not tilt the
+// line. Which of the two is used is decided by the first frame: the adapter's where it has one and
+// the settings do not name the kernel's. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/time/clock_line.hpp"
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/time/clock_line.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -22,7 +23,8 @@ public:
   // REQUIRES: settings.bit_rates.nominal_per_s > 0 when the frame duration is corrected.
   FrameTimer(const SensorSettings& settings, const LinkState& link);
 
-  // Every frame, in the order received. False when a clock was set: what was said before is no longer comparable.
+  // Every frame, in the order received. False when a clock was set: what was said before is no
+  // longer comparable.
   bool add(const CanFrame& frame);
   // The adapter's clock has started anew.
   void restart();

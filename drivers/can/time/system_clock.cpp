@@ -8,7 +8,8 @@ namespace dyncal::drivers::can {
 
 namespace {
 
-constexpr double no_discipline_s = 16.0; // the kernel's own bound for a clock that nobody looks after
+constexpr double no_discipline_s =
+    16.0; // the kernel's own bound for a clock that nobody looks after
 
 } // namespace
 

@@ -1,8 +1,9 @@
 // Makes one growing number of a counter that wraps around.
 //
-// The step between two readings is known modulo the counter's range; which of the possible steps it was follows from the time that
-// has passed, where the rate is known: also across a pause in which the counter went around several times. A step that no time explains
-// means that the device has started anew. Belongs to one thread.
+// The step between two readings is known modulo the counter's range; which of the possible steps it
+// was follows from the time that has passed, where the rate is known: also across a pause in which
+// the counter went around several times. A step that no time explains means that the device has
+// started anew. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,8 @@ public:
   // `time_ns` of any clock that is right to some percent.
   Reading read(std::uint64_t raw, std::int64_t time_ns);
 
-  // What `raw` would be without changing anything: for frames that may come out of order. Nearest to the last reading.
+  // What `raw` would be without changing anything: for frames that may come out of order. Nearest
+  // to the last reading.
   [[nodiscard]] std::optional<std::int64_t> near_last(std::uint64_t raw) const;
 
 private:
@@ -32,7 +34,9 @@ private:
     std::int64_t time_ns;
     std::int64_t value;
   };
-  [[nodiscard]] std::uint64_t mask() const { return bits_ >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits_) - 1; }
+  [[nodiscard]] std::uint64_t mask() const {
+    return bits_ >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits_) - 1;
+  }
 
   unsigned bits_;
   double rate_hz_;

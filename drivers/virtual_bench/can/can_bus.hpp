@@ -1,8 +1,10 @@
-// The bits of a CAN bus that a virtual interface has not: one frame at a time, each as long as its bits last, the lowest id first.
+// The bits of a CAN bus that a virtual interface has not: one frame at a time, each as long as its
+// bits last, the lowest id first.
 //
-// A frame that is ready waits until the bus is idle; of those that are ready then, the one with the lowest id begins (arbitration, ISO
-// 11898-1) and is not interrupted. After its end of frame the bus is idle again three bits later (intermission). Errors, retransmission and
-// transmitter delay are not modelled. Times are seconds of bench time. One thread.
+// A frame that is ready waits until the bus is idle; of those that are ready then, the one with the
+// lowest id begins (arbitration, ISO 11898-1) and is not interrupted. After its end of frame the
+// bus is idle again three bits later (intermission). Errors, retransmission and transmitter delay
+// are not modelled. Times are seconds of bench time. One thread.
 #pragma once
 
 #include <optional>
@@ -26,7 +28,8 @@ public:
 
   void offer(const drivers::can::CanFrame& frame, double ready_s);
 
-  // The next frame, when it starts before `time_s`. REQUIRES: whatever is ready before that time has been offered.
+  // The next frame, when it starts before `time_s`. REQUIRES: whatever is ready before that time
+  // has been offered.
   [[nodiscard]] std::optional<SentFrame> next_before(double time_s);
 
 private:

@@ -12,7 +12,8 @@
 namespace dyncal::services::virtual_bench {
 namespace {
 
-// What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more, in simulated time nothing.
+// What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more, in simulated
+// time nothing.
 constexpr std::int64_t min_watch_ns = 5'000;
 constexpr std::int64_t first_watch_ns = 60'000;
 constexpr std::int64_t max_watch_ns = 500'000;
@@ -29,11 +30,13 @@ void sleep_until(std::int64_t utc_ns) {
 
 void go_before_programs(int priority) {
   const sched_param wanted{.sched_priority = priority};
-  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_RR, &wanted)); // refused to ordinary users
+  static_cast<void>(
+      pthread_setschedparam(pthread_self(), SCHED_RR, &wanted)); // refused to ordinary users
 }
 
 CanLine::CanLine(drivers::can::FrameSender sender)
-    : sender_(std::move(sender)), watch_ns_(first_watch_ns), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : sender_(std::move(sender)), watch_ns_(first_watch_ns),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns, bool exact) {
   {
@@ -51,7 +54,8 @@ void CanLine::sleep_until_watch(std::int64_t end_utc_ns) {
   }
   sleep_until(wake_up_ns);
   const std::int64_t needed_ns = (utc_now_ns() - wake_up_ns) * 3 / 2;
-  watch_ns_ = std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), min_watch_ns, max_watch_ns);
+  watch_ns_ =
+      std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), min_watch_ns, max_watch_ns);
 }
 
 void CanLine::send(const Due& due) {
@@ -84,7 +88,8 @@ void CanLine::run(const std::stop_token& stop) {
     waiting_.pop_front();
     // A sleep that hears of a stop, as long as there is time for one.
     const std::chrono::nanoseconds attend(due.end_utc_ns - attend_before_ns);
-    more_.wait_until(lock, stop, std::chrono::system_clock::time_point(attend), [] { return false; });
+    more_.wait_until(lock, stop, std::chrono::system_clock::time_point(attend),
+                     [] { return false; });
     if (stop.stop_requested()) {
       return;
     }

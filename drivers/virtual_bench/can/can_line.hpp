@@ -1,10 +1,12 @@
-// Puts the frames of a virtual bus on a CAN interface of this host at the instants at which they have ended on the bus.
+// Puts the frames of a virtual bus on a CAN interface of this host at the instants at which they
+// have ended on the bus.
 //
-// A virtual interface has no bits: what is written to it arrives, and is stamped, at once. So each frame is written when the host's clock
-// (CLOCK_REALTIME) shows the end of its end-of-frame field. The thread sleeps until shortly before and looks at the clock for the rest;
-// where it may, it runs with real-time priority. Frames of which only the presence on the bus matters may come some 0.1 ms late and cost
-// the host less. A frame of the sensor that the host had no time for is sent late and counted. put() from one thread; the
-// line has a thread of its own until it is destroyed.
+// A virtual interface has no bits: what is written to it arrives, and is stamped, at once. So each
+// frame is written when the host's clock (CLOCK_REALTIME) shows the end of its end-of-frame field.
+// The thread sleeps until shortly before and looks at the clock for the rest; where it may, it runs
+// with real-time priority. Frames of which only the presence on the bus matters may come some 0.1
+// ms late and cost the host less. A frame of the sensor that the host had no time for is sent late
+// and counted. put() from one thread; the line has a thread of its own until it is destroyed.
 #pragma once
 
 #include <atomic>
@@ -20,7 +22,8 @@
 
 namespace dyncal::services::virtual_bench {
 
-// The calling thread goes before those of ordinary programs (SCHED_RR), where the host lets it: instruments do not wait for programs.
+// The calling thread goes before those of ordinary programs (SCHED_RR), where the host lets it:
+// instruments do not wait for programs.
 void go_before_programs(int priority);
 
 class CanLine {
@@ -32,7 +35,9 @@ public:
 
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
   [[nodiscard]] std::uint64_t exact() const { return exact_; }
-  [[nodiscard]] std::uint64_t late() const { return late_; } // of the exact ones, by more than 100 us
+  [[nodiscard]] std::uint64_t late() const {
+    return late_;
+  } // of the exact ones, by more than 100 us
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
 private:

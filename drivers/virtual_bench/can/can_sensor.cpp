@@ -23,15 +23,18 @@ void put_16_bit(CanFrame& frame, std::size_t byte, std::uint16_t value) {
 } // namespace
 
 const std::vector<CanBusKind>& can_bus_kinds() {
-  static const std::vector<CanBusKind> kinds{{"500k", {500e3, 0.0}, false}, {"1M", {1e6, 0.0}, false}, {"fd-5M", {1e6, 5e6}, true}};
+  static const std::vector<CanBusKind> kinds{
+      {"500k", {500e3, 0.0}, false}, {"1M", {1e6, 0.0}, false}, {"fd-5M", {1e6, 5e6}, true}};
   return kinds;
 }
 
 CanSensor::CanSensor(const CanSensorSettings& settings)
-    : settings_(settings), bus_(settings.bus.rates), noise_(settings.seed, "CAN sensor noise"), traffic_(settings.seed, "CAN traffic") {
+    : settings_(settings), bus_(settings.bus.rates), noise_(settings.seed, "CAN sensor noise"),
+      traffic_(settings.seed, "CAN traffic") {
   device::Random draws(settings.seed, "CAN sensor");
   rate_hz_ = nominal_rate_hz * (1.0 + draws.uniform(-max_rate_error, max_rate_error));
-  noise_m_s2_ = settings.preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 * nominal_rate_hz);
+  noise_m_s2_ =
+      settings.preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 * nominal_rate_hz);
   for (double& offset : offset_m_s2_) {
     offset = draws.normal(0.25);
   }
@@ -47,9 +50,11 @@ CanFrame CanSensor::measure(double time_s, const device::Excitation& excitation)
   frame.length = settings_.bus.fd ? fd_bytes : classic_bytes;
   for (std::size_t axis = 0; axis < offset_m_s2_.size(); ++axis) {
     const device::AxisResponse& response = settings_.preset.axes[axis];
-    const device::Motion motion = excitation.motion(time_s - (response.delay_s - settings_.latency_s));
-    const double value = excitation.acceleration(motion, device::harmonic_gains(response, motion.frequency_hz)) + offset_m_s2_[axis] +
-                         noise_.normal(noise_m_s2_);
+    const device::Motion motion =
+        excitation.motion(time_s - (response.delay_s - settings_.latency_s));
+    const double value =
+        excitation.acceleration(motion, device::harmonic_gains(response, motion.frequency_hz)) +
+        offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
     const double counts = std::clamp(std::rint(value / resolution_m_s2), -32768.0, 32767.0);
     put_16_bit(frame, 2 * axis, static_cast<std::uint16_t>(static_cast<std::int16_t>(counts)));
   }
@@ -60,7 +65,8 @@ CanFrame CanSensor::measure(double time_s, const device::Excitation& excitation)
 CanFrame CanSensor::foreign_frame() {
   CanFrame frame;
   const bool before_the_sensor = traffic_.uniform() < 0.3;
-  frame.id = (before_the_sensor ? 0x020U : 0x300U) + static_cast<std::uint32_t>(traffic_.uniform(0.0, 32.0));
+  frame.id = (before_the_sensor ? 0x020U : 0x300U) +
+             static_cast<std::uint32_t>(traffic_.uniform(0.0, 32.0));
   frame.fd = frame.bit_rate_switch = settings_.bus.fd;
   frame.length = static_cast<std::uint8_t>(foreign_bytes());
   for (std::size_t byte = 0; byte < frame.length; ++byte) {
@@ -78,8 +84,10 @@ double CanSensor::next_foreign_pause_s() {
   return -std::log(1.0 - traffic_.uniform()) * frame_s / settings_.background_load;
 }
 
-void CanSensor::advance_to(double time_s, const device::Excitation& excitation, const std::function<void(const SentFrame&)>& sent) {
-  for (double at_s = static_cast<double>(next_sample_) / rate_hz_; at_s < time_s; at_s = static_cast<double>(next_sample_) / rate_hz_) {
+void CanSensor::advance_to(double time_s, const device::Excitation& excitation,
+                           const std::function<void(const SentFrame&)>& sent) {
+  for (double at_s = static_cast<double>(next_sample_) / rate_hz_; at_s < time_s;
+       at_s = static_cast<double>(next_sample_) / rate_hz_) {
     const CanFrame frame = measure(at_s, excitation);
     bus_.offer(frame, at_s + settings_.latency_s);
     ++next_sample_;
@@ -98,12 +106,15 @@ std::string CanSensor::dbc() const {
   text += "BO_ " + std::to_string(id) + " Sample: " + (settings_.bus.fd ? "24" : "8") + " Sensor\n";
   const char* axes[] = {"acceleration_x", "acceleration_y", "acceleration_z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    text += std::string(" SG_ ") + axes[axis] + " : " + std::to_string(16 * axis) + "|16@1- (0.005,0) [-163.84|163.835] \"m/s^2\" Host\n";
+    text += std::string(" SG_ ") + axes[axis] + " : " + std::to_string(16 * axis) +
+            "|16@1- (0.005,0) [-163.84|163.835] \"m/s^2\" Host\n";
   }
   text += " SG_ counter : 48|16@1+ (1,0) [0|65535] \"\" Host\n";
-  text +=
-      "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"J1939PG\",\"reserved\",\"reserved\",\"reserved\","
-      "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\n";
+  text += "BA_DEF_ BO_ \"VFrameFormat\" ENUM "
+          "\"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"J1939PG\",\"reserved\",\"reserved\","
+          "\"reserved\","
+          "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\","
+          "\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\n";
   text += "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\n";
   if (settings_.bus.fd) {
     text += "BA_ \"VFrameFormat\" BO_ " + std::to_string(id) + " 14;\n";

@@ -1,10 +1,12 @@
 // A sensor with CAN output on the virtual bench, and the other devices on its bus.
 //
-// At the instants of its own clock (rate drawn within 200 ppm of nominal) the sensor measures three axes with the response of the preset,
-// noise and a resolution of 0.005 m/s^2, numbers the sample and has its frame ready `latency_s` later. What the truth says of its phase
-// holds for the instant at which the frame could have begun on an idle bus: that of the reading plus the latency. Other devices send frames
-// of 8 bytes (64 on CAN FD) at random, some with a lower id than the sensor's, for the given share of the bus's time. Everything drawn
-// follows from the seed. Times are seconds of bench time. One thread.
+// At the instants of its own clock (rate drawn within 200 ppm of nominal) the sensor measures three
+// axes with the response of the preset, noise and a resolution of 0.005 m/s^2, numbers the sample
+// and has its frame ready `latency_s` later. What the truth says of its phase holds for the instant
+// at which the frame could have begun on an idle bus: that of the reading plus the latency. Other
+// devices send frames of 8 bytes (64 on CAN FD) at random, some with a lower id than the sensor's,
+// for the given share of the bus's time. Everything drawn follows from the seed. Times are seconds
+// of bench time. One thread.
 #pragma once
 
 #include <array>
@@ -13,10 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/virtual_bench/can/can_bus.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
-#include "drivers/virtual_bench/can/can_bus.hpp"
 
 namespace dyncal::services::virtual_bench {
 
@@ -33,7 +35,8 @@ struct CanSensorSettings {
   std::uint64_t seed = 1;
   CanBusKind bus;
   double background_load = 0.15; // of the bus's time
-  double latency_s = 0.2e-3;     // from the reading to the frame; not more than the smallest delay of the preset's axes
+  double latency_s = 0.2e-3; // from the reading to the frame; not more than the smallest delay of
+                             // the preset's axes
 };
 
 class CanSensor {
@@ -41,7 +44,8 @@ public:
   explicit CanSensor(const CanSensorSettings& settings);
 
   // Measures up to `time_s` and hands over the frames that begin on the bus before it.
-  void advance_to(double time_s, const drivers::virtual_bench::Excitation& excitation, const std::function<void(const SentFrame&)>& sent);
+  void advance_to(double time_s, const drivers::virtual_bench::Excitation& excitation,
+                  const std::function<void(const SentFrame&)>& sent);
 
   [[nodiscard]] double rate_hz() const { return rate_hz_; }
   // The DBC file that goes with it.
@@ -51,7 +55,8 @@ public:
   static constexpr double nominal_rate_hz = 500.0;
 
 private:
-  [[nodiscard]] drivers::can::CanFrame measure(double time_s, const drivers::virtual_bench::Excitation& excitation);
+  [[nodiscard]] drivers::can::CanFrame
+  measure(double time_s, const drivers::virtual_bench::Excitation& excitation);
   [[nodiscard]] drivers::can::CanFrame foreign_frame();
   [[nodiscard]] unsigned foreign_bytes() const { return settings_.bus.fd ? 64 : 8; }
   [[nodiscard]] double next_foreign_pause_s();

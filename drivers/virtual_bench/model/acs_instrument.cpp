@@ -17,12 +17,14 @@ constexpr double reference_hum_m_s2 = 1.5e-3;
 constexpr double sync_hum_v = 150e-6;
 
 std::int32_t to_counts(double value, double scale) {
-  return static_cast<std::int32_t>(std::clamp(std::rint(value / scale), -counts_per_range, counts_per_range - 1.0));
+  return static_cast<std::int32_t>(
+      std::clamp(std::rint(value / scale), -counts_per_range, counts_per_range - 1.0));
 }
 
 } // namespace
 
-AcsInstrument::AcsInstrument(const AcsSettings& settings) : settings_(settings), noise_(settings.seed, "ACS noise") {
+AcsInstrument::AcsInstrument(const AcsSettings& settings)
+    : settings_(settings), noise_(settings.seed, "ACS noise") {
   Random draws(settings.seed, "ACS errors");
   rate_error_ = draws.uniform(-settings.max_rate_error, settings.max_rate_error);
   if (settings.utc) {
@@ -34,7 +36,8 @@ AcsInstrument::AcsInstrument(const AcsSettings& settings) : settings_(settings),
   reference_range_m_s2_ = 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
   reference_scale_ = reference_range_m_s2_ / counts_per_range;
   sync_scale_ = sync_range_v / counts_per_range;
-  reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_, 1.0 + gain_error_};
+  reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_,
+                      1.0 + gain_error_};
 }
 
 void AcsInstrument::sample_until(double time_s, const Excitation& excitation, AcsSamples& samples) {
@@ -46,9 +49,11 @@ void AcsInstrument::sample_until(double time_s, const Excitation& excitation, Ac
        at_s = static_cast<double>(++next_sample_) * interval_s) {
     const Motion motion = excitation.motion(at_s);
     const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
-    const double reference =
-        excitation.acceleration(motion, reference_gains_) + reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2);
-    const double sync_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+    const double reference = excitation.acceleration(motion, reference_gains_) +
+                             reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2);
+    const double sync_v = settings_.sync_is_first_output ? motion.generator_v
+                          : motion.sync_on               ? settings_.sync_amplitude_v
+                                                         : 0.0;
     const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v);
     samples.counts.push_back(to_counts(reference, reference_scale_));
     samples.counts.push_back(to_counts(sync, sync_scale_));

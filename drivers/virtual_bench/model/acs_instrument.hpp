@@ -1,9 +1,11 @@
-// The analogue calibration system of the virtual bench: reference acceleration and sync, equidistant in a clock of its own.
+// The analogue calibration system of the virtual bench: reference acceleration and sync,
+// equidistant in a clock of its own.
 //
-// Sample n is taken at bench time n * (1 + rate_error) / rate and stamped origin_ns + n / rate: neither epoch nor rate is
-// that of the bench, unless it is disciplined to UTC. The reference has a gain and a phase error, drawn once from the standard
-// uncertainties that the recipe states. Values are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries
-// them. One thread.
+// Sample n is taken at bench time n * (1 + rate_error) / rate and stamped origin_ns + n / rate:
+// neither epoch nor rate is that of the bench, unless it is disciplined to UTC. The reference has a
+// gain and a phase error, drawn once from the standard uncertainties that the recipe states. Values
+// are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries them.
+// One thread.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +23,8 @@ struct AcsSettings {
   std::int64_t origin_ns = 0;
   double highest_level_m_s2 = 130.0;
   double sync_amplitude_v = 9.75;
-  bool sync_is_first_output = false;     // sync is what drives the exciter, not the generator's second output of constant amplitude
+  bool sync_is_first_output = false; // sync is what drives the exciter, not the generator's second
+                                     // output of constant amplitude
   double reference_magnitude_rel = 1e-3; // standard uncertainties
   double reference_phase_rad = 1.7e-3;
   double max_rate_error = 0.5e-6;

@@ -1,9 +1,11 @@
-// The clock of the SmartUp Unit: a 108 MHz counter whose rate and origin follow the pulses per second of a GPS receiver.
+// The clock of the SmartUp Unit: a 108 MHz counter whose rate and origin follow the pulses per
+// second of a GPS receiver.
 //
-// The crystal is 3.1 ppm off and wanders (Ornstein-Uhlenbeck, 8e-9, 20 s); the pulses jitter by 12 ns (uniform); a proportional and
-// integral loop of 8 s tracks them. stamp = second + (ticks - origin) / rate, rounded to nanoseconds. This gives a stamp error of about
-// 18.5 ns standard deviation, below 100 ns.
-// Bench time 0 is unit time start_ns(). One thread; times asked for must not fall by more than a second.
+// The crystal is 3.1 ppm off and wanders (Ornstein-Uhlenbeck, 8e-9, 20 s); the pulses jitter by 12
+// ns (uniform); a proportional and integral loop of 8 s tracks them. stamp = second + (ticks -
+// origin) / rate, rounded to nanoseconds. This gives a stamp error of about 18.5 ns standard
+// deviation, below 100 ns. Bench time 0 is unit time start_ns(). One thread; times asked for must
+// not fall by more than a second.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +39,8 @@ private:
   double first_pulse_s_; // bench time of the second that bench time 0 lies in (not after 0)
   double crystal_error_ = 3.1e-6;
   double wander_ = 0.0;
-  std::int64_t second_ = 0;       // full seconds since the first pulse, of the stretch the counter is in
-  double counter_ = 0.0;          // true ticks at the beginning of that stretch
+  std::int64_t second_ = 0; // full seconds since the first pulse, of the stretch the counter is in
+  double counter_ = 0.0;    // true ticks at the beginning of that stretch
   double true_rate_ = nominal_hz; // ticks per true second in that stretch
   double origin_ = 0.0;           // estimate of counter_ by the loop
   double rate_ = nominal_hz;      // estimate of true_rate_

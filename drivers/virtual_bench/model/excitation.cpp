@@ -19,7 +19,8 @@ std::complex<double> ExciterModel::at(double frequency_hz) const {
 }
 
 HarmonicGains harmonic_gains(const AxisResponse& response, double frequency_hz) {
-  return {response.magnitude_at(frequency_hz) * std::polar(1.0, response.residual_phase_at(frequency_hz)),
+  return {response.magnitude_at(frequency_hz) *
+              std::polar(1.0, response.residual_phase_at(frequency_hz)),
           response.magnitude_at(2.0 * frequency_hz), response.magnitude_at(3.0 * frequency_hz)};
 }
 
@@ -47,7 +48,8 @@ void Excitation::change(double time_s, const Drive& drive) {
   next.turns = turns - std::floor(turns);
   next.frequency_hz = drive.frequency_hz;
   next.initial = envelope(last, time_s);
-  next.target = drive.on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
+  next.target =
+      drive.on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
   next.on = drive.on;
   next.amplitude_v = drive.on ? drive.amplitude_v : 0.0;
   drive_ = drive;
@@ -61,7 +63,8 @@ Motion Excitation::motion(double time_s) const {
   const Segment& segment = segment_at(time_s);
   const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
   const double angle = two_pi * (turns - std::floor(turns));
-  return {std::sin(angle), std::cos(angle), envelope(segment, time_s), segment.frequency_hz, segment.on, segment.amplitude_v};
+  return {std::sin(angle),      std::cos(angle), envelope(segment, time_s),
+          segment.frequency_hz, segment.on,      segment.amplitude_v};
 }
 
 double Excitation::acceleration(const Motion& motion, const HarmonicGains& gains) const {
@@ -73,7 +76,8 @@ double Excitation::acceleration(const Motion& motion, const HarmonicGains& gains
   const double cosine3 = cosine2 * motion.cosine - sine2 * motion.sine;
   const double second = second_.real() * sine2 + second_.imag() * cosine2;
   const double third = third_.real() * sine3 + third_.imag() * cosine3;
-  return fundamental.real() * motion.sine + fundamental.imag() * motion.cosine + amplitude * (gains.second * second + gains.third * third);
+  return fundamental.real() * motion.sine + fundamental.imag() * motion.cosine +
+         amplitude * (gains.second * second + gains.third * third);
 }
 
 } // namespace dyncal::drivers::virtual_bench

@@ -50,12 +50,14 @@ PchipTable ptb_residual_phase() {
   std::vector<double> y;
   for (const PublishedPoint& point : ptb_points) {
     x.push_back(point.frequency_hz);
-    y.push_back(point.phase_deg * std::numbers::pi / 180.0 + 2.0 * std::numbers::pi * point.frequency_hz * ptb_delay_s);
+    y.push_back(point.phase_deg * std::numbers::pi / 180.0 +
+                2.0 * std::numbers::pi * point.frequency_hz * ptb_delay_s);
   }
   return {x, y};
 }
 
-// A magnitude 1 + (f / corner)^2 for a mechanical path that gets more lively with frequency, or falling for a negative sign.
+// A magnitude 1 + (f / corner)^2 for a mechanical path that gets more lively with frequency, or
+// falling for a negative sign.
 PchipTable curved_magnitude(double corner_hz, double sign) {
   std::vector<double> x;
   std::vector<double> y;
@@ -66,7 +68,8 @@ PchipTable curved_magnitude(double corner_hz, double sign) {
   return {x, y};
 }
 
-// The cross axes have gains and delays of their own, a bit off the main axis; y points the other way.
+// The cross axes have gains and delays of their own, a bit off the main axis; y points the other
+// way.
 void add_cross_axes(Preset& preset) {
   const double delay_s = preset.axes[2].delay_s;
   preset.axes[0] = {0.0196, delay_s + 0.12e-3, curved_magnitude(900.0, 1.0), {}};

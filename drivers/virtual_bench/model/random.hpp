@@ -1,6 +1,7 @@
-// Random numbers that are the same on every machine and compiler for the same seed: xoshiro256** (Blackman and Vigna 2018) and the
-// polar method for the normal distribution. The standard library's distributions may differ between implementations.
-// One object per model component, so that what one component draws does not shift the others. One thread an object.
+// Random numbers that are the same on every machine and compiler for the same seed: xoshiro256**
+// (Blackman and Vigna 2018) and the polar method for the normal distribution. The standard
+// library's distributions may differ between implementations. One object per model component, so
+// that what one component draws does not shift the others. One thread an object.
 #pragma once
 
 #include <array>
@@ -18,7 +19,9 @@ public:
   [[nodiscard]] double uniform(double from, double to) { return from + (to - from) * uniform(); }
   [[nodiscard]] double normal(); // mean 0, standard deviation 1
   [[nodiscard]] double normal(double standard_deviation) { return standard_deviation * normal(); }
-  [[nodiscard]] bool happens(double probability) { return probability > 0.0 && uniform() < probability; }
+  [[nodiscard]] bool happens(double probability) {
+    return probability > 0.0 && uniform() < probability;
+  }
 
 private:
   std::uint64_t next();

@@ -23,7 +23,8 @@ void put(std::string& line, Number value) {
 class CsvFiles {
 public:
   CsvFiles(const VirtualBench& bench, const std::filesystem::path& folder)
-      : bench_(bench), acs_(folder / "acs.csv", std::ios::binary), dau_(folder / "dau.csv", std::ios::binary) {
+      : bench_(bench), acs_(folder / "acs.csv", std::ios::binary),
+        dau_(folder / "dau.csv", std::ios::binary) {
     acs_ << "t_ns,reference,sync\n";
     dau_ << "t_ns,sample_number";
     for (const UnitChannel& channel : bench.unit().channels()) {
@@ -53,7 +54,9 @@ public:
     for (const UnitChannel& channel : bench_.unit().channels()) {
       text_ += ',';
       if (sample.data[channel.index]) {
-        put(text_, static_cast<double>(*sample.data[channel.index])); // read back, it must be the same double as from a datagram
+        put(text_,
+            static_cast<double>(*sample.data[channel.index])); // read back, it must be the same
+                                                               // double as from a datagram
       }
     }
     text_ += '\n';
@@ -73,27 +76,31 @@ void run_for(VirtualBench& bench, double duration_s, CsvFiles& files) {
   const double end_s = bench.now_s() + duration_s;
   while (bench.now_s() < end_s) {
     AcsSamples acs;
-    bench.advance_to(std::min(bench.now_s() + slice_s, end_s), acs, [&](const UnitSample& sample) { files.write(sample); });
+    bench.advance_to(std::min(bench.now_s() + slice_s, end_s), acs,
+                     [&](const UnitSample& sample) { files.write(sample); });
     files.write(acs);
   }
 }
 
 } // namespace
 
-Expected<void> record_csv(VirtualBench& bench, const Programme& programme, const std::filesystem::path& folder) {
+Expected<void> record_csv(VirtualBench& bench, const Programme& programme,
+                          const std::filesystem::path& folder) {
   CsvFiles files(bench, folder);
   for (int repetition = 0; repetition < programme.repetitions; ++repetition) {
     for (std::size_t step = 0; step < programme.frequencies_hz.size(); ++step) {
       run_for(bench, pause_s, files);
       const double frequency_hz = std::strtod(programme.frequencies_hz[step].c_str(), nullptr);
-      bench.set_drive({frequency_hz, programme.levels_m_s2[step] / VirtualBench::level_per_volt, true});
+      bench.set_drive(
+          {frequency_hz, programme.levels_m_s2[step] / VirtualBench::level_per_volt, true});
       run_for(bench, programme.settling_s + programme.duration_s + margin_s, files);
       bench.set_drive({frequency_hz, 0.0, false});
     }
   }
   run_for(bench, pause_s, files);
   if (!files.complete()) {
-    return tl::unexpected(Error{ErrorCode::refused, folder.string() + ": acs.csv and dau.csv cannot be written there"});
+    return tl::unexpected(Error{ErrorCode::refused,
+                                folder.string() + ": acs.csv and dau.csv cannot be written there"});
   }
   return {};
 }

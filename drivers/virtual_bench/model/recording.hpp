@@ -1,8 +1,10 @@
-// A whole programme of steps run without network, written as files: acs.csv, dau.csv, for playing the same samples again and again.
+// A whole programme of steps run without network, written as files: acs.csv, dau.csv, for playing
+// the same samples again and again.
 //
-// The steps follow the recipe of a run: all frequencies, then all again for the next repetition; the generator is off for 0.3 s before each
-// step and at the end. Stamps are the instruments' own; `sample_number` in dau.csv tells what the unit lost.
-// Fails (refused) when a file cannot be written.
+// The steps follow the recipe of a run: all frequencies, then all again for the next repetition;
+// the generator is off for 0.3 s before each step and at the end. Stamps are the instruments' own;
+// `sample_number` in dau.csv tells what the unit lost. Fails (refused) when a file cannot be
+// written.
 #pragma once
 
 #include <filesystem>
@@ -22,6 +24,7 @@ struct Programme {
   double duration_s = 3.0; // per step, after settling
 };
 
-[[nodiscard]] Expected<void> record_csv(VirtualBench& bench, const Programme& programme, const std::filesystem::path& folder);
+[[nodiscard]] Expected<void> record_csv(VirtualBench& bench, const Programme& programme,
+                                        const std::filesystem::path& folder);
 
 } // namespace dyncal::drivers::virtual_bench

@@ -7,7 +7,8 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-// Weighted harmonic mean of the neighbouring differences; 0 at a turning point, so the curve does not overshoot.
+// Weighted harmonic mean of the neighbouring differences; 0 at a turning point, so the curve does
+// not overshoot.
 double inner_slope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0.0) {
     return 0.0;
@@ -27,7 +28,8 @@ double end_slope(double h0, double h1, double d0, double d1) {
 
 } // namespace
 
-PchipTable::PchipTable(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)), slope_(x_.size()) {
+PchipTable::PchipTable(std::vector<double> x, std::vector<double> y)
+    : x_(std::move(x)), y_(std::move(y)), slope_(x_.size()) {
   const std::size_t n = x_.size();
   std::vector<double> h(n - 1);
   std::vector<double> d(n - 1);
@@ -56,11 +58,13 @@ double PchipTable::at(double x) const {
   if (x >= x_.back()) {
     return y_.back();
   }
-  const std::size_t i = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin()) - 1;
+  const std::size_t i =
+      static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin()) - 1;
   const double h = x_[i + 1] - x_[i];
   const double s = (x - x_[i]) / h;
   const double r = 1.0 - s;
-  return r * r * ((1.0 + 2.0 * s) * y_[i] + s * h * slope_[i]) + s * s * ((3.0 - 2.0 * s) * y_[i + 1] - r * h * slope_[i + 1]);
+  return r * r * ((1.0 + 2.0 * s) * y_[i] + s * h * slope_[i]) +
+         s * s * ((3.0 - 2.0 * s) * y_[i + 1] - r * h * slope_[i + 1]);
 }
 
 double AxisResponse::magnitude_at(double frequency_hz) const {
@@ -71,7 +75,8 @@ double AxisResponse::magnitude_at(double frequency_hz) const {
 
 std::complex<double> AxisResponse::at(double frequency_hz) const {
   const double turns = frequency_hz * delay_s;
-  const double phase = -2.0 * std::numbers::pi * (turns - std::rint(turns)) + residual_phase_at(frequency_hz);
+  const double phase =
+      -2.0 * std::numbers::pi * (turns - std::rint(turns)) + residual_phase_at(frequency_hz);
   return magnitude_at(frequency_hz) * std::polar(1.0, phase);
 }
 

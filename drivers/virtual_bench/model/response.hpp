@@ -1,8 +1,10 @@
-// The true transfer function of one axis of a sensor: magnitude over frequency and phase = -2 pi f delay + residual phase.
+// The true transfer function of one axis of a sensor: magnitude over frequency and phase = -2 pi f
+// delay + residual phase.
 //
-// Between the points of the table magnitude and residual phase follow a monotone cubic (Fritsch and Butland 1984, "PCHIP");
-// below the first point they stay, above the last one the magnitude falls with 1/f^2 as a low pass of second order does.
-// Phase is lead in radians, a delay is negative. Any thread; immutable.
+// Between the points of the table magnitude and residual phase follow a monotone cubic (Fritsch and
+// Butland 1984, "PCHIP"); below the first point they stay, above the last one the magnitude falls
+// with 1/f^2 as a low pass of second order does. Phase is lead in radians, a delay is negative. Any
+// thread; immutable.
 #pragma once
 
 #include <complex>
@@ -31,7 +33,9 @@ struct AxisResponse {
   PchipTable residual_phase_rad; // over Hz
 
   [[nodiscard]] double magnitude_at(double frequency_hz) const; // with the sign of the gain
-  [[nodiscard]] double residual_phase_at(double frequency_hz) const { return residual_phase_rad.at(frequency_hz); }
+  [[nodiscard]] double residual_phase_at(double frequency_hz) const {
+    return residual_phase_rad.at(frequency_hz);
+  }
   [[nodiscard]] std::complex<double> at(double frequency_hz) const; // with the delay
 };
 

@@ -26,7 +26,8 @@ public:
       phase_noise_ns += random_.uniform(30.0, 163.0);
     }
     const SensorEdge edge{time_s_ + 1e-9 * phase_noise_ns, temperature};
-    time_s_ += 1e-9 * (996955.15 + 0.835 * level_ns_ + 1.5 * (temperature - 28.2) + random_.normal(5.0));
+    time_s_ +=
+        1e-9 * (996955.15 + 0.835 * level_ns_ + 1.5 * (temperature - 28.2) + random_.normal(5.0));
     return edge;
   }
 
@@ -72,7 +73,8 @@ private:
 
 class Bma280Clock : public SensorClock {
 public:
-  explicit Bma280Clock(std::uint64_t seed) : random_(seed, "sensor clock"), until_pair_(draw_distance()) {}
+  explicit Bma280Clock(std::uint64_t seed)
+      : random_(seed, "sensor clock"), until_pair_(draw_distance()) {}
 
   SensorEdge next() override {
     const SensorEdge edge{time_s_, 25.0};
@@ -102,7 +104,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<SensorClock> make_sensor_clock(SensorKind kind, std::uint64_t seed, double thermal_cycle_s) {
+std::unique_ptr<SensorClock> make_sensor_clock(SensorKind kind, std::uint64_t seed,
+                                               double thermal_cycle_s) {
   if (kind == SensorKind::bma280) {
     return std::make_unique<Bma280Clock>(seed);
   }

@@ -29,13 +29,16 @@ double choose_range_g(double highest_level_m_s2) {
 } // namespace
 
 SensorUnit::SensorUnit(const SensorUnitSettings& settings)
-    : settings_(settings), noise_(settings.seed, "sensor noise"), clock_(settings.seed, settings.start_ns),
-      sensor_clock_(make_sensor_clock(settings.preset.sensor, settings.seed, settings.thermal_cycle_s)),
+    : settings_(settings), noise_(settings.seed, "sensor noise"),
+      clock_(settings.seed, settings.start_ns),
+      sensor_clock_(
+          make_sensor_clock(settings.preset.sensor, settings.seed, settings.thermal_cycle_s)),
       faults_(settings.seed, settings.faults) {
   const Preset& preset = settings_.preset;
   range_m_s2_ = choose_range_g(settings.highest_level_m_s2) * standard_gravity;
   step_m_s2_ = range_m_s2_ / preset.counts_per_range;
-  noise_m_s2_ = preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 / preset.mean_interval_s);
+  noise_m_s2_ =
+      preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 / preset.mean_interval_s);
   Random offsets(settings.seed, "sensor offsets");
   for (double& offset : offset_m_s2_) {
     offset = offsets.normal(0.25);
@@ -46,42 +49,53 @@ SensorUnit::SensorUnit(const SensorUnitSettings& settings)
   } else {
     describe_bma280();
   }
-  describe_scalar(10, "sync", "Voltage", "\\volt", "Voltage/0", -adc_range_v, adc_range_v, 4096.0, false);
-  describe_scalar(11, "adc_2", "Voltage", "\\volt", "Voltage/1", -adc_range_v, adc_range_v, 4096.0, false);
-  describe_scalar(12, "adc_3", "Voltage", "\\volt", "Voltage/2", -adc_range_v, adc_range_v, 4096.0, false);
+  describe_scalar(10, "sync", "Voltage", "\\volt", "Voltage/0", -adc_range_v, adc_range_v, 4096.0,
+                  false);
+  describe_scalar(11, "adc_2", "Voltage", "\\volt", "Voltage/1", -adc_range_v, adc_range_v, 4096.0,
+                  false);
+  describe_scalar(12, "adc_3", "Voltage", "\\volt", "Voltage/2", -adc_range_v, adc_range_v, 4096.0,
+                  false);
 }
 
-void SensorUnit::describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit, const char* hierarchy,
-                                 double minimum, double maximum, double steps, bool declared) {
+void SensorUnit::describe_scalar(std::size_t index, const char* name, const char* quantity,
+                                 const char* unit, const char* hierarchy, double minimum,
+                                 double maximum, double steps, bool declared) {
   channels_.push_back({index, name, quantity, unit, hierarchy, minimum, maximum, steps, declared});
 }
 
-void SensorUnit::describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit, const char* hierarchy,
-                                 double range, double steps) {
+void SensorUnit::describe_vector(std::size_t first, const char* name, const char* quantity,
+                                 const char* unit, const char* hierarchy, double range,
+                                 double steps) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string small(1, "xyz"[axis]);
     const std::string capital(1, "XYZ"[axis]);
-    channels_.push_back({first + axis, std::string(name) + "_" + small, capital + " " + quantity, unit,
-                         std::string(hierarchy) + "/" + std::to_string(axis), -range, range, steps, true});
+    channels_.push_back({first + axis, std::string(name) + "_" + small, capital + " " + quantity,
+                         unit, std::string(hierarchy) + "/" + std::to_string(axis), -range, range,
+                         steps, true});
   }
 }
 
 void SensorUnit::describe_mpu9250() {
-  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration", range_m_s2_, steps_16_bit);
-  describe_vector(3, "angular_velocity", "Angular velocity", "\\radian\\second\\tothe{-1}", "Angular_velocity", gyroscope_range_rad_s,
-                  steps_16_bit);
-  describe_vector(6, "magnetic_flux_density", "Magnetic flux density", "\\micro\\tesla", "Magnetic_flux_density", magnetometer_range_ut,
-                  steps_16_bit);
-  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -77.14, 119.15, steps_16_bit, true);
+  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
+                  range_m_s2_, steps_16_bit);
+  describe_vector(3, "angular_velocity", "Angular velocity", "\\radian\\second\\tothe{-1}",
+                  "Angular_velocity", gyroscope_range_rad_s, steps_16_bit);
+  describe_vector(6, "magnetic_flux_density", "Magnetic flux density", "\\micro\\tesla",
+                  "Magnetic_flux_density", magnetometer_range_ut, steps_16_bit);
+  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -77.14,
+                  119.15, steps_16_bit, true);
 }
 
 void SensorUnit::describe_bma280() {
-  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration", range_m_s2_, 16384.0);
-  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -41.0, 87.0, 256.0, true);
+  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
+                  range_m_s2_, 16384.0);
+  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -41.0, 87.0,
+                  256.0, true);
 }
 
 float SensorUnit::quantised(double value, double step, double range) const {
-  const double counts = std::clamp(std::rint(value / step), -std::rint(range / step), std::rint(range / step) - 1.0);
+  const double counts =
+      std::clamp(std::rint(value / step), -std::rint(range / step), std::rint(range / step) - 1.0);
   return static_cast<float>(counts * step + 0.0); // no negative zero
 }
 
@@ -93,11 +107,12 @@ const HarmonicGains& SensorUnit::gains(std::size_t axis, double frequency_hz) {
   return gains_[axis];
 }
 
-void SensorUnit::measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation) {
+void SensorUnit::measure_acceleration(UnitSample& sample, double time_s,
+                                      const Excitation& excitation) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
-    const double value =
-        excitation.acceleration(motion, gains(axis, motion.frequency_hz)) + offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
+    const double value = excitation.acceleration(motion, gains(axis, motion.frequency_hz)) +
+                         offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
     sample.data[axis] = quantised(value, step_m_s2_, range_m_s2_);
   }
 }
@@ -108,20 +123,25 @@ void SensorUnit::measure_rest(UnitSample& sample, double temperature_degc) {
     return;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    sample.data[3 + axis] = quantised(noise_.normal(gyroscope_noise_rad_s), gyroscope_range_rad_s / 32768.0, gyroscope_range_rad_s);
-    sample.data[6 + axis] =
-        quantised(earth_field_ut[axis] + noise_.normal(magnetometer_noise_ut), magnetometer_range_ut / 32768.0, magnetometer_range_ut);
+    sample.data[3 + axis] = quantised(noise_.normal(gyroscope_noise_rad_s),
+                                      gyroscope_range_rad_s / 32768.0, gyroscope_range_rad_s);
+    sample.data[6 + axis] = quantised(earth_field_ut[axis] + noise_.normal(magnetometer_noise_ut),
+                                      magnetometer_range_ut / 32768.0, magnetometer_range_ut);
   }
-  sample.data[9] = quantised(temperature_degc - 21.0 + noise_.normal(0.01), 1.0 / 333.87, 98.0) + 21.0F;
+  sample.data[9] =
+      quantised(temperature_degc - 21.0 + noise_.normal(0.01), 1.0 / 333.87, 98.0) + 21.0F;
 }
 
 void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation) {
   const Motion motion = excitation.motion(time_s - settings_.adc.lag_s);
-  const double amplitude_v = settings_.sync_is_first_output ? motion.generator_v : motion.sync_on ? settings_.sync_amplitude_v : 0.0;
+  const double amplitude_v = settings_.sync_is_first_output ? motion.generator_v
+                             : motion.sync_on               ? settings_.sync_amplitude_v
+                                                            : 0.0;
   const double sync_v = amplitude_v * motion.sine;
   for (std::size_t adc = 0; adc < 3; ++adc) {
     const double input_v = (adc == 0 ? sync_v : 0.0) + noise_.normal(adc_step_v);
-    sample.data[10 + adc] = static_cast<float>(settings_.adc.gain * static_cast<double>(quantised(input_v, adc_step_v, adc_range_v)));
+    sample.data[10 + adc] = static_cast<float>(
+        settings_.adc.gain * static_cast<double>(quantised(input_v, adc_step_v, adc_range_v)));
   }
 }
 

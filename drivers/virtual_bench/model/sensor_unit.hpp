@@ -1,9 +1,9 @@
 // A SmartUp Unit with one sensor: what it measures, when, and with which stamps.
 //
-// At every data-ready edge the unit stamps the sample, reads the sensor (which shows the acceleration of `delay` earlier, with its
-// response, noise, offset and quantisation), and samples three ADCs; the first one sees the sync signal through its own lag and gain,
-// with 12 bit of +-10 V.
-// One thread.
+// At every data-ready edge the unit stamps the sample, reads the sensor (which shows the
+// acceleration of `delay` earlier, with its response, noise, offset and quantisation), and samples
+// three ADCs; the first one sees the sync signal through its own lag and gain, with 12 bit of +-10
+// V. One thread.
 #pragma once
 
 #include <array>
@@ -51,10 +51,11 @@ public:
 private:
   void describe_mpu9250();
   void describe_bma280();
-  void describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit, const char* hierarchy, double range,
-                       double steps);
-  void describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit, const char* hierarchy, double minimum,
-                       double maximum, double steps, bool declared);
+  void describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit,
+                       const char* hierarchy, double range, double steps);
+  void describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit,
+                       const char* hierarchy, double minimum, double maximum, double steps,
+                       bool declared);
   void measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation);
   void measure_rest(UnitSample& sample, double temperature_degc);
   void measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation);

@@ -7,7 +7,8 @@
 
 namespace dyncal::drivers::virtual_bench {
 
-SeriesSensor::SeriesSensor(SeriesSensorSettings settings) : settings_(std::move(settings)), random_(settings_.seed, "TSS") {}
+SeriesSensor::SeriesSensor(SeriesSensorSettings settings)
+    : settings_(std::move(settings)), random_(settings_.seed, "TSS") {}
 
 SeriesSensorSettings series_sensor_of(const Preset& preset, std::uint64_t seed, double range_m_s2) {
   SeriesSensorSettings sensor;
@@ -29,7 +30,8 @@ void SeriesSensor::trigger(double edge_s) {
   first_sample_s_ = edge_s + (settings_.free_running ? random_.uniform() / real_rate_hz() : 0.0);
 }
 
-std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s, const Excitation& excitation) {
+std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s,
+                                                       const Excitation& excitation) {
   if (!recording_) {
     return std::nullopt;
   }
@@ -39,8 +41,10 @@ std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s, const Exci
       return std::nullopt;
     }
     const Motion motion = excitation.motion(at_s - settings_.response.delay_s);
-    const double value = excitation.acceleration(motion, harmonic_gains(settings_.response, motion.frequency_hz));
-    const double counts = std::rint((value + random_.normal(settings_.noise_m_s2)) / settings_.step_m_s2);
+    const double value =
+        excitation.acceleration(motion, harmonic_gains(settings_.response, motion.frequency_hz));
+    const double counts =
+        std::rint((value + random_.normal(settings_.noise_m_s2)) / settings_.step_m_s2);
     counts_.push_back(static_cast<std::int16_t>(std::clamp(counts, -32768.0, 32767.0)));
   }
   recording_ = false;

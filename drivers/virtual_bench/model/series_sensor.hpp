@@ -1,8 +1,10 @@
-// A sensor that records a series after a trigger (TSS) on the virtual bench, with a clock and a start latency of its own.
+// A sensor that records a series after a trigger (TSS) on the virtual bench, with a clock and a
+// start latency of its own.
 //
-// Sample n is taken at edge + latency + n / (nominal rate * rate_factor) and shows the acceleration of `delay` earlier, with the response,
-// noise and quantisation of the sensor. Latency is 0, or for a sensor that runs free uniform over one sample. A trigger during a series is
-// ignored. One thread.
+// Sample n is taken at edge + latency + n / (nominal rate * rate_factor) and shows the acceleration
+// of `delay` earlier, with the response, noise and quantisation of the sensor. Latency is 0, or for
+// a sensor that runs free uniform over one sample. A trigger during a series is ignored. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +31,8 @@ struct SeriesSensorSettings {
 };
 
 // The z axis of a preset.
-[[nodiscard]] SeriesSensorSettings series_sensor_of(const Preset& preset, std::uint64_t seed, double range_m_s2);
+[[nodiscard]] SeriesSensorSettings series_sensor_of(const Preset& preset, std::uint64_t seed,
+                                                    double range_m_s2);
 
 struct RecordedSeries {
   std::uint64_t shot = 0; // triggers that the sensor has taken, from 1
@@ -41,11 +44,15 @@ public:
   explicit SeriesSensor(SeriesSensorSettings settings);
 
   void trigger(double edge_s);
-  // The series that is complete before `time_s`. REQUIRES: called at least once a second of bench time.
-  [[nodiscard]] std::optional<RecordedSeries> advance_to(double time_s, const Excitation& excitation);
+  // The series that is complete before `time_s`. REQUIRES: called at least once a second of bench
+  // time.
+  [[nodiscard]] std::optional<RecordedSeries> advance_to(double time_s,
+                                                         const Excitation& excitation);
 
   [[nodiscard]] const SeriesSensorSettings& settings() const { return settings_; }
-  [[nodiscard]] double real_rate_hz() const { return settings_.nominal_rate_hz * settings_.rate_factor; }
+  [[nodiscard]] double real_rate_hz() const {
+    return settings_.nominal_rate_hz * settings_.rate_factor;
+  }
   // The line that precedes a series on the wire (drivers/tss/README.md), without its line end.
   [[nodiscard]] std::string header_line(std::uint64_t shot) const;
   [[nodiscard]] std::string wire_form(const RecordedSeries& series) const;

@@ -16,8 +16,9 @@ std::int64_t ticks_in_ns(double ticks) {
 } // namespace
 
 const std::vector<std::string>& fault_names() {
-  static const std::vector<std::string> names{"second-slip", "counter-extension", "torn-counter", "pps-offset",
-                                              "repeated",    "no-uncertainty",    "no-fix",       "unit-loss"};
+  static const std::vector<std::string> names{"second-slip", "counter-extension", "torn-counter",
+                                              "pps-offset",  "repeated",          "no-uncertainty",
+                                              "no-fix",      "unit-loss"};
   return names;
 }
 

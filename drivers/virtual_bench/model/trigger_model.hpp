@@ -1,10 +1,12 @@
 // The trigger of an oscilloscope without noise rejection, and its output.
 //
-// The comparator is ready once the signal has been half its amplitude below the level; from then on the first instant at which signal plus
-// noise reach the level triggers, whichever excursion of the noise that is. So the trigger comes early: by about two and a half standard
-// deviations of the noise divided by the slope. Noise is white in a band of 1 MHz: a new value every microsecond, independent of what
-// traces show. The output's rising edge follows the trigger by `output_delay_s` with a jitter of its own: 236(1) ns as in the paper. A
-// rectangle rises in 8 ns and triggers where it crosses the level; noise hardly matters there. One thread.
+// The comparator is ready once the signal has been half its amplitude below the level; from then on
+// the first instant at which signal plus noise reach the level triggers, whichever excursion of the
+// noise that is. So the trigger comes early: by about two and a half standard deviations of the
+// noise divided by the slope. Noise is white in a band of 1 MHz: a new value every microsecond,
+// independent of what traces show. The output's rising edge follows the trigger by `output_delay_s`
+// with a jitter of its own: 236(1) ns as in the paper. A rectangle rises in 8 ns and triggers where
+// it crosses the level; noise hardly matters there. One thread.
 #pragma once
 
 #include <cstdint>
@@ -38,13 +40,17 @@ class TriggerModel {
 public:
   explicit TriggerModel(const TriggerSettings& settings);
 
-  // The first trigger in [from_s, until_s). REQUIRES: generator unchanged in between (a change ends a period that has begun).
-  [[nodiscard]] std::optional<TriggerEvent> first_between(double from_s, double until_s, double level_v, const Excitation& excitation);
+  // The first trigger in [from_s, until_s). REQUIRES: generator unchanged in between (a change ends
+  // a period that has begun).
+  [[nodiscard]] std::optional<TriggerEvent>
+  first_between(double from_s, double until_s, double level_v, const Excitation& excitation);
   [[nodiscard]] double output_delay_s() const { return output_delay_s_; }
 
 private:
-  // Bench time of the crossing that belongs to the rising zero crossing at `zero_s`; nothing when the level is out of reach.
-  [[nodiscard]] std::optional<double> crossing(double zero_s, double level_v, const Excitation& excitation);
+  // Bench time of the crossing that belongs to the rising zero crossing at `zero_s`; nothing when
+  // the level is out of reach.
+  [[nodiscard]] std::optional<double> crossing(double zero_s, double level_v,
+                                               const Excitation& excitation);
 
   TriggerSettings settings_;
   Random noise_;

@@ -23,7 +23,8 @@ std::string axis_name(std::size_t axis) {
 
 Json transfer_function(const Preset& preset, const std::vector<std::string>& frequencies_hz) {
   Json points = Json::array();
-  for (std::size_t axis = preset.triggered ? 2 : 0; axis < preset.axes.size(); ++axis) { // a time series sensor measures z alone
+  for (std::size_t axis = preset.triggered ? 2 : 0; axis < preset.axes.size();
+       ++axis) { // a time series sensor measures z alone
     for (const std::string& text : frequencies_hz) {
       const std::complex<double> value = preset.axes[axis].at(to_hz(text));
       points.push_back({{"channel", axis_name(axis)},
@@ -62,25 +63,26 @@ Json drawn_errors(const VirtualBench& bench) {
 std::string truth_json(const VirtualBench& bench, const std::vector<std::string>& frequencies_hz) {
   const BenchSettings& settings = bench.settings();
   const Preset& preset = settings.preset;
-  const Json truth = {
-      {"preset", preset.name},
-      {"seed", settings.seed},
-      {"transfer_function", transfer_function(preset, frequencies_hz)},
-      {"group_delay", group_delay(preset)},
-      {"sample_clock",
-       {{"mean_interval_s", preset.mean_interval_s},
-        {"sd_s", preset.interval_sd_s},
-        {"nominal_rate_hz", preset.nominal_rate_hz},
-        {"thermal_cycle_s", settings.thermal_cycle_s}}},
-      {"range_m_s2", bench.unit().range_m_s2()},
-      {"level_per_volt", VirtualBench::level_per_volt},
-      {"uncertainty",
-       {{"reference_magnitude_rel", settings.reference_magnitude_rel}, {"reference_phase_rad", settings.reference_phase_rad}}},
-      {"drawn", drawn_errors(bench)}};
+  const Json truth = {{"preset", preset.name},
+                      {"seed", settings.seed},
+                      {"transfer_function", transfer_function(preset, frequencies_hz)},
+                      {"group_delay", group_delay(preset)},
+                      {"sample_clock",
+                       {{"mean_interval_s", preset.mean_interval_s},
+                        {"sd_s", preset.interval_sd_s},
+                        {"nominal_rate_hz", preset.nominal_rate_hz},
+                        {"thermal_cycle_s", settings.thermal_cycle_s}}},
+                      {"range_m_s2", bench.unit().range_m_s2()},
+                      {"level_per_volt", VirtualBench::level_per_volt},
+                      {"uncertainty",
+                       {{"reference_magnitude_rel", settings.reference_magnitude_rel},
+                        {"reference_phase_rad", settings.reference_phase_rad}}},
+                      {"drawn", drawn_errors(bench)}};
   return truth.dump(2) + "\n";
 }
 
-std::string adc_calibration_json(const VirtualBench& bench, const std::vector<std::string>& frequencies_hz) {
+std::string adc_calibration_json(const VirtualBench& bench,
+                                 const std::vector<std::string>& frequencies_hz) {
   Random random(bench.settings().seed, "ADC calibration");
   Json frequencies = Json::object();
   for (const std::string& text : frequencies_hz) {
@@ -88,12 +90,17 @@ std::string adc_calibration_json(const VirtualBench& bench, const std::vector<st
     Json rows = Json::array();
     for (int row = 0; row < 3; ++row) {
       const double amplitude = bench.adc().gain * (1.0 + random.normal(adc_gain_scatter));
-      const double lag_rad = 2.0 * std::numbers::pi * frequency_hz * bench.adc().lag_s + random.normal(adc_phase_scatter_rad);
-      rows.push_back({{"Freq", frequency_hz}, {"Amplitude", amplitude}, {"Phase", lag_rad}, {"TestAmplVPP.", 19.5}});
+      const double lag_rad = 2.0 * std::numbers::pi * frequency_hz * bench.adc().lag_s +
+                             random.normal(adc_phase_scatter_rad);
+      rows.push_back({{"Freq", frequency_hz},
+                      {"Amplitude", amplitude},
+                      {"Phase", lag_rad},
+                      {"TestAmplVPP.", 19.5}});
     }
     frequencies[Json(frequency_hz).dump()] = rows;
   }
-  const Json file = {{"MeataData", {{"BordID", board_id}, {"Date", "2021-09-17 00:00:00"}}}, {"FitResults", {{"ADC1", frequencies}}}};
+  const Json file = {{"MeataData", {{"BordID", board_id}, {"Date", "2021-09-17 00:00:00"}}},
+                     {"FitResults", {{"ADC1", frequencies}}}};
   return file.dump(1) + "\n";
 }
 

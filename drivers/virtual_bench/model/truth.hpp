@@ -1,5 +1,6 @@
-// What the virtual bench knows and no service may: the true transfer functions and everything that was drawn, as JSON for tests; and the
-// calibration of the sync ADC, which a laboratory does have, in the form of the public calibration files. Any thread.
+// What the virtual bench knows and no service may: the true transfer functions and everything that
+// was drawn, as JSON for tests; and the calibration of the sync ADC, which a laboratory does have,
+// in the form of the public calibration files. Any thread.
 //
 // Phase is lead in radians, within -pi..pi. The ADC file gives its phase as lag.
 #pragma once
@@ -12,9 +13,12 @@
 namespace dyncal::drivers::virtual_bench {
 
 // `frequencies_hz` are decimal texts. REQUIRES: positive numbers.
-[[nodiscard]] std::string truth_json(const VirtualBench& bench, const std::vector<std::string>& frequencies_hz);
+[[nodiscard]] std::string truth_json(const VirtualBench& bench,
+                                     const std::vector<std::string>& frequencies_hz);
 
-// Three rows a frequency with the small scatter of a real calibration, test amplitude 19.5 V peak to peak, channel ADC1.
-[[nodiscard]] std::string adc_calibration_json(const VirtualBench& bench, const std::vector<std::string>& frequencies_hz);
+// Three rows a frequency with the small scatter of a real calibration, test amplitude 19.5 V peak
+// to peak, channel ADC1.
+[[nodiscard]] std::string adc_calibration_json(const VirtualBench& bench,
+                                               const std::vector<std::string>& frequencies_hz);
 
 } // namespace dyncal::drivers::virtual_bench

@@ -1,4 +1,5 @@
-// One sample of the SmartUp Unit and what its channels mean, before they are put into datagrams. Plain data.
+// One sample of the SmartUp Unit and what its channels mean, before they are put into datagrams.
+// Plain data.
 #pragma once
 
 #include <array>

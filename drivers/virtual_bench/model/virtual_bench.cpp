@@ -41,7 +41,8 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   AcsSettings acs;
   acs.seed = settings.seed;
   acs.rate_hz = settings.acs_rate_hz;
-  acs.origin_ns = std::llround(random.uniform(0.0, 1e15)); // counts from when it was switched on, up to 11 days ago
+  acs.origin_ns = std::llround(
+      random.uniform(0.0, 1e15)); // counts from when it was switched on, up to 11 days ago
   if (settings.acs_utc || settings.utc_origin_ns) {
     acs.utc = true;
     acs.origin_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
@@ -74,10 +75,11 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
 } // namespace
 
 VirtualBench::VirtualBench(const BenchSettings& settings)
-    : settings_(settings), exciter_(draw_exciter(settings.seed)), adc_(draw_adc(settings.seed)), excitation_(exciter_),
-      acs_(acs_settings(settings)), unit_(unit_settings(settings, adc_)) {}
+    : settings_(settings), exciter_(draw_exciter(settings.seed)), adc_(draw_adc(settings.seed)),
+      excitation_(exciter_), acs_(acs_settings(settings)), unit_(unit_settings(settings, adc_)) {}
 
-void VirtualBench::advance_to(double time_s, AcsSamples& acs, const std::function<void(const UnitSample&)>& unit) {
+void VirtualBench::advance_to(double time_s, AcsSamples& acs,
+                              const std::function<void(const UnitSample&)>& unit) {
   acs_.sample_until(time_s, excitation_, acs);
   while (const auto sample = unit_.next_before(time_s, excitation_)) {
     unit(*sample);

@@ -1,8 +1,9 @@
-// A whole bench without its cables: generator, exciter, ACS and SmartUp Unit, all functions of bench time and of one seed.
+// A whole bench without its cables: generator, exciter, ACS and SmartUp Unit, all functions of
+// bench time and of one seed.
 //
-// Whoever holds it moves bench time on with advance_to() and finds what the instruments have to say in the outputs; the generator's
-// setting acts from the present bench time on. Nothing here knows of sockets or of the host's clock.
-// One thread.
+// Whoever holds it moves bench time on with advance_to() and finds what the instruments have to say
+// in the outputs; the generator's setting acts from the present bench time on. Nothing here knows
+// of sockets or of the host's clock. One thread.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,8 @@ struct BenchSettings {
   FaultProbabilities faults;
   bool acs_utc = false;              // the ACS stamps in UTC too
   bool sync_is_first_output = false; // see acs_instrument.hpp
-  // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS receiver do, instead of epochs of their own.
+  // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS
+  // receiver do, instead of epochs of their own.
   std::optional<std::int64_t> utc_origin_ns;
 };
 
@@ -44,9 +46,10 @@ public:
   [[nodiscard]] const Drive& drive() const { return excitation_.drive(); }
   void set_drive(const Drive& drive) { excitation_.change(now_s_, drive); }
 
-  // Samples up to `time_s` go to the two outputs in the order in which they were taken by each instrument.
-  // REQUIRES: not before now_s(); steps of at most half a second.
-  void advance_to(double time_s, AcsSamples& acs, const std::function<void(const UnitSample&)>& unit);
+  // Samples up to `time_s` go to the two outputs in the order in which they were taken by each
+  // instrument. REQUIRES: not before now_s(); steps of at most half a second.
+  void advance_to(double time_s, AcsSamples& acs,
+                  const std::function<void(const UnitSample&)>& unit);
 
   [[nodiscard]] const BenchSettings& settings() const { return settings_; }
   [[nodiscard]] const AcsInstrument& acs() const { return acs_; }

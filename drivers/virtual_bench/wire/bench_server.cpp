@@ -20,7 +20,7 @@ constexpr double max_arrears_s = 0.5; // host time that is made up for after a d
 constexpr double frame_s = 0.05;
 constexpr double max_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
-constexpr std::size_t max_receive_queue = 64U * 1024U;     // of the 208 KiB that hosts allow at least
+constexpr std::size_t max_receive_queue = 64U * 1024U; // of the 208 KiB that hosts allow at least
 constexpr std::chrono::microseconds queue_look_interval{2000}; // a look costs about 30 us
 constexpr milliseconds idle_wait{4};
 constexpr milliseconds blocked_wait{20};
@@ -30,7 +30,8 @@ constexpr milliseconds blocked_wait{20};
 BenchServer::BenchServer(VirtualBench& bench, const ServerSettings& settings)
     : bench_(bench), settings_(settings), instrument_(bench), generator_clients_(instrument_),
       packer_(settings.sensor_id, bench.settings().preset.sensor_name, settings.with_ticks),
-      path_(bench.settings().seed, settings.path, [this](const std::string& datagram) { send_datagram(datagram); }),
+      path_(bench.settings().seed, settings.path,
+            [this](const std::string& datagram) { send_datagram(datagram); }),
       receiver_on_this_host_(is_loopback(settings.dau.host)) {
   if (settings.triggered) {
     triggered_.emplace(*settings.triggered);
@@ -96,10 +97,13 @@ void BenchServer::serve_sockets() {
 }
 
 void BenchServer::wait_for_events(const StopSignal& stop, milliseconds limit) const {
-  std::vector<pollfd> watched{
-      {stop.descriptor(), POLLIN, 0}, {acs_listener_.number(), POLLIN, 0}, {generator_listener_.number(), POLLIN, 0}};
+  std::vector<pollfd> watched{{stop.descriptor(), POLLIN, 0},
+                              {acs_listener_.number(), POLLIN, 0},
+                              {generator_listener_.number(), POLLIN, 0}};
   if (stream_.connected()) {
-    watched.push_back({stream_.descriptor(), static_cast<short>(stream_.backlog_bytes() > 0 ? POLLIN | POLLOUT : POLLIN), 0});
+    watched.push_back({stream_.descriptor(),
+                       static_cast<short>(stream_.backlog_bytes() > 0 ? POLLIN | POLLOUT : POLLIN),
+                       0});
   }
   for (const int descriptor : generator_clients_.descriptors()) {
     watched.push_back({descriptor, POLLIN, 0});
@@ -116,10 +120,13 @@ void BenchServer::wait_for_events(const StopSignal& stop, milliseconds limit) co
 bool BenchServer::consumers_keep_up() {
   const auto now = Clock::now();
   const double passed_s = std::chrono::duration<double>(now - credit_at_).count();
-  datagram_credit_ = std::min(datagram_burst, datagram_credit_ + passed_s * settings_.datagrams_per_s);
+  datagram_credit_ =
+      std::min(datagram_burst, datagram_credit_ + passed_s * settings_.datagrams_per_s);
   credit_at_ = now;
-  const double backlog_limit = max_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) * 2.0 * sizeof(std::int32_t);
-  return datagram_credit_ > 0.0 && datagrams_are_taken() && static_cast<double>(stream_.backlog_bytes()) <= backlog_limit;
+  const double backlog_limit = max_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) *
+                               2.0 * sizeof(std::int32_t);
+  return datagram_credit_ > 0.0 && datagrams_are_taken() &&
+         static_cast<double>(stream_.backlog_bytes()) <= backlog_limit;
 }
 
 bool BenchServer::datagrams_are_taken() {
@@ -138,11 +145,13 @@ void BenchServer::hold_pace() {
 
 double BenchServer::paced_time_s() {
   if (bench_.settings().utc_origin_ns) {
-    const auto utc = std::chrono::system_clock::now().time_since_epoch() - std::chrono::nanoseconds(*bench_.settings().utc_origin_ns);
+    const auto utc = std::chrono::system_clock::now().time_since_epoch() -
+                     std::chrono::nanoseconds(*bench_.settings().utc_origin_ns);
     return std::chrono::duration<double>(utc).count() + settings_.utc_lead_s;
   }
   const double speed = settings_.speed > 0.0 ? settings_.speed : 1.0;
-  const double time_s = pace_bench_s_ + speed * std::chrono::duration<double>(Clock::now() - pace_host_).count();
+  const double time_s =
+      pace_bench_s_ + speed * std::chrono::duration<double>(Clock::now() - pace_host_).count();
   if (time_s > bench_.now_s() + speed * max_arrears_s) {
     hold_pace();
   }
@@ -192,7 +201,8 @@ void BenchServer::advance_to(double time_s) {
   }
   if (!stream_.connected()) {
     frame_.counts.clear();
-  } else if (static_cast<double>(frame_.samples()) >= frame_s * static_cast<double>(bench_.settings().acs_rate_hz)) {
+  } else if (static_cast<double>(frame_.samples()) >=
+             frame_s * static_cast<double>(bench_.settings().acs_rate_hz)) {
     stream_.send_frame(frame_);
     frame_.counts.clear();
   }
@@ -212,7 +222,8 @@ void BenchServer::end_stream(const StopSignal& stop) {
   stream_.send_frame(frame_);
   stream_.send_end();
   const auto deadline = Clock::now() + std::chrono::seconds(2);
-  while (stream_.backlog_bytes() > 0 && stream_.connected() && Clock::now() < deadline && !stop.raised()) {
+  while (stream_.backlog_bytes() > 0 && stream_.connected() && Clock::now() < deadline &&
+         !stop.raised()) {
     stream_.serve();
     wait_for_events(stop, blocked_wait);
   }

@@ -1,22 +1,24 @@
-// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP), where wanted oscilloscope and time series
-// sensor (TCP), and the pace of bench time.
+// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP),
+// where wanted oscilloscope and time series sensor (TCP), and the pace of bench time.
 //
-// Speed x: bench time runs x times as fast as the host's clock. Speed 0 ("max"): while a client of the generator waits for a bench time
-// and the ACS stream is being read, as fast as the consumers allow; otherwise in real time. Bench time never runs ahead of what the ACS
-// client has taken by more than a tenth of a second beyond the sockets' buffers, and no more than `datagrams_per_s` leave in a second of
-// the host, so that receive buffers of the usual size hold them. One thread runs it; the StopSignal may be raised from any.
+// Speed x: bench time runs x times as fast as the host's clock. Speed 0 ("max"): while a client of
+// the generator waits for a bench time and the ACS stream is being read, as fast as the consumers
+// allow; otherwise in real time. Bench time never runs ahead of what the ACS client has taken by
+// more than a tenth of a second beyond the sockets' buffers, and no more than `datagrams_per_s`
+// leave in a second of the host, so that receive buffers of the usual size hold them. One thread
+// runs it; the StopSignal may be raised from any.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <optional>
 
+#include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "drivers/virtual_bench/wire/datagram_path.hpp"
 #include "drivers/virtual_bench/wire/line_clients.hpp"
 #include "drivers/virtual_bench/wire/smartup_format.hpp"
 #include "drivers/virtual_bench/wire/stream_client.hpp"
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
-#include "drivers/virtual_bench/model/virtual_bench.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
@@ -31,8 +33,9 @@ struct ServerSettings {
   std::uint32_t sensor_id = 0xbccb0100;
   bool with_ticks = false;
   std::optional<TriggeredSettings> triggered; // oscilloscope and time series sensor
-  // For a bench that keeps UTC: bench time is the host's UTC plus this lead, whatever was delayed, so that somebody who is told what
-  // happens (after_advance) can do it at its very instant. `speed` then has no meaning.
+  // For a bench that keeps UTC: bench time is the host's UTC plus this lead, whatever was delayed,
+  // so that somebody who is told what happens (after_advance) can do it at its very instant.
+  // `speed` then has no meaning.
   double utc_lead_s = 0.03;
   std::function<void(double time_s)> after_advance; // bench time has come to `time_s`
 };

@@ -1,4 +1,5 @@
-// The network between the unit and its receiver: loses, doubles and swaps datagrams with given probabilities. One thread.
+// The network between the unit and its receiver: loses, doubles and swaps datagrams with given
+// probabilities. One thread.
 #pragma once
 
 #include <functional>

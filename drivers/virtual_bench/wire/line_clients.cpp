@@ -37,13 +37,15 @@ bool LineClients::serve(Client& client, double bench_time_s) {
   if (came > 0) {
     client.received.append(chunk, static_cast<std::size_t>(came));
   }
-  if (client.wait_until_s && (bench_time_s >= *client.wait_until_s || std::chrono::steady_clock::now() >= client.wait_ends)) {
+  if (client.wait_until_s && (bench_time_s >= *client.wait_until_s ||
+                              std::chrono::steady_clock::now() >= client.wait_ends)) {
     client.answers += ScpiInstrument::time_text(bench_time_s) + "\n";
     client.wait_until_s.reset();
   }
   execute_lines(client, bench_time_s);
   if (!client.answers.empty()) {
-    const ssize_t sent = send(client.socket.number(), client.answers.data(), client.answers.size(), MSG_NOSIGNAL);
+    const ssize_t sent =
+        send(client.socket.number(), client.answers.data(), client.answers.size(), MSG_NOSIGNAL);
     if (sent < 0 && !would_block(errno)) {
       return false;
     }
@@ -55,7 +57,8 @@ bool LineClients::serve(Client& client, double bench_time_s) {
 void LineClients::execute_lines(Client& client, double bench_time_s) {
   std::size_t end = 0;
   while (!client.wait_until_s && (end = client.received.find('\n')) != std::string::npos) {
-    const ScpiInstrument::Reply reply = instrument_.execute(std::string_view(client.received).substr(0, end));
+    const ScpiInstrument::Reply reply =
+        instrument_.execute(std::string_view(client.received).substr(0, end));
     client.received.erase(0, end + 1);
     if (reply.line) {
       client.answers += *reply.line + "\n";

@@ -56,7 +56,8 @@ std::string with_digits(std::size_t value, int digits) {
 } // namespace
 
 const std::vector<std::string>& scope_fault_names() {
-  static const std::vector<std::string> names = {"half-answer", "garbage", "wrong-length", "other-answer", "disconnect", "slow"};
+  static const std::vector<std::string> names = {"half-answer",  "garbage",    "wrong-length",
+                                                 "other-answer", "disconnect", "slow"};
   return names;
 }
 
@@ -104,7 +105,9 @@ std::optional<std::string> OscilloscopeScpi::query(const std::string& header) {
   }
   if (header == "TRIG:STAT") {
     const auto state = model_.state();
-    return state == OscilloscopeModel::State::stopped ? "STOP\n" : state == OscilloscopeModel::State::waiting ? "WAIT\n" : "TD\n";
+    return state == OscilloscopeModel::State::stopped   ? "STOP\n"
+           : state == OscilloscopeModel::State::waiting ? "WAIT\n"
+                                                        : "TD\n";
   }
   if (header == "WAV:SOUR") {
     return source_ == 0 ? "CHAN1\n" : "CHAN2\n";
@@ -123,8 +126,8 @@ std::string OscilloscopeScpi::preamble() const {
   const ScopeInput& input = set.inputs[source_];
   const double y_increment_v = input.volts_per_division / OscilloscopeModel::codes_per_division;
   char text[200];
-  std::snprintf(text, sizeof(text), "0,2,%zu,1,%.9E,%.9E,0,%.6E,%.0f,128\n", set.points, set.interval_s(), set.origin_s(), y_increment_v,
-                input.offset_v / y_increment_v);
+  std::snprintf(text, sizeof(text), "0,2,%zu,1,%.9E,%.9E,0,%.6E,%.0f,128\n", set.points,
+                set.interval_s(), set.origin_s(), y_increment_v, input.offset_v / y_increment_v);
   return text;
 }
 
@@ -153,8 +156,9 @@ void OscilloscopeScpi::set(const std::string& header, std::string_view argument)
     } else if (header == "WAV:SOUR") {
       source_ = *input;
     }
-  } else if (header == "SYST:AOUT" || header == "ACQ:TYPE" || header == "TRIG:MODE" || header == "TRIG:COUP" ||
-             header == "TRIG:EDGE:SLOP" || header == "WAV:MODE" || header == "WAV:FORM") {
+  } else if (header == "SYST:AOUT" || header == "ACQ:TYPE" || header == "TRIG:MODE" ||
+             header == "TRIG:COUP" || header == "TRIG:EDGE:SLOP" || header == "WAV:MODE" ||
+             header == "WAV:FORM") {
     if (argument.empty()) {
       complain("-109,\"Missing parameter\"");
     }
@@ -165,7 +169,9 @@ void OscilloscopeScpi::set(const std::string& header, std::string_view argument)
 
 bool OscilloscopeScpi::set_input(const std::string& header, std::string_view argument) {
   const std::size_t colon = header.find(':');
-  const auto place = colon == std::string::npos ? std::nullopt : parse_input(std::string_view(header).substr(0, colon));
+  const auto place = colon == std::string::npos
+                         ? std::nullopt
+                         : parse_input(std::string_view(header).substr(0, colon));
   if (!place) {
     return false;
   }

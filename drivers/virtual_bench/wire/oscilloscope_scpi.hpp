@@ -1,9 +1,11 @@
-// The oscilloscope's side of SCPI as the Rigol MSO5000 series speaks it, and what a bad network or instrument makes of the answers.
+// The oscilloscope's side of SCPI as the Rigol MSO5000 series speaks it, and what a bad network or
+// instrument makes of the answers.
 //
-// Understands long and short forms in any case: *IDN?, *CLS, *OPC?, :SYSTem:ERRor?, :SYSTem:AOUTput, :ACQuire:TYPE, :ACQuire:MDEPth,
-// :CHANnel<n>:DISPlay, :SCALe, :OFFSet, :TIMebase:MAIN:SCALe, :OFFSet, :TRIGger:MODE, :COUPling, :EDGE:SOURce, :SLOPe, :LEVel, :STATus?,
-// :SINGle, :STOP, :WAVeform:SOURce[?], :MODE, :FORMat, :POINts, :STARt, :STOP, :PREamble?, :DATA?. Anything else is -113 in the error
-// queue. One thread.
+// Understands long and short forms in any case: *IDN?, *CLS, *OPC?, :SYSTem:ERRor?,
+// :SYSTem:AOUTput, :ACQuire:TYPE, :ACQuire:MDEPth, :CHANnel<n>:DISPlay, :SCALe, :OFFSet,
+// :TIMebase:MAIN:SCALe, :OFFSet, :TRIGger:MODE, :COUPling, :EDGE:SOURce, :SLOPe, :LEVel, :STATus?,
+// :SINGle, :STOP, :WAVeform:SOURce[?], :MODE, :FORMat, :POINts, :STARt, :STOP, :PREamble?, :DATA?.
+// Anything else is -113 in the error queue. One thread.
 #pragma once
 
 #include <deque>
@@ -21,7 +23,8 @@ namespace dyncal::drivers::virtual_bench {
 // Probabilities per answer.
 //   half-answer   the second half never comes        garbage      bytes that mean nothing
 //   wrong-length  a block says another length        other-answer the answer to another question
-//   disconnect    half of the answer, then the end   slow         the answer takes a second (of the host)
+//   disconnect    half of the answer, then the end   slow         the answer takes a second (of the
+//   host)
 using ScopeFaults = std::map<std::string, double>;
 [[nodiscard]] const std::vector<std::string>& scope_fault_names();
 

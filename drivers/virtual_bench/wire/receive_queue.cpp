@@ -8,7 +8,8 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-// The hexadecimal number behind the last colon, e.g. the port of "0100007F:1DE6" or the receive queue of "00000000:00000240".
+// The hexadecimal number behind the last colon, e.g. the port of "0100007F:1DE6" or the receive
+// queue of "00000000:00000240".
 std::size_t behind_colon(const std::string& word) {
   std::size_t value = 0;
   const std::size_t colon = word.rfind(':');

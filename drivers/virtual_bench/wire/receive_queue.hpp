@@ -1,7 +1,9 @@
-// How much waits in the UDP receive buffer of a port of this host, as the kernel tells in /proc/net/udp and udp6.
+// How much waits in the UDP receive buffer of a port of this host, as the kernel tells in
+// /proc/net/udp and udp6.
 //
-// A real unit cannot know; the virtual bench, which may run far faster than real time, holds its time with it instead of flooding
-// a receiver that has not had the processor for a moment. Any thread.
+// A real unit cannot know; the virtual bench, which may run far faster than real time, holds its
+// time with it instead of flooding a receiver that has not had the processor for a moment. Any
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +13,8 @@
 
 namespace dyncal::drivers::virtual_bench {
 
-// Bytes, the fullest buffer where several sockets have the port; 0 when there is none or the kernel does not tell.
+// Bytes, the fullest buffer where several sockets have the port; 0 when there is none or the kernel
+// does not tell.
 [[nodiscard]] std::size_t udp_receive_queue(std::uint16_t port);
 
 // The same from a table in the kernel's form.

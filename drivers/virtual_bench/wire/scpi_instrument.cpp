@@ -26,8 +26,9 @@ std::string_view trimmed(std::string_view text) {
 // Long and short mnemonics, with and without the leading colon, become one form: "SOUR1:FREQ".
 std::string canonical(std::string_view header) {
   static constexpr std::pair<const char*, const char*> short_forms[] = {
-      {"SOURCE", "SOUR"}, {"FREQUENCY", "FREQ"}, {"VOLTAGE", "VOLT"}, {"FUNCTION", "FUNC"}, {"OUTPUT", "OUTP"},
-      {"SYSTEM", "SYST"}, {"ERROR", "ERR"},      {"BENCH", "BENC"},   {"STATE", "STAT"},    {"IMPEDANCE", "IMP"}};
+      {"SOURCE", "SOUR"}, {"FREQUENCY", "FREQ"}, {"VOLTAGE", "VOLT"}, {"FUNCTION", "FUNC"},
+      {"OUTPUT", "OUTP"}, {"SYSTEM", "SYST"},    {"ERROR", "ERR"},    {"BENCH", "BENC"},
+      {"STATE", "STAT"},  {"IMPEDANCE", "IMP"}};
   std::string text = upper(header);
   if (!text.empty() && text.front() == ':') {
     text.erase(0, 1);
@@ -80,7 +81,9 @@ ScpiInstrument::Reply ScpiInstrument::execute(std::string_view line) {
 
 ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::string_view argument) {
   if (header == "*IDN") {
-    return {"dyncal virtual bench," + bench_.settings().preset.name + "," + std::to_string(bench_.settings().seed) + ",1", {}};
+    return {"dyncal virtual bench," + bench_.settings().preset.name + "," +
+                std::to_string(bench_.settings().seed) + ",1",
+            {}};
   }
   if (header == "*OPC") {
     return {"1", {}};

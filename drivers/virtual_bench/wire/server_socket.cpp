@@ -19,9 +19,11 @@ Expected<Descriptor> open_socket(const Address& address, int type, int flags, Us
   hints.ai_socktype = type;
   hints.ai_flags = flags;
   addrinfo* found = nullptr;
-  const int status = getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
+  const int status =
+      getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
   if (status != 0) {
-    return tl::unexpected(Error{ErrorCode::not_found, address.text() + ": no host of this name (" + gai_strerror(status) + ")"});
+    return tl::unexpected(Error{ErrorCode::not_found, address.text() + ": no host of this name (" +
+                                                          gai_strerror(status) + ")"});
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> results(found, &freeaddrinfo);
   int problem = EADDRNOTAVAIL;
@@ -67,8 +69,9 @@ Descriptor accept_client(const Descriptor& listener) {
 }
 
 Expected<Descriptor> connect_udp(const Address& address) {
-  return open_socket(address, SOCK_DGRAM, 0,
-                     [](int socket, const addrinfo& result) { return connect(socket, result.ai_addr, result.ai_addrlen) == 0; });
+  return open_socket(address, SOCK_DGRAM, 0, [](int socket, const addrinfo& result) {
+    return connect(socket, result.ai_addr, result.ai_addrlen) == 0;
+  });
 }
 
 } // namespace dyncal::drivers::virtual_bench

@@ -10,7 +10,14 @@ constexpr std::size_t full_datagram = 873;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 enum WireType : std::uint32_t { varint = 0, length_delimited = 2, fixed32 = 5 };
-enum DescriptionType { physical_quantity = 0, unit = 1, resolution = 3, min_scale = 4, max_scale = 5, hierarchy = 6 };
+enum DescriptionType {
+  physical_quantity = 0,
+  unit = 1,
+  resolution = 3,
+  min_scale = 4,
+  max_scale = 5,
+  hierarchy = 6
+};
 
 void put_varint(std::string& out, std::uint64_t value) {
   while (value >= 0x80U) {
@@ -84,11 +91,14 @@ std::string SmartUpPacker::description_head(int type) const {
   return message;
 }
 
-std::string SmartUpPacker::text_description(int type, const std::vector<UnitChannel>& channels) const {
+std::string SmartUpPacker::text_description(int type,
+                                            const std::vector<UnitChannel>& channels) const {
   std::string message = description_head(type);
   for (const UnitChannel& channel : channels) {
     if (channel.declared) {
-      const std::string& text = type == physical_quantity ? channel.quantity : type == unit ? channel.unit : channel.hierarchy;
+      const std::string& text = type == physical_quantity ? channel.quantity
+                                : type == unit            ? channel.unit
+                                                          : channel.hierarchy;
       put_text(message, 4 + static_cast<std::uint32_t>(channel.index), text);
     }
   }
@@ -98,12 +108,16 @@ std::string SmartUpPacker::text_description(int type, const std::vector<UnitChan
   return "DSCP" + with_length(message);
 }
 
-std::string SmartUpPacker::number_description(int type, const std::vector<UnitChannel>& channels) const {
+std::string SmartUpPacker::number_description(int type,
+                                              const std::vector<UnitChannel>& channels) const {
   std::string message = description_head(type);
   for (const UnitChannel& channel : channels) {
     if (channel.declared) {
-      const double number = type == resolution ? channel.steps : type == min_scale ? channel.minimum : channel.maximum;
-      put_float(message, 20 + static_cast<std::uint32_t>(channel.index), static_cast<float>(number));
+      const double number = type == resolution  ? channel.steps
+                            : type == min_scale ? channel.minimum
+                                                : channel.maximum;
+      put_float(message, 20 + static_cast<std::uint32_t>(channel.index),
+                static_cast<float>(number));
     }
   }
   if (with_ticks_) {
@@ -112,9 +126,11 @@ std::string SmartUpPacker::number_description(int type, const std::vector<UnitCh
   return "DSCP" + with_length(message);
 }
 
-std::vector<std::string> SmartUpPacker::descriptions(const std::vector<UnitChannel>& channels) const {
-  return {text_description(physical_quantity, channels), text_description(unit, channels),        number_description(resolution, channels),
-          number_description(min_scale, channels),       number_description(max_scale, channels), text_description(hierarchy, channels)};
+std::vector<std::string>
+SmartUpPacker::descriptions(const std::vector<UnitChannel>& channels) const {
+  return {text_description(physical_quantity, channels), text_description(unit, channels),
+          number_description(resolution, channels),      number_description(min_scale, channels),
+          number_description(max_scale, channels),       text_description(hierarchy, channels)};
 }
 
 } // namespace dyncal::drivers::virtual_bench

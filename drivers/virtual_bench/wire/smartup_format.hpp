@@ -1,8 +1,8 @@
 // The datagrams of the SmartUp Unit, written byte by byte (proto2 wire format, no schema needed).
 //
-// A datagram is the keyword DATA or DSCP, then messages, each behind its length as varint. DATA is sent when 873 bytes or more are in it,
-// so it never exceeds 1000; DSCP carries one description. `with_ticks` adds field 22 (raw counter), which units have since 2021-07. One
-// thread.
+// A datagram is the keyword DATA or DSCP, then messages, each behind its length as varint. DATA is
+// sent when 873 bytes or more are in it, so it never exceeds 1000; DSCP carries one description.
+// `with_ticks` adds field 22 (raw counter), which units have since 2021-07. One thread.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,14 @@ public:
   [[nodiscard]] std::optional<std::string> append(const UnitSample& sample);
 
   // The burst that describes the sensor, one datagram a kind of description.
-  [[nodiscard]] std::vector<std::string> descriptions(const std::vector<UnitChannel>& channels) const;
+  [[nodiscard]] std::vector<std::string>
+  descriptions(const std::vector<UnitChannel>& channels) const;
 
 private:
-  [[nodiscard]] std::string text_description(int type, const std::vector<UnitChannel>& channels) const;
-  [[nodiscard]] std::string number_description(int type, const std::vector<UnitChannel>& channels) const;
+  [[nodiscard]] std::string text_description(int type,
+                                             const std::vector<UnitChannel>& channels) const;
+  [[nodiscard]] std::string number_description(int type,
+                                               const std::vector<UnitChannel>& channels) const;
   [[nodiscard]] std::string description_head(int type) const;
 
   std::uint32_t sensor_id_;

@@ -12,7 +12,8 @@ namespace {
 constexpr int socket_buffer_bytes = 16384;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
 
-static_assert(std::endian::native == std::endian::little, "frames are little-endian and written as they are");
+static_assert(std::endian::native == std::endian::little,
+              "frames are little-endian and written as they are");
 
 template <class T>
 void put(std::string& out, T value) {
@@ -25,7 +26,8 @@ void put(std::string& out, T value) {
 
 void StreamClient::connect(Descriptor socket, const std::string& description) {
   socket_ = std::move(socket);
-  setsockopt(socket_.number(), SOL_SOCKET, SO_SNDBUF, &socket_buffer_bytes, sizeof(socket_buffer_bytes));
+  setsockopt(socket_.number(), SOL_SOCKET, SO_SNDBUF, &socket_buffer_bytes,
+             sizeof(socket_buffer_bytes));
   backlog_ = description + "\n";
   sent_ = 0;
 }
@@ -43,7 +45,8 @@ void StreamClient::send_frame(const AcsSamples& samples) {
   put(backlog_, frame_magic);
   put(backlog_, static_cast<std::uint32_t>(samples.samples()));
   put(backlog_, samples.first_sample);
-  backlog_.append(reinterpret_cast<const char*>(samples.counts.data()), samples.counts.size() * sizeof(std::int32_t));
+  backlog_.append(reinterpret_cast<const char*>(samples.counts.data()),
+                  samples.counts.size() * sizeof(std::int32_t));
 }
 
 void StreamClient::send_end() {
@@ -57,13 +60,15 @@ void StreamClient::serve() {
     return;
   }
   char ignored[256];
-  const ssize_t came = recv(socket_.number(), ignored, sizeof(ignored), 0); // a client has nothing to say but that it goes
+  const ssize_t came = recv(socket_.number(), ignored, sizeof(ignored),
+                            0); // a client has nothing to say but that it goes
   if (came == 0 || (came < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
     drop();
     return;
   }
   while (backlog_bytes() > 0) {
-    const ssize_t count = send(socket_.number(), backlog_.data() + sent_, backlog_bytes(), MSG_NOSIGNAL);
+    const ssize_t count =
+        send(socket_.number(), backlog_.data() + sent_, backlog_bytes(), MSG_NOSIGNAL);
     if (count < 0) {
       if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
         drop();

@@ -22,7 +22,8 @@ bool would_block(int error) {
 } // namespace
 
 TriggeredServer::TriggeredServer(const TriggeredSettings& settings)
-    : settings_(settings), scope_(settings.trigger), scpi_(scope_, settings.trigger.seed, settings.faults), sensor_(settings.sensor) {}
+    : settings_(settings), scope_(settings.trigger),
+      scpi_(scope_, settings.trigger.seed, settings.faults), sensor_(settings.sensor) {}
 
 Expected<void> TriggeredServer::open() {
   auto scope = listen_tcp(settings_.scope_listen);
@@ -47,8 +48,10 @@ std::uint16_t TriggeredServer::sensor_port() const {
 }
 
 void TriggeredServer::serve() {
-  for (const auto& [listener, clients] : {std::pair{&scope_listener_, &scope_clients_}, std::pair{&sensor_listener_, &sensor_clients_}}) {
-    if (Descriptor client = accept_client(*listener); client.open() && clients->size() < max_clients) {
+  for (const auto& [listener, clients] : {std::pair{&scope_listener_, &scope_clients_},
+                                          std::pair{&sensor_listener_, &sensor_clients_}}) {
+    if (Descriptor client = accept_client(*listener);
+        client.open() && clients->size() < max_clients) {
       clients->push_back(Client{std::move(client), {}, {}, false, {}});
     }
   }
@@ -74,8 +77,10 @@ bool TriggeredServer::serve_scope(Client& client) {
   if (!receive(client)) {
     return false;
   }
-  for (std::size_t end = client.received.find('\n'); end != std::string::npos && !client.disconnect; end = client.received.find('\n')) {
-    const OscilloscopeScpi::Reply reply = scpi_.execute(std::string_view(client.received).substr(0, end));
+  for (std::size_t end = client.received.find('\n'); end != std::string::npos && !client.disconnect;
+       end = client.received.find('\n')) {
+    const OscilloscopeScpi::Reply reply =
+        scpi_.execute(std::string_view(client.received).substr(0, end));
     client.received.erase(0, end + 1);
     client.sending += reply.bytes;
     client.disconnect = reply.disconnect;
@@ -83,7 +88,9 @@ bool TriggeredServer::serve_scope(Client& client) {
       client.not_before = Clock::now() + slow_answer;
     }
   }
-  if (Clock::now() >= client.not_before && !transmit(client, settings_.piece_bytes > 0 ? settings_.piece_bytes : client.sending.size())) {
+  if (Clock::now() >= client.not_before &&
+      !transmit(client,
+                settings_.piece_bytes > 0 ? settings_.piece_bytes : client.sending.size())) {
     return false;
   }
   return client.received.size() <= max_line && !(client.disconnect && client.sending.empty());
@@ -93,7 +100,8 @@ bool TriggeredServer::transmit(Client& client, std::size_t most) const {
   if (client.sending.empty()) {
     return true;
   }
-  const ssize_t sent = send(client.socket.number(), client.sending.data(), std::min(most, client.sending.size()), MSG_NOSIGNAL);
+  const ssize_t sent = send(client.socket.number(), client.sending.data(),
+                            std::min(most, client.sending.size()), MSG_NOSIGNAL);
   if (sent < 0 && !would_block(errno)) {
     return false;
   }

@@ -1,8 +1,8 @@
 // The oscilloscope (SCPI) and the time series sensor of the virtual bench on their TCP ports.
 //
-// The oscilloscope serves up to four clients, whose commands act on one instrument; answers leave in the given number of pieces, with
-// faults as OscilloscopeScpi makes them. The sensor sends every series to all clients that are connected when it is complete. Sockets never
-// block. One thread.
+// The oscilloscope serves up to four clients, whose commands act on one instrument; answers leave
+// in the given number of pieces, with faults as OscilloscopeScpi makes them. The sensor sends every
+// series to all clients that are connected when it is complete. Sockets never block. One thread.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "drivers/link/tcp_connection.hpp"
-#include "drivers/virtual_bench/wire/oscilloscope_scpi.hpp"
 #include "drivers/virtual_bench/model/series_sensor.hpp"
+#include "drivers/virtual_bench/wire/oscilloscope_scpi.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
@@ -21,7 +21,8 @@ struct TriggeredSettings {
   TriggerSettings trigger;
   SeriesSensorSettings sensor;
   ScopeFaults faults;
-  std::size_t piece_bytes = 0; // an answer longer than this leaves in such pieces, one per call of serve(); 0: whole
+  std::size_t piece_bytes =
+      0; // an answer longer than this leaves in such pieces, one per call of serve(); 0: whole
 };
 
 class TriggeredServer {

@@ -23,7 +23,9 @@ public:
   Entity(const Entity&) = delete;
   Entity& operator=(const Entity&) = delete;
   ~Entity() {
-    if (handle_ > 0) dds_delete(handle_);
+    if (handle_ > 0) {
+      dds_delete(handle_);
+    }
   }
   [[nodiscard]] dds_entity_t get() const { return handle_; }
 
@@ -31,7 +33,8 @@ private:
   dds_entity_t handle_;
 };
 
-// Cyclone DDS configures a domain once a process, so that all participants in it share the settings of the first.
+// Cyclone DDS configures a domain once a process, so that all participants in it share the settings
+// of the first.
 struct Domain {
   Entity entity;
   std::string config;
@@ -42,21 +45,28 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
   static std::map<int, std::weak_ptr<Domain>> open;
   const std::lock_guard lock(mutex);
   if (auto domain = open[number].lock()) {
-    if (domain->config == config) return domain;
-    return tl::unexpected(services::Error{services::ErrorCode::network, "Cyclone DDS domain " + std::to_string(number) +
-                                                                            " is open in this process with other network settings"});
+    if (domain->config == config) {
+      return domain;
+    }
+    return tl::unexpected(services::Error{
+        services::ErrorCode::network, "Cyclone DDS domain " + std::to_string(number) +
+                                          " is open in this process with other network settings"});
   }
-  const dds_entity_t handle = dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
-  if (handle < 0)
-    return tl::unexpected(network_error("Cyclone DDS cannot open domain " + std::to_string(number) +
-                                            " (its messages above say more; CYCLONEDDS_URI may be the cause)",
-                                        handle));
+  const dds_entity_t handle =
+      dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
+  if (handle < 0) {
+    return tl::unexpected(
+        network_error("Cyclone DDS cannot open domain " + std::to_string(number) +
+                          " (its messages above say more; CYCLONEDDS_URI may be the cause)",
+                      handle));
+  }
   auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
   open[number] = domain;
   return domain;
 }
 
-// Writers and readers share it, so that the last of them takes it down. The domain goes after the participant.
+// Writers and readers share it, so that the last of them takes it down. The domain goes after the
+// participant.
 struct CycloneParticipantHandle {
   std::shared_ptr<Domain> domain;
   Entity entity;
@@ -70,8 +80,10 @@ using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 Qos common_qos(const QosProfile& profile, const std::string& partition) {
   Qos qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, std::chrono::nanoseconds(write_attempt).count());
-  dds_qset_durability(qos.get(), profile.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE,
+                       std::chrono::nanoseconds(write_attempt).count());
+  dds_qset_durability(qos.get(), profile.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                                         : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), profile.keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST, 1);
   const char* name = partition.c_str();
   dds_qset_partition(qos.get(), 1, &name);
@@ -80,9 +92,10 @@ Qos common_qos(const QosProfile& profile, const std::string& partition) {
 
 Qos writer_qos(const QosProfile& profile, const std::string& partition) {
   Qos qos = common_qos(profile, partition);
-  if (profile.transient_local)
-    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, profile.writer_samples_per_key, DDS_LENGTH_UNLIMITED,
-                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  if (profile.transient_local) {
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, profile.writer_samples_per_key,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
   // True by default: the end of a writer would read as the end of all its instances.
   dds_qset_writer_data_lifecycle(qos.get(), false);
   return qos;
@@ -90,28 +103,39 @@ Qos writer_qos(const QosProfile& profile, const std::string& partition) {
 
 Qos reader_qos(const QosProfile& profile, const std::string& partition) {
   Qos qos = common_qos(profile, partition);
-  if (profile.keep_all) dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, profile.reader_samples_per_key);
+  if (profile.keep_all) {
+    dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
+                             profile.reader_samples_per_key);
+  }
   return qos;
 }
 
 class CycloneWriter : public UntypedWriter {
 public:
-  CycloneWriter(std::shared_ptr<CycloneParticipantHandle> participant, dds_entity_t topic, dds_entity_t writer)
+  CycloneWriter(std::shared_ptr<CycloneParticipantHandle> participant, dds_entity_t topic,
+                dds_entity_t writer)
       : participant_(std::move(participant)), topic_(topic), writer_(writer) {}
 
   WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (true) {
       const dds_return_t outcome = dds_write(writer_.get(), sample);
-      if (outcome == DDS_RETCODE_OK) return WriteOutcome::written;
-      if (outcome != DDS_RETCODE_TIMEOUT) return WriteOutcome::failed;
-      if (std::chrono::steady_clock::now() >= deadline) return WriteOutcome::timed_out;
+      if (outcome == DDS_RETCODE_OK) {
+        return WriteOutcome::written;
+      }
+      if (outcome != DDS_RETCODE_TIMEOUT) {
+        return WriteOutcome::failed;
+      }
+      if (std::chrono::steady_clock::now() >= deadline) {
+        return WriteOutcome::timed_out;
+      }
     }
   }
 
   // Disposed as well: that is what readers of both vendors hear of.
   bool unregister(const void* sample) override {
-    return dds_dispose(writer_.get(), sample) == DDS_RETCODE_OK && dds_unregister_instance(writer_.get(), sample) == DDS_RETCODE_OK;
+    return dds_dispose(writer_.get(), sample) == DDS_RETCODE_OK &&
+           dds_unregister_instance(writer_.get(), sample) == DDS_RETCODE_OK;
   }
 
   [[nodiscard]] int matched_readers() const override {
@@ -136,10 +160,10 @@ void ring(dds_entity_t /*reader*/, void* wake_up) {
 
 class CycloneReader : public UntypedReader {
 public:
-  CycloneReader(std::shared_ptr<CycloneParticipantHandle> participant, dds_entity_t topic, dds_entity_t reader, const TypeSupport& type,
-                std::shared_ptr<WakeUp> wake_up)
-      : participant_(std::move(participant)), wake_up_(std::move(wake_up)), type_(type), sample_(type.create(), type.destroy),
-        topic_(topic), reader_(reader) {}
+  CycloneReader(std::shared_ptr<CycloneParticipantHandle> participant, dds_entity_t topic,
+                dds_entity_t reader, const TypeSupport& type, std::shared_ptr<WakeUp> wake_up)
+      : participant_(std::move(participant)), wake_up_(std::move(wake_up)), type_(type),
+        sample_(type.create(), type.destroy), topic_(topic), reader_(reader) {}
 
   std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) override {
     std::size_t taken = 0;
@@ -148,8 +172,12 @@ public:
     while (dds_takecdr(reader_.get(), &serdata, 1, &info, DDS_ANY_STATE) > 0) {
       const bool read = read_cyclone_serdata(type_, serdata, sample_.get());
       release_cyclone_serdata(serdata);
-      if (!read) participant_->malformed->add(type_.name);
-      if (!read || (!info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE)) continue;
+      if (!read) {
+        participant_->malformed->add(type_.name);
+      }
+      if (!read || (!info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE)) {
+        continue;
+      }
       ++taken;
       consume(sample_.get(), SampleInfo{info.valid_data, info.source_timestamp});
     }
@@ -173,41 +201,67 @@ private:
 
 class CycloneParticipant : public UntypedParticipant {
 public:
-  explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant) : participant_(std::move(participant)) {}
+  explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant)
+      : participant_(std::move(participant)) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type, const std::string& topic, Profile profile,
+  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type,
+                                                            const std::string& topic,
+                                                            Profile profile,
                                                             const std::string& partition) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
-    if (cyclone_topic < 0) return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+    if (cyclone_topic < 0) {
+      return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+    }
     const Qos qos = writer_qos(qos_profile(profile), partition);
-    const dds_entity_t cyclone_writer = dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
+    const dds_entity_t cyclone_writer =
+        dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
-    if (cyclone_writer < 0) return tl::unexpected(network_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
+    if (cyclone_writer < 0) {
+      return tl::unexpected(
+          network_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
+    }
     return writer;
   }
 
-  services::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type, const std::string& topic, Profile profile,
-                                                            const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
+  services::Expected<std::unique_ptr<UntypedReader>>
+  reader(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
-    if (cyclone_topic < 0) return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+    if (cyclone_topic < 0) {
+      return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+    }
     const Qos qos = reader_qos(qos_profile(profile), partition);
     dds_listener_t* listener = dds_create_listener(wake_up.get());
-    if (wake_up) dds_lset_data_available(listener, &ring);
-    const dds_entity_t cyclone_reader = dds_create_reader(participant_->entity.get(), cyclone_topic, qos.get(), listener);
+    if (wake_up) {
+      dds_lset_data_available(listener, &ring);
+    }
+    const dds_entity_t cyclone_reader =
+        dds_create_reader(participant_->entity.get(), cyclone_topic, qos.get(), listener);
     dds_delete_listener(listener);
-    auto reader = std::make_unique<CycloneReader>(participant_, cyclone_topic, cyclone_reader, type, wake_up);
-    if (cyclone_reader < 0) return tl::unexpected(network_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
-    if (wake_up) wake_up->ring();
+    auto reader =
+        std::make_unique<CycloneReader>(participant_, cyclone_topic, cyclone_reader, type, wake_up);
+    if (cyclone_reader < 0) {
+      return tl::unexpected(
+          network_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
+    }
+    if (wake_up) {
+      wake_up->ring();
+    }
     return reader;
   }
 
-  [[nodiscard]] std::uint64_t malformed_messages() const override { return participant_->malformed->count(); }
+  [[nodiscard]] std::uint64_t malformed_messages() const override {
+    return participant_->malformed->count();
+  }
 
 private:
   dds_entity_t open_topic(const TypeSupport& type, const std::string& name) {
     ddsi_sertype* sertype = make_cyclone_sertype(type, participant_->malformed);
-    const dds_entity_t topic = dds_create_topic_sertype(participant_->entity.get(), name.c_str(), &sertype, nullptr, nullptr, nullptr);
-    if (topic < 0) release_cyclone_sertype(sertype);
+    const dds_entity_t topic = dds_create_topic_sertype(participant_->entity.get(), name.c_str(),
+                                                        &sertype, nullptr, nullptr, nullptr);
+    if (topic < 0) {
+      release_cyclone_sertype(sertype);
+    }
     return topic;
   }
 
@@ -216,22 +270,33 @@ private:
 
 } // namespace
 
-services::Expected<std::unique_ptr<UntypedParticipant>> create_cyclone_dds_participant(const ParticipantOptions& options) {
+services::Expected<std::unique_ptr<UntypedParticipant>>
+create_cyclone_dds_participant(const ParticipantOptions& options) {
   const auto config = cyclone_dds_config(options);
-  if (!config) return tl::unexpected(config.error());
-  if (const auto warning = receive_buffer_warning(wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
-      !warning.empty() && options.warn)
+  if (!config) {
+    return tl::unexpected(config.error());
+  }
+  if (const auto warning = receive_buffer_warning(
+          wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
+      !warning.empty() && options.warn) {
     options.warn(warning);
+  }
 
   auto domain = open_domain(options.domain, *config);
-  if (!domain) return tl::unexpected(domain.error());
+  if (!domain) {
+    return tl::unexpected(domain.error());
+  }
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
-  const dds_entity_t participant = dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
-  if (participant < 0)
-    return tl::unexpected(network_error("Cyclone DDS cannot join domain " + std::to_string(options.domain), participant));
+  const dds_entity_t participant =
+      dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
+  if (participant < 0) {
+    return tl::unexpected(network_error(
+        "Cyclone DDS cannot join domain " + std::to_string(options.domain), participant));
+  }
   return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
-      new CycloneParticipantHandle{std::move(*domain), Entity(participant), std::make_shared<MalformedMessages>(options.warn)}));
+      new CycloneParticipantHandle{std::move(*domain), Entity(participant),
+                                   std::make_shared<MalformedMessages>(options.warn)}));
 }
 
 } // namespace dyncal::bus

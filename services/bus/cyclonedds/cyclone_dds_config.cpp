@@ -14,10 +14,13 @@ std::string element(const std::string& name, const std::string& text) {
 
 std::string general(const ParticipantOptions& options, const std::string& address) {
   std::string text;
-  if (!address.empty()) text += element("Interfaces", "<NetworkInterface address=\"" + address + "\"/>");
+  if (!address.empty()) {
+    text += element("Interfaces", "<NetworkInterface address=\"" + address + "\"/>");
+  }
   // Multicast finds others; samples always travel to each reader by itself, as Fast DDS does it.
   text += element("AllowMulticast", options.multicast ? "spdp" : "false");
-  // Packets with headers stay below max_udp_payload_bytes, which is the most that Fast DDS receives here.
+  // Packets with headers stay below max_udp_payload_bytes, which is the most that Fast DDS receives
+  // here.
   text += element("MaxMessageSize", "1400B") + element("FragmentSize", "1300B");
   return element("General", text);
 }
@@ -25,13 +28,16 @@ std::string general(const ParticipantOptions& options, const std::string& addres
 std::string discovery(const std::string& own_address, const std::vector<std::string>& peers) {
   // Its own host is always a peer, so that programs on a machine without a network find each other.
   std::string text = "<Peer address=\"" + own_address + "\"/>";
-  for (const std::string& peer : peers)
+  for (const std::string& peer : peers) {
     text += "<Peer address=\"" + peer + "\"/>";
+  }
   // "auto" listens at the ports where Fast DDS and peers look for it.
-  return element("Discovery", element("ParticipantIndex", "auto") +
-                                  element("MaxAutoParticipantIndex", std::to_string(participants_per_host)) +
-                                  element("LeaseDuration", std::to_string(lease.count()) + " s") +
-                                  element("SPDPInterval", std::to_string(lease_announcement.count()) + " s") + element("Peers", text));
+  return element("Discovery",
+                 element("ParticipantIndex", "auto") +
+                     element("MaxAutoParticipantIndex", std::to_string(participants_per_host)) +
+                     element("LeaseDuration", std::to_string(lease.count()) + " s") +
+                     element("SPDPInterval", std::to_string(lease_announcement.count()) + " s") +
+                     element("Peers", text));
 }
 
 // "Internal" settings are documented for users of Cyclone DDS but may change with its version.
@@ -39,11 +45,15 @@ std::string internal() {
   return element("Internal",
                  // Without it Fast DDS ends the wrong instance.
                  element("GenerateKeyhash", "true") +
-                     // Quick repairs: the defaults make a late joiner on Fast DDS wait, and packet loss stall for seconds.
-                     "<HeartbeatInterval min=\"1 ms\" minsched=\"1 ms\" max=\"1 s\">20 ms</HeartbeatInterval>" +
-                     element("NackDelay", "10 ms") + element("PreEmptiveAckDelay", "10 ms") + element("AckDelay", "5 ms") +
+                     // Quick repairs: the defaults make a late joiner on Fast DDS wait, and packet
+                     // loss stall for seconds.
+                     "<HeartbeatInterval min=\"1 ms\" minsched=\"1 ms\" max=\"1 s\">20 "
+                     "ms</HeartbeatInterval>" +
+                     element("NackDelay", "10 ms") + element("PreEmptiveAckDelay", "10 ms") +
+                     element("AckDelay", "5 ms") +
                      // As much as the host allows: with a minimum it would refuse to start.
-                     "<SocketReceiveBufferSize min=\"default\" max=\"" + std::to_string(wanted_receive_buffer_bytes) + "B\"/>");
+                     "<SocketReceiveBufferSize min=\"default\" max=\"" +
+                     std::to_string(wanted_receive_buffer_bytes) + "B\"/>");
 }
 
 } // namespace
@@ -52,16 +62,23 @@ services::Expected<std::string> cyclone_dds_config(const ParticipantOptions& opt
   std::string address;
   if (!options.interface_name.empty()) {
     auto found = interface_address(options.interface_name);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) {
+      return tl::unexpected(found.error());
+    }
     address = *found;
   }
   const auto peers = resolve_peers(options.peers);
-  if (!peers) return tl::unexpected(peers.error());
+  if (!peers) {
+    return tl::unexpected(peers.error());
+  }
 
   std::string config = "<CycloneDDS><Domain Id=\"any\">" + general(options, address) +
-                       discovery(address.empty() ? "127.0.0.1" : address, *peers) + internal() + "</Domain></CycloneDDS>";
-  if (const char* users_own = std::getenv("CYCLONEDDS_URI"); users_own != nullptr && *users_own != '\0')
+                       discovery(address.empty() ? "127.0.0.1" : address, *peers) + internal() +
+                       "</Domain></CycloneDDS>";
+  if (const char* users_own = std::getenv("CYCLONEDDS_URI");
+      users_own != nullptr && *users_own != '\0') {
     config += "," + std::string(users_own);
+  }
   return config;
 }
 

@@ -1,8 +1,8 @@
-// How a Cyclone DDS domain reaches others, as the XML text it is configured with: UDP only, discovery by multicast and by peers,
-// short leases, packets that fit an Ethernet frame.
+// How a Cyclone DDS domain reaches others, as the XML text it is configured with: UDP only,
+// discovery by multicast and by peers, short leases, packets that fit an Ethernet frame.
 //
-// CYCLONEDDS_URI of the user comes last and so wins, setting by setting; its network interfaces and peers are added to those of
-// the options.
+// CYCLONEDDS_URI of the user comes last and so wins, setting by setting; its network interfaces and
+// peers are added to those of the options.
 #pragma once
 
 #include <string>

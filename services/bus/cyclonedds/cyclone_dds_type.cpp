@@ -25,7 +25,8 @@ KeyHash md5_of(const std::string& canonical) {
   KeyHash hash;
   ddsrt_md5_state_t state;
   ddsrt_md5_init(&state);
-  ddsrt_md5_append(&state, reinterpret_cast<const ddsrt_md5_byte_t*>(canonical.data()), static_cast<unsigned>(canonical.size()));
+  ddsrt_md5_append(&state, reinterpret_cast<const ddsrt_md5_byte_t*>(canonical.data()),
+                   static_cast<unsigned>(canonical.size()));
   ddsrt_md5_finish(&state, hash.data());
   return hash;
 }
@@ -40,7 +41,9 @@ struct SerType : ddsi_sertype {
   // Keys seen so far, to tell from an MD5 whose instance has ended.
   void remember(const KeyHash& hash, const Key& key) {
     const std::lock_guard lock(mutex);
-    if (known_keys.size() >= max_known_keys) known_keys.clear();
+    if (known_keys.size() >= max_known_keys) {
+      known_keys.clear();
+    }
     known_keys.try_emplace(hash, key);
   }
   std::optional<Key> recall(const KeyHash& hash) {
@@ -55,7 +58,9 @@ private:
 };
 
 struct SerData : ddsi_serdata {
-  SerData(const ddsi_sertype* sertype, ddsi_serdata_kind data_kind) : ddsi_serdata{} { ddsi_serdata_init(this, sertype, data_kind); }
+  SerData(const ddsi_sertype* sertype, ddsi_serdata_kind data_kind) : ddsi_serdata{} {
+    ddsi_serdata_init(this, sertype, data_kind);
+  }
 
   Key key;
   KeyHash key_hash{};
@@ -86,10 +91,13 @@ const SerData& own(const ddsi_serdata* serdata) {
 }
 
 // Null when the key of the payload is not the contract's.
-ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::string payload) {
+ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
+                           std::string payload) {
   SerType& type = own(sertype);
   auto key = read_key(type.type->key, payload.data(), payload.size());
-  if (!key) return nullptr;
+  if (!key) {
+    return nullptr;
+  }
   auto* serdata = new SerData(sertype, kind);
   serdata->set_payload(std::move(payload));
   serdata->set_key(type, std::move(*key));
@@ -99,27 +107,35 @@ ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind, 
 
 ddsi_serdata* received(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::string payload) {
   ddsi_serdata* serdata = from_payload(sertype, kind, std::move(payload));
-  if (serdata == nullptr) own(sertype).malformed->add(own(sertype).type->name);
+  if (serdata == nullptr) {
+    own(sertype).malformed->add(own(sertype).type->name);
+  }
   return serdata;
 }
 
-ddsi_serdata* from_ser(const ddsi_sertype* sertype, ddsi_serdata_kind kind, const nn_rdata* fragment, size_t size) {
+ddsi_serdata* from_ser(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
+                       const nn_rdata* fragment, size_t size) {
   std::string payload(size, '\0');
   // Fragments come in order and may overlap.
   for (std::uint32_t have = 0; fragment != nullptr; fragment = fragment->nextfrag) {
-    if (fragment->maxp1 <= have) continue;
+    if (fragment->maxp1 <= have) {
+      continue;
+    }
     const unsigned char* begin = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
-    std::memcpy(payload.data() + have, begin + (have - fragment->min), std::min<std::size_t>(fragment->maxp1, size) - have);
+    std::memcpy(payload.data() + have, begin + (have - fragment->min),
+                std::min<std::size_t>(fragment->maxp1, size) - have);
     have = fragment->maxp1;
   }
   return received(sertype, kind, std::move(payload));
 }
 
-ddsi_serdata* from_ser_iov(const ddsi_sertype* sertype, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t parts, const ddsrt_iovec_t* part,
-                           size_t size) {
+ddsi_serdata* from_ser_iov(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
+                           ddsrt_msg_iovlen_t parts, const ddsrt_iovec_t* part, size_t size) {
   std::string payload;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(parts) && payload.size() < size; ++i)
-    payload.append(static_cast<const char*>(part[i].iov_base), std::min<std::size_t>(part[i].iov_len, size - payload.size()));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parts) && payload.size() < size; ++i) {
+    payload.append(static_cast<const char*>(part[i].iov_base),
+                   std::min<std::size_t>(part[i].iov_len, size - payload.size()));
+  }
   return received(sertype, kind, std::move(payload));
 }
 
@@ -127,7 +143,9 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyh
   KeyHash hash;
   std::memcpy(hash.data(), keyhash->value, hash.size());
   auto key = own(sertype).recall(hash);
-  if (!key) return nullptr;
+  if (!key) {
+    return nullptr;
+  }
   auto* serdata = new SerData(sertype, SDK_KEY);
   serdata->set_payload(key_payload(*key, ByteOrder::little));
   serdata->set_key(own(sertype), std::move(*key));
@@ -137,7 +155,8 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyh
 std::string encode(const TypeSupport& type, ddsi_serdata_kind kind, const void* sample) {
   const bool whole = kind == SDK_DATA;
   std::string payload(whole ? type.serialized_size(sample) : max_key_payload_bytes, '\0');
-  payload.resize((whole ? type.serialize : type.serialize_key)(sample, payload.data(), payload.size()));
+  payload.resize(
+      (whole ? type.serialize : type.serialize_key)(sample, payload.data(), payload.size()));
   return payload;
 }
 
@@ -149,7 +168,8 @@ void to_ser(const ddsi_serdata* serdata, size_t offset, size_t size, void* buffe
   std::memcpy(buffer, own(serdata).payload.data() + offset, size);
 }
 
-ddsi_serdata* to_ser_ref(const ddsi_serdata* serdata, size_t offset, size_t size, ddsrt_iovec_t* part) {
+ddsi_serdata* to_ser_ref(const ddsi_serdata* serdata, size_t offset, size_t size,
+                         ddsrt_iovec_t* part) {
   part->iov_base = const_cast<char*>(own(serdata).payload.data()) + offset;
   part->iov_len = size;
   return ddsi_serdata_ref(serdata);
@@ -181,7 +201,8 @@ ddsi_serdata* to_untyped(const ddsi_serdata* serdata) {
   return untyped;
 }
 
-bool untyped_to_sample(const ddsi_sertype* sertype, const ddsi_serdata* serdata, void* sample, void** /*buffer*/, void* /*limit*/) {
+bool untyped_to_sample(const ddsi_sertype* sertype, const ddsi_serdata* serdata, void* sample,
+                       void** /*buffer*/, void* /*limit*/) {
   return decode(*own(sertype).type, own(serdata), sample);
 }
 
@@ -197,8 +218,10 @@ void free_serdata(ddsi_serdata* serdata) {
   delete static_cast<SerData*>(serdata);
 }
 
-size_t print(const ddsi_sertype* sertype, const ddsi_serdata* /*serdata*/, char* text, size_t size) {
-  const int length = std::snprintf(text, size, "%s", sertype != nullptr ? sertype->type_name : "key");
+size_t print(const ddsi_sertype* sertype, const ddsi_serdata* /*serdata*/, char* text,
+             size_t size) {
+  const int length =
+      std::snprintf(text, size, "%s", sertype != nullptr ? sertype->type_name : "key");
   return length < 0 ? 0 : static_cast<size_t>(length);
 }
 
@@ -243,15 +266,18 @@ std::uint32_t hash_of_sertype(const ddsi_sertype* sertype) {
 }
 
 // Cyclone DDS derives one type for each data representation; ours has one.
-ddsi_sertype* derive_sertype(const ddsi_sertype* sertype, dds_data_representation_id_t /*representation*/,
+ddsi_sertype* derive_sertype(const ddsi_sertype* sertype,
+                             dds_data_representation_id_t /*representation*/,
                              dds_type_consistency_enforcement_qospolicy_t /*consistency*/) {
   return const_cast<ddsi_sertype*>(sertype);
 }
 
 // Samples are made and freed by TypeSupport, never by Cyclone DDS.
 void zero_samples(const ddsi_sertype* /*sertype*/, void* /*samples*/, size_t /*count*/) {}
-void realloc_samples(void** /*samples*/, const ddsi_sertype* /*sertype*/, void* /*old*/, size_t /*old_count*/, size_t /*count*/) {}
-void free_samples(const ddsi_sertype* /*sertype*/, void** /*samples*/, size_t /*count*/, dds_free_op_t /*operation*/) {}
+void realloc_samples(void** /*samples*/, const ddsi_sertype* /*sertype*/, void* /*old*/,
+                     size_t /*old_count*/, size_t /*count*/) {}
+void free_samples(const ddsi_sertype* /*sertype*/, void** /*samples*/, size_t /*count*/,
+                  dds_free_op_t /*operation*/) {}
 
 constexpr ddsi_sertype_ops make_sertype_ops() {
   ddsi_sertype_ops ops{};
@@ -270,7 +296,8 @@ constexpr ddsi_sertype_ops sertype_ops = make_sertype_ops();
 
 } // namespace
 
-ddsi_sertype* make_cyclone_sertype(const TypeSupport& type, std::shared_ptr<MalformedMessages> malformed) {
+ddsi_sertype* make_cyclone_sertype(const TypeSupport& type,
+                                   std::shared_ptr<MalformedMessages> malformed) {
   auto* sertype = new SerType(type, std::move(malformed));
   ddsi_sertype_init(sertype, type.name.c_str(), &sertype_ops, &serdata_ops, false);
   sertype->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;

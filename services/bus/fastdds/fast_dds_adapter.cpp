@@ -1,5 +1,5 @@
-// The bus over Fast DDS 2.9. The settings differ from its defaults wherever those lose samples, wait for seconds or do not reach
-// Cyclone DDS; each says why.
+// The bus over Fast DDS 2.9. The settings differ from its defaults wherever those lose samples,
+// wait for seconds or do not reach Cyclone DDS; each says why.
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -42,10 +42,12 @@ fastrtps::Duration_t duration(std::chrono::duration<Rep, Period> time) {
 template <class Qos>
 void set_common(const QosProfile& profile, int samples_per_key, Qos& qos) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = profile.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.durability().kind =
+      profile.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = profile.keep_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = 1;
-  // 0 is unlimited. With the defaults (5000, 10, 400) the eleventh key is never written, or is received, acknowledged and dropped.
+  // 0 is unlimited. With the defaults (5000, 10, 400) the eleventh key is never written, or is
+  // received, acknowledged and dropped.
   qos.resource_limits().max_samples = 0;
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = samples_per_key;
@@ -75,14 +77,16 @@ dds::DataReaderQos reader_qos(const QosProfile& profile) {
   return qos;
 }
 
-// The lowest number that no participant of this process has. It gives the ports to listen at, and those of the first 32 are where
-// peers without multicast look; by itself Fast DDS counts on for ever.
+// The lowest number that no participant of this process has. It gives the ports to listen at, and
+// those of the first 32 are where peers without multicast look; by itself Fast DDS counts on for
+// ever.
 class ParticipantNumber {
 public:
   ParticipantNumber() {
     const std::lock_guard lock(mutex());
-    while (!taken().insert(value_).second)
+    while (!taken().insert(value_).second) {
       ++value_;
+    }
   }
   ParticipantNumber(const ParticipantNumber&) = delete;
   ParticipantNumber& operator=(const ParticipantNumber&) = delete;
@@ -108,7 +112,8 @@ private:
 // The vendor's participant; writers and readers share it, so that the last of them takes it down.
 class FastDdsParticipantHandle {
 public:
-  FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number, dds::DomainParticipant* participant,
+  FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number,
+                           dds::DomainParticipant* participant,
                            std::shared_ptr<MalformedMessages> malformed)
       : number_(std::move(number)), participant_(participant), malformed_(std::move(malformed)) {}
   FastDdsParticipantHandle(const FastDdsParticipantHandle&) = delete;
@@ -124,11 +129,14 @@ public:
   // Topics are made once and live as long as the participant.
   dds::Topic* topic(const TypeSupport& type, const std::string& name) {
     const std::lock_guard lock(mutex_);
-    if (auto known = topics_.find(name); known != topics_.end())
+    if (auto known = topics_.find(name); known != topics_.end()) {
       return known->second->get_type_name() == type.name ? known->second : nullptr;
+    }
     dds::TypeSupport(new FastDdsType(type, malformed_)).register_type(participant_);
     dds::Topic* topic = participant_->create_topic(name, type.name, dds::TOPIC_QOS_DEFAULT);
-    if (topic != nullptr) topics_.emplace(name, topic);
+    if (topic != nullptr) {
+      topics_.emplace(name, topic);
+    }
     return topic;
   }
 
@@ -142,7 +150,8 @@ private:
 
 class FastDdsWriter : public UntypedWriter {
 public:
-  FastDdsWriter(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Publisher* publisher, dds::DataWriter* writer)
+  FastDdsWriter(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Publisher* publisher,
+                dds::DataWriter* writer)
       : participant_(std::move(participant)), publisher_(publisher), writer_(writer) {}
   ~FastDdsWriter() override {
     publisher_->delete_datawriter(writer_);
@@ -154,9 +163,15 @@ public:
     // It may give up long before its time: only our own clock says when time is up.
     while (true) {
       const ReturnCode outcome = writer_->write(const_cast<void*>(sample), dds::InstanceHandle_t());
-      if (outcome == ReturnCode::RETCODE_OK) return WriteOutcome::written;
-      if (outcome != ReturnCode::RETCODE_TIMEOUT) return WriteOutcome::failed;
-      if (std::chrono::steady_clock::now() >= deadline) return WriteOutcome::timed_out;
+      if (outcome == ReturnCode::RETCODE_OK) {
+        return WriteOutcome::written;
+      }
+      if (outcome != ReturnCode::RETCODE_TIMEOUT) {
+        return WriteOutcome::failed;
+      }
+      if (std::chrono::steady_clock::now() >= deadline) {
+        return WriteOutcome::timed_out;
+      }
     }
   }
 
@@ -195,18 +210,21 @@ private:
 
 class FastDdsReader : public UntypedReader {
 public:
-  FastDdsReader(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Subscriber* subscriber, const TypeSupport& type,
-                std::unique_ptr<RingOnData> listener)
-      : participant_(std::move(participant)), subscriber_(subscriber), listener_(std::move(listener)), type_(type),
-        sample_(type.create(), type.destroy) {}
+  FastDdsReader(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Subscriber* subscriber,
+                const TypeSupport& type, std::unique_ptr<RingOnData> listener)
+      : participant_(std::move(participant)), subscriber_(subscriber),
+        listener_(std::move(listener)), type_(type), sample_(type.create(), type.destroy) {}
   ~FastDdsReader() override {
-    if (reader_ != nullptr) subscriber_->delete_datareader(reader_);
+    if (reader_ != nullptr) {
+      subscriber_->delete_datareader(reader_);
+    }
     participant_->get()->delete_subscriber(subscriber_);
   }
 
   [[nodiscard]] bool open(dds::Topic* topic, const dds::DataReaderQos& qos) {
     reader_ = subscriber_->create_datareader(topic, qos, listener_.get(),
-                                             listener_ ? dds::StatusMask::data_available() : dds::StatusMask::none());
+                                             listener_ ? dds::StatusMask::data_available()
+                                                       : dds::StatusMask::none());
     return reader_ != nullptr;
   }
 
@@ -214,10 +232,12 @@ public:
     std::size_t taken = 0;
     dds::SampleInfo info;
     while (reader_->take_next_sample(sample_.get(), &info) == ReturnCode::RETCODE_OK) {
-      if (info.valid_data)
+      if (info.valid_data) {
         remember_key(info.instance_handle);
-      else if (info.instance_state == dds::ALIVE_INSTANCE_STATE || !recall_key(info.instance_handle))
+      } else if (info.instance_state == dds::ALIVE_INSTANCE_STATE ||
+                 !recall_key(info.instance_handle)) {
         continue;
+      }
       ++taken;
       consume(sample_.get(), SampleInfo{info.valid_data, info.source_timestamp.to_ns()});
     }
@@ -231,10 +251,15 @@ public:
   }
 
 private:
-  // The end of an instance comes without its key (get_key_value() does nothing in 2.9), so the keys seen are kept.
+  // The end of an instance comes without its key (get_key_value() does nothing in 2.9), so the keys
+  // seen are kept.
   void remember_key(const dds::InstanceHandle_t& instance) {
-    if (keys_.contains(instance)) return;
-    if (keys_.size() >= max_keys) keys_.clear();
+    if (keys_.contains(instance)) {
+      return;
+    }
+    if (keys_.size() >= max_keys) {
+      keys_.clear();
+    }
     std::string payload(max_key_payload_bytes, '\0');
     payload.resize(type_.serialize_key(sample_.get(), payload.data(), payload.size()));
     keys_.emplace(instance, std::move(payload));
@@ -242,7 +267,9 @@ private:
 
   bool recall_key(const dds::InstanceHandle_t& instance) {
     const auto known = keys_.find(instance);
-    if (known == keys_.end()) return false;
+    if (known == keys_.end()) {
+      return false;
+    }
     // A sample of zeros behind the key: the rest of the members is empty.
     const bool read = type_.deserialize(sample_.get(), known->second.data(), known->second.size());
     keys_.erase(known);
@@ -262,17 +289,26 @@ private:
 
 class FastDdsParticipant : public UntypedParticipant {
 public:
-  explicit FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant) : participant_(std::move(participant)) {}
+  explicit FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant)
+      : participant_(std::move(participant)) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type, const std::string& topic, Profile profile,
+  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type,
+                                                            const std::string& topic,
+                                                            Profile profile,
                                                             const std::string& partition) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
-    if (fast_topic == nullptr) return tl::unexpected(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+    if (fast_topic == nullptr) {
+      return tl::unexpected(
+          network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+    }
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(partition.c_str());
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);
-    if (publisher == nullptr) return tl::unexpected(network_error("Fast DDS refuses to publish in partition " + partition));
-    dds::DataWriter* fast_writer = publisher->create_datawriter(fast_topic, writer_qos(qos_profile(profile)));
+    if (publisher == nullptr) {
+      return tl::unexpected(network_error("Fast DDS refuses to publish in partition " + partition));
+    }
+    dds::DataWriter* fast_writer =
+        publisher->create_datawriter(fast_topic, writer_qos(qos_profile(profile)));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
       return tl::unexpected(network_error("Fast DDS refuses a writer of topic " + topic));
@@ -280,23 +316,36 @@ public:
     return std::make_unique<FastDdsWriter>(participant_, publisher, fast_writer);
   }
 
-  services::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type, const std::string& topic, Profile profile,
-                                                            const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
+  services::Expected<std::unique_ptr<UntypedReader>>
+  reader(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
-    if (fast_topic == nullptr) return tl::unexpected(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+    if (fast_topic == nullptr) {
+      return tl::unexpected(
+          network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+    }
     dds::SubscriberQos subscriber_qos;
     subscriber_qos.partition().push_back(partition.c_str());
     dds::Subscriber* subscriber = participant_->get()->create_subscriber(subscriber_qos);
-    if (subscriber == nullptr) return tl::unexpected(network_error("Fast DDS refuses to subscribe in partition " + partition));
+    if (subscriber == nullptr) {
+      return tl::unexpected(
+          network_error("Fast DDS refuses to subscribe in partition " + partition));
+    }
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
-    auto fast_reader = std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
-    if (!fast_reader->open(fast_topic, reader_qos(qos_profile(profile))))
+    auto fast_reader =
+        std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
+    if (!fast_reader->open(fast_topic, reader_qos(qos_profile(profile)))) {
       return tl::unexpected(network_error("Fast DDS refuses a reader of topic " + topic));
-    if (wake_up) wake_up->ring();
+    }
+    if (wake_up) {
+      wake_up->ring();
+    }
     return fast_reader;
   }
 
-  [[nodiscard]] std::uint64_t malformed_messages() const override { return participant_->malformed_messages(); }
+  [[nodiscard]] std::uint64_t malformed_messages() const override {
+    return participant_->malformed_messages();
+  }
 
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
@@ -304,18 +353,24 @@ private:
 
 } // namespace
 
-services::Expected<std::unique_ptr<UntypedParticipant>> create_fast_dds_participant(const ParticipantOptions& options) {
+services::Expected<std::unique_ptr<UntypedParticipant>>
+create_fast_dds_participant(const ParticipantOptions& options) {
   auto qos = fast_dds_participant_qos(options);
-  if (!qos) return tl::unexpected(qos.error());
+  if (!qos) {
+    return tl::unexpected(qos.error());
+  }
   auto number = std::make_unique<ParticipantNumber>();
   qos->wire_protocol().participant_id = number->value();
   dds::DomainParticipant* participant =
-      dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<std::uint32_t>(options.domain), *qos);
-  if (participant == nullptr)
-    return tl::unexpected(network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
-                                        ": see its messages above, and check the profiles file if you set one"));
-  return std::make_unique<FastDdsParticipant>(
-      std::make_shared<FastDdsParticipantHandle>(std::move(number), participant, std::make_shared<MalformedMessages>(options.warn)));
+      dds::DomainParticipantFactory::get_instance()->create_participant(
+          static_cast<std::uint32_t>(options.domain), *qos);
+  if (participant == nullptr) {
+    return tl::unexpected(
+        network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
+                      ": see its messages above, and check the profiles file if you set one"));
+  }
+  return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
+      std::move(number), participant, std::make_shared<MalformedMessages>(options.warn)));
 }
 
 } // namespace dyncal::bus

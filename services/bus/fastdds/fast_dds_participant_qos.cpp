@@ -20,7 +20,8 @@ constexpr const char* discovery_group = "239.255.0.1"; // DDSI-RTPS 9.6.1.4.1
 constexpr std::uint32_t discovery_port(int domain) {
   return 7400U + 250U * static_cast<std::uint32_t>(domain);
 }
-constexpr std::uint32_t locators_per_participant = 16; // hosts with containers easily have more than the default of 4
+constexpr std::uint32_t locators_per_participant =
+    16; // hosts with containers easily have more than the default of 4
 
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.");
@@ -46,7 +47,8 @@ void log_to_standard_error() {
   static_cast<void>(done);
 }
 
-// Inside one process Fast DDS hands samples over directly by default, and a reader that has no room then never gets them.
+// Inside one process Fast DDS hands samples over directly by default, and a reader that has no room
+// then never gets them.
 void deliver_through_sockets_only() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
@@ -60,39 +62,59 @@ void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
   // It also caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
   udp->maxMessageSize = max_udp_payload_bytes;
   udp->maxInitialPeersRange = participants_per_host;
-  // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to it.
-  if (!address.empty() && !is_loopback(address)) udp->interfaceWhiteList.push_back(address);
-  qos.transport().use_builtin_transports = false; // no shared memory: it throttles blocks and leaves files behind
+  // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to
+  // it.
+  if (!address.empty() && !is_loopback(address)) {
+    udp->interfaceWhiteList.push_back(address);
+  }
+  qos.transport().use_builtin_transports =
+      false; // no shared memory: it throttles blocks and leaves files behind
   qos.transport().user_transports.push_back(udp);
 }
 
-// Where it listens. Left alone, Fast DDS listens on every interface, multicast included, and announces all but the loopback one.
-void set_locators(int domain, bool multicast, const std::string& address, dds::DomainParticipantQos& qos) {
-  if (multicast && address.empty()) return;
+// Where it listens. Left alone, Fast DDS listens on every interface, multicast included, and
+// announces all but the loopback one.
+void set_locators(int domain, bool multicast, const std::string& address,
+                  dds::DomainParticipantQos& qos) {
+  if (multicast && address.empty()) {
+    return;
+  }
   auto& wire = qos.wire_protocol();
-  const rtps::Locator_t own = address.empty() ? rtps::Locator_t() : locator(address, 0); // empty: all; port 0: the usual one
+  const rtps::Locator_t own = address.empty()
+                                  ? rtps::Locator_t()
+                                  : locator(address, 0); // empty: all; port 0: the usual one
   wire.builtin.metatrafficUnicastLocatorList.push_back(own);
-  if (multicast) wire.builtin.metatrafficMulticastLocatorList.push_back(locator(discovery_group, discovery_port(domain)));
-  if (!address.empty()) wire.default_unicast_locator_list.push_back(own);
+  if (multicast) {
+    wire.builtin.metatrafficMulticastLocatorList.push_back(
+        locator(discovery_group, discovery_port(domain)));
+  }
+  if (!address.empty()) {
+    wire.default_unicast_locator_list.push_back(own);
+  }
 }
 
-void set_discovery(int domain, bool multicast, const std::string& own_address, const std::vector<std::string>& peers,
-                   dds::DomainParticipantQos& qos) {
+void set_discovery(int domain, bool multicast, const std::string& own_address,
+                   const std::vector<std::string>& peers, dds::DomainParticipantQos& qos) {
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = {static_cast<std::int32_t>(lease.count()), 0};
-  builtin.discovery_config.leaseDuration_announcementperiod = {static_cast<std::int32_t>(lease_announcement.count()), 0};
+  builtin.discovery_config.leaseDuration_announcementperiod = {
+      static_cast<std::int32_t>(lease_announcement.count()), 0};
   builtin.discovery_config.initial_announcements = {5, {0, 200'000'000}};
-  if (multicast) builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(domain)));
-  // The port is left to Fast DDS, which tries those of the first participants of the host. Its own host is always a peer, so that
-  // programs on a machine without a network find each other.
+  if (multicast) {
+    builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(domain)));
+  }
+  // The port is left to Fast DDS, which tries those of the first participants of the host. Its own
+  // host is always a peer, so that programs on a machine without a network find each other.
   builtin.initialPeersList.push_back(locator(own_address, 0));
-  for (const std::string& peer : peers)
+  for (const std::string& peer : peers) {
     builtin.initialPeersList.push_back(locator(peer, 0));
+  }
 }
 
 } // namespace
 
-services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const ParticipantOptions& options) {
+services::Expected<dds::DomainParticipantQos>
+fast_dds_participant_qos(const ParticipantOptions& options) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   log_to_standard_error();
   factory->load_profiles();
@@ -101,28 +123,37 @@ services::Expected<dds::DomainParticipantQos> fast_dds_participant_qos(const Par
   factory->get_default_participant_qos(qos);
   qos.name(options.name);
   if (!(factory->get_default_participant_qos() == dds::DomainParticipantQos())) {
-    if (options.warn && (!options.peers.empty() || !options.multicast || !options.interface_name.empty()))
-      options.warn("the profiles file of Fast DDS has a default participant profile: peers, multicast and interface are taken from there");
+    if (options.warn &&
+        (!options.peers.empty() || !options.multicast || !options.interface_name.empty())) {
+      options.warn("the profiles file of Fast DDS has a default participant profile: peers, "
+                   "multicast and interface are taken from there");
+    }
     return qos;
   }
 
   std::string address;
   if (!options.interface_name.empty()) {
     auto found = interface_address(options.interface_name);
-    if (!found) return tl::unexpected(found.error());
+    if (!found) {
+      return tl::unexpected(found.error());
+    }
     address = *found;
   }
   const auto peers = resolve_peers(options.peers);
-  if (!peers) return tl::unexpected(peers.error());
+  if (!peers) {
+    return tl::unexpected(peers.error());
+  }
 
   set_transport(address, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
   set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, *peers, qos);
   qos.allocation().locators.max_unicast_locators = locators_per_participant;
-  if (const auto warning = receive_buffer_warning(wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
-      !warning.empty() && options.warn)
+  if (const auto warning = receive_buffer_warning(
+          wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
+      !warning.empty() && options.warn) {
     options.warn(warning);
+  }
   return qos;
 }
 

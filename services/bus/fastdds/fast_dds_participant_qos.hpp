@@ -1,8 +1,11 @@
-// How a Fast DDS participant reaches others: UDP only, discovery by multicast and by peers, short leases.
+// How a Fast DDS participant reaches others: UDP only, discovery by multicast and by peers, short
+// leases.
 //
-// A profiles file of the user comes first: when FASTRTPS_DEFAULT_PROFILES_FILE (or DEFAULT_FASTRTPS_PROFILES.xml in the working
-// directory) has a default participant profile, that profile is taken as it is, and the options for peers, multicast and interface
-// have no effect, which is said. Writers and readers never take anything from the file: their QoS is the contract's.
+// A profiles file of the user comes first: when FASTRTPS_DEFAULT_PROFILES_FILE (or
+// DEFAULT_FASTRTPS_PROFILES.xml in the working directory) has a default participant profile, that
+// profile is taken as it is, and the options for peers, multicast and interface have no effect,
+// which is said. Writers and readers never take anything from the file: their QoS is the
+// contract's.
 #pragma once
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
@@ -12,6 +15,7 @@
 namespace dyncal::bus {
 
 // Fails (network) on an interface or peer that does not exist.
-[[nodiscard]] services::Expected<eprosima::fastdds::dds::DomainParticipantQos> fast_dds_participant_qos(const ParticipantOptions& options);
+[[nodiscard]] services::Expected<eprosima::fastdds::dds::DomainParticipantQos>
+fast_dds_participant_qos(const ParticipantOptions& options);
 
 } // namespace dyncal::bus

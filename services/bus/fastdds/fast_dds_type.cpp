@@ -11,7 +11,8 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-// Fast DDS sets this much aside for a message before it knows how long it will be; it grows as needed.
+// Fast DDS sets this much aside for a message before it knows how long it will be; it grows as
+// needed.
 constexpr std::uint32_t first_guess_of_size_bytes = 1024;
 
 } // namespace
@@ -26,7 +27,8 @@ FastDdsType::FastDdsType(const TypeSupport& type, std::shared_ptr<MalformedMessa
 }
 
 bool FastDdsType::serialize(void* sample, rtps::SerializedPayload_t* payload) {
-  const std::size_t bytes = type_.serialize(sample, reinterpret_cast<char*>(payload->data), payload->max_size);
+  const std::size_t bytes =
+      type_.serialize(sample, reinterpret_cast<char*>(payload->data), payload->max_size);
   payload->length = static_cast<std::uint32_t>(bytes);
   payload->encapsulation = CDR_LE;
   return bytes > 0;
@@ -34,8 +36,11 @@ bool FastDdsType::serialize(void* sample, rtps::SerializedPayload_t* payload) {
 
 bool FastDdsType::deserialize(rtps::SerializedPayload_t* payload, void* sample) {
   const char* bytes = reinterpret_cast<const char*>(payload->data);
-  const bool read = read_key(type_.key, bytes, payload->length) && type_.deserialize(sample, bytes, payload->length);
-  if (!read) malformed_->add(type_.name);
+  const bool read = read_key(type_.key, bytes, payload->length) &&
+                    type_.deserialize(sample, bytes, payload->length);
+  if (!read) {
+    malformed_->add(type_.name);
+  }
   return read;
 }
 
@@ -48,14 +53,17 @@ bool FastDdsType::getKey(void* sample, rtps::InstanceHandle_t* handle, bool /*fo
   std::array<char, max_key_payload_bytes> bytes{};
   const std::size_t count = type_.serialize_key(sample, bytes.data(), bytes.size());
   const auto key = read_key(type_.key, bytes.data(), count);
-  if (!key) return false;
+  if (!key) {
+    return false;
+  }
   const std::string canonical = canonical_key(*key);
   MD5 md5;
   md5.init();
   md5.update(canonical.data(), static_cast<MD5::size_type>(canonical.size()));
   md5.finalize();
-  for (std::size_t i = 0; i < sizeof md5.digest; ++i)
+  for (std::size_t i = 0; i < sizeof md5.digest; ++i) {
     handle->value[static_cast<std::uint16_t>(i)] = md5.digest[i];
+  }
   return true;
 }
 

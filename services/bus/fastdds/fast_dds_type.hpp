@@ -1,7 +1,8 @@
 // A message type of the contract as Fast DDS wants it.
 //
-// Takes the place of the PubSubType that fastddsgen generates: it announces no type information (Cyclone DDS would refuse the
-// endpoint), lets no exception through, and reads messages of older programs.
+// Takes the place of the PubSubType that fastddsgen generates: it announces no type information
+// (Cyclone DDS would refuse the endpoint), lets no exception through, and reads messages of older
+// programs.
 #pragma once
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
@@ -22,7 +23,8 @@ public:
   std::function<uint32_t()> getSerializedSizeProvider(void* sample) override;
   void* createData() override { return type_.create(); }
   void deleteData(void* sample) override { type_.destroy(sample); }
-  bool getKey(void* sample, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override;
+  bool getKey(void* sample, eprosima::fastrtps::rtps::InstanceHandle_t* handle,
+              bool force_md5) override;
 
 private:
   const TypeSupport& type_;

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "analysis/method/analogue_comparison.hpp"
-#include "services/evaluation/monte_carlo_check.hpp"
-#include "services/evaluation/method/settled_part.hpp"
 #include "services/evaluation/method/sample_stamping_step_evaluation.hpp"
+#include "services/evaluation/method/settled_part.hpp"
+#include "services/evaluation/monte_carlo_check.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -20,21 +20,25 @@ std::vector<std::size_t> columns_of(const Recipe& recipe, const SourceRecord& ac
   return columns;
 }
 
-StretchOfTime after_settling(const Recipe& recipe, const RecipeStep& step, const StepSamples& samples, StretchOfTime stretch,
+StretchOfTime after_settling(const Recipe& recipe, const RecipeStep& step,
+                             const StepSamples& samples, StretchOfTime stretch,
                              std::vector<std::string>& flags) {
   SettlingColumns sensors{samples, 0, {}};
   for (std::size_t column = 1; column < samples.columns.size(); ++column) {
     sensors.settling.push_back(column);
   }
-  const Settled settled = settled_part(step, recipe.frequency_search_rel, {samples, 0, {0}}, sensors);
+  const Settled settled =
+      settled_part(step, recipe.frequency_search_rel, {samples, 0, {0}}, sensors);
   flags.insert(flags.end(), settled.flags.begin(), settled.flags.end());
   return without_settling(stretch, settled.settling_s, step.duration_s);
 }
 
 } // namespace
 
-std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
-                                                      StretchOfTime stretch, std::vector<std::string> flags) {
+std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, const RecipeStep& step,
+                                                      const SourceRecord& acs,
+                                                      StretchOfTime stretch,
+                                                      std::vector<std::string> flags) {
   const std::vector<std::size_t> columns = columns_of(recipe, acs);
   StepSamples samples = cut(acs, stretch, columns);
   if (recipe.settling_from_data) {
@@ -42,7 +46,8 @@ std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, cons
     samples = cut(acs, stretch, columns);
   }
   const auto channel = [&](const ChannelName& name, std::size_t column) {
-    return analysis::ChannelSamples{name.text(), samples.columns[column], acs.description().channels()[columns[column]].resolution()};
+    return analysis::ChannelSamples{name.text(), samples.columns[column],
+                                    acs.description().channels()[columns[column]].resolution()};
   };
   analysis::AnalogueInput input{.frequency = step.frequency};
   input.frequency_search_rel = recipe.frequency_search_rel;
@@ -62,7 +67,8 @@ std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, cons
   const std::string data_sha256 = digest_of({&samples});
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < recipe.dut.size(); ++i) {
-    CalibrationResult result = point_result(recipe, step, recipe.dut[i], evaluated->points[i], {&evaluated->reference, 1});
+    CalibrationResult result =
+        point_result(recipe, step, recipe.dut[i], evaluated->points[i], {&evaluated->reference, 1});
     result.unit(ratio_unit(acs, recipe.reference.channel, acs, recipe.dut[i].channel));
     result.samples().push_back(samples_message(acs, samples, stretch));
     result.lost(result.samples()[0].lost());

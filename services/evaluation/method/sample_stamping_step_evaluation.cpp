@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/method/settled_part.hpp"
+#include "services/evaluation/monte_carlo_check.hpp"
 #include "services/evaluation/step_message.hpp"
 
 namespace dyncal::services {
@@ -22,17 +22,21 @@ struct StepPart {
   StepSamples samples;
 
   void cut_samples() { samples = cut(record, stretch, channels); }
-  [[nodiscard]] analysis::ChannelSamples channel(std::size_t column, const ChannelName& name) const {
-    return {name.text(), samples.columns[column], record.description().channels()[channels[column]].resolution()};
+  [[nodiscard]] analysis::ChannelSamples channel(std::size_t column,
+                                                 const ChannelName& name) const {
+    return {name.text(), samples.columns[column],
+            record.description().channels()[channels[column]].resolution()};
   }
 };
 
-void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& acs, StepPart& dau, std::vector<std::string>& flags) {
+void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& acs, StepPart& dau,
+                        std::vector<std::string>& flags) {
   SettlingColumns sensor{dau.samples, 0, {}};
   for (std::size_t column = 1; column < dau.channels.size(); ++column) {
     sensor.settling.push_back(column);
   }
-  const Settled settled = settled_part(step, recipe.frequency_search_rel, {acs.samples, 1, {0}}, sensor);
+  const Settled settled =
+      settled_part(step, recipe.frequency_search_rel, {acs.samples, 1, {0}}, sensor);
   flags.insert(flags.end(), settled.flags.begin(), settled.flags.end());
   for (StepPart* part : {&acs, &dau}) {
     part->stretch = without_settling(part->stretch, settled.settling_s, step.duration_s);
@@ -42,7 +46,8 @@ void leave_settling_out(const Recipe& recipe, const RecipeStep& step, StepPart& 
 
 } // namespace
 
-analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe, const RecipeStep& step) {
+analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe,
+                                                       const RecipeStep& step) {
   if (recipe.adc_calibration.empty()) {
     return analysis::AdcResponse{};
   }
@@ -56,7 +61,8 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
   std::vector<ChannelName> names;
   for (const ChannelDescription& channel : dau.description().channels()) {
     const ChannelName name{dau.source(), channel.name()};
-    const bool thermometer = channel.unit() == R"(\degreecelsius)" || channel.unit() == R"(\kelvin)";
+    const bool thermometer =
+        channel.unit() == R"(\degreecelsius)" || channel.unit() == R"(\kelvin)";
     const bool analogue_input = channel.unit() == R"(\volt)";
     if (name != recipe.sync_dau && name != recipe.temperature && !thermometer && !analogue_input) {
       names.push_back(name);
@@ -65,7 +71,8 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
   return names;
 }
 
-std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& dau,
+std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, const RecipeStep& step,
+                                                       const SourceRecord& dau,
                                                        const std::string& problem) {
   std::vector<CalibrationResult> results;
   for (const ChannelName& channel : channels_under_calibration(recipe, dau)) {
@@ -75,11 +82,15 @@ std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, con
   return results;
 }
 
-std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
-                                             const StretchOfTime& acs_stretch, const SourceRecord& dau, const StretchOfTime& dau_stretch,
-                                             const std::vector<std::string>& flags) {
+std::vector<CalibrationResult>
+evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
+              const StretchOfTime& acs_stretch, const SourceRecord& dau,
+              const StretchOfTime& dau_stretch, const std::vector<std::string>& flags) {
   const std::vector<ChannelName> dut = channels_under_calibration(recipe, dau);
-  StepPart acs_part{acs, acs_stretch, {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)}, {}};
+  StepPart acs_part{acs,
+                    acs_stretch,
+                    {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)},
+                    {}};
   StepPart dau_part{dau, dau_stretch, {*dau.channel(recipe.sync_dau.channel)}, {}};
   for (const ChannelName& name : dut) {
     dau_part.channels.push_back(*dau.channel(name.channel));
@@ -119,7 +130,8 @@ std::vector<CalibrationResult> evaluate_step(const Recipe& recipe, const RecipeS
   const std::array common_fits{evaluated->reference, evaluated->sync_acs, evaluated->sync_dau};
   std::vector<CalibrationResult> results;
   for (std::size_t i = 0; i < dut.size(); ++i) {
-    CalibrationResult result = point_result(recipe, step, dut[i], evaluated->points[i], common_fits);
+    CalibrationResult result =
+        point_result(recipe, step, dut[i], evaluated->points[i], common_fits);
     result.unit(ratio_unit(acs, recipe.reference.channel, dau, dut[i].channel));
     result.samples().push_back(samples_message(acs, acs_part.samples, acs_part.stretch));
     result.samples().push_back(samples_message(dau, dau_part.samples, dau_part.stretch));

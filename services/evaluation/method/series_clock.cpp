@@ -7,10 +7,13 @@
 
 namespace dyncal::services {
 
-SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor, std::span<const analysis::NominalFrequency> rates) {
+SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor,
+                                      std::span<const analysis::NominalFrequency> rates) {
   double weights = 0.0;
   double sum = 0.0;
-  const auto weight_of = [](const analysis::NominalFrequency& rate) { return 1.0 / (rate.u_real_rate_hz * rate.u_real_rate_hz); };
+  const auto weight_of = [](const analysis::NominalFrequency& rate) {
+    return 1.0 / (rate.u_real_rate_hz * rate.u_real_rate_hz);
+  };
   for (const analysis::NominalFrequency& rate : rates) {
     weights += weight_of(rate);
     sum += weight_of(rate) * rate.real_rate_hz;
@@ -20,8 +23,10 @@ SampleClockReport series_clock_report(const Recipe& recipe, const std::string& s
   for (const analysis::NominalFrequency& rate : rates) {
     chi_square += weight_of(rate) * std::pow(rate.real_rate_hz - mean_hz, 2);
   }
-  const double birge = rates.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates.size() - 1)) : 1.0;
-  const double u_rel = std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe.u_acs_rate_rel);
+  const double birge =
+      rates.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates.size() - 1)) : 1.0;
+  const double u_rel =
+      std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe.u_acs_rate_rel);
   SampleClockReport report;
   report.bench(recipe.bench);
   report.run(recipe.run);

@@ -1,7 +1,9 @@
-// What a run by series time stamping says of the sensor's sample clock: the rates of its steps, paper eq. (6), taken together.
+// What a run by series time stamping says of the sensor's sample clock: the rates of its steps,
+// paper eq. (6), taken together.
 //
-// Mean weighted by their uncertainties; where they scatter by more than these say, its uncertainty is what the scatter says (Birge). The
-// clock of the ACS, in which all of them were measured, is common to them. Any thread.
+// Mean weighted by their uncertainties; where they scatter by more than these say, its uncertainty
+// is what the scatter says (Birge). The clock of the ACS, in which all of them were measured, is
+// common to them. Any thread.
 #pragma once
 
 #include <span>
@@ -14,7 +16,8 @@
 namespace dyncal::services {
 
 // REQUIRES: at least one rate.
-[[nodiscard]] SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor,
-                                                    std::span<const analysis::NominalFrequency> rates);
+[[nodiscard]] SampleClockReport
+series_clock_report(const Recipe& recipe, const std::string& sensor,
+                    std::span<const analysis::NominalFrequency> rates);
 
 } // namespace dyncal::services

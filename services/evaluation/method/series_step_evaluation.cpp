@@ -14,7 +14,8 @@
 namespace dyncal::services {
 namespace {
 
-SeriesStepOutput without_result(const Recipe& recipe, const RecipeStep& step, analysis::StartKind start, const std::string& problem) {
+SeriesStepOutput without_result(const Recipe& recipe, const RecipeStep& step,
+                                analysis::StartKind start, const std::string& problem) {
   SeriesStepOutput output{{}, std::nullopt, start};
   for (const ChannelName& channel : recipe.dut) {
     output.results.push_back(result_head(recipe, step, channel.text()));
@@ -23,23 +24,31 @@ SeriesStepOutput without_result(const Recipe& recipe, const RecipeStep& step, an
   return output;
 }
 
-// Shots whose series have the length and the rate that most have, and whose records have the channels.
-std::vector<ShotRecord::Shot> of_usual_length(const std::vector<ShotRecord::Shot>& shots, std::size_t series_channels,
-                                              std::size_t trace_channels, std::vector<std::string>& flags) {
-  const auto form = [](const ShotRecord::Shot& shot) { return std::pair(shot.series->sample_count(), shot.series->interval_s()); };
+// Shots whose series have the length and the rate that most have, and whose records have the
+// channels.
+std::vector<ShotRecord::Shot> of_usual_length(const std::vector<ShotRecord::Shot>& shots,
+                                              std::size_t series_channels,
+                                              std::size_t trace_channels,
+                                              std::vector<std::string>& flags) {
+  const auto form = [](const ShotRecord::Shot& shot) {
+    return std::pair(shot.series->sample_count(), shot.series->interval_s());
+  };
   std::map<std::pair<std::uint32_t, double>, std::size_t> forms;
   for (const ShotRecord::Shot& shot : shots) {
     ++forms[form(shot)];
   }
-  const auto usual = std::max_element(forms.begin(), forms.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto usual = std::max_element(
+      forms.begin(), forms.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::vector<ShotRecord::Shot> chosen;
   for (const ShotRecord::Shot& shot : shots) {
-    if (form(shot) == usual->first && shot.series->channel_count() >= series_channels && shot.trace->channel_count() >= trace_channels) {
+    if (form(shot) == usual->first && shot.series->channel_count() >= series_channels &&
+        shot.trace->channel_count() >= trace_channels) {
       chosen.push_back(shot);
     }
   }
   if (chosen.size() < shots.size()) {
-    flags.push_back(fmt::format("{} shots of another length, rate or number of channels left out", shots.size() - chosen.size()));
+    flags.push_back(fmt::format("{} shots of another length, rate or number of channels left out",
+                                shots.size() - chosen.size()));
   }
   return chosen;
 }
@@ -60,7 +69,8 @@ std::string digest_of(const StepSamples& acs, const std::vector<ShotRecord::Shot
   return digest.hex();
 }
 
-SourceSamples shots_message(const SourceRecord& source, const std::vector<ShotRecord::Shot>& shots, bool series) {
+SourceSamples shots_message(const SourceRecord& source, const std::vector<ShotRecord::Shot>& shots,
+                            bool series) {
   SourceSamples samples;
   samples.source(source.source());
   std::uint64_t used = 0;
@@ -74,34 +84,41 @@ SourceSamples shots_message(const SourceRecord& source, const std::vector<ShotRe
 }
 
 // When each shot's series began, relative to their mean, from the phase of its H.
-analysis::StartLatency start_latency(const analysis::SeriesStampingResult& result, double angular_hz) {
+analysis::StartLatency start_latency(const analysis::SeriesStampingResult& result,
+                                     double angular_hz) {
   std::vector<double> offsets_s;
   double u2_s2 = 0.0;
   const analysis::SeriesChannelResult& pilot = result.channels.front();
   for (const analysis::Repetition& shot : pilot.shots) {
     offsets_s.push_back(std::arg(shot.h / pilot.mean.h) / angular_hz);
-    u2_s2 += std::pow(shot.u_random_phase_rad / angular_hz, 2) / static_cast<double>(pilot.shots.size());
+    u2_s2 +=
+        std::pow(shot.u_random_phase_rad / angular_hz, 2) / static_cast<double>(pilot.shots.size());
   }
   return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz);
 }
 
-std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResult& result, const analysis::SeriesChannelResult& channel) {
+std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResult& result,
+                                              const analysis::SeriesChannelResult& channel) {
   const analysis::Repetition& first = channel.shots.front();
-  const auto rest = [](double u, double common) { return std::sqrt(std::max(0.0, u * u - common * common)); };
-  std::vector<analysis::Contribution> rows{{"shots: noise and scatter of series and trigger", "normal",
-                                            static_cast<double>(channel.shots.size() - 1),
-                                            rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
-                                            rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
+  const auto rest = [](double u, double common) {
+    return std::sqrt(std::max(0.0, u * u - common * common));
+  };
+  std::vector<analysis::Contribution> rows{
+      {"shots: noise and scatter of series and trigger", "normal",
+       static_cast<double>(channel.shots.size() - 1),
+       rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
+       rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
   rows.insert(rows.end(), result.common_budget.begin(), result.common_budget.end());
   return rows;
 }
 
 // What the evaluation needs of the shots; the spans are those of the records.
-void add_shots(const std::vector<ShotRecord::Shot>& shots, std::size_t sync, const std::vector<std::size_t>& places,
-               analysis::SeriesStampingInput& input) {
+void add_shots(const std::vector<ShotRecord::Shot>& shots, std::size_t sync,
+               const std::vector<std::size_t>& places, analysis::SeriesStampingInput& input) {
   input.nominal_rate_hz = 1.0 / shots.front().series->interval_s();
   for (const ShotRecord::Shot& shot : shots) {
-    analysis::SeriesShot one{shot.trace->first_sample_s(), shot.trace->interval_s(), channel_of(*shot.trace, sync), {}};
+    analysis::SeriesShot one{
+        shot.trace->first_sample_s(), shot.trace->interval_s(), channel_of(*shot.trace, sync), {}};
     for (const std::size_t place : places) {
       one.series.push_back(channel_of(*shot.series, place));
     }
@@ -126,7 +143,8 @@ struct Judged {
 };
 
 // Evaluates, judges the start, and evaluates again when that must be corrected.
-analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& input, analysis::StartKind start_so_far) {
+analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& input,
+                                              analysis::StartKind start_so_far) {
   auto evaluated = analysis::evaluate_series_stamping(input);
   if (!evaluated) {
     return tl::unexpected(evaluated.error());
@@ -141,10 +159,13 @@ analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& inp
     input.start_scatter_s = sample_s / std::sqrt(12.0);
     evaluated = analysis::evaluate_series_stamping(input);
   }
-  return evaluated.map([&](analysis::SeriesStampingResult& result) { return Judged{std::move(result), start}; });
+  return evaluated.map([&](analysis::SeriesStampingResult& result) {
+    return Judged{std::move(result), start};
+  });
 }
 
-void add_numbers(const Recipe& recipe, const Judged& judged, const analysis::SeriesChannelResult& channel, CalibrationResult& result) {
+void add_numbers(const Recipe& recipe, const Judged& judged,
+                 const analysis::SeriesChannelResult& channel, CalibrationResult& result) {
   result.valid(true);
   result.magnitude(channel.mean.magnitude);
   result.u_magnitude(channel.mean.u_magnitude);
@@ -152,7 +173,8 @@ void add_numbers(const Recipe& recipe, const Judged& judged, const analysis::Ser
   result.u_phase_rad(channel.mean.u_phase_rad);
   const analysis::NominalFrequency& rate = judged.result.rate;
   result.sample_rate_hz(rate.real_rate_hz);
-  result.u_sample_rate_hz(std::hypot(rate.u_real_rate_hz, recipe.u_acs_rate_rel * rate.real_rate_hz));
+  result.u_sample_rate_hz(
+      std::hypot(rate.u_real_rate_hz, recipe.u_acs_rate_rel * rate.real_rate_hz));
   result.series_start(analysis::words(judged.start.kind));
   result.series_start_scatter_s(judged.start.scatter_s);
   result.fits().push_back(fit_message(judged.result.reference));
@@ -161,7 +183,8 @@ void add_numbers(const Recipe& recipe, const Judged& judged, const analysis::Ser
 }
 
 // What a reader of the result should know of its shots.
-void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots, std::vector<std::string>& flags) {
+void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots,
+               std::vector<std::string>& flags) {
   if (shots < recipe.shots) {
     flags.push_back(fmt::format("{} of {} shots", shots, recipe.shots));
   }
@@ -175,19 +198,25 @@ void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots, st
 
 } // namespace
 
-SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
-                                      const StretchOfTime& acs_stretch, const SourceRecord& oscilloscope, const SourceRecord& sensor,
-                                      const std::vector<ShotRecord::Shot>& all_shots, analysis::StartKind start_so_far,
+SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& step,
+                                      const SourceRecord& acs, const StretchOfTime& acs_stretch,
+                                      const SourceRecord& oscilloscope, const SourceRecord& sensor,
+                                      const std::vector<ShotRecord::Shot>& all_shots,
+                                      analysis::StartKind start_so_far,
                                       std::vector<std::string> flags) {
   if (all_shots.empty()) {
     return without_result(recipe, step, start_so_far,
-                          fmt::format("no shot of {} and {} was triggered in this step", oscilloscope.source(), sensor.source()));
+                          fmt::format("no shot of {} and {} was triggered in this step",
+                                      oscilloscope.source(), sensor.source()));
   }
-  const StepSamples acs_samples = cut(acs, acs_stretch, {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)});
-  analysis::SeriesStampingInput input{.frequency = step.frequency,
-                                      .acs_stamps_ns = acs_samples.stamps_ns,
-                                      .reference = {recipe.reference.text(), acs_samples.columns[0], 0.0},
-                                      .sync_acs = {recipe.sync_acs.text(), acs_samples.columns[1], 0.0}};
+  const StepSamples acs_samples =
+      cut(acs, acs_stretch,
+          {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)});
+  analysis::SeriesStampingInput input{
+      .frequency = step.frequency,
+      .acs_stamps_ns = acs_samples.stamps_ns,
+      .reference = {recipe.reference.text(), acs_samples.columns[0], 0.0},
+      .sync_acs = {recipe.sync_acs.text(), acs_samples.columns[1], 0.0}};
   add_corrections(recipe, input);
   std::vector<std::size_t> places;
   for (const ChannelName& channel : recipe.dut) {
@@ -195,9 +224,11 @@ SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& st
     places.push_back(*sensor.channel(channel.channel));
   }
   const std::size_t sync = *oscilloscope.channel(recipe.sync_dau.channel);
-  const auto shots = of_usual_length(all_shots, *std::max_element(places.begin(), places.end()) + 1, sync + 1, flags);
+  const auto shots = of_usual_length(all_shots, *std::max_element(places.begin(), places.end()) + 1,
+                                     sync + 1, flags);
   if (shots.empty()) {
-    return without_result(recipe, step, start_so_far, "the records of the shots lack a channel that was described");
+    return without_result(recipe, step, start_so_far,
+                          "the records of the shots lack a channel that was described");
   }
   add_shots(shots, sync, places, input);
   auto judged = evaluate_and_judge(input, start_so_far);

@@ -7,54 +7,61 @@
 
 #include <fmt/format.h>
 
-#include "analysis/step/settling.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/step/settling.hpp"
 
 namespace dyncal::services {
 namespace {
 
 // Of each settling column, in their order; the reason where there is none.
-std::vector<analysis::Expected<double>> settling_times_s(const RecipeStep& step, double frequency_search_rel,
+std::vector<analysis::Expected<double>> settling_times_s(const RecipeStep& step,
+                                                         double frequency_search_rel,
                                                          const SettlingColumns& source) {
   const StepSamples& samples = source.samples;
   analysis::Frequency frequency = step.frequency;
   if (frequency_search_rel > 0.0 && !samples.stamps_ns.empty()) {
     const std::array sync{std::span<const double>(samples.columns[source.sync])};
-    const auto fit =
-        analysis::fit_sine_and_frequency(step.frequency, frequency_search_rel, samples.stamps_ns.front(), samples.stamps_ns, sync);
+    const auto fit = analysis::fit_sine_and_frequency(
+        step.frequency, frequency_search_rel, samples.stamps_ns.front(), samples.stamps_ns, sync);
     if (!fit) {
-      return std::vector<analysis::Expected<double>>(source.settling.size(), tl::unexpected(fit.error()));
+      return std::vector<analysis::Expected<double>>(source.settling.size(),
+                                                     tl::unexpected(fit.error()));
     }
     frequency = fit->frequency;
   }
   std::vector<analysis::Expected<double>> times;
   for (const std::size_t column : source.settling) {
-    times.push_back(analysis::find_settling(frequency, samples.stamps_ns, samples.columns[column]).map([](const auto& found) {
-      return found.settling_s;
-    }));
+    times.push_back(analysis::find_settling(frequency, samples.stamps_ns, samples.columns[column])
+                        .map([](const auto& found) { return found.settling_s; }));
   }
   return times;
 }
 
 } // namespace
 
-Settled settled_part(const RecipeStep& step, double frequency_search_rel, const SettlingColumns& acs, const SettlingColumns& sensor) {
+Settled settled_part(const RecipeStep& step, double frequency_search_rel,
+                     const SettlingColumns& acs, const SettlingColumns& sensor) {
   const auto reference = settling_times_s(step, frequency_search_rel, acs).front();
   if (!reference) {
-    return {step.settling_s, {fmt::format("settling not found, {} s left out: {}", step.settling_s, reference.error().message)}};
+    return {step.settling_s,
+            {fmt::format("settling not found, {} s left out: {}", step.settling_s,
+                         reference.error().message)}};
   }
   double max_duration_s = *reference;
   for (const auto& channel : settling_times_s(step, frequency_search_rel, sensor)) {
     max_duration_s = std::max(max_duration_s, channel.value_or(0.0));
   }
   if (max_duration_s > step.settling_s) {
-    return {step.settling_s, {fmt::format("settles for {:.3g} s, {} s left out", max_duration_s, step.settling_s)}};
+    return {step.settling_s,
+            {fmt::format("settles for {:.3g} s, {} s left out", max_duration_s, step.settling_s)}};
   }
   return {max_duration_s, {}};
 }
 
 StretchOfTime without_settling(StretchOfTime stretch, double settling_s, double duration_s) {
-  const auto ns = [](double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); };
+  const auto ns = [](double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * 1e9));
+  };
   stretch.begin_ns += ns(settling_s);
   stretch.end_ns = std::min(stretch.end_ns, stretch.begin_ns + ns(duration_s) - 1);
   return stretch;

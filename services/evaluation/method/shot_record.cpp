@@ -8,8 +8,10 @@ namespace {
 
 bool usable(const TriggeredRecord& record) {
   const std::uint64_t wanted = std::uint64_t{record.sample_count()} * record.channel_count();
-  return wanted > 0 && record.values().size() == wanted && record.interval_s() > 0.0 && std::isfinite(record.first_sample_s()) &&
-         std::all_of(record.values().begin(), record.values().end(), [](double value) { return std::isfinite(value); });
+  return wanted > 0 && record.values().size() == wanted && record.interval_s() > 0.0 &&
+         std::isfinite(record.first_sample_s()) &&
+         std::all_of(record.values().begin(), record.values().end(),
+                     [](double value) { return std::isfinite(value); });
 }
 
 } // namespace
@@ -47,7 +49,8 @@ void ShotRecord::forget_step(std::uint32_t step) {
 }
 
 std::span<const double> channel_of(const TriggeredRecord& record, std::size_t channel) {
-  return std::span<const double>(record.values()).subspan(channel * record.sample_count(), record.sample_count());
+  return std::span<const double>(record.values())
+      .subspan(channel * record.sample_count(), record.sample_count());
 }
 
 } // namespace dyncal::services

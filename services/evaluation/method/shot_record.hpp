@@ -1,7 +1,9 @@
-// The triggered records of a run: traces of the oscilloscope and series of the sensor, paired by session and shot number.
+// The triggered records of a run: traces of the oscilloscope and series of the sensor, paired by
+// session and shot number.
 //
-// A record says to which step of the run it belongs. One whose sizes contradict each other is counted and not used. Bounded: beyond
-// `capacity` records of a kind new ones are dropped and counted. Belongs to one thread.
+// A record says to which step of the run it belongs. One whose sizes contradict each other is
+// counted and not used. Bounded: beyond `capacity` records of a kind new ones are dropped and
+// counted. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +29,8 @@ public:
   void add_trace(const TriggeredRecord& record) { add(traces_, record); }
   void add_series(const TriggeredRecord& record) { add(series_, record); }
 
-  // Those of which both records are there, in the order of their numbers. Valid until the next call that changes something.
+  // Those of which both records are there, in the order of their numbers. Valid until the next call
+  // that changes something.
   [[nodiscard]] std::vector<Shot> of_step(std::uint32_t step) const;
   void forget_step(std::uint32_t step);
 
@@ -46,6 +49,7 @@ private:
 };
 
 // Values of one channel.
-[[nodiscard]] std::span<const double> channel_of(const TriggeredRecord& record, std::size_t channel);
+[[nodiscard]] std::span<const double> channel_of(const TriggeredRecord& record,
+                                                 std::size_t channel);
 
 } // namespace dyncal::services

@@ -1,4 +1,5 @@
-// Whether sources whose stamps are compared with each other are meant to be of one time scale. Plain functions, any thread.
+// Whether sources whose stamps are compared with each other are meant to be of one time scale.
+// Plain functions, any thread.
 #pragma once
 
 #include <functional>
@@ -11,8 +12,10 @@
 
 namespace dyncal::services {
 
-// `time_base_of` a source: empty as long as it has not described itself. Fails (no_source) with the sources that disagree.
-[[nodiscard]] Expected<void> check_time_scales(const Recipe& recipe,
-                                               const std::function<std::optional<TimeBase>(const std::string&)>& time_base_of);
+// `time_base_of` a source: empty as long as it has not described itself. Fails (no_source) with the
+// sources that disagree.
+[[nodiscard]] Expected<void>
+check_time_scales(const Recipe& recipe,
+                  const std::function<std::optional<TimeBase>(const std::string&)>& time_base_of);
 
 } // namespace dyncal::services

@@ -16,7 +16,9 @@ bool showable(Scale scale, double value) {
 // With a true minus sign, and no minus before a zero.
 std::string decimal(double value, int decimals) {
   const double min_shown = 0.5 * std::pow(10.0, -decimals);
-  if (std::abs(value) < min_shown) return fmt::format("{:.{}f}", 0.0, decimals);
+  if (std::abs(value) < min_shown) {
+    return fmt::format("{:.{}f}", 0.0, decimals);
+  }
   const auto digits = fmt::format("{:.{}f}", std::abs(value), decimals);
   return value < 0 ? "−" + digits : digits;
 }
@@ -24,7 +26,9 @@ std::string decimal(double value, int decimals) {
 // The power of ten that leaves labels short; 0 where plain numbers are short already.
 int common_exponent(double low, double high) {
   const double largest = std::max(std::abs(low), std::abs(high));
-  if (largest == 0 || (largest >= 1e-2 && largest < 1e5)) return 0;
+  if (largest == 0 || (largest >= 1e-2 && largest < 1e5)) {
+    return 0;
+  }
   return static_cast<int>(std::floor(std::log10(largest)));
 }
 
@@ -32,7 +36,9 @@ double nice_step(double span, int ticks) {
   const double raw = span / std::max(ticks, 1);
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
   for (const double mantissa : {1.0, 2.0, 5.0}) {
-    if (mantissa * decade >= raw * 0.999) return mantissa * decade;
+    if (mantissa * decade >= raw * 0.999) {
+      return mantissa * decade;
+    }
   }
   return 10 * decade;
 }
@@ -47,21 +53,29 @@ void add_linear_ticks(Axis& axis, int ticks) {
   const double unit = std::pow(10.0, exponent);
   const int decimals = decimals_for(step / unit);
   const double slack = 1e-9 * step;
-  for (double index = std::ceil((axis.low - slack) / step); index * step <= axis.high + slack; ++index) {
+  for (double index = std::ceil((axis.low - slack) / step); index * step <= axis.high + slack;
+       ++index) {
     axis.ticks.push_back({index * step, decimal(index * step / unit, decimals)});
   }
-  if (exponent != 0) axis.factor = "×" + power_of_ten(exponent);
+  if (exponent != 0) {
+    axis.factor = "×" + power_of_ten(exponent);
+  }
 }
 
 std::string logarithmic_label(int mantissa, int exponent, bool plain) {
   const double value = mantissa * std::pow(10.0, exponent);
-  if (plain) return decimal(value, std::max(0, -exponent));
-  return mantissa == 1 ? power_of_ten(exponent) : fmt::format("{}×{}", mantissa, power_of_ten(exponent));
+  if (plain) {
+    return decimal(value, std::max(0, -exponent));
+  }
+  return mantissa == 1 ? power_of_ten(exponent)
+                       : fmt::format("{}×{}", mantissa, power_of_ten(exponent));
 }
 
 void add_logarithmic_ticks(Axis& axis, int ticks) {
   const double decades = std::log10(axis.high / axis.low);
-  if (decades < 0.5) return add_linear_ticks(axis, ticks);
+  if (decades < 0.5) {
+    return add_linear_ticks(axis, ticks);
+  }
   const bool plain = axis.low >= 1e-3 && axis.high < 1e5;
   const int every = std::max(1, static_cast<int>(std::ceil(decades / std::max(ticks, 1))));
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
@@ -69,7 +83,9 @@ void add_logarithmic_ticks(Axis& axis, int ticks) {
   for (int exponent = first; exponent <= last; ++exponent) {
     for (int mantissa = 1; mantissa <= 9; ++mantissa) {
       const double value = mantissa * std::pow(10.0, exponent);
-      if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
+      if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) {
+        continue;
+      }
       const bool power = mantissa == 1 && (exponent % every) == 0;
       const bool between = (mantissa == 2 || mantissa == 5) && 2.5 * decades <= ticks;
       if (power || between) {
@@ -84,7 +100,9 @@ void add_logarithmic_ticks(Axis& axis, int ticks) {
 } // namespace
 
 double Axis::position(double value) const {
-  if (scale == Scale::linear) return (value - low) / (high - low);
+  if (scale == Scale::linear) {
+    return (value - low) / (high - low);
+  }
   return std::log(value / low) / std::log(high / low);
 }
 
@@ -93,15 +111,18 @@ bool Axis::can_show(double value) const {
 }
 
 void Range::include(double value) {
-  if (!showable(scale_, value)) return;
+  if (!showable(scale_, value)) {
+    return;
+  }
   const bool first = empty();
   low_ = first ? value : std::min(low_, value);
   high_ = first ? value : std::max(high_, value);
 }
 
 void Range::include(std::span<const double> values) {
-  for (const double value : values)
+  for (const double value : values) {
     include(value);
+  }
 }
 
 Range Range::padded(double fraction) const {
@@ -120,8 +141,12 @@ Range Range::padded(double fraction) const {
   const double span = high_ - low_;
   const double magnitude = std::max(std::abs(low_), std::abs(high_));
   double room = fraction * span;
-  if (span <= 1e-12 * magnitude) room = 0.05 * magnitude;
-  if (magnitude == 0) room = 1;
+  if (span <= 1e-12 * magnitude) {
+    room = 0.05 * magnitude;
+  }
+  if (magnitude == 0) {
+    room = 1;
+  }
   result.low_ = low_ - room;
   result.high_ = high_ + room;
   return result;
@@ -139,10 +164,12 @@ Axis make_axis(const Range& range, int ticks) {
 }
 
 std::string power_of_ten(int exponent) {
-  static constexpr std::array<const char*, 10> superscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  static constexpr std::array<const char*, 10> superscripts = {"⁰", "¹", "²", "³", "⁴",
+                                                               "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string result = exponent < 0 ? "10⁻" : "10";
-  for (const char digit : std::to_string(std::abs(exponent)))
+  for (const char digit : std::to_string(std::abs(exponent))) {
     result += superscripts[static_cast<std::size_t>(digit - '0')];
+  }
   return result;
 }
 

@@ -1,8 +1,9 @@
 // One axis of a plot: its range, where its ticks stand and how they are labelled.
 //
-// Linear axes have ticks at multiples of 1, 2 or 5 times a power of ten. Logarithmic axes have labels at the powers of ten, and at 2 and
-// 5 between them where few powers are in range; other mantissas are ticks without a label. Values that cannot be drawn (not finite, or
-// not positive on a logarithmic axis) do not widen a range.
+// Linear axes have ticks at multiples of 1, 2 or 5 times a power of ten. Logarithmic axes have
+// labels at the powers of ten, and at 2 and 5 between them where few powers are in range; other
+// mantissas are ticks without a label. Values that cannot be drawn (not finite, or not positive on
+// a logarithmic axis) do not widen a range.
 #pragma once
 
 #include <span>
@@ -40,7 +41,8 @@ public:
   [[nodiscard]] bool empty() const { return low_ > high_; }
   [[nodiscard]] double low() const { return low_; }
   [[nodiscard]] double high() const { return high_; }
-  // Room of `fraction` of the range at both ends; a range of one value gets some width, an empty one becomes 0..1 (1..10).
+  // Room of `fraction` of the range at both ends; a range of one value gets some width, an empty
+  // one becomes 0..1 (1..10).
   [[nodiscard]] Range padded(double fraction) const;
   [[nodiscard]] Scale scale() const { return scale_; }
 
@@ -50,7 +52,8 @@ private:
   double high_ = 0;
 };
 
-// The axis over exactly this range, with about `ticks` labels; a range of one value or none is padded first.
+// The axis over exactly this range, with about `ticks` labels; a range of one value or none is
+// padded first.
 [[nodiscard]] Axis make_axis(const Range& range, int ticks);
 
 // "10⁻⁴"

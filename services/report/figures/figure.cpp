@@ -16,23 +16,32 @@ Expected<void> write_text(const std::filesystem::path& path, const std::string& 
   std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();
-  if (file) return {};
-  return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: cannot be written ({}); choose another folder", path.string(),
-                                                               errno != 0 ? std::strerror(errno) : "unknown cause")});
+  if (file) {
+    return {};
+  }
+  return tl::unexpected(
+      Error{ErrorCode::bad_file,
+            fmt::format("{}: cannot be written ({}); choose another folder", path.string(),
+                        errno != 0 ? std::strerror(errno) : "unknown cause")});
 }
 
 } // namespace
 
-Expected<std::vector<std::filesystem::path>> write(const Figure& figure, const std::filesystem::path& folder) {
+Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
+                                                   const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) {
     return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be made a folder ({}); choose another", folder.string(), failure.message())});
+        Error{ErrorCode::bad_file, fmt::format("{}: cannot be made a folder ({}); choose another",
+                                               folder.string(), failure.message())});
   }
-  const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"), folder / (figure.name + ".csv")};
+  const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"),
+                                                    folder / (figure.name + ".csv")};
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (auto written = write_text(paths[i], i == 0 ? figure.svg : figure.csv); !written) return tl::unexpected(written.error());
+    if (auto written = write_text(paths[i], i == 0 ? figure.svg : figure.csv); !written) {
+      return tl::unexpected(written.error());
+    }
   }
   return paths;
 }

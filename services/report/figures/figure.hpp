@@ -1,7 +1,7 @@
 // A figure as two texts: the picture (SVG) and its numbers (CSV), and how both become files.
 //
-// Every CSV has comment lines that begin with "#", one header line that names the units, and numbers with 17 significant digits, so that
-// reading them gives back the same bits.
+// Every CSV has comment lines that begin with "#", one header line that names the units, and
+// numbers with 17 significant digits, so that reading them gives back the same bits.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,10 @@ struct Figure {
   std::string csv;
 };
 
-// Writes NAME.svg and NAME.csv into the folder, which is made when it is missing, and returns their paths.
-// Fails (bad_file) when the folder cannot be made or a file cannot be written.
-[[nodiscard]] Expected<std::vector<std::filesystem::path>> write(const Figure& figure, const std::filesystem::path& folder);
+// Writes NAME.svg and NAME.csv into the folder, which is made when it is missing, and returns their
+// paths. Fails (bad_file) when the folder cannot be made or a file cannot be written.
+[[nodiscard]] Expected<std::vector<std::filesystem::path>>
+write(const Figure& figure, const std::filesystem::path& folder);
 
 // "# text" and a line end; line breaks in the text become spaces.
 [[nodiscard]] std::string csv_comment(const std::string& text);

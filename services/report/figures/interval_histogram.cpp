@@ -29,21 +29,27 @@ struct Histogram {
 Histogram merged(const IntervalHistogramData& data) {
   Histogram histogram;
   std::vector<WeightedInterval> weighted;
-  for (const auto& c : data.counts)
+  for (const auto& c : data.counts) {
     weighted.push_back({c.interval_ns, static_cast<double>(c.count)});
+  }
   const RegularIntervals regular(std::move(weighted));
 
   std::vector<IntervalCount> kept;
   for (const auto& c : data.counts) {
     histogram.total += c.count;
     if (regular.contain(c.interval_ns)) {
-      if (c.count > 0) kept.push_back(c);
+      if (c.count > 0) {
+        kept.push_back(c);
+      }
     } else {
       histogram.outside += c.count;
     }
   }
-  if (kept.empty()) return histogram;
-  std::sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.interval_ns < b.interval_ns; });
+  if (kept.empty()) {
+    return histogram;
+  }
+  std::sort(kept.begin(), kept.end(),
+            [](const auto& a, const auto& b) { return a.interval_ns < b.interval_ns; });
   const auto& first = kept.front();
   const double span_ns = kept.back().interval_ns - first.interval_ns;
   const double tick_ns = 1e9 * data.tick_s;
@@ -56,14 +62,16 @@ Histogram merged(const IntervalHistogramData& data) {
   }
   std::map<std::int64_t, std::uint64_t> bins;
   for (const auto& c : kept) {
-    const auto bin = histogram.ticks_per_bin > 0 ? (c.interval_ticks - first.interval_ticks) / histogram.ticks_per_bin
-                                                 : std::llround((c.interval_ns - first.interval_ns) / histogram.bin_ns);
+    const auto bin = histogram.ticks_per_bin > 0
+                         ? (c.interval_ticks - first.interval_ticks) / histogram.ticks_per_bin
+                         : std::llround((c.interval_ns - first.interval_ns) / histogram.bin_ns);
     bins[bin] += c.count;
   }
   const double origin_ns = first.interval_ns - 0.5 * (tick_ns > 0 ? tick_ns : histogram.bin_ns);
   for (const auto& [bin, count] : bins) {
     const double low_ns = origin_ns + static_cast<double>(bin) * histogram.bin_ns;
-    histogram.bars.push_back({1e-3 * low_ns, 1e-3 * (low_ns + histogram.bin_ns), static_cast<double>(count)});
+    histogram.bars.push_back(
+        {1e-3 * low_ns, 1e-3 * (low_ns + histogram.bin_ns), static_cast<double>(count)});
   }
   return histogram;
 }
@@ -73,7 +81,9 @@ std::string grouped(std::uint64_t number) {
   const auto digits = std::to_string(number);
   std::string result;
   for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) result += "\u202f";
+    if (i > 0 && (digits.size() - i) % 3 == 0) {
+      result += "\u202f";
+    }
     result += digits[i];
   }
   return result;
@@ -81,19 +91,34 @@ std::string grouped(std::uint64_t number) {
 
 // Three digits or more, in the unit that reads best.
 std::string duration(double seconds) {
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", 1e9 * seconds);
-  if (seconds < 1e-3) return fmt::format("{:.4g} µs", 1e6 * seconds);
+  if (seconds < 1e-6) {
+    return fmt::format("{:.3g} ns", 1e9 * seconds);
+  }
+  if (seconds < 1e-3) {
+    return fmt::format("{:.4g} µs", 1e6 * seconds);
+  }
   return fmt::format("{:.4g} ms", 1e3 * seconds);
 }
 
 std::string subtitle(const IntervalHistogramData& data, const Histogram& histogram) {
-  if (histogram.total == 0) return "no intervals";
-  auto text = fmt::format("{} intervals, mean {:.3f} µs, sd {}, spread {}", grouped(histogram.total), 1e6 * data.mean_interval_s,
-                          duration(data.sd_s), duration(data.maximum_s - data.minimum_s));
-  if (histogram.bars.empty()) return text;
+  if (histogram.total == 0) {
+    return "no intervals";
+  }
+  auto text = fmt::format("{} intervals, mean {:.3f} µs, sd {}, spread {}",
+                          grouped(histogram.total), 1e6 * data.mean_interval_s, duration(data.sd_s),
+                          duration(data.maximum_s - data.minimum_s));
+  if (histogram.bars.empty()) {
+    return text;
+  }
   text += fmt::format("; bin {}", duration(1e-9 * histogram.bin_ns));
-  if (histogram.ticks_per_bin > 0) text += fmt::format(" = {} tick{}", histogram.ticks_per_bin, histogram.ticks_per_bin == 1 ? "" : "s");
-  if (histogram.outside > 0) text += fmt::format("; {} beyond the axis (lost or doubled samples)", grouped(histogram.outside));
+  if (histogram.ticks_per_bin > 0) {
+    text += fmt::format(" = {} tick{}", histogram.ticks_per_bin,
+                        histogram.ticks_per_bin == 1 ? "" : "s");
+  }
+  if (histogram.outside > 0) {
+    text +=
+        fmt::format("; {} beyond the axis (lost or doubled samples)", grouped(histogram.outside));
+  }
   return text;
 }
 
@@ -101,7 +126,8 @@ std::string csv_of(const IntervalHistogramData& data) {
   auto csv = csv_comment(data.title) + csv_comment("tick " + csv_number(data.tick_s) + " s");
   csv += "interval_ticks,interval_ns,count\n";
   for (const auto& c : data.counts) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", c.interval_ticks, csv_number(c.interval_ns), c.count);
+    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", c.interval_ticks,
+                   csv_number(c.interval_ns), c.count);
   }
   return csv;
 }
@@ -119,8 +145,9 @@ Figure interval_histogram_figure(const IntervalHistogramData& data, const std::s
   Range counts(Scale::logarithmic);
   counts.include(0.6);
   counts.include(6);
-  for (const auto& bar : panel.bars)
+  for (const auto& bar : panel.bars) {
     counts.include(1.7 * bar.height);
+  }
   panel.y_range = counts;
 
   Svg svg(width, height);

@@ -16,25 +16,31 @@ constexpr double left = 92;
 constexpr double right = width - 24;
 
 std::string csv_of(const IntervalOverTemperatureData& data) {
-  auto csv = csv_comment(data.title) + csv_comment("kind: one interval, or mean and standard deviation of a bin of temperature");
+  auto csv =
+      csv_comment(data.title) +
+      csv_comment("kind: one interval, or mean and standard deviation of a bin of temperature");
   csv += "kind,temperature_degc,interval_ns,sd_interval_ns,count\n";
-  for (std::size_t i = 0; i < std::min(data.temperature_degc.size(), data.interval_ns.size()); ++i) {
-    fmt::format_to(std::back_inserter(csv), "interval,{},{},,1\n", csv_number(data.temperature_degc[i]), csv_number(data.interval_ns[i]));
+  for (std::size_t i = 0; i < std::min(data.temperature_degc.size(), data.interval_ns.size());
+       ++i) {
+    fmt::format_to(std::back_inserter(csv), "interval,{},{},,1\n",
+                   csv_number(data.temperature_degc[i]), csv_number(data.interval_ns[i]));
   }
   for (const auto& bin : data.bins) {
-    fmt::format_to(std::back_inserter(csv), "bin,{},{},{},{}\n", csv_number(bin.temperature_degc), csv_number(bin.mean_interval_ns),
-                   csv_number(bin.sd_interval_ns), bin.count);
+    fmt::format_to(std::back_inserter(csv), "bin,{},{},{},{}\n", csv_number(bin.temperature_degc),
+                   csv_number(bin.mean_interval_ns), csv_number(bin.sd_interval_ns), bin.count);
   }
   return csv;
 }
 
 } // namespace
 
-Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data, const std::string& name) {
+Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
+                                        const std::string& name) {
   const auto singles = std::min(data.temperature_degc.size(), data.interval_ns.size());
   std::vector<WeightedInterval> weighted;
-  for (std::size_t i = 0; i < singles; ++i)
+  for (std::size_t i = 0; i < singles; ++i) {
     weighted.push_back({data.interval_ns[i], 1});
+  }
   const RegularIntervals regular(std::move(weighted));
 
   Panel panel;
@@ -49,15 +55,26 @@ Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
       ++outside;
     }
   }
-  Series means{.label = "mean and standard deviation", .colour = series_colour(1), .marker = Marker::circle, .radius = 3.5, .joined = true};
+  Series means{.label = "mean and standard deviation",
+               .colour = series_colour(1),
+               .marker = Marker::circle,
+               .radius = 3.5,
+               .joined = true};
   for (const auto& bin : data.bins) {
-    if (bin.count > 0) means.points.push_back({bin.temperature_degc, 1e-3 * bin.mean_interval_ns, 1e-3 * bin.sd_interval_ns});
+    if (bin.count > 0) {
+      means.points.push_back(
+          {bin.temperature_degc, 1e-3 * bin.mean_interval_ns, 1e-3 * bin.sd_interval_ns});
+    }
   }
-  std::sort(means.points.begin(), means.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  std::sort(means.points.begin(), means.points.end(),
+            [](const auto& a, const auto& b) { return a.x < b.x; });
   panel.series.push_back(std::move(means));
 
   auto subtitle = data.subtitle;
-  if (outside > 0) subtitle += fmt::format("{}{} beyond the axis (lost or doubled samples)", subtitle.empty() ? "" : "; ", outside);
+  if (outside > 0) {
+    subtitle += fmt::format("{}{} beyond the axis (lost or doubled samples)",
+                            subtitle.empty() ? "" : "; ", outside);
+  }
   Svg svg(width, height);
   const double top = draw_header(svg, data.title, subtitle, {&panel}, left, right);
   draw(svg, panel, {left, top, right - left, height - top - 58});

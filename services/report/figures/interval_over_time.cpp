@@ -17,11 +17,13 @@ constexpr double right = width - 24;
 
 RegularIntervals regular_intervals(const IntervalOverTimeData& data) {
   std::vector<WeightedInterval> weighted;
-  for (const auto& bucket : data.overview)
+  for (const auto& bucket : data.overview) {
     weighted.push_back({bucket.mean_ns, 1});
+  }
   if (weighted.empty()) {
-    for (const double interval_ns : data.close_up_ns)
+    for (const double interval_ns : data.close_up_ns) {
       weighted.push_back({interval_ns, 1});
+    }
   }
   return RegularIntervals(std::move(weighted));
 }
@@ -38,7 +40,9 @@ Panel overview_panel(const IntervalOverTimeData& data, const RegularIntervals& r
     panel.band.push_back({bucket.time_s, 1e-3 * bucket.minimum_ns, 1e-3 * bucket.maximum_ns});
     means.points.push_back({bucket.time_s, 1e-3 * bucket.mean_ns});
     for (const double interval_ns : {bucket.minimum_ns, bucket.mean_ns, bucket.maximum_ns}) {
-      if (regular.contain(interval_ns)) intervals.include(1e-3 * interval_ns);
+      if (regular.contain(interval_ns)) {
+        intervals.include(1e-3 * interval_ns);
+      }
     }
   }
   panel.series.push_back(std::move(means));
@@ -50,13 +54,19 @@ Panel close_up_panel(const IntervalOverTimeData& data, const RegularIntervals& r
   Panel panel;
   panel.x_label = "time in s";
   panel.y_label = "sample interval in µs";
-  Series series{.label = "close-up: every interval", .colour = series_colour(1), .marker = Marker::dot, .radius = 1.6, .joined = true};
+  Series series{.label = "close-up: every interval",
+                .colour = series_colour(1),
+                .marker = Marker::dot,
+                .radius = 1.6,
+                .joined = true};
   series.line_width = 0.9;
   Range intervals;
   double time_s = data.close_up_first_time_s;
   for (const double interval_ns : data.close_up_ns) {
     series.points.push_back({time_s, 1e-3 * interval_ns});
-    if (regular.contain(interval_ns)) intervals.include(1e-3 * interval_ns);
+    if (regular.contain(interval_ns)) {
+      intervals.include(1e-3 * interval_ns);
+    }
     time_s += 1e-9 * interval_ns;
   }
   panel.series.push_back(std::move(series));
@@ -65,29 +75,35 @@ Panel close_up_panel(const IntervalOverTimeData& data, const RegularIntervals& r
 }
 
 std::string csv_of(const IntervalOverTimeData& data) {
-  auto csv =
-      csv_comment(data.title) + csv_comment("kind: smallest, mean and largest interval of a stretch, or one interval of the close-up");
+  auto csv = csv_comment(data.title) + csv_comment("kind: smallest, mean and largest interval of a "
+                                                   "stretch, or one interval of the close-up");
   csv += "kind,time_s,minimum_ns,mean_ns,maximum_ns\n";
   for (const auto& bucket : data.overview) {
-    fmt::format_to(std::back_inserter(csv), "overview,{},{},{},{}\n", csv_number(bucket.time_s), csv_number(bucket.minimum_ns),
-                   csv_number(bucket.mean_ns), csv_number(bucket.maximum_ns));
+    fmt::format_to(std::back_inserter(csv), "overview,{},{},{},{}\n", csv_number(bucket.time_s),
+                   csv_number(bucket.minimum_ns), csv_number(bucket.mean_ns),
+                   csv_number(bucket.maximum_ns));
   }
   double time_s = data.close_up_first_time_s;
   for (const double interval_ns : data.close_up_ns) {
     const auto interval = csv_number(interval_ns);
-    fmt::format_to(std::back_inserter(csv), "close-up,{},{},{},{}\n", csv_number(time_s), interval, interval, interval);
+    fmt::format_to(std::back_inserter(csv), "close-up,{},{},{},{}\n", csv_number(time_s), interval,
+                   interval, interval);
     time_s += 1e-9 * interval_ns;
   }
   return csv;
 }
 
 std::string subtitle_of(const IntervalOverTimeData& data, const RegularIntervals& regular) {
-  const auto outside = std::count_if(data.overview.begin(), data.overview.end(), [&](const auto& bucket) {
-    return !regular.contain(bucket.minimum_ns) || !regular.contain(bucket.maximum_ns);
-  });
-  if (outside == 0) return data.subtitle;
-  return fmt::format("{}{}intervals beyond the axis (lost or doubled samples) in {} of {} stretches", data.subtitle,
-                     data.subtitle.empty() ? "" : "; ", outside, data.overview.size());
+  const auto outside =
+      std::count_if(data.overview.begin(), data.overview.end(), [&](const auto& bucket) {
+        return !regular.contain(bucket.minimum_ns) || !regular.contain(bucket.maximum_ns);
+      });
+  if (outside == 0) {
+    return data.subtitle;
+  }
+  return fmt::format(
+      "{}{}intervals beyond the axis (lost or doubled samples) in {} of {} stretches",
+      data.subtitle, data.subtitle.empty() ? "" : "; ", outside, data.overview.size());
 }
 
 } // namespace
@@ -99,7 +115,8 @@ Figure interval_over_time_figure(const IntervalOverTimeData& data, const std::st
   constexpr double header_room = 100;
   constexpr double between = 62;
   Svg svg(width, header_room + 2 * panel_height + between + 58);
-  const double top = draw_header(svg, data.title, subtitle_of(data, regular), {&overview, &close_up}, left, right);
+  const double top =
+      draw_header(svg, data.title, subtitle_of(data, regular), {&overview, &close_up}, left, right);
   const double height = panel_height + (header_room - top) / 2;
   draw(svg, overview, {left, top, right - left, height});
   draw(svg, close_up, {left, top + height + between, right - left, height});

@@ -13,17 +13,20 @@ const Stroke minor_grid_stroke{.colour = "#f0f0f0", .width = 1};
 
 Range x_range(const Panel& panel) {
   Range range(panel.x_scale);
-  for (const auto& point : panel.band)
+  for (const auto& point : panel.band) {
     range.include(point.x);
-  for (const auto& point : panel.dots)
+  }
+  for (const auto& point : panel.dots) {
     range.include(point.x);
+  }
   for (const auto& bar : panel.bars) {
     range.include(bar.left);
     range.include(bar.right);
   }
   for (const auto& series : panel.series) {
-    for (const auto& point : series.points)
+    for (const auto& point : series.points) {
       range.include(point.x);
+    }
   }
   return range;
 }
@@ -34,10 +37,12 @@ Range y_range(const Panel& panel) {
     range.include(point.low);
     range.include(point.high);
   }
-  for (const auto& point : panel.dots)
+  for (const auto& point : panel.dots) {
     range.include(point.y);
-  for (const auto& bar : panel.bars)
+  }
+  for (const auto& bar : panel.bars) {
     range.include(bar.height);
+  }
   for (const auto& series : panel.series) {
     for (const auto& point : series.points) {
       range.include(point.y - point.half_bar);
@@ -49,13 +54,16 @@ Range y_range(const Panel& panel) {
 
 double max_label(const Axis& axis, double font_size) {
   double longest = 0;
-  for (const auto& tick : axis.ticks)
+  for (const auto& tick : axis.ticks) {
     longest = std::max(longest, text_width(tick.label, font_size));
+  }
   return longest;
 }
 
 std::string labelled(const std::string& label, const Axis& axis) {
-  if (axis.factor.empty()) return label;
+  if (axis.factor.empty()) {
+    return label;
+  }
   return label.empty() ? axis.factor : label + "  (" + axis.factor + ")";
 }
 
@@ -63,12 +71,16 @@ void draw_grid(Svg& svg, const Axes& axes) {
   for (const bool minor : {true, false}) {
     const auto& stroke = minor ? minor_grid_stroke : grid_stroke;
     for (const auto& tick : axes.x.ticks) {
-      if (tick.label.empty() != minor) continue;
+      if (tick.label.empty() != minor) {
+        continue;
+      }
       const double x = axes.pixel(tick.value, axes.y.low).x;
       svg.line({x, axes.area.top}, {x, axes.area.bottom()}, stroke);
     }
     for (const auto& tick : axes.y.ticks) {
-      if (tick.label.empty() != minor) continue;
+      if (tick.label.empty() != minor) {
+        continue;
+      }
       const double y = axes.pixel(axes.x.low, tick.value).y;
       svg.line({axes.area.left, y}, {axes.area.right(), y}, stroke);
     }
@@ -81,7 +93,9 @@ void draw_scales(Svg& svg, const Panel& panel, const Axes& axes) {
   for (const auto& tick : axes.x.ticks) {
     const double x = axes.pixel(tick.value, axes.y.low).x;
     svg.line({x, area.bottom()}, {x, area.bottom() + (tick.label.empty() ? 3 : 5)}, frame_stroke);
-    if (panel.x_tick_labels) svg.text({x, area.bottom() + 6 + size}, tick.label, {.size = size, .anchor = Anchor::middle});
+    if (panel.x_tick_labels) {
+      svg.text({x, area.bottom() + 6 + size}, tick.label, {.size = size, .anchor = Anchor::middle});
+    }
   }
   for (const auto& tick : axes.y.ticks) {
     const double y = axes.pixel(axes.x.low, tick.value).y;
@@ -89,12 +103,13 @@ void draw_scales(Svg& svg, const Panel& panel, const Axes& axes) {
     svg.text({area.left - 8, y + 0.36 * size}, tick.label, {.size = size, .anchor = Anchor::end});
   }
   if (panel.x_tick_labels) {
-    svg.text({area.left + area.width / 2, area.bottom() + 14 + 2.1 * size}, labelled(panel.x_label, axes.x),
-             {.size = size + 1, .anchor = Anchor::middle});
+    svg.text({area.left + area.width / 2, area.bottom() + 14 + 2.1 * size},
+             labelled(panel.x_label, axes.x), {.size = size + 1, .anchor = Anchor::middle});
   }
   const auto label = labelled(panel.y_label, axes.y);
   const double beside_labels = area.left - 16 - max_label(axes.y, size);
-  svg.text({beside_labels, area.top + area.height / 2}, label, {.size = size + 1, .anchor = Anchor::middle, .upwards = true});
+  svg.text({beside_labels, area.top + area.height / 2}, label,
+           {.size = size + 1, .anchor = Anchor::middle, .upwards = true});
 }
 
 void draw_band(Svg& svg, const Panel& panel, const Axes& axes) {
@@ -109,7 +124,9 @@ void draw_band(Svg& svg, const Panel& panel, const Axes& axes) {
       outline.push_back(axes.pixel(point->x, point->low));
     }
   }
-  if (outline.empty()) return;
+  if (outline.empty()) {
+    return;
+  }
   svg.polygon(outline, panel.colour, 0.35);
   // The outline keeps a single narrow spike visible.
   outline.push_back(outline.front());
@@ -118,40 +135,57 @@ void draw_band(Svg& svg, const Panel& panel, const Axes& axes) {
 
 void draw_bars(Svg& svg, const Panel& panel, const Axes& axes) {
   for (const auto& bar : panel.bars) {
-    if (!axes.y.can_show(bar.height) || !axes.x.can_show(bar.left) || !axes.x.can_show(bar.right)) continue;
+    if (!axes.y.can_show(bar.height) || !axes.x.can_show(bar.left) || !axes.x.can_show(bar.right)) {
+      continue;
+    }
     const auto top = axes.pixel(bar.left, bar.height);
     const double width = axes.pixel(bar.right, bar.height).x - top.x;
-    svg.rectangle({top.x, top.y, width, axes.area.bottom() - top.y}, panel.colour, {.colour = "#ffffff", .width = width > 4 ? 0.7 : 0});
+    svg.rectangle({top.x, top.y, width, axes.area.bottom() - top.y}, panel.colour,
+                  {.colour = "#ffffff", .width = width > 4 ? 0.7 : 0});
   }
 }
 
 std::vector<Pixel> shown_pixels(const std::vector<Point>& points, const Axes& axes) {
   std::vector<Pixel> result;
   for (const auto& point : points) {
-    if (axes.x.can_show(point.x) && axes.y.can_show(point.y)) result.push_back(axes.pixel(point.x, point.y));
+    if (axes.x.can_show(point.x) && axes.y.can_show(point.y)) {
+      result.push_back(axes.pixel(point.x, point.y));
+    }
   }
   return result;
 }
 
-void draw_error_bar(Svg& svg, const Point& point, const Axes& axes, const std::string& colour, bool crowded) {
-  if (point.half_bar <= 0 || !axes.x.can_show(point.x) || !axes.y.can_show(point.y - point.half_bar)) return;
+void draw_error_bar(Svg& svg, const Point& point, const Axes& axes, const std::string& colour,
+                    bool crowded) {
+  if (point.half_bar <= 0 || !axes.x.can_show(point.x) ||
+      !axes.y.can_show(point.y - point.half_bar)) {
+    return;
+  }
   const auto low = axes.pixel(point.x, point.y - point.half_bar);
   const auto high = axes.pixel(point.x, point.y + point.half_bar);
   const Stroke stroke{.colour = colour, .width = 1, .opacity = crowded ? 0.5 : 1};
   svg.line(low, high, stroke);
-  if (crowded) return;
-  for (const auto& end : {low, high})
+  if (crowded) {
+    return;
+  }
+  for (const auto& end : {low, high}) {
     svg.line({end.x - 3, end.y}, {end.x + 3, end.y}, stroke);
+  }
 }
 
 void draw_series(Svg& svg, const Series& series, const Axes& axes) {
   const auto pixels = shown_pixels(series.points, axes);
-  if (series.joined) svg.polyline(pixels, {.colour = series.colour, .width = series.line_width, .dashes = series.dashes});
+  if (series.joined) {
+    svg.polyline(pixels,
+                 {.colour = series.colour, .width = series.line_width, .dashes = series.dashes});
+  }
   const bool crowded = series.points.size() > 25;
-  for (const auto& point : series.points)
+  for (const auto& point : series.points) {
     draw_error_bar(svg, point, axes, series.colour, crowded);
-  for (const auto& pixel : pixels)
+  }
+  for (const auto& pixel : pixels) {
     svg.marker(series.marker, pixel, series.radius, {.colour = series.colour, .width = 1.5});
+  }
 }
 
 struct LegendEntry {
@@ -163,14 +197,22 @@ struct LegendEntry {
 std::vector<LegendEntry> legend_of(const std::vector<const Panel*>& panels) {
   std::vector<LegendEntry> entries;
   const auto add = [&](LegendEntry entry) {
-    const bool known = std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.label == entry.label; });
-    if (!entry.label.empty() && !known) entries.push_back(std::move(entry));
+    const bool known = std::any_of(entries.begin(), entries.end(),
+                                   [&](const auto& e) { return e.label == entry.label; });
+    if (!entry.label.empty() && !known) {
+      entries.push_back(std::move(entry));
+    }
   };
   for (const auto* panel : panels) {
-    if (!panel->band.empty()) add({panel->band_label, {.colour = panel->colour}, true});
-    if (!panel->dots.empty()) add({panel->dots_label, {.colour = panel->colour, .marker = Marker::dot, .radius = 1.6}});
-    for (const auto& series : panel->series)
+    if (!panel->band.empty()) {
+      add({panel->band_label, {.colour = panel->colour}, true});
+    }
+    if (!panel->dots.empty()) {
+      add({panel->dots_label, {.colour = panel->colour, .marker = Marker::dot, .radius = 1.6}});
+    }
+    for (const auto& series : panel->series) {
       add({series.label, series});
+    }
   }
   return entries;
 }
@@ -181,19 +223,26 @@ void draw_legend_sample(Svg& svg, const LegendEntry& entry, double x, double y) 
     return;
   }
   if (entry.look.joined) {
-    svg.line({x, y}, {x + 24, y}, {.colour = entry.look.colour, .width = entry.look.line_width, .dashes = entry.look.dashes});
+    svg.line(
+        {x, y}, {x + 24, y},
+        {.colour = entry.look.colour, .width = entry.look.line_width, .dashes = entry.look.dashes});
   }
-  svg.marker(entry.look.marker, {x + 12, y}, entry.look.radius, {.colour = entry.look.colour, .width = 1.5});
+  svg.marker(entry.look.marker, {x + 12, y}, entry.look.radius,
+             {.colour = entry.look.colour, .width = 1.5});
 }
 
 } // namespace
 
 Pixel Axes::pixel(double x_value, double y_value) const {
-  return {area.left + x.position(x_value) * area.width, area.bottom() - y.position(y_value) * area.height};
+  return {area.left + x.position(x_value) * area.width,
+          area.bottom() - y.position(y_value) * area.height};
 }
 
 Axes axes_of(const Panel& panel, const Box& area) {
-  const double x_room = panel.fills_x && !x_range(panel).empty() && x_range(panel).high() > x_range(panel).low() ? 0.0 : 0.04;
+  const double x_room =
+      panel.fills_x && !x_range(panel).empty() && x_range(panel).high() > x_range(panel).low()
+          ? 0.0
+          : 0.04;
   const Range y = panel.y_range.value_or(y_range(panel).padded(0.07));
   const int x_ticks = std::max(2, static_cast<int>(area.width / (5.5 * panel.font_size)));
   const int y_ticks = std::max(3, static_cast<int>(area.height / (3 * panel.font_size)));
@@ -217,16 +266,18 @@ void draw(Svg& svg, const Panel& panel, const Box& area) {
   svg.begin_clip(area);
   draw_band(svg, panel, axes);
   draw_bars(svg, panel, axes);
-  svg.dots(shown_pixels(panel.dots, axes), 2.4, {.colour = panel.colour, .opacity = panel.dots.size() > 500 ? 0.5 : 0.8});
-  for (const auto& series : panel.series)
+  svg.dots(shown_pixels(panel.dots, axes), 2.4,
+           {.colour = panel.colour, .opacity = panel.dots.size() > 500 ? 0.5 : 0.8});
+  for (const auto& series : panel.series) {
     draw_series(svg, series, axes);
+  }
   svg.end_clip();
   svg.rectangle(area, "none", frame_stroke);
   draw_scales(svg, panel, axes);
 }
 
-double draw_header(Svg& svg, const std::string& title, const std::string& subtitle, const std::vector<const Panel*>& panels, double left,
-                   double right) {
+double draw_header(Svg& svg, const std::string& title, const std::string& subtitle,
+                   const std::vector<const Panel*>& panels, double left, double right) {
   const double width = right - left;
   const auto fitting = [&](const std::string& text, double size) {
     const double needed = text_width(text, size);
@@ -240,7 +291,9 @@ double draw_header(Svg& svg, const std::string& title, const std::string& subtit
   }
   const auto entries = legend_of(panels);
   double x = left;
-  if (!entries.empty()) y += 22;
+  if (!entries.empty()) {
+    y += 22;
+  }
   for (const auto& entry : entries) {
     const double entry_width = 30 + text_width(entry.label, 12) + 14;
     if (x > left && x + entry_width > right) {
@@ -255,12 +308,14 @@ double draw_header(Svg& svg, const std::string& title, const std::string& subtit
 }
 
 std::string series_colour(std::size_t index) {
-  static constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
+  static constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73",
+                                         "#CC79A7", "#E69F00", "#56B4E9"};
   return colours[index % colours.size()];
 }
 
 Marker series_marker(std::size_t index) {
-  static constexpr std::array markers = {Marker::circle, Marker::square, Marker::triangle, Marker::cross};
+  static constexpr std::array markers = {Marker::circle, Marker::square, Marker::triangle,
+                                         Marker::cross};
   return markers[index % markers.size()];
 }
 

@@ -1,6 +1,7 @@
 // One pair of axes with what is drawn in it, and the lines of text above all panels of a figure.
 //
-// Points that an axis cannot show (not finite, not positive on a logarithmic axis) are left out; a panel without any point says "no data".
+// Points that an axis cannot show (not finite, not positive on a logarithmic axis) are left out; a
+// panel without any point says "no data".
 #pragma once
 
 #include <optional>
@@ -72,11 +73,13 @@ struct Axes {
 [[nodiscard]] bool has_data(const Panel& panel);
 void draw(Svg& svg, const Panel& panel, const Box& area);
 
-// Title, subtitle and the legend of all panels, from the top of the figure. Returns the height that they take.
-double draw_header(Svg& svg, const std::string& title, const std::string& subtitle, const std::vector<const Panel*>& panels, double left,
-                   double right);
+// Title, subtitle and the legend of all panels, from the top of the figure. Returns the height that
+// they take.
+double draw_header(Svg& svg, const std::string& title, const std::string& subtitle,
+                   const std::vector<const Panel*>& panels, double left, double right);
 
-// Colours that people with any colour vision tell apart (Okabe and Ito), and the markers that go round with them.
+// Colours that people with any colour vision tell apart (Okabe and Ito), and the markers that go
+// round with them.
 [[nodiscard]] std::string series_colour(std::size_t index);
 [[nodiscard]] Marker series_marker(std::size_t index);
 

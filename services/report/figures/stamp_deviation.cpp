@@ -26,16 +26,20 @@ Panel time_panel(const StampDeviationData& data) {
   panel.x_label = hours ? "time in h" : "time in s";
   panel.y_label = "deviation in ns";
   panel.fills_x = true;
-  for (const auto& point : data.deviations)
+  for (const auto& point : data.deviations) {
     panel.dots.push_back({point.time_s / (hours ? 3600.0 : 1.0), 1e9 * point.deviation_s});
+  }
   return panel;
 }
 
 double bin_width_s(const StampDeviationData& data) {
   Range range;
-  for (const auto& point : data.deviations)
+  for (const auto& point : data.deviations) {
     range.include(point.deviation_s);
-  const double plain_s = range.empty() || !(range.high() > range.low()) ? 1e-9 : (range.high() - range.low()) / wanted_bins;
+  }
+  const double plain_s = range.empty() || !(range.high() > range.low())
+                             ? 1e-9
+                             : (range.high() - range.low()) / wanted_bins;
   return data.tick_s > 0 ? data.tick_s * std::max(1.0, std::ceil(plain_s / data.tick_s)) : plain_s;
 }
 
@@ -45,8 +49,9 @@ Panel histogram_panel(const StampDeviationData& data) {
   panel.y_label = "count per bin";
   const double bin_s = bin_width_s(data);
   std::map<long long, double> bins;
-  for (const auto& point : data.deviations)
+  for (const auto& point : data.deviations) {
     bins[std::llround(point.deviation_s / bin_s)] += 1;
+  }
   Range counts;
   counts.include(0);
   counts.include(1); // an empty histogram, too
@@ -65,20 +70,24 @@ Panel allan_panel(const StampDeviationData& data) {
   panel.y_label = "Allan deviation";
   panel.x_scale = Scale::logarithmic;
   panel.y_scale = Scale::logarithmic;
-  Series series{.colour = series_colour(1), .marker = Marker::circle, .radius = 3.5, .joined = true};
-  for (const auto& point : data.allan)
+  Series series{
+      .colour = series_colour(1), .marker = Marker::circle, .radius = 3.5, .joined = true};
+  for (const auto& point : data.allan) {
     series.points.push_back({point.tau_s, point.deviation});
+  }
   panel.series.push_back(std::move(series));
   return panel;
 }
 
 std::string csv_of(const StampDeviationData& data) {
   auto csv = csv_comment(data.title);
-  for (const auto& comment : data.comments)
+  for (const auto& comment : data.comments) {
     csv += csv_comment(comment);
+  }
   csv += "session,time_s,deviation_s\n";
   for (const auto& point : data.deviations) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", point.session + 1, csv_number(point.time_s), csv_number(point.deviation_s));
+    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", point.session + 1,
+                   csv_number(point.time_s), csv_number(point.deviation_s));
   }
   return csv;
 }
@@ -87,7 +96,9 @@ std::string csv_of(const StampDeviationData& data) {
 
 Figure stamp_deviation_figure(const StampDeviationData& data, const std::string& name) {
   std::vector<Panel> panels{time_panel(data), histogram_panel(data)};
-  if (!data.allan.empty()) panels.push_back(allan_panel(data));
+  if (!data.allan.empty()) {
+    panels.push_back(allan_panel(data));
+  }
   constexpr double header_room = 76;
   const auto rows = static_cast<double>(panels.size());
   Svg svg(width, header_room + rows * panel_height + (rows - 1) * between + 58);

@@ -1,4 +1,5 @@
-// Writes the few SVG elements that a plot needs. Lengths are pixels, y grows downwards, as in SVG itself.
+// Writes the few SVG elements that a plot needs. Lengths are pixels, y grows downwards, as in SVG
+// itself.
 //
 // Text is escaped; coordinates have two decimals, whatever the locale.
 #pragma once

@@ -1,9 +1,11 @@
-// The complex transfer function as a picture: magnitude above, phase below, over frequency on a logarithmic axis, every repetition with a
-// marker of its own, the mean as a line with error bars of one standard uncertainty, and the low frequencies enlarged where the plot has
-// room (figure 5 of the paper).
+// The complex transfer function as a picture: magnitude above, phase below, over frequency on a
+// logarithmic axis, every repetition with a marker of its own, the mean as a line with error bars
+// of one standard uncertainty, and the low frequencies enlarged where the plot has room (figure 5
+// of the paper).
 //
-// Phase is lead in radians (ISO 2041): a delay has negative phase and falls with frequency. Repetitions may be given in (-pi, pi]; they are
-// drawn in the turn of the mean at the same frequency.
+// Phase is lead in radians (ISO 2041): a delay has negative phase and falls with frequency.
+// Repetitions may be given in (-pi, pi]; they are drawn in the turn of the mean at the same
+// frequency.
 #pragma once
 
 #include <cstdint>
@@ -43,6 +45,7 @@ struct TransferFunctionData {
   std::optional<GroupDelay> group_delay{};
 };
 
-[[nodiscard]] Figure transfer_function_figure(const TransferFunctionData& data, const std::string& name);
+[[nodiscard]] Figure transfer_function_figure(const TransferFunctionData& data,
+                                              const std::string& name);
 
 } // namespace dyncal::services::figures

@@ -1,8 +1,10 @@
-// For LD_PRELOAD under User-Mode-Linux 6.1, which hands the host's ptrace a buffer for the floating-point state that is too small for
-// processors with AMX: there the host refuses (EFAULT) and the guest stops at its first program.
+// For LD_PRELOAD under User-Mode-Linux 6.1, which hands the host's ptrace a buffer for the
+// floating-point state that is too small for processors with AMX: there the host refuses (EFAULT)
+// and the guest stops at its first program.
 //
-// Registers are fetched into a buffer that is large enough and cut to what the guest asked for; what the guest sets is laid over a zeroed
-// buffer of the full size, so that the state which the guest does not know of is in its initial form. Needless elsewhere, and harmless.
+// Registers are fetched into a buffer that is large enough and cut to what the guest asked for;
+// what the guest sets is laid over a zeroed buffer of the full size, so that the state which the
+// guest does not know of is in its initial form. Needless elsewhere, and harmless.
 #define _GNU_SOURCE
 #include <elf.h>
 #include <errno.h>
@@ -23,18 +25,21 @@ static size_t size_of_host; // 0: not known yet
 static long get_state(long pid, struct iovec* wanted) {
   struct iovec full = {state, sizeof state};
   const long result = syscall(SYS_ptrace, (long)PTRACE_GETREGSET, pid, (long)NT_X86_XSTATE, &full);
-  if (result < 0)
+  if (result < 0) {
     return result;
+  }
   size_of_host = full.iov_len;
-  if (wanted->iov_len > full.iov_len)
+  if (wanted->iov_len > full.iov_len) {
     wanted->iov_len = full.iov_len;
+  }
   memcpy(wanted->iov_base, state, wanted->iov_len);
   return 0;
 }
 
 static long set_state(long pid, const struct iovec* given) {
-  if (given->iov_len >= size_of_host)
+  if (given->iov_len >= size_of_host) {
     return syscall(SYS_ptrace, (long)PTRACE_SETREGSET, pid, (long)NT_X86_XSTATE, given);
+  }
   memcpy(state, given->iov_base, given->iov_len);
   memset(state + given->iov_len, 0, size_of_host - given->iov_len);
   struct iovec full = {state, size_of_host};
@@ -49,14 +54,17 @@ long ptrace(enum __ptrace_request request, ...) {
   void* const data = va_arg(arguments, void*);
   va_end(arguments);
   const int about_state = (long)address == NT_X86_XSTATE;
-  if (about_state && request == PTRACE_GETREGSET)
+  if (about_state && request == PTRACE_GETREGSET) {
     return get_state(pid, data);
-  if (about_state && request == PTRACE_SETREGSET)
+  }
+  if (about_state && request == PTRACE_SETREGSET) {
     return set_state(pid, data);
+  }
   if (request == PTRACE_PEEKTEXT || request == PTRACE_PEEKDATA || request == PTRACE_PEEKUSER) {
     long word = 0; // the system call stores what the library function returns
-    if (syscall(SYS_ptrace, (long)request, pid, address, &word) < 0)
+    if (syscall(SYS_ptrace, (long)request, pid, address, &word) < 0) {
       return -1;
+    }
     errno = 0;
     return word;
   }

@@ -12,12 +12,16 @@ TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
   std::set<std::string> benches;
   std::set<std::string> ports;
   for (const auto& entry : std::filesystem::directory_iterator(EXAMPLE_LAB)) {
-    if (entry.path().extension() != ".toml") continue;
+    if (entry.path().extension() != ".toml") {
+      continue;
+    }
     const auto file = read_bench_file(entry.path());
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_TRUE(benches.insert(file->bench).second) << file->bench << " is there twice";
     for (const auto& source : file->sources) {
-      if (source.driver != SourceDriver::smartup) continue;
+      if (source.driver != SourceDriver::smartup) {
+        continue;
+      }
       EXPECT_TRUE(ports.insert(source.listen).second) << source.listen << " is there twice";
     }
   }

@@ -28,7 +28,8 @@ TEST(Phasor, PhaseOfNoiseIsAnywhere) {
 
 TEST(Phasor, PhaseOfAStrongSignalIsTheNoiseOverIt) {
   EXPECT_DOUBLE_EQ(phase_standard_uncertainty(200.0), 0.005);
-  EXPECT_NEAR(phase_standard_uncertainty(9.999), 0.1, 0.002); // no step worth speaking of where the forms meet
+  EXPECT_NEAR(phase_standard_uncertainty(9.999), 0.1,
+              0.002); // no step worth speaking of where the forms meet
 }
 
 TEST(Phasor, UncertaintyOfAWeakPhaseIsTheScatterOfTheBivariateNormal) {
@@ -41,7 +42,9 @@ TEST(Phasor, UncertaintyOfAWeakPhaseIsTheScatterOfTheBivariateNormal) {
       const double angle = std::atan2(noise(random), distance + noise(random));
       sum += angle * angle;
     }
-    EXPECT_NEAR(phase_standard_uncertainty(std::sqrt(distance * distance + 2.0)), std::sqrt(sum / trials), 0.01) << distance;
+    EXPECT_NEAR(phase_standard_uncertainty(std::sqrt(distance * distance + 2.0)),
+                std::sqrt(sum / trials), 0.01)
+        << distance;
   }
 }
 

@@ -8,7 +8,8 @@
 namespace dyncal::analysis {
 namespace {
 
-// The 1000-point test suite of NIST SP 1065, section 12.4: a multiplicative congruential generator, frequency data.
+// The 1000-point test suite of NIST SP 1065, section 12.4: a multiplicative congruential generator,
+// frequency data.
 std::vector<double> nist_phases() {
   std::vector<double> phases{0.0};
   std::int64_t n = 1234567890;
@@ -41,7 +42,10 @@ TEST(AllanDeviation, StreamOfStampsGivesTheSameAsPhases) {
   double m = 1.0;
   for (const AllanPoint& point : points) {
     EXPECT_NEAR(point.tau_s, m * 485e-6, 1e-15);
-    EXPECT_NEAR(point.deviation / overlapping_allan_deviation(phases, 485e-6, static_cast<std::size_t>(m)), 1.0, 1e-9) << m;
+    EXPECT_NEAR(point.deviation /
+                    overlapping_allan_deviation(phases, 485e-6, static_cast<std::size_t>(m)),
+                1.0, 1e-9)
+        << m;
     m *= 2.0;
   }
 }
@@ -49,18 +53,21 @@ TEST(AllanDeviation, StreamOfStampsGivesTheSameAsPhases) {
 TEST(AllanDeviation, DoesNotReachAcrossAnInterruption) {
   StreamingAllan stream(1024);
   for (int stretch = 0; stretch < 3; ++stretch) {
-    for (int i = 0; i < 100; ++i)
+    for (int i = 0; i < 100; ++i) {
       stream.add(1'000'000ll * stretch * stretch + 1000ll * i);
+    }
     stream.interrupt();
   }
-  for (const AllanPoint& point : stream.points(1e-6))
+  for (const AllanPoint& point : stream.points(1e-6)) {
     EXPECT_EQ(point.deviation, 0.0);
+  }
 }
 
 TEST(AllanDeviation, KeepsNoMoreStampsThanItMay) {
   StreamingAllan stream(64);
-  for (int i = 0; i < 10000; ++i)
+  for (int i = 0; i < 10000; ++i) {
     stream.add(1000ll * i);
+  }
   EXPECT_EQ(stream.points(1e-6).size(), 5u); // m = 1 ... 16: 2 m + 1 of 64
 }
 

@@ -25,8 +25,9 @@ std::vector<BlockPhase> blocks(double u_rad, unsigned seed) {
     const double w = 2.0 * std::numbers::pi * frequencies[step];
     for (int k = 0; k < 40; ++k) {
       const double t = -100.0 + 50.0 * static_cast<double>(step) + k * 1.25;
-      result.push_back({step, epoch_ns + std::llround(t * 1e9), w,
-                        0.7 * static_cast<double>(step) + w * time_error_s(t) + u_rad * noise(random), u_rad});
+      result.push_back(
+          {step, epoch_ns + std::llround(t * 1e9), w,
+           0.7 * static_cast<double>(step) + w * time_error_s(t) + u_rad * noise(random), u_rad});
     }
   }
   return result;
@@ -56,8 +57,9 @@ TEST(ClockPolynomial, CovarianceCoversTheScatter) {
 
 TEST(ClockPolynomial, AClockStepShowsInTheResiduals) {
   auto disturbed = blocks(1e-5, 3);
-  for (std::size_t i = 90; i < 95; ++i)
+  for (std::size_t i = 90; i < 95; ++i) {
     disturbed[i].phase_rad += disturbed[i].angular_frequency * 5e-6;
+  }
   const auto fit = fit_clock_polynomial(disturbed, 2);
   ASSERT_TRUE(fit.has_value());
   EXPECT_NEAR(fit->residuals_s[92], 5e-6, 3e-7);

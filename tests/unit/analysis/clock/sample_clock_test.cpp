@@ -14,14 +14,17 @@ namespace {
 
 constexpr double tick_ns = 1e9 / 108e6;
 
-std::vector<std::int64_t> stamps_of(const std::vector<std::int64_t>& intervals_ns, std::int64_t start_ns = 1'700'000'000'000'000'000) {
+std::vector<std::int64_t> stamps_of(const std::vector<std::int64_t>& intervals_ns,
+                                    std::int64_t start_ns = 1'700'000'000'000'000'000) {
   std::vector<std::int64_t> stamps{start_ns};
-  for (const std::int64_t interval : intervals_ns)
+  for (const std::int64_t interval : intervals_ns) {
     stamps.push_back(stamps.back() + interval);
+  }
   return stamps;
 }
 
-SampleClockStatistics statistics_of(const std::vector<std::int64_t>& stamps, const SampleClockSettings& settings = {}) {
+SampleClockStatistics statistics_of(const std::vector<std::int64_t>& stamps,
+                                    const SampleClockSettings& settings = {}) {
   SampleClock clock(settings);
   clock.push(0, stamps);
   return clock.statistics().value();
@@ -29,12 +32,15 @@ SampleClockStatistics statistics_of(const std::vector<std::int64_t>& stamps, con
 
 TEST(SampleClock, MeetsTheCheckVectorOfABma280) {
   std::ifstream file(DYNCAL_SHARED_DATA "/vectors/09_bma280_intervals.csv");
-  if (!file) GTEST_SKIP() << "the check vectors are not beside the source tree";
+  if (!file) {
+    GTEST_SKIP() << "the check vectors are not beside the source tree";
+  }
   std::vector<std::int64_t> stamps;
   std::string line;
   std::getline(file, line);
-  while (std::getline(file, line))
+  while (std::getline(file, line)) {
     stamps.push_back(std::stoll(line));
+  }
   SampleClockSettings settings;
   settings.tick_s = tick_ns * 1e-9;
   const SampleClockStatistics s = statistics_of(stamps, settings);
@@ -59,9 +65,10 @@ TEST(SampleClock, MeetsTheCheckVectorOfABma280) {
   EXPECT_NEAR(s.pair_period_s, 1.0670003890000002, 1e-12);
   EXPECT_GT(s.pair_regularity, 0.999);
   const std::vector<std::pair<std::int64_t, std::uint64_t>> expected{
-      {51925, 1},    {51926, 4},    {51929, 1},    {52375, 3},    {52376, 38},  {52377, 305}, {52378, 1202},
-      {52379, 2681}, {52380, 3496}, {52381, 2713}, {52382, 1185}, {52383, 318}, {52384, 41},  {52385, 3},
-      {52386, 2},    {52832, 1},    {52833, 2},    {52834, 1},    {52835, 2}};
+      {51925, 1},    {51926, 4},    {51929, 1},    {52375, 3},    {52376, 38},
+      {52377, 305},  {52378, 1202}, {52379, 2681}, {52380, 3496}, {52381, 2713},
+      {52382, 1185}, {52383, 318},  {52384, 41},   {52385, 3},    {52386, 2},
+      {52832, 1},    {52833, 2},    {52834, 1},    {52835, 2}};
   ASSERT_EQ(s.histogram.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(s.histogram[i].ticks, expected[i].first);
@@ -84,8 +91,9 @@ TEST(SampleClock, TellsEventsApart) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0.0, 12.0);
   std::vector<std::int64_t> intervals;
-  for (int i = 0; i < 5000; ++i)
+  for (int i = 0; i < 5000; ++i) {
     intervals.push_back(std::llround(1e6 + noise(random)));
+  }
   intervals[1000] = 3'000'010; // two samples missing
   intervals[2000] = 3'000;     // the same sample twice
   intervals[2500] = 1'000'800; // late ...
@@ -132,8 +140,9 @@ TEST(SampleClock, PairsByChanceHaveNoPeriod) {
   std::mt19937 random(9);
   std::normal_distribution<double> noise(0.0, 12.0);
   std::vector<std::int64_t> intervals;
-  for (int i = 0; i < 200'000; ++i)
+  for (int i = 0; i < 200'000; ++i) {
     intervals.push_back(std::llround(1e6 + noise(random)));
+  }
   for (int i = 0; i < 40; ++i) {
     const std::size_t place = 1 + random() % 199'990;
     intervals[place] += 1000;
@@ -149,7 +158,8 @@ TEST(SampleClock, LostAndUntrustedSamplesMakeNoInterval) {
   SampleClock clock;
   const std::vector<std::int64_t> first{0, 100, 200}, second{500, 600, 700, 800};
   clock.push(10, first);
-  clock.push(15, second, std::vector<std::uint8_t>{0, 0, 1, 0}); // 13 and 14 are lost, 17 is not trusted
+  clock.push(15, second,
+             std::vector<std::uint8_t>{0, 0, 1, 0}); // 13 and 14 are lost, 17 is not trusted
   const auto s = clock.statistics();
   ASSERT_TRUE(s.has_value());
   EXPECT_EQ(s->intervals, 3u);
@@ -192,13 +202,15 @@ TEST(SampleClock, IsTheSameHoweverTheStreamWasCut) {
   EXPECT_EQ(a->close_up_ns, b->close_up_ns);
   EXPECT_EQ(a->scatter_interval_ns, b->scatter_interval_ns);
   ASSERT_EQ(a->allan.size(), b->allan.size());
-  for (std::size_t i = 0; i < a->allan.size(); ++i)
+  for (std::size_t i = 0; i < a->allan.size(); ++i) {
     EXPECT_EQ(a->allan[i].deviation, b->allan[i].deviation);
+  }
   ASSERT_EQ(a->over_time.size(), b->over_time.size());
   EXPECT_LE(a->over_time.size(), SampleClockSettings{}.max_buckets);
 }
 
-// The clock model of an MPU-9250 (four preferred intervals that follow the temperature) as far as a test needs it.
+// The clock model of an MPU-9250 (four preferred intervals that follow the temperature) as far as a
+// test needs it.
 TEST(SampleClock, DescribesTheClockOfThePaper) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -211,18 +223,25 @@ TEST(SampleClock, DescribesTheClockOfThePaper) {
   std::vector<double> temperatures;
   for (int i = 0; i < samples; ++i) {
     const double x = static_cast<double>(i) / samples;
-    const double temperature = 27.0 + 1.8 * (1.0 - std::exp(-3.0 * x)) + 0.15 * std::sin(14.0 * std::numbers::pi * x);
+    const double temperature =
+        27.0 + 1.8 * (1.0 - std::exp(-3.0 * x)) + 0.15 * std::sin(14.0 * std::numbers::pi * x);
     if (uniform(random) < 0.02) {
       std::vector<double> weights;
-      for (const double centre : centres)
-        weights.push_back(std::exp(-std::pow(temperature - centre, 2) / (2.0 * 0.35 * 0.35)) + 0.03);
-      level = static_cast<std::size_t>(std::discrete_distribution<int>(weights.begin(), weights.end())(random));
+      for (const double centre : centres) {
+        weights.push_back(std::exp(-std::pow(temperature - centre, 2) / (2.0 * 0.35 * 0.35)) +
+                          0.03);
+      }
+      level = static_cast<std::size_t>(
+          std::discrete_distribution<int>(weights.begin(), weights.end())(random));
     }
-    time_ns += 996955.15 + 0.835 * levels[level] + 1.5 * (temperature - 28.2) + 5.0 * normal(random);
-    stamps.push_back(std::llround(std::floor((time_ns + 3.0 * normal(random)) / tick_ns) * tick_ns));
+    time_ns +=
+        996955.15 + 0.835 * levels[level] + 1.5 * (temperature - 28.2) + 5.0 * normal(random);
+    stamps.push_back(
+        std::llround(std::floor((time_ns + 3.0 * normal(random)) / tick_ns) * tick_ns));
     temperatures.push_back(temperature);
   }
-  SampleClock clock({.nominal_rate_hz = 1000.0, .tick_s = tick_ns * 1e-9, .stamp_uncertainty_s = 150e-9});
+  SampleClock clock(
+      {.nominal_rate_hz = 1000.0, .tick_s = tick_ns * 1e-9, .stamp_uncertainty_s = 150e-9});
   clock.push(0, stamps, {}, temperatures);
   const auto s = clock.statistics();
   ASSERT_TRUE(s.has_value());
@@ -253,7 +272,8 @@ TEST(SampleClock, ASingleNormalClockHasOneMode) {
   SampleClockSettings settings;
   settings.tick_s = tick_ns * 1e-9;
   EXPECT_EQ(statistics_of(stamps, settings).modes_s.size(), 1u);
-  EXPECT_TRUE(statistics_of(stamps).modes_s.empty()); // without the tick nobody can tell a mode from the comb
+  EXPECT_TRUE(statistics_of(stamps)
+                  .modes_s.empty()); // without the tick nobody can tell a mode from the comb
 }
 
 } // namespace

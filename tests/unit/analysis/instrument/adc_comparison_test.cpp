@@ -29,18 +29,21 @@ TEST(AdcComparison, FindsGainAndLagWhereverTheRecordsLie) {
     for (const std::int64_t apart_ns : {-200'000'000, 0, 3'141'593}) {
       const std::int64_t middle_ns = begin_ns + 3'000'000'000;
       const auto compared =
-          compare_sync_adc(seen(frequency_hz, 9.75, 0.0, middle_ns), seen(frequency_hz, 1.62, 0.46e-6, middle_ns + apart_ns), 1.0, {});
+          compare_sync_adc(seen(frequency_hz, 9.75, 0.0, middle_ns),
+                           seen(frequency_hz, 1.62, 0.46e-6, middle_ns + apart_ns), 1.0, {});
       ASSERT_TRUE(compared);
       EXPECT_NEAR(compared->point.gain, 1.62 / 9.75, 1e-12);
-      EXPECT_NEAR(compared->point.phase_lag_rad, turn_rad * frequency_hz * 0.46e-6, 1e-9) << frequency_hz;
+      EXPECT_NEAR(compared->point.phase_lag_rad, turn_rad * frequency_hz * 0.46e-6, 1e-9)
+          << frequency_hz;
       EXPECT_NEAR(compared->sync_vpp, 19.5, 1e-12);
     }
   }
 }
 
 TEST(AdcComparison, KeepsWhatStepsHaveInCommonApartFromTheirNoise) {
-  const auto compared = compare_sync_adc(seen(100.0, 1.0, 0.0, begin_ns), seen(100.0, 1.0, 0.0, begin_ns), 1.0,
-                                         {.time_scale_s = 30e-9, .acs_delay_s = 40e-9, .acs_gain_rel = 2e-4});
+  const auto compared =
+      compare_sync_adc(seen(100.0, 1.0, 0.0, begin_ns), seen(100.0, 1.0, 0.0, begin_ns), 1.0,
+                       {.time_scale_s = 30e-9, .acs_delay_s = 40e-9, .acs_gain_rel = 2e-4});
   ASSERT_TRUE(compared);
   EXPECT_NEAR(compared->point.u_phase_lag_rad, turn_rad * 100.0 * 50e-9, 1e-12);
   EXPECT_NEAR(compared->point.u_gain, 2e-4, 1e-12);
@@ -57,7 +60,8 @@ TEST(AdcComparison, AFrequencyThatIsNotKnownMakesThePhaseUncertainOnItsWay) {
 }
 
 TEST(AdcComparison, RefusesRecordsThatAreNotOnOneTimeScale) {
-  const auto compared = compare_sync_adc(seen(100.0, 1.0, 0.0, begin_ns), seen(100.0, 1.0, 0.0, begin_ns + 2'000'000'000), 1.0, {});
+  const auto compared = compare_sync_adc(seen(100.0, 1.0, 0.0, begin_ns),
+                                         seen(100.0, 1.0, 0.0, begin_ns + 2'000'000'000), 1.0, {});
   ASSERT_FALSE(compared);
   EXPECT_EQ(compared.error().code, ErrorCode::invalid_argument);
   EXPECT_FALSE(compare_sync_adc({}, seen(100.0, 1.0, 0.0, begin_ns), 1.0, {}));

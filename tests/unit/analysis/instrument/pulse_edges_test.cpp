@@ -10,16 +10,21 @@ namespace {
 constexpr std::uint64_t period = std::uint64_t{1} << 32;
 constexpr std::int64_t second = 99'999'300;
 
-// A unit's two inputs over `seconds`: GPS at the second, the reference 0.4 s later, both through a counter of 32 bits.
+// A unit's two inputs over `seconds`: GPS at the second, the reference 0.4 s later, both through a
+// counter of 32 bits.
 struct Recorder {
   std::vector<PulseEdge> record;
   std::uint64_t gps_number = 0;
   std::uint64_t reference_number = 0;
   std::int64_t start = 4'000'000'000;
 
-  void gps(std::int64_t ticks) { record.push_back({PulseInput::gps, gps_number++, static_cast<std::uint64_t>(start + ticks) % period}); }
+  void gps(std::int64_t ticks) {
+    record.push_back(
+        {PulseInput::gps, gps_number++, static_cast<std::uint64_t>(start + ticks) % period});
+  }
   void reference(std::int64_t ticks) {
-    record.push_back({PulseInput::reference, reference_number++, static_cast<std::uint64_t>(start + ticks) % period});
+    record.push_back({PulseInput::reference, reference_number++,
+                      static_cast<std::uint64_t>(start + ticks) % period});
   }
   void both(std::int64_t from_s, std::int64_t to_s) {
     for (std::int64_t s = from_s; s < to_s; ++s) {
@@ -91,8 +96,9 @@ TEST(PulseEdges, AGlitchAsFirstEdgeOfARecordIsExtra) {
 TEST(PulseEdges, SecondsWithoutAnEdgeAreCountedAsMissing) {
   Recorder recorder;
   recorder.both(0, 10);
-  for (std::int64_t s = 10; s < 31; ++s)
+  for (std::int64_t s = 10; s < 31; ++s) {
     recorder.gps(s * second);
+  }
   recorder.both(31, 40);
   const auto sorted = sort_pulse_edges(recorder.record);
   ASSERT_TRUE(sorted);
@@ -154,8 +160,11 @@ TEST(PulseEdges, ARepeatedLineIsADuplicate) {
 
 TEST(PulseEdges, ACounterOfSixtyFourBitsDoesNotWrap) {
   std::vector<PulseEdge> record;
-  for (std::uint64_t n = 0; n < 50; ++n)
-    if (n < 10 || n > 20) record.push_back({PulseInput::gps, n, period * 7 + n * 1'000'000'000});
+  for (std::uint64_t n = 0; n < 50; ++n) {
+    if (n < 10 || n > 20) {
+      record.push_back({PulseInput::gps, n, period * 7 + n * 1'000'000'000});
+    }
+  }
   const auto sorted = sort_pulse_edges(record);
   ASSERT_TRUE(sorted);
   EXPECT_EQ(only_event(*sorted).missing, 11U);
@@ -164,8 +173,9 @@ TEST(PulseEdges, ACounterOfSixtyFourBitsDoesNotWrap) {
 TEST(PulseEdges, ARecordWithoutSecondsIsRefused) {
   std::mt19937_64 random(5);
   std::vector<PulseEdge> record;
-  for (std::uint64_t n = 0; n < 40; ++n)
+  for (std::uint64_t n = 0; n < 40; ++n) {
     record.push_back({PulseInput::gps, n, random() % period});
+  }
   const auto sorted = sort_pulse_edges(record);
   ASSERT_FALSE(sorted);
   EXPECT_EQ(sorted.error().code, ErrorCode::too_few_samples);
@@ -184,7 +194,9 @@ TEST(PulseEdges, RandomFaultsNeverMakeAWrongSecond) {
         truth.push_back(s * second);
         recorder.gps(s * second);
       }
-      if (part(random) < 0.02) recorder.gps(s * second + 1'000'000 + static_cast<std::int64_t>(part(random) * 38e6));
+      if (part(random) < 0.02) {
+        recorder.gps(s * second + 1'000'000 + static_cast<std::int64_t>(part(random) * 38e6));
+      }
       recorder.reference(s * second + 40'000'000);
     }
     const auto sorted = sort_pulse_edges(recorder.record);
@@ -193,8 +205,9 @@ TEST(PulseEdges, RandomFaultsNeverMakeAWrongSecond) {
     ASSERT_EQ(sorted->sessions[0].reference.size(), 300U);
     std::int64_t first = truth.front();
     ASSERT_EQ(sorted->sessions[0].gps.size(), truth.size());
-    for (std::size_t i = 0; i < truth.size(); ++i)
+    for (std::size_t i = 0; i < truth.size(); ++i) {
       EXPECT_EQ(sorted->sessions[0].gps[i].second, (truth[i] - first) / second);
+    }
   }
 }
 

@@ -34,7 +34,9 @@ struct Bench {
     }
     return edges;
   }
-  static std::uint64_t ticks(double time_s) { return static_cast<std::uint64_t>(std::llround((time_s + 5.0) * rate)) % (1ULL << 32); }
+  static std::uint64_t ticks(double time_s) {
+    return static_cast<std::uint64_t>(std::llround((time_s + 5.0) * rate)) % (1ULL << 32);
+  }
 };
 
 StampDeviationStatistics judged(const Bench& bench, const StampDeviationSettings& settings = {}) {
@@ -56,11 +58,12 @@ TEST(StampDeviation, APerfectReceiverLeavesTheTicksOfTheCounter) {
 
 TEST(StampDeviation, AKnownOffsetOfTheReferenceGivesTheMeanItsSign) {
   // The reference comes 50 ns later than stated: the stamps are too late by as much.
-  const auto statistics =
-      judged({.gps_jitter_s = 20e-9, .reference_offset_s = 0.25 + 50e-9}, {.reference_offset_s = 0.25, .u_reference_s = 5e-9});
+  const auto statistics = judged({.gps_jitter_s = 20e-9, .reference_offset_s = 0.25 + 50e-9},
+                                 {.reference_offset_s = 0.25, .u_reference_s = 5e-9});
   EXPECT_NEAR(statistics.mean_s, 50e-9, 4.0 * statistics.u_mean_s);
   EXPECT_GE(statistics.u_mean_s, 5e-9);
-  // A pulse of GPS that comes late by e makes the stamps after it too early by e, at the same time the figures of the rate average it out.
+  // A pulse of GPS that comes late by e makes the stamps after it too early by e, at the same time
+  // the figures of the rate average it out.
   EXPECT_NEAR(statistics.sd_s, 20e-9, 3.0 * statistics.u_sd_s + 2e-9);
 }
 
@@ -84,8 +87,9 @@ TEST(StampDeviation, UncertaintyOfTheMeanKnowsThatTheReceiverWanders) {
   const int rounds = 200;
   double independent = 0.0;
   for (int round = 0; round < rounds; ++round) {
-    const auto statistics =
-        judged({.gps_wander_s = 100e-9, .seconds = 4000, .seed = 100U + static_cast<unsigned>(round)}, {.reference_offset_s = 0.0});
+    const auto statistics = judged(
+        {.gps_wander_s = 100e-9, .seconds = 4000, .seed = 100U + static_cast<unsigned>(round)},
+        {.reference_offset_s = 0.0});
     inside += std::abs(statistics.mean_s) <= 2.0 * statistics.u_mean_s ? 1 : 0;
     independent += statistics.effective_count / rounds;
   }
@@ -102,10 +106,12 @@ TEST(StampDeviation, ADriftOfTheReceiverIsFound) {
 }
 
 TEST(StampDeviation, AllanDeviationOfWhitePhaseNoiseFallsWithTheTime) {
-  const auto statistics = judged({.gps_jitter_s = 50e-9, .reference_offset_s = 0.4, .seconds = 4000});
+  const auto statistics =
+      judged({.gps_jitter_s = 50e-9, .reference_offset_s = 0.4, .seconds = 4000});
   ASSERT_GE(statistics.allan.size(), 9U);
   EXPECT_NEAR(statistics.allan[0].deviation, std::sqrt(3.0) * 50e-9, 0.1 * std::sqrt(3.0) * 50e-9);
-  EXPECT_NEAR(statistics.allan[5].deviation * 32.0, statistics.allan[0].deviation, 0.15 * statistics.allan[0].deviation);
+  EXPECT_NEAR(statistics.allan[5].deviation * 32.0, statistics.allan[0].deviation,
+              0.15 * statistics.allan[0].deviation);
 }
 
 TEST(StampDeviation, AnExtraEdgeOfTheReceiverLeavesTheStampsAlone) {

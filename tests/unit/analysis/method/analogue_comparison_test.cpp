@@ -22,15 +22,19 @@ struct Record {
 };
 
 // y = A sin(w (t - later) + 0.3) at instants that lie `clock_offset_s` beside their stamps.
-Record record(double amplitude, double later_s, double noise, double clock_offset_s, double rate_hz, double start_s, unsigned seed) {
+Record record(double amplitude, double later_s, double noise, double clock_offset_s, double rate_hz,
+              double start_s, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   Record result;
   for (int i = 0; i < static_cast<int>(2.0 * rate_hz); ++i) {
-    const auto stamp_ns = static_cast<std::int64_t>(1'700'000'000'000'000'000) + std::llround((start_s + i / rate_hz) * 1e9);
-    const double t = static_cast<double>(stamp_ns - 1'700'000'000'000'000'000) * 1e-9 + clock_offset_s;
+    const auto stamp_ns = static_cast<std::int64_t>(1'700'000'000'000'000'000) +
+                          std::llround((start_s + i / rate_hz) * 1e9);
+    const double t =
+        static_cast<double>(stamp_ns - 1'700'000'000'000'000'000) * 1e-9 + clock_offset_s;
     result.stamps_ns.push_back(stamp_ns);
-    result.values.push_back(amplitude * std::sin(2.0 * pi * frequency_hz * (t - later_s) + 0.3) + noise * normal(random));
+    result.values.push_back(amplitude * std::sin(2.0 * pi * frequency_hz * (t - later_s) + 0.3) +
+                            noise * normal(random));
   }
   return result;
 }
@@ -61,7 +65,8 @@ TEST(AnalogueComparison, FindsTheQuotientOfTheTwoChannels) {
 
 TEST(AnalogueComparison, ADelayOfTheSensorIsNegativePhaseAndNotItsConjugate) {
   const Record reference = record(10.0, 0.0, 0.0, 0.0, 5000.0, 0.0, 1);
-  const Record dut = record(-4.0, 1e-4, 0.0, 0.0, 5000.0, 0.0, 1); // inverted: A < 0 does not fold by pi
+  const Record dut =
+      record(-4.0, 1e-4, 0.0, 0.0, 5000.0, 0.0, 1); // inverted: A < 0 does not fold by pi
   AnalogueInput input{.frequency = *Frequency::parse("159.2")};
   input.stamps_ns = reference.stamps_ns;
   input.reference = {"reference", reference.values};

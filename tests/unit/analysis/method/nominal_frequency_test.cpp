@@ -10,14 +10,17 @@
 namespace dyncal::analysis {
 namespace {
 
-// The clock of the paper: 996.96 us instead of 1 ms, the sensor runs 3049 ppm fast and senses 80 Hz as 79.757 Hz.
+// The clock of the paper: 996.96 us instead of 1 ms, the sensor runs 3049 ppm fast and senses 80 Hz
+// as 79.757 Hz.
 TEST(NominalFrequency, AFastClockSensesTheExcitationTooLow) {
   constexpr double real_rate = 1.0 / 996.96e-6;
   std::mt19937 random(2);
   std::normal_distribution<double> noise(0.0, 1e-3);
   std::vector<double> samples;
-  for (int i = 0; i < 10'000; ++i)
-    samples.push_back(std::sin(2.0 * std::numbers::pi * 80.0 * i / real_rate + 1.0) + noise(random));
+  for (int i = 0; i < 10'000; ++i) {
+    samples.push_back(std::sin(2.0 * std::numbers::pi * 80.0 * i / real_rate + 1.0) +
+                      noise(random));
+  }
   const auto result = evaluate_nominal_frequency(1000.0, *Frequency::parse("80"), 0.0, samples);
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_NEAR(result->apparent_hz, 80.0 * 1000.0 / real_rate, 1e-5);
@@ -27,7 +30,8 @@ TEST(NominalFrequency, AFastClockSensesTheExcitationTooLow) {
 }
 
 TEST(NominalFrequency, UncertaintiesOfBothFrequenciesCount) {
-  const auto result = real_rate_from_apparent_frequency(2000.0, 80.0, 80.0 * 3e-6, 77.6, 77.6 * 4e-6);
+  const auto result =
+      real_rate_from_apparent_frequency(2000.0, 80.0, 80.0 * 3e-6, 77.6, 77.6 * 4e-6);
   ASSERT_TRUE(result.has_value());
   EXPECT_NEAR(result->lambda, 80.0 / 77.6, 1e-15);
   EXPECT_NEAR(result->real_rate_hz, 2000.0 * 80.0 / 77.6, 1e-10);
@@ -36,7 +40,9 @@ TEST(NominalFrequency, UncertaintiesOfBothFrequenciesCount) {
 
 TEST(NominalFrequency, RefusesWhatIsNotPositive) {
   EXPECT_FALSE(real_rate_from_apparent_frequency(0.0, 80.0, 0.0, 80.0, 0.0).has_value());
-  EXPECT_FALSE(evaluate_nominal_frequency(-1.0, *Frequency::parse("80"), 0.0, std::vector<double>(100, 1.0)).has_value());
+  EXPECT_FALSE(
+      evaluate_nominal_frequency(-1.0, *Frequency::parse("80"), 0.0, std::vector<double>(100, 1.0))
+          .has_value());
   EXPECT_FALSE(evaluate_nominal_frequency(1000.0, *Frequency::parse("80"), 0.0, {}).has_value());
 }
 

@@ -11,7 +11,8 @@
 namespace dyncal::analysis {
 namespace {
 
-// Reference and sync in the ACS's clock, sync in a DAU's, the sensor in a third series of stamps on the DAU's time scale.
+// Reference and sync in the ACS's clock, sync in a DAU's, the sensor in a third series of stamps on
+// the DAU's time scale.
 struct Bench {
   std::string frequency_hz = "80";
   double delay_s = 1.5e-3;
@@ -55,7 +56,8 @@ TEST(StampedApart, FindsTheTruthThoughTheSensorHasStampsOfItsOwn) {
   ASSERT_TRUE(result) << result.error().message;
   const TransferPoint& point = result->points.at(0);
   EXPECT_NEAR(point.magnitude, 0.9, 4.0 * point.u_magnitude);
-  EXPECT_NEAR(point.phase_rad, -2.0 * std::numbers::pi * 80.0 * bench.delay_s, 4.0 * point.u_phase_rad);
+  EXPECT_NEAR(point.phase_rad, -2.0 * std::numbers::pi * 80.0 * bench.delay_s,
+              4.0 * point.u_phase_rad);
   EXPECT_LT(point.u_phase_rad, 1e-3);
 }
 
@@ -70,8 +72,9 @@ TEST(StampedApart, CountsTheOffsetBetweenTheClocksInFull) {
 
 TEST(StampedApart, IsWrongByAnOffsetThatNobodyKnows) {
   Bench bench;
-  for (std::int64_t& stamp : bench.dut_stamps)
+  for (std::int64_t& stamp : bench.dut_stamps) {
     stamp += 115'000; // as long as a frame of eight bytes lasts at 1 Mbit/s
+  }
   const TransferPoint point = evaluate_sample_stamping(bench.input())->points.at(0);
   const double error_rad = point.phase_rad + 2.0 * std::numbers::pi * 80.0 * bench.delay_s;
   EXPECT_NEAR(error_rad, -2.0 * std::numbers::pi * 80.0 * 115e-6, 1e-3);

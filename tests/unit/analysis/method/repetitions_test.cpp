@@ -37,7 +37,8 @@ TEST(Repetitions, OneRepetitionKeepsItsOwnUncertainty) {
 }
 
 TEST(Repetitions, ThreeThatScatterNeedStudentsFactor) {
-  const std::array repetitions{Repetition{.h = h_of(1.0, -1e-3)}, Repetition{.h = h_of(1.0, 0.0)}, Repetition{.h = h_of(1.0, 1e-3)}};
+  const std::array repetitions{Repetition{.h = h_of(1.0, -1e-3)}, Repetition{.h = h_of(1.0, 0.0)},
+                               Repetition{.h = h_of(1.0, 1e-3)}};
   const auto mean = mean_of_repetitions(repetitions);
   ASSERT_TRUE(mean.has_value());
   EXPECT_NEAR(mean->scatter_phase_rad, 1e-3, 1e-9);
@@ -56,7 +57,8 @@ TEST(Repetitions, CommonPartsDoNotAverageOut) {
 }
 
 TEST(Repetitions, ABudgetIsDividedByItsDegreesOfFreedom) {
-  const std::array budget{Contribution{"noise", "normal", 100.0, 3e-4, 1e-4}, Contribution{"structure", "normal", 15.0, 4e-4, 0.0},
+  const std::array budget{Contribution{"noise", "normal", 100.0, 3e-4, 1e-4},
+                          Contribution{"structure", "normal", 15.0, 4e-4, 0.0},
                           Contribution{"reference", "normal", 0.0, 1e-3, 2e-3}};
   const Repetition repetition = make_repetition(h_of(1.0, 0.0), budget);
   EXPECT_DOUBLE_EQ(repetition.u_random_magnitude_rel, 5e-4);
@@ -69,8 +71,9 @@ TEST(Repetitions, NoiseHasNoPhase) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 1e-3);
   std::vector<Repetition> repetitions;
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 3; ++i) {
     repetitions.push_back({{noise(random), noise(random)}, 0.7, 1.0, 1e-3, 1e-3});
+  }
   const auto mean = mean_of_repetitions(repetitions);
   ASSERT_TRUE(mean.has_value());
   EXPECT_LE(mean->magnitude, 4.0 * mean->u_magnitude);
@@ -83,8 +86,8 @@ TEST(Repetitions, RefusesNothingAndWhatIsNoNumber) {
   EXPECT_EQ(mean_of_repetitions(repetitions).error().code, ErrorCode::not_finite);
 }
 
-// Between-run scatter three times the noise of the fits, n = 3, and a common part as large as the noise. In the long run 95.05 % are
-// covered (200 000 runs).
+// Between-run scatter three times the noise of the fits, n = 3, and a common part as large as the
+// noise. In the long run 95.05 % are covered (200 000 runs).
 TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
   const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
   const int runs = text ? std::stoi(text) : 4000;
@@ -96,8 +99,9 @@ TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
     std::vector<Repetition> repetitions;
     for (int i = 0; i < 3; ++i) {
       const double sd = std::hypot(1e-3, 3e-3);
-      repetitions.push_back(
-          {h_of(0.95 * (1.0 + common_magnitude + sd * noise(random)), 2.0 + common_phase + sd * noise(random)), 1e-3, 1e-3, 1e-3, 1e-3});
+      repetitions.push_back({h_of(0.95 * (1.0 + common_magnitude + sd * noise(random)),
+                                  2.0 + common_phase + sd * noise(random)),
+                             1e-3, 1e-3, 1e-3, 1e-3});
     }
     const auto mean = mean_of_repetitions(repetitions);
     ASSERT_TRUE(mean.has_value());

@@ -62,7 +62,8 @@ Simulation simulate(const Bench& bench, unsigned seed) {
   for (int i = 0; i < static_cast<int>(bench.duration_s * bench.acs_rate_hz); ++i) {
     const double t = acs_start + i / bench.acs_rate_hz * (1.0 + bench.acs_clock_rel);
     result.acs.stamps_ns.push_back(std::llround(i / bench.acs_rate_hz * 1e9));
-    result.acs.first.push_back(bench.reference_amplitude * motion(t) + bench.reference_noise * normal(random));
+    result.acs.first.push_back(bench.reference_amplitude * motion(t) +
+                               bench.reference_noise * normal(random));
     result.acs.second.push_back(sync(t) + 0.01 + 2e-4 * normal(random));
   }
   const double dau_start = anywhere(random);
@@ -70,11 +71,14 @@ Simulation simulate(const Bench& bench, unsigned seed) {
   double t = dau_start;
   for (int i = 0; i < static_cast<int>(bench.duration_s / 996.96e-6); ++i) {
     t += 996.96e-6 + 20e-9 * normal(random);
-    const double stamp_s = (t - dau_start) * (1.0 + bench.dau_clock_rel) + bench.jitter_s * normal(random);
+    const double stamp_s =
+        (t - dau_start) * (1.0 + bench.dau_clock_rel) + bench.jitter_s * normal(random);
     result.dau.stamps_ns.push_back(epoch_ns + std::llround(stamp_s * 1e9));
-    result.dau.first.push_back(bench.reference_amplitude * bench.magnitude * motion(t - bench.delay_s) + 0.3 +
-                               bench.dut_noise * normal(random));
-    result.dau.second.push_back(1.5 + 0.166245 * sync(t - bench.adc_lag_rad / w) + bench.sync_noise * normal(random));
+    result.dau.first.push_back(bench.reference_amplitude * bench.magnitude *
+                                   motion(t - bench.delay_s) +
+                               0.3 + bench.dut_noise * normal(random));
+    result.dau.second.push_back(1.5 + 0.166245 * sync(t - bench.adc_lag_rad / w) +
+                                bench.sync_noise * normal(random));
   }
   return result;
 }
@@ -101,7 +105,8 @@ std::size_t coverage_runs() {
   return text ? std::stoul(text) : 1000;
 }
 
-// k = 2 intervals of a normal distribution cover 95.45 %; the limits are 3 standard deviations of the count.
+// k = 2 intervals of a normal distribution cover 95.45 %; the limits are 3 standard deviations of
+// the count.
 void expect_coverage(const Bench& bench) {
   const std::size_t runs = coverage_runs();
   std::size_t magnitude_covered = 0, phase_covered = 0;
@@ -110,8 +115,12 @@ void expect_coverage(const Bench& bench) {
     const auto result = evaluate_sample_stamping(input_for(simulation, bench));
     ASSERT_TRUE(result.has_value()) << result.error().message;
     const TransferPoint& point = result->points.front();
-    if (std::abs(point.magnitude - bench.magnitude) <= 2.0 * point.u_magnitude) ++magnitude_covered;
-    if (std::abs(wrap_phase(point.phase_rad - true_phase(bench))) <= 2.0 * point.u_phase_rad) ++phase_covered;
+    if (std::abs(point.magnitude - bench.magnitude) <= 2.0 * point.u_magnitude) {
+      ++magnitude_covered;
+    }
+    if (std::abs(wrap_phase(point.phase_rad - true_phase(bench))) <= 2.0 * point.u_phase_rad) {
+      ++phase_covered;
+    }
   }
   const double n = static_cast<double>(runs);
   const double margin = 3.0 * std::sqrt(0.0455 * 0.9545 / n);
@@ -121,7 +130,9 @@ void expect_coverage(const Bench& bench) {
 
 std::optional<Record> read_csv(const std::string& path) {
   std::ifstream file(path);
-  if (!file) return std::nullopt;
+  if (!file) {
+    return std::nullopt;
+  }
   Record record;
   std::string line;
   std::getline(file, line);
@@ -141,7 +152,9 @@ std::optional<Record> read_csv(const std::string& path) {
 TEST(SampleStamping, MeetsTheCheckVectorOfTheSyncLink) {
   const auto acs = read_csv(DYNCAL_SHARED_DATA "/vectors/07_sync_link_acs.csv");
   const auto dau = read_csv(DYNCAL_SHARED_DATA "/vectors/07_sync_link_dau.csv");
-  if (!acs || !dau) GTEST_SKIP() << "the check vectors are not beside the source tree";
+  if (!acs || !dau) {
+    GTEST_SKIP() << "the check vectors are not beside the source tree";
+  }
   SampleStampingInput input{.frequency = *Frequency::parse("80")};
   input.frequency_search_rel = 0.0;
   input.acs_stamps_ns = acs->stamps_ns;
@@ -155,20 +168,24 @@ TEST(SampleStamping, MeetsTheCheckVectorOfTheSyncLink) {
   ASSERT_TRUE(known.has_value()) << known.error().message;
   EXPECT_NEAR(known->points[0].magnitude / 0.9500213341130793, 1.0, 1e-12);
   EXPECT_NEAR(known->points[0].phase_rad, 2.211689938320689, 1e-11);
-  // Four independent fits: 1.1751875e-5 and 1.1280158e-5 of the DAU, 5.047234e-6 and 5.146075e-6 of the ACS.
+  // Four independent fits: 1.1751875e-5 and 1.1280158e-5 of the DAU, 5.047234e-6 and 5.146075e-6 of
+  // the ACS.
   EXPECT_NEAR(known->points[0].u_phase_rad,
-              std::sqrt(std::pow(1.1751875732354966e-05, 2) + std::pow(1.1280157924373225e-05, 2) + std::pow(5.04723397488249e-06, 2) +
-                        std::pow(5.146075408143012e-06, 2)),
+              std::sqrt(std::pow(1.1751875732354966e-05, 2) + std::pow(1.1280157924373225e-05, 2) +
+                        std::pow(5.04723397488249e-06, 2) + std::pow(5.146075408143012e-06, 2)),
               1e-14);
   EXPECT_NEAR(known->points[0].u_magnitude / known->points[0].magnitude,
-              std::hypot(0.00011152923568323966 / 9.500169434572, 5.047210648387886e-05 / 9.999953783607571), 1e-14);
+              std::hypot(0.00011152923568323966 / 9.500169434572,
+                         5.047210648387886e-05 / 9.999953783607571),
+              1e-14);
 
   input.frequency_search_rel = 1e-3;
   const auto refined = evaluate_sample_stamping(input);
   ASSERT_TRUE(refined.has_value()) << refined.error().message;
   EXPECT_NEAR(refined->points[0].magnitude, known->points[0].magnitude, 1e-6);
   EXPECT_NEAR(refined->points[0].phase_rad, known->points[0].phase_rad, 1e-6);
-  EXPECT_NEAR(refined->points[0].phase_rad, 2.2116812281272145, 1e-4); // the truth of the simulation
+  EXPECT_NEAR(refined->points[0].phase_rad, 2.2116812281272145,
+              1e-4); // the truth of the simulation
 }
 
 TEST(SampleStamping, CoversTheTruthForWhiteNoise) {
@@ -176,7 +193,8 @@ TEST(SampleStamping, CoversTheTruthForWhiteNoise) {
 }
 
 TEST(SampleStamping, CoversTheTruthForStampJitter) {
-  expect_coverage({.reference_noise = 1e-4, .dut_noise = 1e-4, .sync_noise = 2e-6, .jitter_s = 2e-6});
+  expect_coverage(
+      {.reference_noise = 1e-4, .dut_noise = 1e-4, .sync_noise = 2e-6, .jitter_s = 2e-6});
 }
 
 TEST(SampleStamping, CoversTheTruthWhenTheGeneratorIsOffByAThousandth) {
@@ -191,13 +209,15 @@ void expect_within_four_u(const Bench& bench) {
     ASSERT_TRUE(result.has_value());
     const TransferPoint& point = result->points.front();
     EXPECT_LE(std::abs(point.magnitude - bench.magnitude), 4.0 * point.u_magnitude) << seed;
-    EXPECT_LE(std::abs(wrap_phase(point.phase_rad - true_phase(bench))), 4.0 * point.u_phase_rad) << seed;
+    EXPECT_LE(std::abs(wrap_phase(point.phase_rad - true_phase(bench))), 4.0 * point.u_phase_rad)
+        << seed;
   }
 }
 
 TEST(SampleStamping, StaysHonestWithHarmonicsOfTheExciter) {
-  for (const double f : {10.0, 12.7, 46.7})
+  for (const double f : {10.0, 12.7, 46.7}) {
     expect_within_four_u({.frequency_hz = f, .dut_noise = 1e-3, .harmonic_rel = 0.01});
+  }
 }
 
 TEST(SampleStamping, HarmonicsThatAreFoundCostNoUncertainty) {
@@ -238,15 +258,18 @@ TEST(SampleStamping, SystematicPartsAppearOnceEach) {
   const Simulation simulation = simulate(bench, 2);
   SampleStampingInput input = input_for(simulation, bench);
   const auto plain = evaluate_sample_stamping(input);
-  input.systematic = {.reference_magnitude_rel = 1e-3, .reference_phase_rad = 1.7e-3, .acs_delay_s = 1e-6};
+  input.systematic = {
+      .reference_magnitude_rel = 1e-3, .reference_phase_rad = 1.7e-3, .acs_delay_s = 1e-6};
   input.adc.u_phase_lag_rad = 3e-4;
   const auto result = evaluate_sample_stamping(input);
   ASSERT_TRUE(plain && result);
   const double u_plain = plain->points[0].u_phase_rad;
   const double delay = 2.0 * pi * 80.0 * 1e-6;
-  EXPECT_NEAR(result->points[0].u_phase_rad, std::sqrt(u_plain * u_plain + 1.7e-3 * 1.7e-3 + delay * delay + 9e-8), 1e-10);
+  EXPECT_NEAR(result->points[0].u_phase_rad,
+              std::sqrt(u_plain * u_plain + 1.7e-3 * 1.7e-3 + delay * delay + 9e-8), 1e-10);
   const double rel = plain->points[0].u_magnitude / plain->points[0].magnitude;
-  EXPECT_NEAR(result->points[0].u_magnitude / result->points[0].magnitude, std::hypot(rel, 1e-3), 1e-12);
+  EXPECT_NEAR(result->points[0].u_magnitude / result->points[0].magnitude, std::hypot(rel, 1e-3),
+              1e-12);
   EXPECT_EQ(result->points[0].phase_rad, plain->points[0].phase_rad);
 }
 
@@ -255,8 +278,9 @@ TEST(SampleStamping, NamesTheSeriesThatHasNoExcitation) {
   Simulation simulation = simulate(bench, 2);
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
-  for (double& y : simulation.dau.second)
+  for (double& y : simulation.dau.second) {
     y = noise(random);
+  }
   const auto result = evaluate_sample_stamping(input_for(simulation, bench));
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::no_excitation);

@@ -46,17 +46,23 @@ Traces simulate(const Scene& scene, unsigned seed) {
     const double t = i / 20000.0;
     traces.acs_stamps_ns.push_back(50'000ll * i);
     traces.sync.push_back(std::sin(w * t + start) + scene.noise * normal(random));
-    traces.reference.push_back(10.0 * (std::sin(w * t + start + reference_against_sync) + scene.noise * normal(random)));
+    traces.reference.push_back(
+        10.0 * (std::sin(w * t + start + reference_against_sync) + scene.noise * normal(random)));
   }
   for (int shot = 0; shot < scene.shots; ++shot) {
-    const double beta = scene.trigger_noise_rad * normal(random); // phase of sync at the trigger point
+    const double beta =
+        scene.trigger_noise_rad * normal(random); // phase of sync at the trigger point
     std::vector<double> dso, series, cross;
-    for (int i = 0; i < 5000; ++i)
-      dso.push_back(std::sin(w * (dso_first_s + i * dso_interval_s) + beta) + scene.noise * normal(random));
+    for (int i = 0; i < 5000; ++i) {
+      dso.push_back(std::sin(w * (dso_first_s + i * dso_interval_s) + beta) +
+                    scene.noise * normal(random));
+    }
     for (int n = 0; n < 2000; ++n) {
-      const double t = scene.dso_delay_s + n / (nominal_rate_hz * scene.lambda); // after the trigger point
+      const double t =
+          scene.dso_delay_s + n / (nominal_rate_hz * scene.lambda); // after the trigger point
       const double motion = w * (t - scene.delay_s) + beta + reference_against_sync;
-      series.push_back(10.0 * (scene.magnitude * std::sin(motion) + scene.noise * normal(random)) + 0.1);
+      series.push_back(10.0 * (scene.magnitude * std::sin(motion) + scene.noise * normal(random)) +
+                       0.1);
       cross.push_back(10.0 * (0.02 * std::sin(motion + pi) + scene.noise * normal(random)));
     }
     traces.dso.push_back(dso);
@@ -74,8 +80,10 @@ SeriesStampingInput input_for(const Traces& traces, const Scene& scene) {
   input.channels = {"tss/x", "tss/y"};
   input.nominal_rate_hz = nominal_rate_hz;
   input.dso_delay_s = scene.dso_delay_s;
-  for (std::size_t j = 0; j < traces.dso.size(); ++j)
-    input.shots.push_back({dso_first_s, dso_interval_s, traces.dso[j], {traces.series[j], traces.cross[j]}});
+  for (std::size_t j = 0; j < traces.dso.size(); ++j) {
+    input.shots.push_back(
+        {dso_first_s, dso_interval_s, traces.dso[j], {traces.series[j], traces.cross[j]}});
+  }
   return input;
 }
 
@@ -105,7 +113,8 @@ TEST(SeriesStamping, GivesTheRealRateOfTheSensor) {
   const Traces traces = simulate(scene, 4);
   const auto result = evaluate_series_stamping(input_for(traces, scene));
   ASSERT_TRUE(result.has_value());
-  EXPECT_NEAR(result->rate.real_rate_hz, nominal_rate_hz * scene.lambda, 4.0 * result->rate.u_real_rate_hz);
+  EXPECT_NEAR(result->rate.real_rate_hz, nominal_rate_hz * scene.lambda,
+              4.0 * result->rate.u_real_rate_hz);
   EXPECT_NEAR(result->rate.lambda, scene.lambda, 1e-5);
 }
 
@@ -129,7 +138,8 @@ TEST(SeriesStamping, TheDelayOfTheOscilloscopeCountsWithItsSign) {
   ASSERT_TRUE(right && ignored);
   EXPECT_NEAR(right->channels[0].mean.phase_rad, true_phase(scene), 1e-6);
   // Ignored, the sensor seems to answer earlier: a lead of w tau.
-  EXPECT_NEAR(wrap_phase(ignored->channels[0].mean.phase_rad - true_phase(scene)), 2.0 * pi * 250.0 * 100e-6, 1e-6);
+  EXPECT_NEAR(wrap_phase(ignored->channels[0].mean.phase_rad - true_phase(scene)),
+              2.0 * pi * 250.0 * 100e-6, 1e-6);
 }
 
 TEST(SeriesStamping, CommonDelaysDoNotAverageOutOverShots) {

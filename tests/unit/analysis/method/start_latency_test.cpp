@@ -33,7 +33,8 @@ std::vector<double> uniform_start(std::size_t shots, unsigned seed) {
 
 TEST(StartLatency, ShotsThatScatterWithTheirUncertaintyStartWithTheTrigger) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    EXPECT_EQ(judge_start_latency(fixed_start(5, seed), u_s, sample_s).kind, StartKind::fixed) << seed;
+    EXPECT_EQ(judge_start_latency(fixed_start(5, seed), u_s, sample_s).kind, StartKind::fixed)
+        << seed;
   }
 }
 
@@ -65,11 +66,13 @@ TEST(StartLatency, TwoShotsOrNoSampleIntervalDecideNothing) {
 }
 
 TEST(StartLatency, NoiseAsWideAsTheSampleHidesTheDifference) {
-  EXPECT_EQ(judge_start_latency(uniform_start(5, 7), sample_s, sample_s).kind, StartKind::undecided);
+  EXPECT_EQ(judge_start_latency(uniform_start(5, 7), sample_s, sample_s).kind,
+            StartKind::undecided);
 }
 
 TEST(StartLatency, ShotsWithoutNoiseAreJudgedToo) {
-  EXPECT_EQ(judge_start_latency(std::vector<double>(5, 1e-5), 0.0, sample_s).kind, StartKind::fixed);
+  EXPECT_EQ(judge_start_latency(std::vector<double>(5, 1e-5), 0.0, sample_s).kind,
+            StartKind::fixed);
 }
 
 } // namespace

@@ -13,7 +13,8 @@ TEST(Comparison, NormalisedErrorIsTheDifferenceOverItsExpandedUncertainty) {
 }
 
 TEST(Comparison, WhatBothHaveInCommonDoesNotExcuseADifference) {
-  EXPECT_NEAR(*normalised_error(1.01, 5e-3, 1.0, 5e-3, 16e-6), 0.01 / (2.0 * std::sqrt(50e-6 - 32e-6)), 1e-12);
+  EXPECT_NEAR(*normalised_error(1.01, 5e-3, 1.0, 5e-3, 16e-6),
+              0.01 / (2.0 * std::sqrt(50e-6 - 32e-6)), 1e-12);
   EXPECT_FALSE(normalised_error(1.01, 5e-3, 1.0, 5e-3, 25e-6).has_value());
 }
 

@@ -15,15 +15,21 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-const std::vector<double> plan{10, 12.5, 16, 20, 25, 31.5, 40, 46.7, 50, 53.3, 63, 80, 100, 125, 160, 200, 250};
+const std::vector<double> plan{10,   12.5, 16, 20,  25,  31.5, 40,  46.7, 50,
+                               53.3, 63,   80, 100, 125, 160,  200, 250};
 
-std::vector<PhasePoint> phases_of(double delay_s, double intercept_rad, double u_rad, const std::vector<double>& frequencies = plan,
+std::vector<PhasePoint> phases_of(double delay_s, double intercept_rad, double u_rad,
+                                  const std::vector<double>& frequencies = plan,
                                   unsigned seed = 0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise;
   std::vector<PhasePoint> points;
-  for (const double f : frequencies)
-    points.push_back({f, wrap_phase(intercept_rad - 2.0 * pi * f * delay_s + (seed ? u_rad * noise(random) : 0.0)), u_rad});
+  for (const double f : frequencies) {
+    points.push_back(
+        {f,
+         wrap_phase(intercept_rad - 2.0 * pi * f * delay_s + (seed ? u_rad * noise(random) : 0.0)),
+         u_rad});
+  }
   return points;
 }
 
@@ -58,18 +64,21 @@ TEST(GroupDelay, SaysSoWhenThePhaseCannotBeUnwrapped) {
   const auto result = evaluate_group_delay(phases_of(0.5 / 50.0, 0.0, 1e-3, {50, 100, 150}));
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::not_converged);
-  EXPECT_NE(result.error().message.find("50 Hz to 100 Hz"), std::string::npos) << result.error().message;
+  EXPECT_NE(result.error().message.find("50 Hz to 100 Hz"), std::string::npos)
+      << result.error().message;
 }
 
 TEST(GroupDelay, PhasesWithoutMeaningGiveNoDelay) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> anywhere(-pi, pi);
   std::vector<PhasePoint> points;
-  for (const double f : plan)
+  for (const double f : plan) {
     points.push_back({f, anywhere(random), 0.3});
+  }
   EXPECT_FALSE(evaluate_group_delay(points).has_value());
-  for (PhasePoint& point : points)
+  for (PhasePoint& point : points) {
     point.u_phase_rad = 1.8;
+  }
   EXPECT_EQ(evaluate_group_delay(points).error().code, ErrorCode::too_few_samples);
 }
 
@@ -88,13 +97,16 @@ TEST(GroupDelay, FollowsAResponseThatIsNoPureDelay) {
   std::vector<PhasePoint> points;
   for (const double f : plan) {
     const double r = f / 300.0;
-    points.push_back({f, wrap_phase(-2.0 * pi * f * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r)), 1e-3});
+    points.push_back(
+        {f, wrap_phase(-2.0 * pi * f * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r)), 1e-3});
   }
   const auto result = evaluate_group_delay(points);
   ASSERT_TRUE(result.has_value()) << result.error().message;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double r = points[i].frequency_hz / 300.0;
-    EXPECT_NEAR(result->unwrapped_rad[i], -2.0 * pi * points[i].frequency_hz * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r), 1e-9);
+    EXPECT_NEAR(result->unwrapped_rad[i],
+                -2.0 * pi * points[i].frequency_hz * 1.5e-3 - std::atan2(1.2 * r, 1.0 - r * r),
+                1e-9);
   }
   EXPECT_GT(result->chi_squared, 10.0 * result->degrees_of_freedom);
   EXPECT_GT(result->u_delay_s, 1e-6); // no straight line: more than the 0.3 us of the points alone
@@ -102,7 +114,8 @@ TEST(GroupDelay, FollowsAResponseThatIsNoPureDelay) {
 
 TEST(GroupDelay, ACommonDelayGoesInFullIntoTheUncertainty) {
   const auto alone = evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4));
-  const auto result = evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4), {.delay_s = 1e-6, .phase_rad = 2e-3});
+  const auto result =
+      evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4), {.delay_s = 1e-6, .phase_rad = 2e-3});
   ASSERT_TRUE(alone && result);
   EXPECT_NEAR(result->u_delay_s, std::hypot(alone->u_delay_s, 1e-6), 1e-15);
   EXPECT_NEAR(result->u_intercept_rad, std::hypot(alone->u_intercept_rad, 2e-3), 1e-12);
@@ -131,8 +144,10 @@ TEST(GroupDelay, CoversTheTruthInNineteenOfTwentyRuns) {
 
 TEST(GroupDelay, RefusesWhatMakesNoSense) {
   EXPECT_EQ(evaluate_group_delay({}).error().code, ErrorCode::too_few_samples);
-  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 1e-3, {20, 10})).error().code, ErrorCode::invalid_argument);
-  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 0.0)).error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 1e-3, {20, 10})).error().code,
+            ErrorCode::invalid_argument);
+  EXPECT_EQ(evaluate_group_delay(phases_of(1e-3, 0.0, 0.0)).error().code,
+            ErrorCode::invalid_argument);
 }
 
 } // namespace

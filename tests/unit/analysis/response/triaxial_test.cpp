@@ -9,15 +9,18 @@
 namespace dyncal::analysis {
 namespace {
 
-const std::array<Axes, 3> truth{Axes{std::polar(0.99, -0.8), std::polar(0.02, 1.0), std::polar(0.01, 2.0)},
-                                Axes{std::polar(0.015, -2.0), std::polar(1.01, -0.81), std::polar(0.02, 0.3)},
-                                Axes{std::polar(0.01, 0.5), std::polar(0.012, 3.0), std::polar(0.95, -0.79)}};
+const std::array<Axes, 3> truth{
+    Axes{std::polar(0.99, -0.8), std::polar(0.02, 1.0), std::polar(0.01, 2.0)},
+    Axes{std::polar(0.015, -2.0), std::polar(1.01, -0.81), std::polar(0.02, 0.3)},
+    Axes{std::polar(0.01, 0.5), std::polar(0.012, 3.0), std::polar(0.95, -0.79)}};
 
 Axes answer_to(const Axes& motion) {
   Axes result{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
       result[i] += truth[i][j] * motion[j];
+    }
+  }
   return result;
 }
 
@@ -46,9 +49,11 @@ TEST(Triaxial, FindsTheWholeMatrixThroughMotionAcrossTheAxes) {
   for (const std::size_t count : {3u, 6u}) {
     const auto result = evaluate_triaxial(excitations(0.0, 1, count));
     ASSERT_TRUE(result.has_value());
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
         EXPECT_LT(std::abs(result->h[i][j] - truth[i][j]), 1e-14);
+      }
+    }
   }
 }
 
@@ -58,9 +63,11 @@ TEST(Triaxial, UncertaintyCoversTheScatter) {
   for (unsigned run = 1; run <= runs; ++run) {
     const auto result = evaluate_triaxial(excitations(1e-3, run));
     ASSERT_TRUE(result.has_value());
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
         covered += std::abs(result->h[i][j].real() - truth[i][j].real()) <= 2.0 * result->u[i][j];
+      }
+    }
   }
   EXPECT_NEAR(covered / (9.0 * runs), 0.9545, 0.015);
 }

@@ -24,7 +24,8 @@ Record record(double second_harmonic, double hum, double noise, double duration_
     const double t = i * 2e-4;
     const double turn = 2.0 * std::numbers::pi * t;
     result.stamps_ns.push_back(200'000ll * i);
-    result.values.push_back(3.0 * std::sin(46.7 * turn) + 4.0 * std::cos(46.7 * turn) + second_harmonic * std::cos(93.4 * turn) +
+    result.values.push_back(3.0 * std::sin(46.7 * turn) + 4.0 * std::cos(46.7 * turn) +
+                            second_harmonic * std::cos(93.4 * turn) +
                             hum * std::sin(50.0 * turn + 1.0) + noise * normal(random) + 0.5);
   }
   return result;
@@ -63,14 +64,16 @@ TEST(Disturbances, ALineTooCloseToTellApartIsLeftAlone) {
   const std::array channels{std::span<const double>(disturbed.values)};
   const auto result = fit_sine_beside_disturbances(frequency, 0, disturbed.stamps_ns, channels);
   ASSERT_TRUE(result.has_value());
-  for (const double line : result->front().removed_hz)
+  for (const double line : result->front().removed_hz) {
     EXPECT_NE(line, 50.0);
+  }
 }
 
 TEST(Disturbances, AShortRecordFailsAsAPlainFitDoes) {
   const Record clean = record(0.0, 0.0, 1e-3, 0.0006);
   const std::array channels{std::span<const double>(clean.values)};
-  EXPECT_EQ(fit_sine_beside_disturbances(frequency, 0, clean.stamps_ns, channels).error().code, ErrorCode::too_few_samples);
+  EXPECT_EQ(fit_sine_beside_disturbances(frequency, 0, clean.stamps_ns, channels).error().code,
+            ErrorCode::too_few_samples);
 }
 
 } // namespace

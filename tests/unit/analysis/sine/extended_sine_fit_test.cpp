@@ -15,18 +15,24 @@
 namespace dyncal::analysis {
 namespace {
 
-Expected<ExtendedFit> fit_one(const ExtendedBasis& basis, Weighting weighting, const std::vector<std::int64_t>& stamps,
+Expected<ExtendedFit> fit_one(const ExtendedBasis& basis, Weighting weighting,
+                              const std::vector<std::int64_t>& stamps,
                               const std::vector<double>& values, const char* frequency_hz = "80") {
   const std::span<const double> channels[] = {values};
-  auto fits = fit_sine_extended(*Frequency::parse(frequency_hz), basis, weighting, epoch_ns, stamps, channels);
-  if (!fits) return tl::unexpected(fits.error());
+  auto fits = fit_sine_extended(*Frequency::parse(frequency_hz), basis, weighting, epoch_ns, stamps,
+                                channels);
+  if (!fits) {
+    return tl::unexpected(fits.error());
+  }
   return fits->front();
 }
 
-void add(std::vector<double>& values, const Signal& signal, const std::vector<std::int64_t>& stamps) {
+void add(std::vector<double>& values, const Signal& signal,
+         const std::vector<std::int64_t>& stamps) {
   const auto more = values_of(signal, stamps);
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] += more[i];
+  }
 }
 
 TEST(SineFitExtended, EqualsThePlainFitWithoutFurtherTerms) {
@@ -40,8 +46,9 @@ TEST(SineFitExtended, EqualsThePlainFitWithoutFurtherTerms) {
   EXPECT_NEAR(fit->fundamental.cosine, plain.cosine, 1e-14);
   EXPECT_NEAR(fit->fundamental.offset, plain.offset, 1e-14);
   EXPECT_NEAR(fit->fundamental.rss / plain.rss, 1.0, 1e-12);
-  for (std::size_t i = 0; i < 6; ++i)
+  for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(fit->fundamental.covariance[i], plain.covariance[i], 1e-12 * plain.covariance[0]);
+  }
 }
 
 TEST(SineFitExtended, SeparatesHarmonicsHumAndDrift) {
@@ -80,8 +87,9 @@ TEST(SineFitExtended, FollowsADriftingAmplitude) {
   auto values = values_of({"80", 1.0, 0.7, 0.0, epoch_ns}, stamps);
   const std::int64_t middle = stamps.front() + (stamps.back() - stamps.front()) / 2;
   const double half = 0.5 * static_cast<double>(stamps.back() - stamps.front());
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] *= 1.0 + 0.01 * static_cast<double>(stamps[i] - middle) / half;
+  }
   ExtendedBasis basis;
   basis.drifting_phasor = true;
   const auto fit = fit_one(basis, Weighting::none, stamps, values);
@@ -101,8 +109,9 @@ TEST(SineFitExtended, KeepsItsPrecisionAgainstOutliers) {
     for (int trial = 0; trial < trials; ++trial) {
       auto values = noisy(clean, 0.01, static_cast<unsigned>(trial));
       std::mt19937_64 random(static_cast<unsigned>(1000 + trial));
-      for (int k = 0; k < 20; ++k)
+      for (int k = 0; k < 20; ++k) {
         values[random() % values.size()] += 0.5 * (random() % 2 ? 1.0 : -1.0); // 1 % of fifty sd
+      }
       const auto fit = fit_one({}, weighting, stamps, values);
       ASSERT_TRUE(fit) << fit.error().message;
       EXPECT_GE(fit->outliers, 15U);
@@ -122,7 +131,8 @@ TEST(SineFitExtended, RobustFitOfCleanDataChangesLittle) {
   for (const Weighting weighting : {Weighting::huber, Weighting::tukey}) {
     const auto fit = fit_one({}, weighting, stamps, values);
     ASSERT_TRUE(fit) << fit.error().message;
-    EXPECT_LT(std::abs(fit->fundamental.amplitude() - plain->fundamental.amplitude()), plain->fundamental.u_amplitude());
+    EXPECT_LT(std::abs(fit->fundamental.amplitude() - plain->fundamental.amplitude()),
+              plain->fundamental.u_amplitude());
     EXPECT_NEAR(fit->fundamental.u_amplitude() / plain->fundamental.u_amplitude(), 1.0, 0.1);
   }
   const auto pure = fit_one({}, Weighting::tukey, stamps, values_of(Signal{}, stamps));
@@ -151,15 +161,18 @@ TEST(SineFitExtended, NamesWhatIsWrongWithTheInput) {
   basis = {};
   basis.drift_order = 3;
   const auto six = uneven_stamps(6);
-  EXPECT_EQ(code(fit_one(basis, Weighting::none, six, values_of(Signal{}, six))), ErrorCode::too_few_samples);
-  EXPECT_EQ(code(fit_one(basis, Weighting::none, stamps, good, "0.02")), ErrorCode::ill_conditioned);
+  EXPECT_EQ(code(fit_one(basis, Weighting::none, six, values_of(Signal{}, six))),
+            ErrorCode::too_few_samples);
+  EXPECT_EQ(code(fit_one(basis, Weighting::none, stamps, good, "0.02")),
+            ErrorCode::ill_conditioned);
   auto bad = good;
   bad[3] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(code(fit_one({}, Weighting::huber, stamps, bad)), ErrorCode::not_finite);
   auto backward = stamps;
   backward[10] = backward[9];
   EXPECT_EQ(code(fit_one({}, Weighting::none, backward, good)), ErrorCode::stamps_not_increasing);
-  EXPECT_EQ(code(fit_one({}, Weighting::none, stamps, std::vector<double>(1000, 3.0))), ErrorCode::no_excitation);
+  EXPECT_EQ(code(fit_one({}, Weighting::none, stamps, std::vector<double>(1000, 3.0))),
+            ErrorCode::no_excitation);
 }
 
 } // namespace

@@ -12,10 +12,12 @@
 namespace dyncal::analysis {
 namespace {
 
-Expected<FrequencyFit> fit_one(const std::string& start_hz, double search_rel, const std::vector<std::int64_t>& stamps,
+Expected<FrequencyFit> fit_one(const std::string& start_hz, double search_rel,
+                               const std::vector<std::int64_t>& stamps,
                                const std::vector<double>& values) {
   const std::span<const double> channels[] = {values};
-  return fit_sine_and_frequency(*Frequency::parse(start_hz), search_rel, epoch_ns, stamps, channels);
+  return fit_sine_and_frequency(*Frequency::parse(start_hz), search_rel, epoch_ns, stamps,
+                                channels);
 }
 
 double span_s(const std::vector<std::int64_t>& stamps) {
@@ -29,7 +31,9 @@ TEST(SineFrequencyFit, FindsPureSineToRounding) {
     const auto stamps = uneven_stamps(samples);
     const auto fit = fit_one("80", 1e-3, stamps, values_of(signal, stamps));
     ASSERT_TRUE(fit) << fit.error().message;
-    EXPECT_NEAR((fit->frequency.hz() - 80.013) * 2.0 * std::numbers::pi * span_s(stamps), 0.0, 1e-11) << samples;
+    EXPECT_NEAR((fit->frequency.hz() - 80.013) * 2.0 * std::numbers::pi * span_s(stamps), 0.0,
+                1e-11)
+        << samples;
     EXPECT_NEAR(fit->channels[0].amplitude(), signal.amplitude, 1e-12) << samples;
     EXPECT_NEAR(fit->channels[0].phase_rad(), signal.phase_rad, 1e-11) << samples;
   }
@@ -38,11 +42,13 @@ TEST(SineFrequencyFit, FindsPureSineToRounding) {
 TEST(SineFrequencyFit, ArrivesFromManyBinsAway) {
   Signal signal;
   const auto stamps = uneven_stamps(30'000);
-  for (const char* frequency_hz : {"79.6", "79.97", "80.0", "80.0166", "80.05", "80.2432", "80.39"}) {
+  for (const char* frequency_hz :
+       {"79.6", "79.97", "80.0", "80.0166", "80.05", "80.2432", "80.39"}) {
     signal.frequency_hz = frequency_hz;
     const auto fit = fit_one("80", 5e-3, stamps, noisy(values_of(signal, stamps), 0.1, 3));
     ASSERT_TRUE(fit) << fit.error().message;
-    EXPECT_NEAR(fit->frequency.hz(), std::stod(frequency_hz), 5.0 * fit->u_frequency_hz) << frequency_hz;
+    EXPECT_NEAR(fit->frequency.hz(), std::stod(frequency_hz), 5.0 * fit->u_frequency_hz)
+        << frequency_hz;
   }
 }
 
@@ -63,13 +69,15 @@ TEST(SineFrequencyFit, HoldsBelowThreeCyclesAndWithGaps) {
     const auto stamps = uneven_stamps(1000);
     const auto fit = fit_one("1.5", 0.9, stamps, noisy(values_of(signal, stamps), 0.01, 4));
     ASSERT_TRUE(fit) << frequency_hz << ' ' << fit.error().message;
-    EXPECT_NEAR(fit->frequency.hz(), std::stod(frequency_hz), 5.0 * fit->u_frequency_hz) << frequency_hz;
+    EXPECT_NEAR(fit->frequency.hz(), std::stod(frequency_hz), 5.0 * fit->u_frequency_hz)
+        << frequency_hz;
   }
   Signal signal;
   signal.frequency_hz = "80.12";
   auto stamps = uneven_stamps(20'000);
-  for (std::size_t i = 6000; i < stamps.size(); ++i)
+  for (std::size_t i = 6000; i < stamps.size(); ++i) {
     stamps[i] += 7'000'000'000 + (i > 13'000 ? 20'000'000'000 : 0);
+  }
   const auto fit = fit_one("80", 4e-3, stamps, noisy(values_of(signal, stamps), 0.05, 5));
   ASSERT_TRUE(fit) << fit.error().message;
   EXPECT_NEAR(fit->frequency.hz(), 80.12, 5.0 * fit->u_frequency_hz);
@@ -84,13 +92,19 @@ TEST(SineFrequencyFit, ReachesTheMinimumOfTheResiduals) {
     const std::span<const double> channels[] = {values};
     const auto fit = fit_one("80", 1e-3, stamps, values);
     ASSERT_TRUE(fit) << fit.error().message;
-    // Symmetric three-parameter fits beside the result: the vertex of the parabola is where the result says.
+    // Symmetric three-parameter fits beside the result: the vertex of the parabola is where the
+    // result says.
     const double step = 3.0 * fit->u_frequency_hz;
-    const auto rss = [&](double shift) { return fit_sine(fit->frequency.shifted_by_hz(shift), epoch_ns, stamps, channels)->front().rss; };
-    const double vertex = 0.5 * step * (rss(-step) - rss(step)) / (rss(-step) - 2.0 * rss(0.0) + rss(step));
-    EXPECT_LT(std::abs(vertex), 1e-2 * fit->u_frequency_hz) << samples; // the residuals are not quite a parabola
+    const auto rss = [&](double shift) {
+      return fit_sine(fit->frequency.shifted_by_hz(shift), epoch_ns, stamps, channels)->front().rss;
+    };
+    const double vertex =
+        0.5 * step * (rss(-step) - rss(step)) / (rss(-step) - 2.0 * rss(0.0) + rss(step));
+    EXPECT_LT(std::abs(vertex), 1e-2 * fit->u_frequency_hz)
+        << samples; // the residuals are not quite a parabola
     EXPECT_NEAR(rss(0.0) / fit->channels[0].rss, 1.0, 1e-11);
-    EXPECT_NEAR(fit_sine(fit->frequency, epoch_ns, stamps, channels)->front().sine, fit->channels[0].sine, 1e-11);
+    EXPECT_NEAR(fit_sine(fit->frequency, epoch_ns, stamps, channels)->front().sine,
+                fit->channels[0].sine, 1e-11);
   }
 }
 
@@ -103,10 +117,14 @@ TEST(SineFrequencyFit, StatesTheScatterOfItsResults) {
   int frequency_inside = 0;
   int phase_inside = 0;
   for (int trial = 0; trial < trials; ++trial) {
-    const auto fit = fit_one("80", 5e-3, stamps, noisy(clean, 0.1, static_cast<unsigned>(100 + trial)));
+    const auto fit =
+        fit_one("80", 5e-3, stamps, noisy(clean, 0.1, static_cast<unsigned>(100 + trial)));
     ASSERT_TRUE(fit) << fit.error().message;
     frequency_inside += std::abs(fit->frequency.hz() - 80.1) < 2.0 * fit->u_frequency_hz ? 1 : 0;
-    phase_inside += std::abs(fit->channels[0].phase_rad() - signal.phase_rad) < 2.0 * fit->channels[0].u_phase_rad() ? 1 : 0;
+    phase_inside += std::abs(fit->channels[0].phase_rad() - signal.phase_rad) <
+                            2.0 * fit->channels[0].u_phase_rad()
+                        ? 1
+                        : 0;
   }
   EXPECT_NEAR(static_cast<double>(frequency_inside) / trials, 0.9545, 0.02);
   EXPECT_NEAR(static_cast<double>(phase_inside) / trials, 0.9545, 0.02);
@@ -121,7 +139,8 @@ TEST(SineFrequencyFit, LetsChannelsCountByTheirNoise) {
   const auto first = noisy(values_of(good, stamps), 0.01, 1);
   const auto second = noisy(values_of(coarse, stamps), 0.01 * 16'384.0 / 1.25, 2);
   const std::span<const double> channels[] = {first, second};
-  const auto both = fit_sine_and_frequency(*Frequency::parse("80"), 1e-3, epoch_ns, stamps, channels);
+  const auto both =
+      fit_sine_and_frequency(*Frequency::parse("80"), 1e-3, epoch_ns, stamps, channels);
   const auto one = fit_one("80", 1e-3, stamps, first);
   ASSERT_TRUE(both && one);
   EXPECT_NEAR(one->u_frequency_hz / both->u_frequency_hz, std::numbers::sqrt2, 0.05);
@@ -157,8 +176,10 @@ TEST(SineFrequencyFit, NamesWhatIsWrongWithTheInput) {
   EXPECT_EQ(code(fit_one("600", 1e-3, stamps, good)), ErrorCode::frequency_out_of_range);
   EXPECT_EQ(code(fit_one("80", -1.0, stamps, good)), ErrorCode::invalid_argument);
   EXPECT_EQ(code(fit_one("80", 1.5, stamps, good)), ErrorCode::invalid_argument);
-  EXPECT_EQ(code(fit_one("80", 1e-3, stamps, std::vector<double>(2000, 5.0))), ErrorCode::ill_conditioned);
-  const ErrorCode noise = code(fit_one("80", 1e-2, stamps, noisy(std::vector<double>(2000, 0.0), 1.0, 12)));
+  EXPECT_EQ(code(fit_one("80", 1e-3, stamps, std::vector<double>(2000, 5.0))),
+            ErrorCode::ill_conditioned);
+  const ErrorCode noise =
+      code(fit_one("80", 1e-2, stamps, noisy(std::vector<double>(2000, 0.0), 1.0, 12)));
   EXPECT_TRUE(noise == ErrorCode::no_excitation || noise == ErrorCode::not_converged);
 }
 

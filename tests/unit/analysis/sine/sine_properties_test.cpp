@@ -1,4 +1,5 @@
-// What must hold of every sine approximation, tried on records that nobody thought of: bits that do not change, phases that only turn.
+// What must hold of every sine approximation, tried on records that nobody thought of: bits that do
+// not change, phases that only turn.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -24,14 +25,18 @@ DrawnRecord drawn_record() {
   DrawnRecord record;
   const auto samples = *rc::gen::inRange<int>(20, 1500);
   const auto interval_ns = *rc::gen::inRange<std::int64_t>(1'000, 5'000'000);
-  const std::int64_t jitter_ns = *rc::gen::element(std::int64_t{0}, interval_ns / 10'000, interval_ns / 100, interval_ns / 2 - 1);
+  const std::int64_t jitter_ns = *rc::gen::element(std::int64_t{0}, interval_ns / 10'000,
+                                                   interval_ns / 100, interval_ns / 2 - 1);
   const auto steps = *rc::gen::container<std::vector<std::int64_t>>(
-      static_cast<std::size_t>(samples), rc::gen::inRange<std::int64_t>(interval_ns - jitter_ns, interval_ns + jitter_ns + 1));
+      static_cast<std::size_t>(samples),
+      rc::gen::inRange<std::int64_t>(interval_ns - jitter_ns, interval_ns + jitter_ns + 1));
   const double turns_per_interval = 1e-3 * *rc::gen::inRange<int>(5, 200);
-  record.frequency = Frequency::from_hz(turns_per_interval * 1e9 / static_cast<double>(interval_ns));
+  record.frequency =
+      Frequency::from_hz(turns_per_interval * 1e9 / static_cast<double>(interval_ns));
   std::int64_t stamp_ns = epoch_ns;
   for (const std::int64_t step : steps) {
-    const double angle = 2.0 * std::numbers::pi * record.frequency.reduced_turns(stamp_ns - epoch_ns);
+    const double angle =
+        2.0 * std::numbers::pi * record.frequency.reduced_turns(stamp_ns - epoch_ns);
     const double noise = 1e-3 * *rc::gen::inRange<int>(-50, 51);
     record.stamps_ns.push_back(stamp_ns);
     record.values.push_back(3.0 * std::sin(angle + 0.4) + 0.5 + noise);
@@ -48,15 +53,18 @@ SineFit fitted(const DrawnRecord& record, std::int64_t reference_ns = epoch_ns) 
 }
 
 bool same_bits(const SineFit& a, const SineFit& b) {
-  return a.sine == b.sine && a.cosine == b.cosine && a.offset == b.offset && a.rss == b.rss && a.covariance == b.covariance;
+  return a.sine == b.sine && a.cosine == b.cosine && a.offset == b.offset && a.rss == b.rss &&
+         a.covariance == b.covariance;
 }
 
 RC_GTEST_PROP(SineProperties, LaterByAnyTimeGivesTheSameBits, ()) {
   DrawnRecord record = drawn_record();
   const SineFit before = fitted(record);
-  const auto later_ns = *rc::gen::inRange<std::int64_t>(-1'000'000'000'000'000'000, 1'000'000'000'000'000'000);
-  for (std::int64_t& stamp : record.stamps_ns)
+  const auto later_ns =
+      *rc::gen::inRange<std::int64_t>(-1'000'000'000'000'000'000, 1'000'000'000'000'000'000);
+  for (std::int64_t& stamp : record.stamps_ns) {
     stamp += later_ns;
+  }
   RC_ASSERT(same_bits(fitted(record, epoch_ns + later_ns), before));
 }
 
@@ -64,8 +72,9 @@ RC_GTEST_PROP(SineProperties, ValuesTwiceAsLargeGiveTwiceTheCoefficients, ()) {
   DrawnRecord record = drawn_record();
   const SineFit before = fitted(record);
   const double factor = std::ldexp(1.0, *rc::gen::inRange<int>(-30, 30));
-  for (double& value : record.values)
+  for (double& value : record.values) {
     value *= -factor;
+  }
   const SineFit after = fitted(record);
   RC_ASSERT(after.sine == -factor * before.sine);
   RC_ASSERT(after.cosine == -factor * before.cosine);
@@ -75,10 +84,12 @@ RC_GTEST_PROP(SineProperties, ValuesTwiceAsLargeGiveTwiceTheCoefficients, ()) {
 
 RC_GTEST_PROP(SineProperties, AnotherReferenceInstantOnlyTurnsThePhasor, ()) {
   const DrawnRecord record = drawn_record();
-  const auto later_ns = *rc::gen::inRange<std::int64_t>(0, record.stamps_ns.back() - record.stamps_ns.front());
+  const auto later_ns =
+      *rc::gen::inRange<std::int64_t>(0, record.stamps_ns.back() - record.stamps_ns.front());
   const SineFit here = fitted(record);
   const SineFit there = fitted(record, epoch_ns + later_ns);
-  const double turned = here.phase_rad() + 2.0 * std::numbers::pi * record.frequency.reduced_turns(later_ns);
+  const double turned =
+      here.phase_rad() + 2.0 * std::numbers::pi * record.frequency.reduced_turns(later_ns);
   RC_ASSERT(std::abs(std::remainder(there.phase_rad() - turned, 2.0 * std::numbers::pi)) < 1e-11);
   RC_ASSERT(std::abs(there.amplitude() / here.amplitude() - 1.0) < 1e-11);
   RC_ASSERT(std::abs(there.u_phase_rad() / here.u_phase_rad() - 1.0) < 1e-7);
@@ -87,14 +98,17 @@ RC_GTEST_PROP(SineProperties, AnotherReferenceInstantOnlyTurnsThePhasor, ()) {
 RC_GTEST_PROP(SineProperties, AStreamCutAnywhereGivesTheSameBits, ()) {
   const DrawnRecord record = drawn_record();
   const auto push = [&](SineStream& stream, std::size_t begin, std::size_t end) {
-    const std::vector<std::span<const double>> channels{std::span(record.values).subspan(begin, end - begin)};
-    RC_ASSERT(stream.push(std::span(record.stamps_ns).subspan(begin, end - begin), channels).has_value());
+    const std::vector<std::span<const double>> channels{
+        std::span(record.values).subspan(begin, end - begin)};
+    RC_ASSERT(
+        stream.push(std::span(record.stamps_ns).subspan(begin, end - begin), channels).has_value());
   };
   SineStream whole(record.frequency, 1);
   push(whole, 0, record.values.size());
   SineStream pieces(record.frequency, 1);
   for (std::size_t begin = 0; begin < record.values.size();) {
-    const std::size_t end = std::min(record.values.size(), begin + *rc::gen::inRange<std::size_t>(1, 150));
+    const std::size_t end =
+        std::min(record.values.size(), begin + *rc::gen::inRange<std::size_t>(1, 150));
     push(pieces, begin, end);
     begin = end;
   }

@@ -28,13 +28,15 @@ struct Record {
   }
   [[nodiscard]] std::vector<std::span<const double>> part(std::size_t first, std::size_t n) const {
     std::vector<std::span<const double>> channels;
-    for (const auto& one : values)
+    for (const auto& one : values) {
       channels.emplace_back(one.data() + first, n);
+    }
     return channels;
   }
 };
 
-SineStream stream_of(const Record& record, const char* frequency_hz, const std::vector<std::size_t>& cuts) {
+SineStream stream_of(const Record& record, const char* frequency_hz,
+                     const std::vector<std::size_t>& cuts) {
   SineStream stream(*Frequency::parse(frequency_hz), record.values.size());
   std::size_t first = 0;
   for (std::size_t i = 0; first < record.stamps.size(); ++i) {
@@ -52,7 +54,8 @@ TEST(SineStream, GivesTheSameBitsHoweverTheSamplesAreCut) {
   const auto fit = whole.fit(epoch_ns);
   const auto refined = whole.fit_with_frequency(1e-3, epoch_ns);
   ASSERT_TRUE(fit && refined);
-  for (const std::vector<std::size_t>& cuts : std::vector<std::vector<std::size_t>>{{1}, {64}, {63, 2}, {100, 1, 7}, {1000}}) {
+  for (const std::vector<std::size_t>& cuts :
+       std::vector<std::vector<std::size_t>>{{1}, {64}, {63, 2}, {100, 1, 7}, {1000}}) {
     const auto stream = stream_of(record, "80", cuts);
     const auto again = stream.fit(epoch_ns);
     const auto again_refined = stream.fit_with_frequency(1e-3, epoch_ns);
@@ -80,14 +83,16 @@ TEST(SineStream, DoesNotDependOnResultsTakenBetween) {
     }
   }
   EXPECT_EQ(stream.samples(), 1000U);
-  EXPECT_EQ(stream.fit(epoch_ns)->front().sine, stream_of(record, "80", {1000}).fit(epoch_ns)->front().sine);
+  EXPECT_EQ(stream.fit(epoch_ns)->front().sine,
+            stream_of(record, "80", {1000}).fit(epoch_ns)->front().sine);
 }
 
 TEST(SineStream, AgreesWithTheFitOfTheWholeRecord) {
   for (const std::size_t n : {5U, 63U, 64U, 65U, 700U, 20'000U}) {
     const Record record(n, "80", 0.01);
     const auto streamed = stream_of(record, "80", {n}).fit(epoch_ns);
-    const auto whole = fit_sine(*Frequency::parse("80"), epoch_ns, record.stamps, record.part(0, n));
+    const auto whole =
+        fit_sine(*Frequency::parse("80"), epoch_ns, record.stamps, record.part(0, n));
     ASSERT_TRUE(streamed && whole) << n;
     for (std::size_t j = 0; j < 2; ++j) {
       const double size = (*whole)[j].amplitude();
@@ -104,15 +109,21 @@ TEST(SineStream, RefinesTheFrequencyAsTheFitOfTheWholeRecordDoes) {
   for (const char* frequency_hz : {"80.0001", "80.02", "80.2432"}) {
     const Record record(10'000, frequency_hz, 0.05);
     const auto streamed = stream_of(record, "80", {777}).fit_with_frequency(5e-3, epoch_ns);
-    const auto whole = fit_sine_and_frequency(*Frequency::parse("80"), 5e-3, epoch_ns, record.stamps, record.part(0, 10'000));
+    const auto whole = fit_sine_and_frequency(*Frequency::parse("80"), 5e-3, epoch_ns,
+                                              record.stamps, record.part(0, 10'000));
     ASSERT_TRUE(streamed) << streamed.error().message;
     ASSERT_TRUE(whole) << whole.error().message;
-    EXPECT_NEAR((streamed->frequency.hz() - whole->frequency.hz()) * 2.0 * std::numbers::pi * 10.0, 0.0, 1e-10) << frequency_hz;
+    EXPECT_NEAR((streamed->frequency.hz() - whole->frequency.hz()) * 2.0 * std::numbers::pi * 10.0,
+                0.0, 1e-10)
+        << frequency_hz;
     EXPECT_NEAR(streamed->u_frequency_hz / whole->u_frequency_hz, 1.0, 1e-9);
     for (std::size_t j = 0; j < 2; ++j) {
-      EXPECT_NEAR(streamed->channels[j].amplitude() / whole->channels[j].amplitude(), 1.0, 1e-11) << frequency_hz;
-      EXPECT_NEAR(streamed->channels[j].phase_rad(), whole->channels[j].phase_rad(), 1e-10) << frequency_hz;
-      EXPECT_NEAR(streamed->channels[j].u_phase_rad() / whole->channels[j].u_phase_rad(), 1.0, 1e-9) << frequency_hz;
+      EXPECT_NEAR(streamed->channels[j].amplitude() / whole->channels[j].amplitude(), 1.0, 1e-11)
+          << frequency_hz;
+      EXPECT_NEAR(streamed->channels[j].phase_rad(), whole->channels[j].phase_rad(), 1e-10)
+          << frequency_hz;
+      EXPECT_NEAR(streamed->channels[j].u_phase_rad() / whole->channels[j].u_phase_rad(), 1.0, 1e-9)
+          << frequency_hz;
       EXPECT_NEAR(streamed->channels[j].rss / whole->channels[j].rss, 1.0, 1e-9) << frequency_hz;
     }
   }
@@ -120,8 +131,9 @@ TEST(SineStream, RefinesTheFrequencyAsTheFitOfTheWholeRecordDoes) {
 
 TEST(SineStream, EndsBlocksAtGaps) {
   Record record(10'000, "80.05", 0.05);
-  for (std::size_t i = 3333; i < record.stamps.size(); ++i)
+  for (std::size_t i = 3333; i < record.stamps.size(); ++i) {
     record.stamps[i] += 11'000'000'000;
+  }
   Signal signal;
   signal.frequency_hz = "80.05";
   record.values[0] = noisy(values_of(signal, record.stamps), 0.05, 3);
@@ -152,12 +164,16 @@ TEST(SineStream, RefusesBadSamplesAndStaysAsItWas) {
 
   Record bad = record;
   bad.values[1][700] = std::nan("");
-  EXPECT_EQ(stream.push({bad.stamps.data() + 500, 500}, bad.part(500, 500)).error().code, ErrorCode::not_finite);
+  EXPECT_EQ(stream.push({bad.stamps.data() + 500, 500}, bad.part(500, 500)).error().code,
+            ErrorCode::not_finite);
   bad = record;
   bad.stamps[800] = bad.stamps[799];
-  EXPECT_EQ(stream.push({bad.stamps.data() + 500, 500}, bad.part(500, 500)).error().code, ErrorCode::stamps_not_increasing);
-  EXPECT_EQ(stream.push({record.stamps.data() + 499, 1}, record.part(499, 1)).error().code, ErrorCode::stamps_not_increasing);
-  EXPECT_EQ(stream.push({record.stamps.data() + 500, 2}, record.part(500, 1)).error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(stream.push({bad.stamps.data() + 500, 500}, bad.part(500, 500)).error().code,
+            ErrorCode::stamps_not_increasing);
+  EXPECT_EQ(stream.push({record.stamps.data() + 499, 1}, record.part(499, 1)).error().code,
+            ErrorCode::stamps_not_increasing);
+  EXPECT_EQ(stream.push({record.stamps.data() + 500, 2}, record.part(500, 1)).error().code,
+            ErrorCode::invalid_argument);
 
   ASSERT_TRUE(stream.push({record.stamps.data() + 500, 500}, record.part(500, 500)));
   EXPECT_EQ(stream.fit(epoch_ns)->front().sine, clean->front().sine);

@@ -45,12 +45,18 @@ Stream record(const std::vector<Part>& parts, const Recorder& recorder) {
     stream.begins_ns.push_back(recorder.epoch_ns + std::llround(begin_s * 1e9));
     for (;; ++i) {
       const double t = static_cast<double>(i) / recorder.rate_hz - begin_s;
-      if (t >= part.duration_s) break;
+      if (t >= part.duration_s) {
+        break;
+      }
       const double rise = part.rise_s > 0.0 ? 1.0 - std::exp(-t / part.rise_s) : 1.0;
       double y = recorder.offset + noise(random) +
-                 rise * part.amplitude * std::sin(2.0 * std::numbers::pi * part.frequency_hz * t + part.phase_rad);
-      if (recorder.step > 0.0) y = recorder.step * std::round(y / recorder.step);
-      stream.stamps_ns.push_back(recorder.epoch_ns + std::llround(static_cast<double>(i) / recorder.rate_hz * 1e9));
+                 rise * part.amplitude *
+                     std::sin(2.0 * std::numbers::pi * part.frequency_hz * t + part.phase_rad);
+      if (recorder.step > 0.0) {
+        y = recorder.step * std::round(y / recorder.step);
+      }
+      stream.stamps_ns.push_back(recorder.epoch_ns +
+                                 std::llround(static_cast<double>(i) / recorder.rate_hz * 1e9));
       stream.values.push_back(y);
     }
     begin_s += part.duration_s;
@@ -63,7 +69,8 @@ Frequency hz(double value) {
   return Frequency::from_hz(value);
 }
 
-std::optional<ExcitationWindow> search(const Stream& stream, double frequency_hz, std::size_t first = 0) {
+std::optional<ExcitationWindow> search(const Stream& stream, double frequency_hz,
+                                       std::size_t first = 0) {
   ExcitationWindowFinder finder(hz(frequency_hz));
   finder.push(std::span(stream.stamps_ns).subspan(first), std::span(stream.values).subspan(first));
   finder.finish();
@@ -71,7 +78,8 @@ std::optional<ExcitationWindow> search(const Stream& stream, double frequency_hz
 }
 
 // Inside part `k`, and no more than two frames shorter at either end.
-void expect_within_part(const ExcitationWindow& window, const Stream& stream, std::size_t k, double frequency_hz) {
+void expect_within_part(const ExcitationWindow& window, const Stream& stream, std::size_t k,
+                        double frequency_hz) {
   const std::int64_t frame_ns = ExcitationWindowFinder(hz(frequency_hz)).frame_ns();
   EXPECT_GE(window.begin_ns, stream.begins_ns[k]) << k;
   EXPECT_LE(window.end_ns, stream.begins_ns[k + 1]) << k;
@@ -94,8 +102,9 @@ TEST(ExcitationWindow, FindsEveryStepOfARunWithNeighbouringFrequencies) {
     const auto window = search(stream, plan[step], first);
     ASSERT_TRUE(window.has_value()) << step;
     expect_within_part(*window, stream, 2 * step + 1, plan[step]);
-    while (stream.stamps_ns[first] < window->off_ns)
+    while (stream.stamps_ns[first] < window->off_ns) {
       ++first;
+    }
   }
 }
 
@@ -107,7 +116,8 @@ TEST(ExcitationWindow, IsTheSameHoweverTheStreamWasCut) {
     ExcitationWindowFinder finder(hz(80.0));
     for (std::size_t i = 0; i < stream.values.size(); i += piece) {
       const std::size_t n = std::min(piece, stream.values.size() - i);
-      finder.push(std::span(stream.stamps_ns).subspan(i, n), std::span(stream.values).subspan(i, n));
+      finder.push(std::span(stream.stamps_ns).subspan(i, n),
+                  std::span(stream.values).subspan(i, n));
     }
     finder.finish();
     const auto cut = finder.window();
@@ -124,7 +134,8 @@ TEST(ExcitationWindow, GrowsWhileTheSineGoesOnAndEndsWithIt) {
   ExcitationWindowFinder finder(hz(40.0));
   std::int64_t end_ns = 0;
   for (std::size_t i = 0; i < 36000; i += 1000) {
-    finder.push(std::span(stream.stamps_ns).subspan(i, 1000), std::span(stream.values).subspan(i, 1000));
+    finder.push(std::span(stream.stamps_ns).subspan(i, 1000),
+                std::span(stream.values).subspan(i, 1000));
     EXPECT_FALSE(finder.ended());
     if (const auto window = finder.window()) {
       EXPECT_GE(window->end_ns, end_ns);
@@ -160,7 +171,8 @@ TEST(ExcitationWindow, HoldsFromOneHertzToTenKilohertz) {
 TEST(ExcitationWindow, HoldsForSensorRatesUpToNearHalfOfThem) {
   for (const double f : {10.0, 80.0, 200.0, 250.0, 440.0, 490.0}) {
     const Stream stream =
-        record({{0, 0, 0.4}, {f, 0.166, 3.0}, {0, 0, 0.4}}, {.rate_hz = 1003.049, .offset = 1.5, .step = 4.88e-3, .noise = 4.88e-3});
+        record({{0, 0, 0.4}, {f, 0.166, 3.0}, {0, 0, 0.4}},
+               {.rate_hz = 1003.049, .offset = 1.5, .step = 4.88e-3, .noise = 4.88e-3});
     const auto window = search(stream, f);
     ASSERT_TRUE(window.has_value()) << f;
     expect_within_part(*window, stream, 1, f);
@@ -168,46 +180,53 @@ TEST(ExcitationWindow, HoldsForSensorRatesUpToNearHalfOfThem) {
 }
 
 TEST(ExcitationWindow, SeesASineOfAFewConverterSteps) {
-  const Stream stream =
-      record({{0, 0, 0.4}, {20.0, 0.02, 3.0}, {0, 0, 0.4}}, {.rate_hz = 1000.0, .offset = 1.5, .step = 4.88e-3, .noise = 2e-3});
+  const Stream stream = record({{0, 0, 0.4}, {20.0, 0.02, 3.0}, {0, 0, 0.4}},
+                               {.rate_hz = 1000.0, .offset = 1.5, .step = 4.88e-3, .noise = 2e-3});
   const auto window = search(stream, 20.0);
   ASSERT_TRUE(window.has_value());
   expect_within_part(*window, stream, 1, 20.0);
 }
 
 TEST(ExcitationWindow, FollowsAGeneratorThatIsOffByAThousandth) {
-  for (const double f : {1.0, 50.0, 10000.0})
+  for (const double f : {1.0, 50.0, 10000.0}) {
     for (const double offset : {-1e-3, 1e-3}) {
-      const Stream stream = record({{0, 0, 0.5}, {f * (1.0 + offset), 1.0, 5.0}, {0, 0, 1.5}}, {.rate_hz = 50000.0});
+      const Stream stream =
+          record({{0, 0, 0.5}, {f * (1.0 + offset), 1.0, 5.0}, {0, 0, 1.5}}, {.rate_hz = 50000.0});
       const auto window = search(stream, f);
       ASSERT_TRUE(window.has_value()) << f;
       expect_within_part(*window, stream, 1, f);
       EXPECT_NEAR(window->frequency_offset_rel, offset, 2e-5);
     }
+  }
 }
 
 TEST(ExcitationWindow, LeavesOutTheRiseOfTheAmplitude) {
   const Stream stream = record({{0, 0, 0.5}, {80.0, 1.0, 4.0, 0.0, 0.3}, {0, 0, 0.5}}, {});
   const auto window = search(stream, 80.0);
   ASSERT_TRUE(window.has_value());
-  EXPECT_GE(window->begin_ns, stream.begins_ns[1] + 9 * second_ns / 10); // 5 % are left after three time constants
+  EXPECT_GE(window->begin_ns,
+            stream.begins_ns[1] + 9 * second_ns / 10); // 5 % are left after three time constants
   EXPECT_LE(window->begin_ns, stream.begins_ns[1] + 13 * second_ns / 10);
   EXPECT_LE(window->excited_begin_ns, stream.begins_ns[1] + 2 * second_ns / 10);
   EXPECT_LE(window->end_ns, stream.begins_ns[2]);
 }
 
 TEST(ExcitationWindow, KeepsStepsOfTheSameFrequencyApart) {
-  for (const double f : {1.0, 5.0, 10.0, 160.0})
+  for (const double f : {1.0, 5.0, 10.0, 160.0}) {
     for (const double phase : {0.0, 0.7, 1.5, 2.2}) {
-      // The generator only gates its output: the second step goes on as if the first had never stopped.
+      // The generator only gates its output: the second step goes on as if the first had never
+      // stopped.
       const double off_s = 0.2;
       const double on_s = 5.0;
       const double later = phase + 2.0 * std::numbers::pi * f * (on_s + off_s);
-      const Stream stream = record({{f, 1.0, on_s, phase}, {0, 0, off_s}, {f, 1.0, on_s, later}, {0, 0, 1.2}}, {.rate_hz = 5000.0});
+      const Stream stream =
+          record({{f, 1.0, on_s, phase}, {0, 0, off_s}, {f, 1.0, on_s, later}, {0, 0, 1.2}},
+                 {.rate_hz = 5000.0});
       const auto window = search(stream, f);
       ASSERT_TRUE(window.has_value()) << f;
       expect_within_part(*window, stream, 0, f);
     }
+  }
 }
 
 TEST(ExcitationWindow, FindsNothingInNoiseOrInAnotherSine) {
@@ -216,7 +235,9 @@ TEST(ExcitationWindow, FindsNothingInNoiseOrInAnotherSine) {
   EXPECT_FALSE(search(record({{53.3, 1.0, 10.0}}, {}), 50.0));
   EXPECT_FALSE(search(record({{12.5, 1.0, 10.0}}, {}), 10.0));
   EXPECT_FALSE(search(record({{1.25, 1.0, 10.0}}, {}), 1.0));
-  EXPECT_FALSE(search(record({{0, 0, 10.0}}, {.rate_hz = 1000.0, .offset = 1.5, .step = 4.88e-3, .noise = 0.0}), 80.0));
+  EXPECT_FALSE(search(
+      record({{0, 0, 10.0}}, {.rate_hz = 1000.0, .offset = 1.5, .step = 4.88e-3, .noise = 0.0}),
+      80.0));
 }
 
 TEST(ExcitationWindow, LeavesOutSamplesThatCannotBe) {

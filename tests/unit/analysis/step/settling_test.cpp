@@ -15,7 +15,8 @@ struct Record {
   std::vector<double> values;
 };
 
-// 80 Hz whose amplitude lacks `missing` exp(-t / tau) and whose phase is off by the same; 4 s at 5 kS/s.
+// 80 Hz whose amplitude lacks `missing` exp(-t / tau) and whose phase is off by the same; 4 s at 5
+// kS/s.
 Record record(double missing, double tau_s, double noise, double duration_s = 4.0) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
@@ -24,7 +25,8 @@ Record record(double missing, double tau_s, double noise, double duration_s = 4.
     const double t = i * 2e-4;
     const double rest = missing * std::exp(-t / tau_s);
     result.stamps_ns.push_back(200'000ll * i);
-    result.values.push_back((1.0 - rest) * std::sin(2.0 * std::numbers::pi * 80.0 * t + rest) + noise * normal(random));
+    result.values.push_back((1.0 - rest) * std::sin(2.0 * std::numbers::pi * 80.0 * t + rest) +
+                            noise * normal(random));
   }
   return result;
 }
@@ -39,7 +41,8 @@ TEST(Settling, ASteadyRecordIsUsedWhole) {
 
 TEST(Settling, CutsOffAFirstOrderApproachWhereItNoLongerCounts) {
   const Record settling = record(0.5, 0.15, 1e-5);
-  const auto result = find_settling(*Frequency::parse("80"), settling.stamps_ns, settling.values, {.tolerance_rel = 1e-4});
+  const auto result = find_settling(*Frequency::parse("80"), settling.stamps_ns, settling.values,
+                                    {.tolerance_rel = 1e-4});
   ASSERT_TRUE(result.has_value()) << result.error().message;
   const double expected = 0.15 * std::log(0.5 * std::sqrt(2.0) / 1e-4);
   EXPECT_NEAR(result->settling_s, expected, 0.1);
@@ -56,9 +59,12 @@ TEST(Settling, NoiseHidesASmallRest) {
 
 TEST(Settling, SaysSoWhenTheRecordNeverSettles) {
   const Record drifting = record(0.5, 10.0, 1e-5);
-  EXPECT_EQ(find_settling(*Frequency::parse("80"), drifting.stamps_ns, drifting.values).error().code, ErrorCode::not_converged);
+  EXPECT_EQ(
+      find_settling(*Frequency::parse("80"), drifting.stamps_ns, drifting.values).error().code,
+      ErrorCode::not_converged);
   const Record brief = record(0.0, 1.0, 1e-5, 0.05);
-  EXPECT_EQ(find_settling(*Frequency::parse("80"), brief.stamps_ns, brief.values).error().code, ErrorCode::too_few_samples);
+  EXPECT_EQ(find_settling(*Frequency::parse("80"), brief.stamps_ns, brief.values).error().code,
+            ErrorCode::too_few_samples);
 }
 
 } // namespace

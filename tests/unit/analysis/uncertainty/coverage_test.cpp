@@ -24,11 +24,13 @@ TEST(Coverage, MeetsTheTableOfTheGum) {
   EXPECT_NEAR(coverage_factor(9.0, 0.95), 2.2621571627982055, 1e-12);
 }
 
-// With two degrees of freedom the distribution has a closed form: F(t) = 1/2 + t / (2 sqrt(2 + t^2)).
+// With two degrees of freedom the distribution has a closed form: F(t) = 1/2 + t / (2 sqrt(2 +
+// t^2)).
 TEST(Coverage, StudentsDistributionHasItsClosedForms) {
   for (const double t : {-5.0, -0.3, 0.0, 0.7, 12.0}) {
     EXPECT_NEAR(student_probability(t, 2.0), 0.5 + t / (2.0 * std::sqrt(2.0 + t * t)), 1e-14) << t;
-    EXPECT_NEAR(student_probability(t, 1.0), 0.5 + std::atan(t) / 3.14159265358979323846, 1e-14) << t;
+    EXPECT_NEAR(student_probability(t, 1.0), 0.5 + std::atan(t) / 3.14159265358979323846, 1e-14)
+        << t;
   }
 }
 

@@ -17,12 +17,15 @@ TEST(Uncertainty, HalfWidthsBecomeStandardDeviations) {
 
 // GUM H.1, end gauges: u_c = 32 nm, nu_eff = 16.
 TEST(Uncertainty, MeetsTheEndGaugeExampleOfTheGum) {
-  const std::array inputs{InputQuantity{.name = "standard", .u = 25.0, .degrees_of_freedom = 18.0},
-                          InputQuantity{.name = "repeated observations", .u = 5.8, .degrees_of_freedom = 24.0},
-                          InputQuantity{.name = "random effects of the comparator", .u = 3.9, .degrees_of_freedom = 5.0},
-                          InputQuantity{.name = "systematic effects of the comparator", .u = 6.7, .degrees_of_freedom = 8.0},
-                          InputQuantity{.name = "difference of expansion", .u = 2.9, .degrees_of_freedom = 50.0},
-                          InputQuantity{.name = "difference of temperatures", .u = 16.6, .degrees_of_freedom = 2.0}};
+  const std::array inputs{
+      InputQuantity{.name = "standard", .u = 25.0, .degrees_of_freedom = 18.0},
+      InputQuantity{.name = "repeated observations", .u = 5.8, .degrees_of_freedom = 24.0},
+      InputQuantity{
+          .name = "random effects of the comparator", .u = 3.9, .degrees_of_freedom = 5.0},
+      InputQuantity{
+          .name = "systematic effects of the comparator", .u = 6.7, .degrees_of_freedom = 8.0},
+      InputQuantity{.name = "difference of expansion", .u = 2.9, .degrees_of_freedom = 50.0},
+      InputQuantity{.name = "difference of temperatures", .u = 16.6, .degrees_of_freedom = 2.0}};
   const auto result = propagate_uncertainty(inputs);
   ASSERT_TRUE(result.has_value());
   EXPECT_NEAR(result->u, 32.0, 0.5);
@@ -34,7 +37,8 @@ TEST(Uncertainty, FullCorrelationAddsOrCancels) {
   const std::array inputs{InputQuantity{.name = "a", .u = 3.0, .sensitivity = 1.0},
                           InputQuantity{.name = "b", .u = 3.0, .sensitivity = -1.0}};
   const std::array same{InputCorrelation{0, 1, 1.0}}, opposite{InputCorrelation{0, 1, -1.0}};
-  EXPECT_NEAR(propagate_uncertainty(inputs, same)->u, 0.0, 1e-12); // a common error leaves no trace in a difference
+  EXPECT_NEAR(propagate_uncertainty(inputs, same)->u, 0.0,
+              1e-12); // a common error leaves no trace in a difference
   EXPECT_NEAR(propagate_uncertainty(inputs, opposite)->u, 6.0, 1e-12);
   EXPECT_NEAR(propagate_uncertainty(inputs)->u, std::sqrt(18.0), 1e-12);
 }
@@ -42,8 +46,10 @@ TEST(Uncertainty, FullCorrelationAddsOrCancels) {
 TEST(Uncertainty, RefusesWhatCannotBe) {
   const std::array negative{InputQuantity{.name = "a", .u = -1.0}};
   EXPECT_FALSE(propagate_uncertainty(negative).has_value());
-  const std::array three{InputQuantity{.name = "a", .u = 1.0}, InputQuantity{.name = "b", .u = 1.0}, InputQuantity{.name = "c", .u = 1.0}};
-  const std::array contradiction{InputCorrelation{0, 1, -1.0}, InputCorrelation{1, 2, -1.0}, InputCorrelation{0, 2, -1.0}};
+  const std::array three{InputQuantity{.name = "a", .u = 1.0}, InputQuantity{.name = "b", .u = 1.0},
+                         InputQuantity{.name = "c", .u = 1.0}};
+  const std::array contradiction{InputCorrelation{0, 1, -1.0}, InputCorrelation{1, 2, -1.0},
+                                 InputCorrelation{0, 2, -1.0}};
   EXPECT_FALSE(propagate_uncertainty(three, contradiction).has_value());
   const std::array missing{InputCorrelation{0, 7, 0.1}}, large{InputCorrelation{0, 1, 1.1}};
   EXPECT_FALSE(propagate_uncertainty(three, missing).has_value());

@@ -14,12 +14,14 @@ namespace {
 
 double sum(std::span<const double> inputs) {
   double result = 0.0;
-  for (const double input : inputs)
+  for (const double input : inputs) {
     result += input;
+  }
   return result;
 }
 
-// JCGM 101, 9.2.2 and 9.2.3: four normal, then four rectangular inputs of unit standard uncertainty.
+// JCGM 101, 9.2.2 and 9.2.3: four normal, then four rectangular inputs of unit standard
+// uncertainty.
 TEST(MonteCarlo, MeetsTheAdditiveModelOfJcgm101) {
   std::vector<InputQuantity> inputs(4, InputQuantity{.name = "x", .u = 1.0});
   const auto normal = propagate_distributions(inputs, {}, sum, {.probability = 0.95});
@@ -28,8 +30,9 @@ TEST(MonteCarlo, MeetsTheAdditiveModelOfJcgm101) {
   EXPECT_NEAR(normal->low, -3.92, 0.08);
   EXPECT_NEAR(normal->high, 3.92, 0.08);
   EXPECT_TRUE(normal->stable);
-  for (InputQuantity& input : inputs)
+  for (InputQuantity& input : inputs) {
     input.distribution = Distribution::rectangular;
+  }
   const auto rectangular = propagate_distributions(inputs, {}, sum, {.probability = 0.95});
   ASSERT_TRUE(rectangular.has_value());
   EXPECT_NEAR(rectangular->u, 2.0, 0.04);
@@ -37,9 +40,11 @@ TEST(MonteCarlo, MeetsTheAdditiveModelOfJcgm101) {
 }
 
 TEST(MonteCarlo, DrawsCorrelatedInputsTogether) {
-  const std::array inputs{InputQuantity{.name = "a", .u = 1.0}, InputQuantity{.name = "b", .u = 1.0}};
+  const std::array inputs{InputQuantity{.name = "a", .u = 1.0},
+                          InputQuantity{.name = "b", .u = 1.0}};
   const std::array correlations{InputCorrelation{0, 1, 0.8}};
-  const auto result = propagate_distributions(inputs, correlations, [](auto x) { return x[0] - x[1]; });
+  const auto result =
+      propagate_distributions(inputs, correlations, [](auto x) { return x[0] - x[1]; });
   ASSERT_TRUE(result.has_value());
   EXPECT_NEAR(result->u, std::sqrt(2.0 - 1.6), 0.01);
 }
@@ -62,12 +67,14 @@ TEST(MonteCarlo, SameSeedGivesTheSameNumbers) {
 }
 
 TEST(MonteCarlo, SaysWhatItCannotDraw) {
-  const std::array inputs{InputQuantity{.name = "a", .u = 1.0},
-                          InputQuantity{.name = "b", .u = 1.0, .distribution = Distribution::rectangular}};
+  const std::array inputs{
+      InputQuantity{.name = "a", .u = 1.0},
+      InputQuantity{.name = "b", .u = 1.0, .distribution = Distribution::rectangular}};
   const std::array correlations{InputCorrelation{0, 1, 0.5}};
   EXPECT_FALSE(propagate_distributions(inputs, correlations, sum).has_value());
   const std::array zero{InputQuantity{.name = "a", .u = 0.0}};
-  EXPECT_EQ(propagate_distributions(zero, {}, [](auto x) { return 1.0 / x[0]; }).error().code, ErrorCode::not_finite);
+  EXPECT_EQ(propagate_distributions(zero, {}, [](auto x) { return 1.0 / x[0]; }).error().code,
+            ErrorCode::not_finite);
 }
 
 struct Records {

@@ -13,8 +13,8 @@ namespace {
 using testing::HasSubstr;
 
 std::string description(const std::string& values, int rate_hz) {
-  return R"({"protocol":"dyncal-acs-stream","version":1,"sample_rate_hz":{"numerator":)" + std::to_string(rate_hz) +
-         R"(,"denominator":1},"origin_ns":1000,"values":")" + values +
+  return R"({"protocol":"dyncal-acs-stream","version":1,"sample_rate_hz":{"numerator":)" +
+         std::to_string(rate_hz) + R"(,"denominator":1},"origin_ns":1000,"values":")" + values +
          R"(","channels":[{"name":"reference","unit":"\\metre\\second\\tothe{-2}","scale":0.5},{"name":"sync","unit":"\\volt","scale":0.25}]})"
          "\n";
 }
@@ -44,7 +44,8 @@ const std::string end_of_stream = frame<std::int32_t>(0, 0);
 
 TEST(SocketAcs, TurnsCountsIntoUnitsAndFramesIntoBlocks) {
   const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
-    client.say(description("int32", 1000) + frame<std::int32_t>(40, 50) + frame<std::int32_t>(90, 30) + end_of_stream);
+    client.say(description("int32", 1000) + frame<std::int32_t>(40, 50) +
+               frame<std::int32_t>(90, 30) + end_of_stream);
     static_cast<void>(client.hear());
   });
   SocketAcs acs({instrument.address()});
@@ -63,9 +64,11 @@ TEST(SocketAcs, TurnsCountsIntoUnitsAndFramesIntoBlocks) {
 
 TEST(SocketAcs, ReadsTheFrameOfTheReadme) {
   const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
-    const unsigned char bytes[] = {0x41, 0x43, 0x53, 0x46, 2,    0,    0,    0,    0xe8, 3, 0, 0, 0,    0,    0,    0,
-                                    3,    0,    0,    0,    0xff, 0xff, 0xff, 0xff, 4,    0, 0, 0, 0xfe, 0xff, 0xff, 0xff};
-    client.say(description("int32", 1000) + std::string(reinterpret_cast<const char*>(bytes), sizeof(bytes)) + end_of_stream);
+    const unsigned char bytes[] = {0x41, 0x43, 0x53, 0x46, 2, 0, 0,    0,    0xe8, 3,    0,
+                                   0,    0,    0,    0,    0, 3, 0,    0,    0,    0xff, 0xff,
+                                   0xff, 0xff, 4,    0,    0, 0, 0xfe, 0xff, 0xff, 0xff};
+    client.say(description("int32", 1000) +
+               std::string(reinterpret_cast<const char*>(bytes), sizeof(bytes)) + end_of_stream);
     static_cast<void>(client.hear());
   });
   SocketAcs acs({instrument.address()});
@@ -99,7 +102,8 @@ TEST(SocketAcs, JoinsShortFramesAndKeepsFloat64Exactly) {
 
 TEST(SocketAcs, ShowsSamplesThatTheInstrumentLostAsAGap) {
   const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
-    client.say(description("int32", 1000) + frame<std::int32_t>(0, 10) + frame<std::int32_t>(15, 10) + end_of_stream);
+    client.say(description("int32", 1000) + frame<std::int32_t>(0, 10) +
+               frame<std::int32_t>(15, 10) + end_of_stream);
     static_cast<void>(client.hear());
   });
   SocketAcs acs({instrument.address()});

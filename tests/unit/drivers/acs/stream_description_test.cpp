@@ -38,13 +38,15 @@ TEST(StreamDescription, NamesTheMemberThatIsWrong) {
       {with("dyncal-acs-stream", "other"), "'protocol' must be"},
       {with(R"("origin_ns":-5,)", ""), "'origin_ns' is missing"},
       {with("-5", "-5.5"), "'origin_ns' has the wrong type"},
-      {with(R"("numerator":51200)", R"("numerator":0)"), "'sample_rate_hz.numerator' and denominator must be positive"},
+      {with(R"("numerator":51200)", R"("numerator":0)"),
+       "'sample_rate_hz.numerator' and denominator must be positive"},
       {with("int32", "int16"), "'values' must be"},
       {with(R"("utc")", R"("tai")"), "'time_base' must be"},
       {with(R"("scale":0.5,)", ""), "'channels[0].scale' is missing"},
       {with("0.5", "-0.5"), "'channels[0].scale' must be above 0"},
       {with(R"("name":"reference",)", ""), "'channels[0].name' is missing"},
-      {with(R"({"name":"reference","unit":"\\volt","scale":0.5,"minimum":-1,"maximum":1})", ""), "'channels' must list 1 to 64"},
+      {with(R"({"name":"reference","unit":"\\volt","scale":0.5,"minimum":-1,"maximum":1})", ""),
+       "'channels' must list 1 to 64"},
   };
   for (const auto& [line, message] : cases) {
     const auto stream = parse_stream_description(line);

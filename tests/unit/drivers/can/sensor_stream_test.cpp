@@ -18,30 +18,36 @@ using ::testing::HasSubstr;
 
 constexpr std::int64_t epoch_ns = 1'700'000'000'000'000'000;
 
-const std::string sensor_dbc =
-    "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n SG_ counter : 16|8@1+ (1,0) [0|0] \"\" S\n"
-    "BO_ 292 Second: 8 S\n SG_ y : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n SG_ counter : 16|8@1+ (1,0) [0|0] \"\" S\n";
+const std::string sensor_dbc = "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n "
+                               "SG_ counter : 16|8@1+ (1,0) [0|0] \"\" S\n"
+                               "BO_ 292 Second: 8 S\n SG_ y : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n "
+                               "SG_ counter : 16|8@1+ (1,0) [0|0] \"\" S\n";
 
 struct Collected : SampleSink {
   std::vector<SourceDescription> descriptions;
   std::vector<SampleBlock> blocks;
   int restarts = 0;
 
-  void describe(const SourceDescription& description) override { descriptions.push_back(description); }
+  void describe(const SourceDescription& description) override {
+    descriptions.push_back(description);
+  }
   void restart() override { ++restarts; }
   void take(SampleBlock block) override { blocks.push_back(std::move(block)); }
 
   [[nodiscard]] std::vector<std::uint64_t> numbers() const {
     std::vector<std::uint64_t> all;
-    for (const SampleBlock& block : blocks)
-      for (std::size_t i = 0; i < block.samples; ++i)
+    for (const SampleBlock& block : blocks) {
+      for (std::size_t i = 0; i < block.samples; ++i) {
         all.push_back(block.first_sample + i);
+      }
+    }
     return all;
   }
   [[nodiscard]] std::vector<std::int64_t> stamps_ns() const {
     std::vector<std::int64_t> all;
-    for (const SampleBlock& block : blocks)
+    for (const SampleBlock& block : blocks) {
       all.insert(all.end(), block.stamps_ns.begin(), block.stamps_ns.end());
+    }
     return all;
   }
 };
@@ -66,7 +72,8 @@ SensorSettings one_message() {
   return settings;
 }
 
-std::unique_ptr<SensorStream> stream_of(SensorSettings settings, const std::string& dbc = sensor_dbc) {
+std::unique_ptr<SensorStream> stream_of(SensorSettings settings,
+                                        const std::string& dbc = sensor_dbc) {
   auto stream = SensorStream::create(std::move(settings), *parse_dbc(dbc, "sensor.dbc"));
   EXPECT_TRUE(stream) << stream.error().message;
   return std::move(*stream);
@@ -79,10 +86,12 @@ LinkState link() {
   return state;
 }
 
-// Frame number k of a 1 kHz sensor, received without delay: the kernel's stamp is the end of the frame.
+// Frame number k of a 1 kHz sensor, received without delay: the kernel's stamp is the end of the
+// frame.
 CanFrame on_time(int k, int value = 0) {
   CanFrame frame = sample_frame(291, value, k);
-  frame.kernel_ns = epoch_ns + k * 1'000'000LL + std::llround(frame_duration_s(frame, {1e6, 0.0}) * 1e9);
+  frame.kernel_ns =
+      epoch_ns + k * 1'000'000LL + std::llround(frame_duration_s(frame, {1e6, 0.0}) * 1e9);
   return frame;
 }
 
@@ -90,13 +99,15 @@ TEST(SensorStream, StampsTheStartOfFrameOfEverySample) {
   const auto stream = stream_of(one_message());
   Collected collected;
   ASSERT_TRUE(stream->begin(link(), collected));
-  for (int k = 0; k < 3000; ++k)
+  for (int k = 0; k < 3000; ++k) {
     ASSERT_TRUE(stream->take(on_time(k, k % 7), collected));
+  }
   stream->finish(collected);
   const auto stamps = collected.stamps_ns();
   ASSERT_EQ(stamps.size(), 3000U);
-  for (std::size_t k = 0; k < stamps.size(); ++k)
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
     EXPECT_NEAR(static_cast<double>(stamps[k] - epoch_ns), static_cast<double>(k) * 1e6, 2.0);
+  }
   EXPECT_EQ(collected.descriptions.front().stamp_instant, StampInstant::frame_start);
   EXPECT_THAT(collected.descriptions.front().driver, HasSubstr("time by counter"));
   EXPECT_DOUBLE_EQ(collected.descriptions.front().channels.at(0).resolution, 0.01);
@@ -110,10 +121,12 @@ TEST(SensorStream, IsLateByTheFrameDurationWithoutItsCorrection) {
   const auto stream = stream_of(settings);
   Collected collected;
   ASSERT_TRUE(stream->begin(link(), collected));
-  for (int k = 0; k < 3000; ++k)
+  for (int k = 0; k < 3000; ++k) {
     ASSERT_TRUE(stream->take(on_time(k, k % 7), collected));
+  }
   stream->finish(collected);
-  const double late_s = static_cast<double>(collected.stamps_ns().back() - epoch_ns - 2'999'000'000) * 1e-9;
+  const double late_s =
+      static_cast<double>(collected.stamps_ns().back() - epoch_ns - 2'999'000'000) * 1e-9;
   EXPECT_GT(late_s, 108e-6);
   EXPECT_LT(late_s, 125e-6);
 }
@@ -124,8 +137,12 @@ TEST(SensorStream, NumbersEveryLostSampleByTheCounterAcrossItsRange) {
   ASSERT_TRUE(stream->begin(link(), collected));
   std::uint64_t kept = 0;
   for (int k = 0; k < 6000; ++k) {
-    const bool lost = (k >= 1500 && k < 1503) || (k >= 2000 && k < 3300); // the second pause is longer than the counter's range of 256
-    if (lost) continue;
+    const bool lost =
+        (k >= 1500 && k < 1503) ||
+        (k >= 2000 && k < 3300); // the second pause is longer than the counter's range of 256
+    if (lost) {
+      continue;
+    }
     ++kept;
     ASSERT_TRUE(stream->take(on_time(k), collected));
   }
@@ -150,8 +167,10 @@ TEST(SensorStream, LeavesOutWhatFramesWaitForTheBus) {
   stream->finish(collected);
   const auto stamps = collected.stamps_ns();
   double worst_ns = 0.0;
-  for (std::size_t k = 2000; k < stamps.size(); ++k)
-    worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k] - epoch_ns) - static_cast<double>(k) * 1e6));
+  for (std::size_t k = 2000; k < stamps.size(); ++k) {
+    worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k] - epoch_ns) -
+                                           static_cast<double>(k) * 1e6));
+  }
   EXPECT_LT(worst_ns, 200.0);
 }
 
@@ -162,11 +181,14 @@ TEST(SensorStream, JoinsFramesByTheirCounterHoweverTheyCome) {
   Collected collected;
   ASSERT_TRUE(stream->begin(link(), collected));
   for (int k = 0; k < 2000; k += 2) { // the frames of two neighbouring samples change places
-    for (const auto& [id, counter] : {std::pair(292U, k), std::pair(291U, k), std::pair(291U, k + 1), std::pair(292U, k + 1)}) {
+    for (const auto& [id, counter] :
+         {std::pair(292U, k), std::pair(291U, k), std::pair(291U, k + 1), std::pair(292U, k + 1)}) {
       CanFrame frame = on_time(counter);
       frame.id = id;
       frame.data[0] = static_cast<std::uint8_t>(counter % 100);
-      if (counter == 1001 && id == 292) continue;
+      if (counter == 1001 && id == 292) {
+        continue;
+      }
       ASSERT_TRUE(stream->take(frame, collected));
     }
   }
@@ -175,9 +197,11 @@ TEST(SensorStream, JoinsFramesByTheirCounterHoweverTheyCome) {
   EXPECT_EQ(counts.samples, 1999U);
   EXPECT_EQ(counts.incomplete, 1U);
   EXPECT_EQ(counts.lost, 1U);
-  for (const SampleBlock& block : collected.blocks)
-    for (std::size_t i = 0; i < block.samples; ++i)
+  for (const SampleBlock& block : collected.blocks) {
+    for (std::size_t i = 0; i < block.samples; ++i) {
       EXPECT_EQ(block.values[i], block.values[block.samples + i]);
+    }
+  }
 }
 
 TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
@@ -190,15 +214,20 @@ TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
   std::mt19937 random(5);
   const auto send = [&](int k, std::int64_t hardware_zero_ns) {
     CanFrame frame = on_time(k);
-    frame.hardware_ns = hardware_zero_ns + std::llround(static_cast<double>(frame.kernel_ns - epoch_ns) * (1.0 + 50e-6));
-    frame.kernel_ns += std::llround(1e9 * std::exponential_distribution<>(1.0 / 300e-6)(random)); // USB
+    frame.hardware_ns =
+        hardware_zero_ns +
+        std::llround(static_cast<double>(frame.kernel_ns - epoch_ns) * (1.0 + 50e-6));
+    frame.kernel_ns +=
+        std::llround(1e9 * std::exponential_distribution<>(1.0 / 300e-6)(random)); // USB
     ASSERT_TRUE(stream->take(frame, collected));
   };
-  for (int k = 0; k < 5000; ++k)
+  for (int k = 0; k < 5000; ++k) {
     send(k, 77'000'000'000);
+  }
   ASSERT_TRUE(stream->take(LinkChange{link(), true, "interface 'can0' is up"}, collected));
-  for (int k = 6000; k < 11000; ++k)
+  for (int k = 6000; k < 11000; ++k) {
     send(k, 99'000'000'000);
+  }
   stream->finish(collected);
   const auto stamps = collected.stamps_ns();
   ASSERT_EQ(stamps.size(), 10'000U);
@@ -221,16 +250,20 @@ TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
     frame.hardware_ns = frame.kernel_ns + hardware_ahead_ns;
     ASSERT_TRUE(stream->take(frame, collected));
   };
-  for (int k = 0; k < 500; ++k) // too short for a line
+  for (int k = 0; k < 500; ++k) { // too short for a line
     send(k, 3'000'000);
+  }
   ASSERT_TRUE(stream->take(LinkChange{link(), true, "interface 'can0' is up"}, collected));
-  for (int k = 500; k < 3000; ++k)
+  for (int k = 500; k < 3000; ++k) {
     send(k, 0);
+  }
   stream->finish(collected);
   const auto stamps = collected.stamps_ns();
   ASSERT_EQ(stamps.size(), 3000U);
-  for (int k = 0; k < 3000; ++k)
-    ASSERT_NEAR(static_cast<double>(stamps[static_cast<std::size_t>(k)] - epoch_ns), k * 1e6, 10.0) << k;
+  for (int k = 0; k < 3000; ++k) {
+    ASSERT_NEAR(static_cast<double>(stamps[static_cast<std::size_t>(k)] - epoch_ns), k * 1e6, 10.0)
+        << k;
+  }
   EXPECT_EQ(collected.blocks.front().flags.front(), stamp_no_uncertainty);
   EXPECT_EQ(collected.blocks.back().flags.back(), 0);
   EXPECT_EQ(stream->counts().not_trusted, 500U);
@@ -238,7 +271,8 @@ TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
 }
 
 TEST(SensorStream, TrustsTheLeastDelayOfAnAdapterOnUsbLessThanThatOfAControllerOnTheHost) {
-  const auto u_stamp_s = [](const std::string& kind, const std::string& device_bus, std::optional<double> u_latency_s) {
+  const auto u_stamp_s = [](const std::string& kind, const std::string& device_bus,
+                            std::optional<double> u_latency_s) {
     SensorSettings settings = one_message();
     settings.time_base = TimeBase::local;
     settings.bus_is_shared = false;
@@ -299,20 +333,24 @@ TEST(SensorStream, CountsWhatTheSocketDroppedAsLostSamples) {
 
 TEST(SensorStream, BeginsANewSessionWhenTheSensorRestartsItsCounter) {
   SensorSettings settings = one_message();
-  const std::string wide = "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n SG_ counter : 16|32@1+ (1,0) [0|0] \"\" S\n";
+  const std::string wide = "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n SG_ "
+                           "counter : 16|32@1+ (1,0) [0|0] \"\" S\n";
   const auto stream = stream_of(settings, wide);
   Collected collected;
   ASSERT_TRUE(stream->begin(link(), collected));
   const auto send = [&](int k, std::uint32_t counter) {
     CanFrame frame = on_time(k);
-    for (unsigned i = 0; i < 4; ++i)
+    for (unsigned i = 0; i < 4; ++i) {
       frame.data[2 + i] = static_cast<std::uint8_t>(counter >> (8 * i));
+    }
     ASSERT_TRUE(stream->take(frame, collected));
   };
-  for (int k = 0; k < 3000; ++k)
+  for (int k = 0; k < 3000; ++k) {
     send(k, 50'000U + static_cast<std::uint32_t>(k));
-  for (int k = 4000; k < 7000; ++k)
+  }
+  for (int k = 4000; k < 7000; ++k) {
     send(k, static_cast<std::uint32_t>(k - 4000));
+  }
   stream->finish(collected);
   EXPECT_EQ(collected.restarts, 1);
   EXPECT_EQ(stream->counts().samples, 6000U);
@@ -320,12 +358,14 @@ TEST(SensorStream, BeginsANewSessionWhenTheSensorRestartsItsCounter) {
 
 TEST(SensorStream, RefusesSettingsThatDoNotFitWithOneSentence) {
   const auto refusal = [](SensorSettings settings) {
-    const auto stream = SensorStream::create(std::move(settings), *parse_dbc(sensor_dbc, "sensor.dbc"));
+    const auto stream =
+        SensorStream::create(std::move(settings), *parse_dbc(sensor_dbc, "sensor.dbc"));
     return stream ? "accepted" : stream.error().message;
   };
   SensorSettings settings = one_message();
   settings.messages = {"Nothing"};
-  EXPECT_THAT(refusal(settings), HasSubstr("sensor.dbc has no message 'Nothing'; it has Sample, Second"));
+  EXPECT_THAT(refusal(settings),
+              HasSubstr("sensor.dbc has no message 'Nothing'; it has Sample, Second"));
   settings = one_message();
   settings.messages = {"Sample", "Second"};
   settings.counter.clear();
@@ -347,7 +387,9 @@ TEST(SensorStream, RefusesSettingsThatDoNotFitWithOneSentence) {
 
 TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {
   const std::filesystem::path folder = DYNCAL_CAN_DATA;
-  if (!std::filesystem::exists(folder / "css-canmod-gps-imu-10hz.log")) GTEST_SKIP() << "no recorded CAN log in " << folder;
+  if (!std::filesystem::exists(folder / "css-canmod-gps-imu-10hz.log")) {
+    GTEST_SKIP() << "no recorded CAN log in " << folder;
+  }
   auto events = read_candump_log(folder / "css-canmod-gps-imu-10hz.log", "can0");
   ASSERT_TRUE(events) << events.error().message;
   SensorSettings settings;
@@ -363,23 +405,27 @@ TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {
   for (bool more = true; more;) {
     std::vector<BusEvent> batch;
     more = source.read(batch, std::chrono::milliseconds(0)).value() == ReadState::more;
-    for (const BusEvent& event : batch)
+    for (const BusEvent& event : batch) {
       ASSERT_TRUE((*stream)->take(event, collected));
+    }
   }
   (*stream)->finish(collected);
   double sum[3] = {};
   double samples = 0.0;
   for (const SampleBlock& block : collected.blocks) {
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      for (std::size_t i = 0; i < block.samples; ++i)
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      for (std::size_t i = 0; i < block.samples; ++i) {
         sum[channel] += block.values[channel * block.samples + i];
+      }
+    }
     samples += static_cast<double>(block.samples);
   }
   EXPECT_EQ(samples, 1669.0);
   EXPECT_NEAR(sum[0] / samples, -0.3764, 5e-5);
   EXPECT_NEAR(sum[1] / samples, 0.3417, 5e-5);
   EXPECT_NEAR(sum[2] / samples, 10.0466, 5e-5);
-  // Every interval of the log longer than one and a half nominal ones is a gap of the stream, and nothing else is.
+  // Every interval of the log longer than one and a half nominal ones is a gap of the stream, and
+  // nothing else is.
   const auto stamps = collected.stamps_ns();
   const auto numbers = collected.numbers();
   std::size_t gaps = 0;

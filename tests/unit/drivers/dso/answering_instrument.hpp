@@ -1,4 +1,5 @@
-// An instrument on a TCP port of this machine that answers each line as a test tells it to: in pieces, late, wrongly, or not at all.
+// An instrument on a TCP port of this machine that answers each line as a test tells it to: in
+// pieces, late, wrongly, or not at all.
 #pragma once
 
 #include <chrono>
@@ -24,7 +25,8 @@ public:
   using Answer = std::function<std::vector<Piece>(const std::string& line)>;
 
   explicit AnsweringInstrument(Answer answer)
-      : answer_(std::move(answer)), instrument_([this](int, ScriptedInstrument::Client& client) { converse(client); }) {}
+      : answer_(std::move(answer)),
+        instrument_([this](int, ScriptedInstrument::Client& client) { converse(client); }) {}
   ~AnsweringInstrument() { stop_.raise(); }
 
   [[nodiscard]] std::string address() const { return instrument_.address(); }

@@ -20,8 +20,8 @@ using testing::Not;
 
 constexpr const char* identity = "RIGOL TECHNOLOGIES,MSO5072,MS5A000001,00.01.03.00.03";
 
-// Answers as an MSO5072 with a trace of 1000 points that rises by one code a sample. `special` answers come first and are used up one
-// after another.
+// Answers as an MSO5072 with a trace of 1000 points that rises by one code a sample. `special`
+// answers come first and are used up one after another.
 class Scope {
 public:
   std::vector<Piece> answer(const std::string& line) {
@@ -55,14 +55,17 @@ public:
       return {{std::string("CHAN") + source_ + "\n"}};
     }
     if (line == ":WAVeform:PREamble?") {
-      return {{"0,2," + std::to_string(points_) + ",1,1.000000E-06,-1.000000E-04,0,5.000000E-02,0,128\n"}};
+      return {{"0,2," + std::to_string(points_) +
+               ",1,1.000000E-06,-1.000000E-04,0,5.000000E-02,0,128\n"}};
     }
     if (line == ":WAVeform:DATA?") {
       return {{block(last_ - first_ + 1)}};
     }
     return {{"\n"}};
   }
-  void next(const std::string& line, std::vector<Piece> pieces) { special_[line].push_back(std::move(pieces)); }
+  void next(const std::string& line, std::vector<Piece> pieces) {
+    special_[line].push_back(std::move(pieces));
+  }
   void points(std::size_t points) { points_ = points; }
 
   static std::string block(std::size_t size) {
@@ -85,7 +88,8 @@ private:
 class OscilloscopeTest : public testing::Test {
 protected:
   void start(std::vector<InputSettings> inputs = {{"sync", 1, 20.0, 0.0}}) {
-    instrument_ = std::make_unique<AnsweringInstrument>([this](const std::string& line) { return scope_.answer(line); });
+    instrument_ = std::make_unique<AnsweringInstrument>(
+        [this](const std::string& line) { return scope_.answer(line); });
     OscilloscopeSettings settings;
     settings.address = instrument_->address();
     settings.inputs = std::move(inputs);
@@ -93,7 +97,9 @@ protected:
     oscilloscope_ = std::make_unique<Oscilloscope>(settings, stop_);
   }
   Expected<Shot> shoot() {
-    if (auto ready = oscilloscope_->prepare({.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000}); !ready) {
+    if (auto ready = oscilloscope_->prepare(
+            {.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000});
+        !ready) {
       return tl::unexpected(ready.error());
     }
     return oscilloscope_->acquire(milliseconds(200));
@@ -135,15 +141,18 @@ TEST_F(OscilloscopeTest, TheInstrumentIsSetUpForTheShot) {
   start({{"sync", 1, 20.0, 0.0}, {"trigger", 2, 8.0, 2.0}});
   ASSERT_TRUE(shoot().has_value());
   const auto lines = instrument_->lines();
-  for (const char* setting :
-       {":SYSTem:AOUTput TOUT", ":CHANnel1:SCALe 5", ":CHANnel2:OFFSet -2", ":TIMebase:MAIN:SCALe 0.0001", ":TIMebase:MAIN:OFFSet 0.0004",
-        ":ACQuire:MDEPth 1000", ":TRIGger:EDGE:SOURce CHANnel1", ":TRIGger:EDGE:LEVel 0", ":SINGle", ":WAVeform:POINts 1000"}) {
+  for (const char* setting : {":SYSTem:AOUTput TOUT", ":CHANnel1:SCALe 5", ":CHANnel2:OFFSet -2",
+                              ":TIMebase:MAIN:SCALe 0.0001", ":TIMebase:MAIN:OFFSet 0.0004",
+                              ":ACQuire:MDEPth 1000", ":TRIGger:EDGE:SOURce CHANnel1",
+                              ":TRIGger:EDGE:LEVel 0", ":SINGle", ":WAVeform:POINts 1000"}) {
     EXPECT_THAT(lines, Contains(std::string(setting)));
   }
 }
 
 TEST_F(OscilloscopeTest, AnAnswerMayComeInPiecesAndSlowly) {
-  scope_.next("*IDN?", {{"RIGOL TECHNO"}, {"LOGIES,MSO5072,MS5A000001,", milliseconds(20)}, {"00.01.03.00.03\n", milliseconds(20)}});
+  scope_.next("*IDN?", {{"RIGOL TECHNO"},
+                        {"LOGIES,MSO5072,MS5A000001,", milliseconds(20)},
+                        {"00.01.03.00.03\n", milliseconds(20)}});
   const std::string block = Scope::block(1000);
   scope_.next(":WAVeform:DATA?", {{block.substr(0, 1)},
                                   {block.substr(1, 5), milliseconds(20)},
@@ -265,7 +274,9 @@ TEST_F(OscilloscopeTest, AStopSignalEndsTheWaitForATrigger) {
     scope_.next(":TRIGger:STATus?", {{"WAIT\n"}});
   }
   start();
-  ASSERT_TRUE(oscilloscope_->prepare({.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000}).has_value());
+  ASSERT_TRUE(
+      oscilloscope_->prepare({.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000})
+          .has_value());
   std::thread stopper([this] { stop_.raise(); });
   const auto failed = oscilloscope_->acquire(std::chrono::minutes(5));
   stopper.join();

@@ -6,7 +6,8 @@ namespace dyncal::drivers::dso {
 namespace {
 
 TEST(Waveform, APreambleGivesTheTimeOfTheFirstSampleRelativeToTheTrigger) {
-  const auto preamble = parse_preamble("0,2,1000,1,1.000000E-07,-5.000000E-05,0,4.000000E-02,0,128");
+  const auto preamble =
+      parse_preamble("0,2,1000,1,1.000000E-07,-5.000000E-05,0,4.000000E-02,0,128");
   ASSERT_TRUE(preamble.has_value()) << preamble.error().message;
   EXPECT_EQ(preamble->points, 1000U);
   EXPECT_DOUBLE_EQ(preamble->first_sample_s(), -5e-5);
@@ -14,9 +15,11 @@ TEST(Waveform, APreambleGivesTheTimeOfTheFirstSampleRelativeToTheTrigger) {
 }
 
 TEST(Waveform, APreambleThatCannotBeIsRefused) {
-  for (const char* answer : {"", "0,2,1000,1,1E-7,0,0,0.04,0", "0,2,1000,1,1E-7,0,0,0.04,0,128,1", "1,2,1000,1,1E-7,0,0,0.04,0,128",
-                             "0,2,0,1,1E-7,0,0,0.04,0,128", "0,2,10.5,1,1E-7,0,0,0.04,0,128", "0,2,1000,1,0,0,0,0.04,0,128",
-                             "0,2,1000,1,1E-7,0,0,-0.04,0,128", "0,2,1E12,1,1E-7,0,0,0.04,0,128", "0,2,1000,1,nan,0,0,0.04,0,128"}) {
+  for (const char* answer : {"", "0,2,1000,1,1E-7,0,0,0.04,0", "0,2,1000,1,1E-7,0,0,0.04,0,128,1",
+                             "1,2,1000,1,1E-7,0,0,0.04,0,128", "0,2,0,1,1E-7,0,0,0.04,0,128",
+                             "0,2,10.5,1,1E-7,0,0,0.04,0,128", "0,2,1000,1,0,0,0,0.04,0,128",
+                             "0,2,1000,1,1E-7,0,0,-0.04,0,128", "0,2,1E12,1,1E-7,0,0,0.04,0,128",
+                             "0,2,1000,1,nan,0,0,0.04,0,128"}) {
     const auto preamble = parse_preamble(answer);
     EXPECT_FALSE(preamble.has_value()) << answer;
   }
@@ -42,9 +45,12 @@ TEST(Waveform, VoltsFollowTheRuleOfTheFamily) {
 }
 
 TEST(ScopeTable, AnIdentityLeadsToItsFamily) {
-  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,MSO5072,MS5A212003221,00.01.03.00.03")->family, "rigol-mso5000");
-  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,DS1104Z,DS1ZA1,00.04.04")->family, "rigol-ds1000z");
-  EXPECT_STREQ(scope_by_identity("KEYSIGHT TECHNOLOGIES,DSO-X 3024T,MY1,07.30")->family, "keysight-infiniivision");
+  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,MSO5072,MS5A212003221,00.01.03.00.03")->family,
+               "rigol-mso5000");
+  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,DS1104Z,DS1ZA1,00.04.04")->family,
+               "rigol-ds1000z");
+  EXPECT_STREQ(scope_by_identity("KEYSIGHT TECHNOLOGIES,DSO-X 3024T,MY1,07.30")->family,
+               "keysight-infiniivision");
   EXPECT_EQ(scope_by_identity("ACME,TOASTER,1,2"), nullptr);
   EXPECT_EQ(scope_by_identity("MSO5072"), nullptr);
   EXPECT_EQ(scope_by_family("rigol-mso5000"), scope_by_identity("RIGOL TECHNOLOGIES,MSO5354,1,2"));

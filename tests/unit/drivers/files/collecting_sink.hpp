@@ -10,10 +10,13 @@ namespace dyncal::drivers::acs {
 
 class CollectingSink : public BlockSink {
 public:
-  void begin_session(const SourceDescription& description) override { sessions.push_back(description); }
+  void begin_session(const SourceDescription& description) override {
+    sessions.push_back(description);
+  }
   void take(SampleBlock block) override {
     for (std::size_t i = 0; i < block.samples; ++i) {
-      stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i) : block.stamps_ns[i]);
+      stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i)
+                                      : block.stamps_ns[i]);
       numbers.push_back(block.first_sample + i);
     }
     blocks.push_back(std::move(block));

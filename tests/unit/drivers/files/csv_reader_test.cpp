@@ -23,13 +23,17 @@ struct Table {
       stamps_ns.insert(stamps_ns.end(), block.stamps_ns.begin(), block.stamps_ns.end());
       channels.resize(block.values.size() / block.samples);
       for (std::size_t channel = 0; channel < channels.size(); ++channel) {
-        const auto first = block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
-        channels[channel].insert(channels[channel].end(), first, first + static_cast<std::ptrdiff_t>(block.samples));
+        const auto first =
+            block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+        channels[channel].insert(channels[channel].end(), first,
+                                 first + static_cast<std::ptrdiff_t>(block.samples));
       }
       rows += block.samples;
     }
   }
-  [[nodiscard]] const std::vector<double>& channel(std::size_t index) const { return channels[index]; }
+  [[nodiscard]] const std::vector<double>& channel(std::size_t index) const {
+    return channels[index];
+  }
 
   std::size_t rows = 0;
   std::vector<std::int64_t> stamps_ns;
@@ -42,7 +46,9 @@ Table rows_of(const std::string& first_line, const std::string& lines) {
 }
 
 TEST(CsvRows, HoldStampsAsIntegersAndValuesBitForBit) {
-  const Table rows = rows_of("t_ns,y,z", "-9223372036854775808,0.9052721090471139,-1e-308\n1700000000123456789,0.1,1e22\n");
+  const Table rows =
+      rows_of("t_ns,y,z",
+              "-9223372036854775808,0.9052721090471139,-1e-308\n1700000000123456789,0.1,1e22\n");
   ASSERT_EQ(rows.rows, 2U);
   EXPECT_EQ(rows.stamps_ns[0], std::numeric_limits<std::int64_t>::min());
   EXPECT_EQ(rows.stamps_ns[1], 1700000000123456789);
@@ -53,10 +59,13 @@ TEST(CsvRows, HoldStampsAsIntegersAndValuesBitForBit) {
 
 TEST(CsvRows, HoldIntegersOfAnyLength) {
   std::string lines;
-  std::vector<std::int64_t> expected{std::numeric_limits<std::int64_t>::min(), -1'234'567'890'123'456'789, -5, 0};
+  std::vector<std::int64_t> expected{std::numeric_limits<std::int64_t>::min(),
+                                     -1'234'567'890'123'456'789, -5, 0};
   for (std::int64_t power = 1; power < std::numeric_limits<std::int64_t>::max() / 10; power *= 10) {
     for (const std::int64_t number : {power, power + 7, 9 * power, 9 * power + power / 3 * 2}) {
-      if (number > expected.back()) expected.push_back(number);
+      if (number > expected.back()) {
+        expected.push_back(number);
+      }
     }
   }
   expected.push_back(std::numeric_limits<std::int64_t>::max());
@@ -69,8 +78,9 @@ TEST(CsvRows, HoldIntegersOfAnyLength) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(rows.stamps_ns[i], expected[i]);
   }
-  for (const char* wrong : {"12345678901234567890,1,                 \n", "9223372036854775808,1                   \n",
-                            "1234567890123456.5,1\n", "1234567x90123456789,1\n"}) {
+  for (const char* wrong :
+       {"12345678901234567890,1,                 \n", "9223372036854775808,1                   \n",
+        "1234567890123456.5,1\n", "1234567x90123456789,1\n"}) {
     EXPECT_TRUE(rows_of("t_ns,y", wrong).problem) << wrong;
   }
 }
@@ -105,14 +115,15 @@ TEST(CsvRows, KeepWhatIsBeforeTheFirstProblem) {
   ASSERT_TRUE(rows.problem);
   EXPECT_EQ(rows.problem->line, 3U);
   EXPECT_THAT(rows.problem->sentence, HasSubstr("'4 5' in column y is not a number"));
-  EXPECT_THAT(rows_of("t_ns,y", "9223372036854775808,2\n").problem->sentence, HasSubstr("is not a whole number"));
+  EXPECT_THAT(rows_of("t_ns,y", "9223372036854775808,2\n").problem->sentence,
+              HasSubstr("is not a whole number"));
 }
 
 TEST(CsvRows, EndABlockAtAGapAndWhenItIsFull) {
   std::string lines;
   const auto add = [&](std::uint64_t number) {
-    lines +=
-        std::to_string(number) + ',' + std::to_string(10 * number) + ',' + std::to_string(number) + ".5," + std::to_string(number) + "\n";
+    lines += std::to_string(number) + ',' + std::to_string(10 * number) + ',' +
+             std::to_string(number) + ".5," + std::to_string(number) + "\n";
   };
   constexpr std::uint64_t last = 5 + CsvRows::block_rows + 9;
   for (std::uint64_t number = 5; number <= last; ++number) {
@@ -157,7 +168,9 @@ protected:
       text_ += '\n';
     }
   }
-  static std::int64_t stamp(std::size_t row) { return 1'700'000'000'000'000'000 + static_cast<std::int64_t>(row * row % 7 + 10 * row); }
+  static std::int64_t stamp(std::size_t row) {
+    return 1'700'000'000'000'000'000 + static_cast<std::int64_t>(row * row % 7 + 10 * row);
+  }
 
   std::string text_;
   std::vector<double> values_;
@@ -185,7 +198,9 @@ TEST_F(LargeCsv, ComesInOrderWhateverThreadReadIt) {
 }
 
 TEST_F(LargeCsv, NamesTheFirstBadLineWhateverThreadMeetsIt) {
-  const auto spoil = [&](std::size_t row) { text_[text_.find("\n" + std::to_string(stamp(row))) + 1] = 'x'; };
+  const auto spoil = [&](std::size_t row) {
+    text_[text_.find("\n" + std::to_string(stamp(row))) + 1] = 'x';
+  };
   spoil(249'000);
   spoil(120'000);
   const TemporaryFile file("spoiled.csv", text_);
@@ -202,7 +217,9 @@ TEST_F(LargeCsv, SeesStampsThatFallBetweenStretches) {
   // The first row of the second stretch: after the line end that follows the first 2 MB of rows.
   const std::size_t header = text_.find('\n') + 1;
   const std::size_t second = text_.find('\n', header + (std::size_t{1} << 21U)) + 1;
-  const auto line = static_cast<std::size_t>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(second), '\n')) + 1;
+  const auto line = static_cast<std::size_t>(std::count(
+                        text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(second), '\n')) +
+                    1;
   text_[second] = '0'; // of 17...
   const TemporaryFile file("falling.csv", text_);
   FileSource source(settings_for(file));
@@ -210,7 +227,8 @@ TEST_F(LargeCsv, SeesStampsThatFallBetweenStretches) {
   CollectingSink sink;
   const auto played = source.run(sink);
   ASSERT_FALSE(played);
-  EXPECT_THAT(played.error().message, HasSubstr("falling.csv:" + std::to_string(line) + ": t_ns 7"));
+  EXPECT_THAT(played.error().message,
+              HasSubstr("falling.csv:" + std::to_string(line) + ": t_ns 7"));
 }
 
 } // namespace

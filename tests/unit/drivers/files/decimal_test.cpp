@@ -20,7 +20,8 @@ struct Reading {
 };
 
 template <class Number>
-Reading<Number> by(std::from_chars_result (*read)(const char*, const char*, Number&), const std::string& text) {
+Reading<Number> by(std::from_chars_result (*read)(const char*, const char*, Number&),
+                   const std::string& text) {
   Reading<Number> reading{};
   const auto [end, status] = read(text.data(), text.data() + text.size(), reading.value);
   reading.length = end - text.data();
@@ -32,10 +33,13 @@ template <class Number>
 void expect_as_standard(const std::string& number) {
   const std::string text = number + ',' + std::string(behind, '7');
   const auto quick = by<Number>(&read_number<Number>, text);
-  const auto standard = by<Number>([](const char* at, const char* end, Number& value) { return std::from_chars(at, end, value); }, text);
+  const auto standard = by<Number>([](const char* at, const char* end,
+                                      Number& value) { return std::from_chars(at, end, value); },
+                                   text);
   ASSERT_EQ(quick.length, standard.length) << number;
   ASSERT_EQ(quick.status, standard.status) << number;
-  ASSERT_EQ(std::bit_cast<std::uint64_t>(quick.value), std::bit_cast<std::uint64_t>(standard.value)) << number;
+  ASSERT_EQ(std::bit_cast<std::uint64_t>(quick.value), std::bit_cast<std::uint64_t>(standard.value))
+      << number;
 }
 
 TEST(ReadNumber, TakesEveryFormThatFromCharsTakesAndNoOther) {
@@ -98,8 +102,8 @@ TEST(ReadNumber, RoundsEveryDecimalExactly) {
   for (int i = 0; i < 400'000; ++i) {
     const auto digits = std::to_string(random() >> (random() % 64));
     const std::size_t point = random() % (digits.size() + 1);
-    std::string number =
-        (random() % 2 == 0 ? "-" : "") + digits.substr(0, point) + '.' + std::string(random() % 4, '0') + digits.substr(point);
+    std::string number = (random() % 2 == 0 ? "-" : "") + digits.substr(0, point) + '.' +
+                         std::string(random() % 4, '0') + digits.substr(point);
     if (random() % 3 == 0) {
       number += "e-" + std::to_string(random() % 60);
     }
@@ -110,8 +114,10 @@ TEST(ReadNumber, RoundsEveryDecimalExactly) {
 TEST(ReadNumber, RoundsWhatLiesInTheMiddleOfTwoNumbersToEven) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 100'000; ++i) {
-    // 54 binary digits, the last one set: with a quarter, a half, or nothing behind them, and one decimal off.
-    const std::uint64_t middle = (std::uint64_t{1} << 53U) + (random() >> 11U) % (std::uint64_t{1} << 53U) / 2 * 2 + 1;
+    // 54 binary digits, the last one set: with a quarter, a half, or nothing behind them, and one
+    // decimal off.
+    const std::uint64_t middle =
+        (std::uint64_t{1} << 53U) + (random() >> 11U) % (std::uint64_t{1} << 53U) / 2 * 2 + 1;
     expect_as_standard<double>(std::to_string(middle));
     expect_as_standard<double>(std::to_string(middle) + ".000");
     expect_as_standard<double>(std::to_string(middle) + ".001");
@@ -125,7 +131,8 @@ TEST(ReadNumber, BringsEveryNumberBackFromItsShortestDecimal) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> exponent(-40.0, 17.0);
   for (int i = 0; i < 200'000; ++i) {
-    const double number = std::ldexp(static_cast<double>(random()), -64) * std::pow(10.0, exponent(random));
+    const double number =
+        std::ldexp(static_cast<double>(random()), -64) * std::pow(10.0, exponent(random));
     char text[64 + behind] = {};
     const auto end = std::to_chars(text, text + 64, number).ptr;
     *end = ';';

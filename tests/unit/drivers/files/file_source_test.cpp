@@ -15,7 +15,8 @@ using testing::HasSubstr;
 TEST(FileSource, PlaysARegularSeriesWithAClock) {
   std::string text = "t_ns,reference,sync\n";
   for (int i = 0; i < 10'000; ++i) {
-    text += std::to_string(1'700'000'000'123'456'789LL + i * 50'000LL) + "," + std::to_string(i) + ".5,-" + std::to_string(i) + "e-3\n";
+    text += std::to_string(1'700'000'000'123'456'789LL + i * 50'000LL) + "," + std::to_string(i) +
+            ".5,-" + std::to_string(i) + "e-3\n";
   }
   const TemporaryFile file("regular.csv", text);
   FileSource source(settings_for(file));
@@ -34,19 +35,23 @@ TEST(FileSource, PlaysARegularSeriesWithAClock) {
   }
   for (std::size_t i = 0; i < sink.numbers.size(); ++i) {
     ASSERT_EQ(sink.numbers[i], i);
-    ASSERT_EQ(sink.stamps_ns[i], 1'700'000'000'123'456'789LL + static_cast<std::int64_t>(i) * 50'000LL);
+    ASSERT_EQ(sink.stamps_ns[i],
+              1'700'000'000'123'456'789LL + static_cast<std::int64_t>(i) * 50'000LL);
   }
   EXPECT_EQ(sink.channel(0)[9999], 9999.5);
   EXPECT_EQ(sink.channel(1)[20], -0.02);
 }
 
 TEST(FileSource, KeepsEveryStampOfAnIrregularSeries) {
-  const TemporaryFile file("irregular.csv", "t_ns,z\n1700000000000000001,1\n1700000000000996961,2\n1700000000001993920,3\n");
+  const TemporaryFile file(
+      "irregular.csv",
+      "t_ns,z\n1700000000000000001,1\n1700000000000996961,2\n1700000000001993920,3\n");
   FileSource source(settings_for(file));
   ASSERT_TRUE(source.describe());
   CollectingSink sink;
   ASSERT_TRUE(source.run(sink));
-  EXPECT_THAT(sink.stamps_ns, ElementsAre(1700000000000000001, 1700000000000996961, 1700000000001993920));
+  EXPECT_THAT(sink.stamps_ns,
+              ElementsAre(1700000000000000001, 1700000000000996961, 1700000000001993920));
 }
 
 TEST(FileSource, TakesTheRateWhereThereIsNoTimeColumn) {

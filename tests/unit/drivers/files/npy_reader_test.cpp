@@ -23,10 +23,12 @@ std::string bytes(Number value) {
 
 // As numpy.save writes format 1.0: the header is padded so that the rows begin at a multiple of 64.
 std::string npy(const std::string& fields, std::size_t rows, const std::string& data) {
-  std::string header = "{'descr': " + fields + ", 'fortran_order': False, 'shape': (" + std::to_string(rows) + ",), }";
+  std::string header = "{'descr': " + fields + ", 'fortran_order': False, 'shape': (" +
+                       std::to_string(rows) + ",), }";
   header.append(64 - (10 + header.size() + 1) % 64, ' ');
   header += '\n';
-  return "\x93NUMPY" + std::string("\x01\x00", 2) + bytes(static_cast<std::uint16_t>(header.size())) + header + data;
+  return "\x93NUMPY" + std::string("\x01\x00", 2) +
+         bytes(static_cast<std::uint16_t>(header.size())) + header + data;
 }
 
 std::string problem_with(const std::string& text, FileSettings settings = {}) {
@@ -38,13 +40,16 @@ std::string problem_with(const std::string& text, FileSettings settings = {}) {
 TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
   std::string data;
   for (int i = 0; i < 3; ++i) {
-    data += bytes(std::int64_t{1'700'000'000'123'456'789} + i * i) + bytes(0.1 * i) + bytes(static_cast<std::int16_t>(-5 * i)) +
-            bytes(0.5F * static_cast<float>(i)) + std::string(3, 'x') + bytes(static_cast<std::uint8_t>(250 + i)) +
+    data += bytes(std::int64_t{1'700'000'000'123'456'789} + i * i) + bytes(0.1 * i) +
+            bytes(static_cast<std::int16_t>(-5 * i)) + bytes(0.5F * static_cast<float>(i)) +
+            std::string(3, 'x') + bytes(static_cast<std::uint8_t>(250 + i)) +
             bytes(static_cast<std::uint32_t>(4'000'000'000U));
   }
-  const TemporaryFile file("types.npy", npy("[('t_ns', '<i8'), ('sync', '<f8'), ('z', '<i2'), ('f', '<f4'), ('', '|V3'), "
-                                            "('b', '|u1'), ('u', '<u4')]",
-                                            3, data));
+  const TemporaryFile file(
+      "types.npy",
+      npy("[('t_ns', '<i8'), ('sync', '<f8'), ('z', '<i2'), ('f', '<f4'), ('', '|V3'), "
+          "('b', '|u1'), ('u', '<u4')]",
+          3, data));
   FileSettings settings;
   settings.path = file.path();
   settings.units = {{"sync", "\\volt"}};
@@ -56,7 +61,8 @@ TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
   EXPECT_EQ(description->channels[0].unit, "\\volt");
   CollectingSink sink;
   ASSERT_TRUE(source.run(sink));
-  EXPECT_THAT(sink.stamps_ns, ElementsAre(1'700'000'000'123'456'789, 1'700'000'000'123'456'790, 1'700'000'000'123'456'793));
+  EXPECT_THAT(sink.stamps_ns, ElementsAre(1'700'000'000'123'456'789, 1'700'000'000'123'456'790,
+                                          1'700'000'000'123'456'793));
   EXPECT_THAT(sink.channel(0), ElementsAre(0.0, 0.1, 0.2));
   EXPECT_THAT(sink.channel(1), ElementsAre(0.0, -5.0, -10.0));
   EXPECT_THAT(sink.channel(2), ElementsAre(0.0, 0.5, 1.0));
@@ -69,7 +75,8 @@ TEST(NpyReader, ShowsGapsOfTheSampleNumber) {
   for (const std::int64_t number : {7, 8, 10, 11}) {
     data += bytes(number) + bytes(10 * number) + bytes(1.0);
   }
-  const TemporaryFile file("gap.npy", npy("[('sample_number', '<i8'), ('t_ns', '<i8'), ('z', '<f8')]", 4, data));
+  const TemporaryFile file(
+      "gap.npy", npy("[('sample_number', '<i8'), ('t_ns', '<i8'), ('z', '<f8')]", 4, data));
   FileSettings settings;
   settings.path = file.path();
   FileSource source(settings);
@@ -85,7 +92,8 @@ TEST(NpyReader, TakesTheRateWhereThereIsNoTime) {
   FileSettings settings;
   settings.sample_rate = sample_rate_from_hz(1000.0);
   EXPECT_EQ(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0)), settings), "");
-  EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0))), HasSubstr("no field t_ns and no sample_rate_hz"));
+  EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0))),
+              HasSubstr("no field t_ns and no sample_rate_hz"));
 }
 
 TEST(NpyReader, SaysWhatIsWrong) {
@@ -93,9 +101,12 @@ TEST(NpyReader, SaysWhatIsWrong) {
   const std::string fields = "[('t_ns', '<i8'), ('z', '<f8')]";
   EXPECT_THAT(problem_with("t_ns,z\n0,1\n"), HasSubstr("wrong.npy: is not a NumPy file"));
   EXPECT_THAT(problem_with(npy("'<f8'", 2, two)), HasSubstr("holds no structured array"));
-  EXPECT_THAT(problem_with(npy("[('t_ns', '>i8')]", 2, two)), HasSubstr("field 't_ns' of type '>i8'"));
-  EXPECT_THAT(problem_with(npy("[('t_ns', '<i8'), ('z', '<f8', (3,))]", 2, two)), HasSubstr("field 'z' that is not a plain number"));
-  EXPECT_THAT(problem_with(npy("[('t_ns', '<f8'), ('z', '<f8')]", 2, two)), HasSubstr("'t_ns' must hold integers"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '>i8')]", 2, two)),
+              HasSubstr("field 't_ns' of type '>i8'"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '<i8'), ('z', '<f8', (3,))]", 2, two)),
+              HasSubstr("field 'z' that is not a plain number"));
+  EXPECT_THAT(problem_with(npy("[('t_ns', '<f8'), ('z', '<f8')]", 2, two)),
+              HasSubstr("'t_ns' must hold integers"));
   EXPECT_THAT(problem_with(npy(fields, 3, two)), HasSubstr("ends before its 3 rows do"));
   EXPECT_THAT(problem_with(npy(fields, 2, two)), HasSubstr("row 1: t_ns 4 after 5"));
   EXPECT_THAT(problem_with(npy(fields, 0, "")), HasSubstr("no samples"));
@@ -103,7 +114,8 @@ TEST(NpyReader, SaysWhatIsWrong) {
 }
 
 TEST(NpyReader, SurvivesHeadersCutAnywhere) {
-  const std::string whole = npy("[('t_ns', '<i8'), ('z', '<f8')]", 1, bytes(std::int64_t{5}) + bytes(1.0));
+  const std::string whole =
+      npy("[('t_ns', '<i8'), ('z', '<f8')]", 1, bytes(std::int64_t{5}) + bytes(1.0));
   for (std::size_t length = 0; length < whole.size(); ++length) {
     EXPECT_NE(problem_with(whole.substr(0, length)), "") << length;
     std::string spoiled = whole;

@@ -11,7 +11,8 @@ namespace dyncal::drivers::acs {
 class TemporaryFile {
 public:
   explicit TemporaryFile(const std::string& name, const std::string& text = "")
-      : path_(std::filesystem::temp_directory_path() / ("dyncal_acs_test_" + std::to_string(getpid()) + "_" + name)) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("dyncal_acs_test_" + std::to_string(getpid()) + "_" + name)) {
     std::ofstream(path_, std::ios::binary) << text;
   }
   ~TemporaryFile() {

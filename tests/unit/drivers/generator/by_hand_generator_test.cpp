@@ -18,16 +18,21 @@ class ByHand : public ::testing::Test {
 protected:
   ByHand() {
     EXPECT_EQ(pipe(pipe_.data()), 0);
-    generator_ = std::make_unique<ByHandGenerator>(pipe_[0], [this](const std::string& text) { shown_.push_back(text); });
+    generator_ = std::make_unique<ByHandGenerator>(
+        pipe_[0], [this](const std::string& text) { shown_.push_back(text); });
   }
   ~ByHand() override {
     generator_.reset();
     close(pipe_[0]);
     end_of_input();
   }
-  void type(const std::string& text) const { EXPECT_EQ(write(pipe_[1], text.data(), text.size()), static_cast<ssize_t>(text.size())); }
+  void type(const std::string& text) const {
+    EXPECT_EQ(write(pipe_[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
   void end_of_input() {
-    if (pipe_[1] >= 0) close(pipe_[1]);
+    if (pipe_[1] >= 0) {
+      close(pipe_[1]);
+    }
     pipe_[1] = -1;
   }
   void set(const std::string& frequency_hz, double amplitude_v) {
@@ -44,7 +49,10 @@ protected:
 TEST_F(ByHand, SaysWhatToSetAndWaitsForTheWord) {
   set("12.5", 0.2);
   ASSERT_EQ(shown_.size(), 1U);
-  EXPECT_THAT(shown_[0], HasSubstr("12.5 Hz, 0.2 V amplitude (0.4 V peak to peak); switch the output on, then press Enter"));
+  EXPECT_THAT(
+      shown_[0],
+      HasSubstr(
+          "12.5 Hz, 0.2 V amplitude (0.4 V peak to peak); switch the output on, then press Enter"));
   EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));
   type("\n");
   EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));

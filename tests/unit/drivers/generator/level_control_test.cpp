@@ -38,42 +38,48 @@ Outcome control(const LevelTarget& target, const LevelLimits& limits, Exciter ex
 }
 
 TEST(LevelControl, ReachesTheLevelOfALinearExciterWithOneCorrection) {
-  const auto outcome = control({.level_m_s2 = 10.0, .tolerance_rel = 0.005, .level_per_volt = 50.0}, {}, [](double v) { return 37.0 * v; });
+  const auto outcome = control({.level_m_s2 = 10.0, .tolerance_rel = 0.005, .level_per_volt = 50.0},
+                               {}, [](double v) { return 37.0 * v; });
   ASSERT_TRUE(outcome.done) << outcome.done.error().message;
   EXPECT_NEAR(outcome.voltage_v, 10.0 / 37.0, 1e-12);
   EXPECT_EQ(outcome.measurements, 2);
 }
 
 TEST(LevelControl, AResponseThatIsKnownIsUsedInFull) {
-  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 37.0, .response_known = true}, {}, [](double v) { return 37.0 * v; });
+  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 37.0, .response_known = true},
+                               {}, [](double v) { return 37.0 * v; });
   ASSERT_TRUE(outcome.done);
   EXPECT_EQ(outcome.measurements, 1);
 }
 
 TEST(LevelControl, FollowsAnExciterThatSaturates) {
-  const auto outcome = control({.level_m_s2 = 100.0, .tolerance_rel = 0.01, .level_per_volt = 50.0, .corrections = 6}, {},
-                               [](double v) { return 50.0 * v / (1.0 + 0.1 * v); });
+  const auto outcome = control(
+      {.level_m_s2 = 100.0, .tolerance_rel = 0.01, .level_per_volt = 50.0, .corrections = 6}, {},
+      [](double v) { return 50.0 * v / (1.0 + 0.1 * v); });
   ASSERT_TRUE(outcome.done) << outcome.done.error().message;
   EXPECT_NEAR(50.0 * outcome.voltage_v / (1.0 + 0.1 * outcome.voltage_v), 100.0, 1.0);
 }
 
 TEST(LevelControl, NeverReturnsAVoltageAboveTheLimit) {
-  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 50.0}, {.maximum_voltage_v = 0.5}, [](double v) { return 10.0 * v; });
+  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 50.0},
+                               {.maximum_voltage_v = 0.5}, [](double v) { return 10.0 * v; });
   ASSERT_FALSE(outcome.done);
-  EXPECT_THAT(outcome.done.error().message, HasSubstr("needs 1 V, above generator.maximum_voltage_v = 0.5"));
+  EXPECT_THAT(outcome.done.error().message,
+              HasSubstr("needs 1 V, above generator.maximum_voltage_v = 0.5"));
   EXPECT_LE(outcome.voltage_v, 0.5);
 }
 
 TEST(LevelControl, AnExciterFarMoreLivelyThanStatedIsStoppedAtTheHighestLevel) {
-  const auto outcome =
-      control({.level_m_s2 = 10.0, .level_per_volt = 50.0}, {.maximum_level_m_s2 = 12.0}, [](double v) { return 200.0 * v; });
+  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 50.0},
+                               {.maximum_level_m_s2 = 12.0}, [](double v) { return 200.0 * v; });
   ASSERT_FALSE(outcome.done);
   EXPECT_EQ(outcome.measurements, 1);
   EXPECT_THAT(outcome.done.error().message, HasSubstr("above generator.maximum_level_m_s2 = 12"));
 }
 
 TEST(LevelControl, AReferenceThatShowsNothingIsNoReasonForMoreVoltage) {
-  const auto outcome = control({.level_m_s2 = 10.0, .level_per_volt = 50.0}, {}, [](double) { return 0.002; });
+  const auto outcome =
+      control({.level_m_s2 = 10.0, .level_per_volt = 50.0}, {}, [](double) { return 0.002; });
   ASSERT_FALSE(outcome.done);
   EXPECT_EQ(outcome.measurements, 1);
   EXPECT_THAT(outcome.done.error().message, HasSubstr("is the amplifier on"));
@@ -82,18 +88,21 @@ TEST(LevelControl, AReferenceThatShowsNothingIsNoReasonForMoreVoltage) {
 TEST(LevelControl, GivesUpOnAnExciterThatIsNeverTheSame) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> gain(30.0, 70.0);
-  const auto outcome =
-      control({.level_m_s2 = 10.0, .tolerance_rel = 1e-4, .level_per_volt = 50.0}, {}, [&](double v) { return gain(random) * v; });
+  const auto outcome = control({.level_m_s2 = 10.0, .tolerance_rel = 1e-4, .level_per_volt = 50.0},
+                               {}, [&](double v) { return gain(random) * v; });
   ASSERT_FALSE(outcome.done);
   EXPECT_EQ(outcome.measurements, 5);
   EXPECT_THAT(outcome.done.error().message, HasSubstr("after 4 corrections"));
 }
 
 TEST(LevelControl, ALevelAboveTheHighestIsRefusedBeforeAnythingIsSet) {
-  EXPECT_FALSE(LevelControl::start({.level_m_s2 = 20.0, .level_per_volt = 50.0}, {.maximum_level_m_s2 = 15.0}));
+  EXPECT_FALSE(LevelControl::start({.level_m_s2 = 20.0, .level_per_volt = 50.0},
+                                   {.maximum_level_m_s2 = 15.0}));
   EXPECT_FALSE(voltage_for_level(20.0, 50.0, {.maximum_voltage_v = 0.3}));
-  EXPECT_FALSE(LevelControl::start({.level_m_s2 = 20.0, .tolerance_rel = 0.0, .level_per_volt = 50.0}, {}));
-  EXPECT_TRUE(voltage_for_level(15.0, 50.0, {.maximum_voltage_v = 0.3, .maximum_level_m_s2 = 15.0}));
+  EXPECT_FALSE(
+      LevelControl::start({.level_m_s2 = 20.0, .tolerance_rel = 0.0, .level_per_volt = 50.0}, {}));
+  EXPECT_TRUE(
+      voltage_for_level(15.0, 50.0, {.maximum_voltage_v = 0.3, .maximum_level_m_s2 = 15.0}));
 }
 
 } // namespace

@@ -13,10 +13,12 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Answers as a DG4000 does; `errors` are what it says to the next error queries, "0,No error" when they are used up.
+// Answers as a DG4000 does; `errors` are what it says to the next error queries, "0,No error" when
+// they are used up.
 class FakeGenerator {
 public:
-  explicit FakeGenerator(std::vector<std::string> errors = {}, std::string identity = "Rigol Technologies,DG4162,DG4E1,00.01.14")
+  explicit FakeGenerator(std::vector<std::string> errors = {},
+                         std::string identity = "Rigol Technologies,DG4162,DG4E1,00.01.14")
       : errors_(std::move(errors)), identity_(std::move(identity)),
         instrument_([this](int, ScriptedInstrument::Client& client) { serve(client); }) {}
 
@@ -64,18 +66,21 @@ TEST(ScpiGenerator, SetsTheInstrumentUpAndSwitchesItsOutputOffAtTheEnd) {
     EXPECT_TRUE((*generator)->set_output(true));
   }
   EXPECT_THAT(instrument.commands(),
-              ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP",
-                          ":SOURce1:FREQuency 199.87", ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
+              ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid",
+                          ":SOURce1:VOLTage:UNIT VPP", ":SOURce1:FREQuency 199.87",
+                          ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
 }
 
 TEST(ScpiGenerator, PassesTheInstrumentsErrorOnWordForWord) {
-  FakeGenerator instrument({"0,\"No error\"", "+0,\"No error\"", "0,\"No error\"", "0,\"No error\"", "-222,\"Data out of range\""});
+  FakeGenerator instrument({"0,\"No error\"", "+0,\"No error\"", "0,\"No error\"", "0,\"No error\"",
+                            "-222,\"Data out of range\""});
   auto generator = ScpiGenerator::connect(instrument.address());
   ASSERT_TRUE(generator) << generator.error().message;
   const auto refused = (*generator)->set_frequency("1e12");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::refused);
-  EXPECT_THAT(refused.error().message, HasSubstr(":SOURce1:FREQuency 1e12: -222,\"Data out of range\""));
+  EXPECT_THAT(refused.error().message,
+              HasSubstr(":SOURce1:FREQuency 1e12: -222,\"Data out of range\""));
 }
 
 TEST(ScpiGenerator, TakesTheHostsClockWhereTheInstrumentHasNone) {

@@ -1,4 +1,5 @@
-// A TCP instrument for tests: it listens on a port of its own and does with each connection what the test says.
+// A TCP instrument for tests: it listens on a port of its own and does with each connection what
+// the test says.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +19,9 @@ public:
   class Client {
   public:
     explicit Client(int socket) : socket_(socket) {}
-    void say(const std::string& bytes) const { static_cast<void>(send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL)); }
+    void say(const std::string& bytes) const {
+      static_cast<void>(send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL));
+    }
     // The next line without its end; empty when the other side has gone.
     [[nodiscard]] std::string hear() {
       for (;;) {
@@ -43,7 +46,8 @@ public:
   };
 
   // `serve` is called with the number of the connection, 0 for the first.
-  explicit ScriptedInstrument(std::function<void(int, Client&)> serve) : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit ScriptedInstrument(std::function<void(int, Client&)> serve)
+      : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -63,7 +67,9 @@ public:
       }
     });
   }
-  ~ScriptedInstrument() { shutdown(listener_.number(), SHUT_RDWR); } // ends accept(); the thread is joined after this
+  ~ScriptedInstrument() {
+    shutdown(listener_.number(), SHUT_RDWR);
+  } // ends accept(); the thread is joined after this
 
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 

@@ -1,11 +1,13 @@
-// A VXI-11 instrument for tests, as far as messages go: portmapper (port 111) and core channel over ONC RPC, on the loopback interface,
-// from a thread of its own. The wire forms are those of the VXIbus specification's RPCL; procedures: create_link, device_write,
-// device_read, destroy_link. An answer leaves in pieces of `piece_bytes`, the last with the END reason; a read without an answer is error
-// 15 (timeout). One at a time in a process: the RPC library's tables are global. open() is false when port 111 is not to be had.
+// A VXI-11 instrument for tests, as far as messages go: portmapper (port 111) and core channel over
+// ONC RPC, on the loopback interface, from a thread of its own. The wire forms are those of the
+// VXIbus specification's RPCL; procedures: create_link, device_write, device_read, destroy_link. An
+// answer leaves in pieces of `piece_bytes`, the last with the END reason; a read without an answer
+// is error 15 (timeout). One at a time in a process: the RPC library's tables are global. open() is
+// false when port 111 is not to be had.
 #pragma once
 
-#include <arpa/inet.h>
 #include <algorithm>
+#include <arpa/inet.h>
 #include <atomic>
 #include <cstdarg>
 #include <cstdint>
@@ -27,7 +29,8 @@ class Vxi11Server {
 public:
   using Answer = std::function<std::string(const std::string& command)>; // empty: none
 
-  explicit Vxi11Server(Answer answer, std::size_t piece_bytes = 100'000) : answer_(std::move(answer)), piece_bytes_(piece_bytes) {}
+  explicit Vxi11Server(Answer answer, std::size_t piece_bytes = 100'000)
+      : answer_(std::move(answer)), piece_bytes_(piece_bytes) {}
   ~Vxi11Server() {
     thread_ = {};
     for (SVCXPRT* transport : {core_, mapper_tcp_, mapper_udp_}) {
@@ -56,8 +59,10 @@ public:
     mapper_udp_ = svcudp_create(udp);
     mapper_tcp_ = svctcp_create(tcp, 0, 0);
     core_ = svctcp_create(core, 0, 0);
-    if (mapper_udp_ == nullptr || mapper_tcp_ == nullptr || core_ == nullptr || !svc_register(mapper_udp_, PMAPPROG, PMAPVERS, map, 0) ||
-        !svc_register(mapper_tcp_, PMAPPROG, PMAPVERS, map, 0) || !svc_register(core_, core_program, 1, serve, 0)) {
+    if (mapper_udp_ == nullptr || mapper_tcp_ == nullptr || core_ == nullptr ||
+        !svc_register(mapper_udp_, PMAPPROG, PMAPVERS, map, 0) ||
+        !svc_register(mapper_tcp_, PMAPPROG, PMAPVERS, map, 0) ||
+        !svc_register(core_, core_program, 1, serve, 0)) {
       return false;
     }
     thread_ = std::jthread([](const std::stop_token& stop) {
@@ -109,7 +114,11 @@ private:
     if (request->rq_proc == PMAPPROC_GETPORT) {
       u_long port = current()->core_port_;
       answer_with(
-          transport, [](XDR* xdr, void* value) -> bool_t { return xdr_u_long(xdr, static_cast<u_long*>(value)); }, &port);
+          transport,
+          [](XDR* xdr, void* value) -> bool_t {
+            return xdr_u_long(xdr, static_cast<u_long*>(value));
+          },
+          &port);
     } else {
       svc_sendreply(transport, no_value, nullptr);
     }
@@ -146,10 +155,13 @@ private:
         return 0;
       }
     }
-    return !with_text || xdr_bytes(xdr, &parameters->text, &parameters->bytes, 1U << 20U) != 0 ? 1 : 0;
+    return !with_text || xdr_bytes(xdr, &parameters->text, &parameters->bytes, 1U << 20U) != 0 ? 1
+                                                                                               : 0;
   }
 
-  static void serve(svc_req* request, SVCXPRT* transport) { current()->execute(request->rq_proc, transport); }
+  static void serve(svc_req* request, SVCXPRT* transport) {
+    current()->execute(request->rq_proc, transport);
+  }
 
   void execute(rpcproc_t procedure, SVCXPRT* transport) {
     Parameters parameters;
@@ -210,7 +222,8 @@ private:
   };
 
   void send_piece(SVCXPRT* transport, std::size_t most) {
-    ReadReply reply{waiting_.empty() ? io_timeout : 0, 0, waiting_.substr(0, std::min(most, piece_bytes_))};
+    ReadReply reply{waiting_.empty() ? io_timeout : 0, 0,
+                    waiting_.substr(0, std::min(most, piece_bytes_))};
     waiting_.erase(0, reply.data.size());
     reply.reason = waiting_.empty() && reply.error == 0 ? end_of_answer : 0;
     answer_with(
@@ -219,8 +232,10 @@ private:
           auto* read = static_cast<ReadReply*>(value);
           char* data = read->data.data();
           auto size = static_cast<u_int>(read->data.size());
-          return xdr_int32_t(xdr, &read->error) != 0 && xdr_int32_t(xdr, &read->reason) != 0 && xdr_bytes(xdr, &data, &size, size) != 0 ? 1
-                                                                                                                                        : 0;
+          return xdr_int32_t(xdr, &read->error) != 0 && xdr_int32_t(xdr, &read->reason) != 0 &&
+                         xdr_bytes(xdr, &data, &size, size) != 0
+                     ? 1
+                     : 0;
         },
         &reply);
   }

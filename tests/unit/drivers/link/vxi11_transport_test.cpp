@@ -19,7 +19,8 @@ class Vxi11TransportTest : public testing::Test {
 protected:
   void SetUp() override {
     if (!server_.open()) {
-      GTEST_SKIP() << "SKIPPED: port 111 (rpcbind, portmapper) is not to be had on this host: it is taken, or needs root";
+      GTEST_SKIP() << "SKIPPED: port 111 (rpcbind, portmapper) is not to be had on this host: it "
+                      "is taken, or needs root";
     }
   }
 

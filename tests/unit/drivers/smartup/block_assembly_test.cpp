@@ -36,7 +36,9 @@ TEST(BlockAssembly, CutsFiftyMilliseconds) {
   auto blocks = assembly();
   std::vector<SampleBlock> ready;
   for (std::uint64_t n = 1; n <= 200; ++n) {
-    if (auto block = blocks.add(row(n), period_ns, at_ms(static_cast<std::int64_t>(n)))) ready.push_back(std::move(*block));
+    if (auto block = blocks.add(row(n), period_ns, at_ms(static_cast<std::int64_t>(n)))) {
+      ready.push_back(std::move(*block));
+    }
   }
   ASSERT_EQ(ready.size(), 4U);
   EXPECT_EQ(ready[1].first_sample, 51U);
@@ -52,8 +54,9 @@ TEST(BlockAssembly, CutsFiftyMilliseconds) {
 
 TEST(BlockAssembly, AGapEndsTheBlock) {
   auto blocks = assembly();
-  for (std::uint64_t n = 1; n <= 10; ++n)
+  for (std::uint64_t n = 1; n <= 10; ++n) {
     EXPECT_FALSE(blocks.add(row(n), period_ns, at_ms(0)));
+  }
   const auto block = blocks.add(row(12), period_ns, at_ms(0));
   ASSERT_TRUE(block);
   EXPECT_EQ(block->samples, 10U);

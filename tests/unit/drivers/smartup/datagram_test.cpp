@@ -171,8 +171,9 @@ TEST(Datagram, MessagesBeforeABrokenFrameAreKept) {
 
 TEST(Datagram, UnknownFieldsAreSkipped) {
   std::vector<std::uint8_t> message;
-  for (int field = 1; field <= 5; ++field)
+  for (int field = 1; field <= 5; ++field) {
     DatagramWriter::number(message, field, 9);
+  }
   DatagramWriter::text(message, 100, "of a later firmware");
   DatagramWriter::number(message, 200, UINT64_MAX);
   DatagramWriter::real(message, 300, 1.0F);
@@ -183,14 +184,16 @@ TEST(Datagram, UnknownFieldsAreSkipped) {
 }
 
 TEST(Datagram, MalformedFieldsAreRejected) {
-  const std::vector<std::vector<std::uint8_t>> messages = {{0x00, 0x01},       // field number 0
-                                                           {0x0b, 0x01},       // a group
-                                                           {0x0e, 0x01},       // no such wire type
-                                                           {0x35, 0x00, 0x00}, // half a float
-                                                           {0x08, 0xff, 0xff}, // half a varint
-                                                           {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01, 0x00}};
+  const std::vector<std::vector<std::uint8_t>> messages = {
+      {0x00, 0x01},       // field number 0
+      {0x0b, 0x01},       // a group
+      {0x0e, 0x01},       // no such wire type
+      {0x35, 0x00, 0x00}, // half a float
+      {0x08, 0xff, 0xff}, // half a varint
+      {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01, 0x00}};
   for (const auto& message : messages) {
-    const auto datagram = decoded(DatagramWriter("DATA").frame(message).data({.sample_number = 3}).bytes());
+    const auto datagram =
+        decoded(DatagramWriter("DATA").frame(message).data({.sample_number = 3}).bytes());
     ASSERT_EQ(datagram.rejected.size(), 1U);
     EXPECT_EQ(datagram.rejected[0].cause, Rejection::malformed);
     EXPECT_EQ(datagram.data.size(), 1U);
@@ -198,7 +201,8 @@ TEST(Datagram, MalformedFieldsAreRejected) {
 }
 
 TEST(Datagram, DescriptionsOfUnknownTypeAreRejected) {
-  const auto datagram = decoded(DatagramWriter("DSCP").description(1, "x", 7, std::vector<std::string>{"a"}).bytes());
+  const auto datagram =
+      decoded(DatagramWriter("DSCP").description(1, "x", 7, std::vector<std::string>{"a"}).bytes());
   ASSERT_EQ(datagram.rejected.size(), 1U);
   EXPECT_EQ(datagram.rejected[0].cause, Rejection::unknown_type);
   EXPECT_EQ(datagram.rejected[0].sensor, 1U);
@@ -207,7 +211,10 @@ TEST(Datagram, DescriptionsOfUnknownTypeAreRejected) {
 TEST(Datagram, TextsMayFillTheirFieldWithoutNulOrEndBeforeIt) {
   const std::string forty(40, 'x');
   const std::string padded("y\0\0garbage", 10);
-  const auto datagram = decoded(DatagramWriter("DSCP").description(1, "name", 0, std::vector<std::string>{forty, padded}).bytes());
+  const auto datagram =
+      decoded(DatagramWriter("DSCP")
+                  .description(1, "name", 0, std::vector<std::string>{forty, padded})
+                  .bytes());
   ASSERT_EQ(datagram.descriptions.size(), 1U);
   EXPECT_EQ(datagram.descriptions[0].texts[0], forty);
   EXPECT_EQ(datagram.descriptions[0].texts[1], "y");
@@ -231,11 +238,21 @@ protected:
     message.set_unix_time_nsecs(number());
     message.set_time_uncertainty(number());
     message.set_data_01(static_cast<float>(random()));
-    if (random() % 2 != 0) message.set_data_02(-1.5F);
-    if (random() % 2 != 0) message.set_data_10(0.0F);
-    if (random() % 2 != 0) message.set_data_11(3.0F);
-    if (random() % 2 != 0) message.set_data_16(static_cast<float>(random()));
-    if (random() % 2 != 0) message.set_time_ticks((std::uint64_t{random()} << 32U) | random());
+    if (random() % 2 != 0) {
+      message.set_data_02(-1.5F);
+    }
+    if (random() % 2 != 0) {
+      message.set_data_10(0.0F);
+    }
+    if (random() % 2 != 0) {
+      message.set_data_11(3.0F);
+    }
+    if (random() % 2 != 0) {
+      message.set_data_16(static_cast<float>(random()));
+    }
+    if (random() % 2 != 0) {
+      message.set_time_ticks((std::uint64_t{random()} << 32U) | random());
+    }
     return message;
   }
 
@@ -269,16 +286,21 @@ TEST_F(AgainstProtobuf, WhatWeAcceptOfDamagedMessagesIsReadAlike) {
   int accepted = 0;
   for (int i = 0; i < 20000; ++i) {
     std::string bytes = random_message().SerializeAsString();
-    for (auto damage = random() % 3; damage > 0; --damage)
+    for (auto damage = random() % 3; damage > 0; --damage) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
     const auto datagram = decoded(framed(bytes));
     wire::DataMessage theirs;
     const bool they_accept = theirs.ParsePartialFromString(bytes) && theirs.IsInitialized();
-    if (datagram.data.empty()) continue;
+    if (datagram.data.empty()) {
+      continue;
+    }
     ++accepted;
     ASSERT_TRUE(they_accept);
     const bool comparable = !std::isnan(theirs.data_01()) && !std::isnan(theirs.data_16());
-    if (comparable) expect_same(theirs, datagram.data[0]);
+    if (comparable) {
+      expect_same(theirs, datagram.data[0]);
+    }
   }
   EXPECT_GT(accepted, 5000);
 }

@@ -20,8 +20,9 @@ DescriptionMessage message_of(std::span<const std::uint8_t> bytes) {
 
 DescriptionAssembly mpu9250() {
   DescriptionAssembly assembly;
-  for (const auto& bytes : tests::mpu9250_descriptions(0xbccb0100))
+  for (const auto& bytes : tests::mpu9250_descriptions(0xbccb0100)) {
     assembly.add(message_of(bytes));
+  }
   return assembly;
 }
 
@@ -33,15 +34,18 @@ DescriptionAssembly with_hierarchy(const std::vector<std::string>& texts) {
 
 std::vector<std::string> names(const std::vector<ChannelDescription>& channels) {
   std::vector<std::string> names;
-  for (const auto& channel : channels)
+  for (const auto& channel : channels) {
     names.push_back(channel.name);
+  }
   return names;
 }
 
 TEST(Description, NamesChannelsFromTheirHierarchy) {
-  EXPECT_THAT(names(mpu9250().channels(0x3ff, {})), ElementsAre("acceleration_x", "acceleration_y", "acceleration_z", "angular_velocity_x",
-                                                                "angular_velocity_y", "angular_velocity_z", "magnetic_flux_density_x",
-                                                                "magnetic_flux_density_y", "magnetic_flux_density_z", "temperature"));
+  EXPECT_THAT(names(mpu9250().channels(0x3ff, {})),
+              ElementsAre("acceleration_x", "acceleration_y", "acceleration_z",
+                          "angular_velocity_x", "angular_velocity_y", "angular_velocity_z",
+                          "magnetic_flux_density_x", "magnetic_flux_density_y",
+                          "magnetic_flux_density_z", "temperature"));
 }
 
 TEST(Description, IsCompleteWithSixKinds) {
@@ -81,7 +85,9 @@ TEST(Description, OnlyPresentChannelsAreColumns) {
 }
 
 TEST(Description, DeclaredChannelsCanBeRenamedByAnyOfTheirNames) {
-  const ChannelNaming naming{.names = {{"acceleration/0", "ax"}, {"data_02", "ay"}, {"acceleration_z", "az"}}, .units = {{"az", "\\one"}}};
+  const ChannelNaming naming{
+      .names = {{"acceleration/0", "ax"}, {"data_02", "ay"}, {"acceleration_z", "az"}},
+      .units = {{"az", "\\one"}}};
   const auto channels = mpu9250().channels(0b111, naming);
   EXPECT_THAT(names(channels), ElementsAre("ax", "ay", "az"));
   EXPECT_EQ(channels[2].unit, "\\one");
@@ -89,7 +95,8 @@ TEST(Description, DeclaredChannelsCanBeRenamedByAnyOfTheirNames) {
 
 TEST(Description, NothingDeclaredGivesNumberedNames) {
   EXPECT_THAT(names(DescriptionAssembly().channels(0b101, {})), ElementsAre("data_01", "data_03"));
-  EXPECT_THAT(names(DescriptionAssembly().channels(0b101, {}, "sync_")), ElementsAre("sync_data_01", "sync_data_03"));
+  EXPECT_THAT(names(DescriptionAssembly().channels(0b101, {}, "sync_")),
+              ElementsAre("sync_data_01", "sync_data_03"));
 }
 
 TEST(Description, VoltagesKeepTheirNumbers) {
@@ -110,11 +117,14 @@ TEST(Description, HierarchyWithoutIndexIsWarnedOfAndUsed) {
 }
 
 TEST(Description, EqualNamesAreToldApart) {
-  EXPECT_THAT(names(with_hierarchy({"Pressure", "Pressure"}).channels(0b11, {})), ElementsAre("pressure", "pressure_02"));
+  EXPECT_THAT(names(with_hierarchy({"Pressure", "Pressure"}).channels(0b11, {})),
+              ElementsAre("pressure", "pressure_02"));
 }
 
 TEST(Description, OddHierarchiesGiveUsableNames) {
-  EXPECT_THAT(names(with_hierarchy({"/0", "Relative humidity/0", "Acceleration/x", "A/99999999999999999999"}).channels(0b1111, {})),
+  EXPECT_THAT(names(with_hierarchy(
+                        {"/0", "Relative humidity/0", "Acceleration/x", "A/99999999999999999999"})
+                        .channels(0b1111, {})),
               ElementsAre("data_01", "relative_humidity", "acceleration", "a"));
 }
 

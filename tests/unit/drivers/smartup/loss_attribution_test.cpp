@@ -19,14 +19,19 @@ public:
   void sample(bool lost_inside = false) {
     const std::uint32_t sensor = turns_[next_++ % turns_.size()];
     const std::uint64_t number = ++numbers_[sensor];
-    if (lost_inside) return;
+    if (lost_inside) {
+      return;
+    }
     datagram_.push_back({sensor, number});
-    if (datagram_.size() == 12) ship();
+    if (datagram_.size() == 12) {
+      ship();
+    }
   }
 
   void samples(int count) {
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; ++i) {
       sample();
+    }
   }
 
   void lose_next_datagram() { losing_ = true; }
@@ -99,8 +104,9 @@ TEST(LossAttribution, ASmallGapBetweenDatagramsWasLostInTheUnit) {
 TEST(LossAttribution, ALargeGapOfOneSensorWhileTheOthersGoOnWasLostInTheUnit) {
   SimulatedUnit unit({1, 2, 3, 4});
   unit.samples(24 * 12);
-  for (int i = 0; i < 20 * 4; ++i)
+  for (int i = 0; i < 20 * 4; ++i) {
     unit.sample(i % 4 == 0); // sensor 1 loses twenty samples in a row
+  }
   unit.samples(5 * 12);
   EXPECT_EQ(unit.in_unit, 20U);
   EXPECT_EQ(unit.on_way, 0U);
@@ -110,7 +116,9 @@ TEST(LossAttribution, ASlowSensorNoticesLaterThatItsSampleWasInTheLostDatagram) 
   std::vector<std::uint32_t> turns(50, 1);
   turns[3] = 2; // one sample of sensor 2 in fifty
   SimulatedUnit unit(turns);
-  unit.samples(50 * 12); // fifty whole datagrams and twelve rounds: the next datagram holds a sample of sensor 2
+  unit.samples(
+      50 *
+      12); // fifty whole datagrams and twelve rounds: the next datagram holds a sample of sensor 2
   unit.lose_next_datagram();
   unit.samples(50 * 3);
   EXPECT_EQ(unit.on_way, 12U);

@@ -24,7 +24,9 @@ constexpr std::uint32_t sensor_id = 0xbccb0100;
 bool eventually(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
     std::this_thread::yield();
   }
   return true;
@@ -32,13 +34,18 @@ bool eventually(const std::function<bool()>& condition) {
 
 DatagramWriter datagram_from(std::uint32_t first, std::uint32_t sensor = sensor_id) {
   DatagramWriter datagram("DATA");
-  for (std::uint32_t n = first; n < first + 12; ++n)
-    datagram.data({.sensor = sensor, .sample_number = n, .stamp_ns = 1'600'000'000'000'000'000 + n * 1'000'000LL});
+  for (std::uint32_t n = first; n < first + 12; ++n) {
+    datagram.data({.sensor = sensor,
+                   .sample_number = n,
+                   .stamp_ns = 1'600'000'000'000'000'000 + n * 1'000'000LL});
+  }
   return datagram;
 }
 
 Receiver::Endpoint endpoint(tests::RecordingSink& sink, const std::string& listen = "127.0.0.1:0") {
-  return {.listen = listen, .wanted = {{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}}, .sink = &sink};
+  return {.listen = listen,
+          .wanted = {{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}},
+          .sink = &sink};
 }
 
 TEST(ListenAddress, IsAnAddressAndAPort) {
@@ -47,8 +54,8 @@ TEST(ListenAddress, IsAnAddressAndAPort) {
   EXPECT_EQ(listen->address, 0xc0a80005U);
   EXPECT_EQ(listen->port, 7654);
   EXPECT_EQ(parse_listen_address(":7000")->address, 0U);
-  for (const auto* bad :
-       {"", "7654", "localhost:7654", "1.2.3:7654", "1.2.3.4:", "1.2.3.4:65536", "1.2.3.4:-1", "1.2.3.4:7654x", "[::1]:7654"}) {
+  for (const auto* bad : {"", "7654", "localhost:7654", "1.2.3:7654", "1.2.3.4:", "1.2.3.4:65536",
+                          "1.2.3.4:-1", "1.2.3.4:7654x", "[::1]:7654"}) {
     const auto refused = parse_listen_address(bad);
     ASSERT_FALSE(refused) << bad;
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_setting);
@@ -68,7 +75,8 @@ TEST(Receiver, ReceivesOverUdpFromSeveralUnitsAtSeveralPorts) {
     EXPECT_TRUE(to_first.send(datagram_from(n).bytes()));
     to_second.send(datagram_from(n).bytes());
   }
-  EXPECT_TRUE(eventually([&] { return first.samples(sensor_id) == 1200 && second.samples(sensor_id) == 1200; }));
+  EXPECT_TRUE(eventually(
+      [&] { return first.samples(sensor_id) == 1200 && second.samples(sensor_id) == 1200; }));
   (*receiver)->stop();
   EXPECT_EQ(first.reports.at(sensor_id).counts.received, 1200U);
   EXPECT_EQ(first.reception.dropped_by_kernel, 0U);
@@ -92,8 +100,9 @@ TEST(Receiver, CountsWhatTheKernelHadToDrop) {
   auto receiver = Receiver::create({small});
   ASSERT_TRUE(receiver);
   UdpSender sender((*receiver)->port(0));
-  for (std::uint32_t n = 1; n <= 1200; n += 12)
+  for (std::uint32_t n = 1; n <= 1200; n += 12) {
     EXPECT_TRUE(sender.send(datagram_from(n).bytes())); // nobody reads yet
+  }
   (*receiver)->start();
   // The count comes with the next datagram that is received.
   std::uint32_t n = 1201;
@@ -127,7 +136,8 @@ TEST(Receiver, SaysWhenAnAddressIsInUse) {
   tests::RecordingSink sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
-  const auto refused = Receiver::create({endpoint(sink, "127.0.0.1:" + std::to_string((*receiver)->port(0)))});
+  const auto refused =
+      Receiver::create({endpoint(sink, "127.0.0.1:" + std::to_string((*receiver)->port(0)))});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::refused);
   EXPECT_THAT(refused.error().message, HasSubstr("another program uses this port"));

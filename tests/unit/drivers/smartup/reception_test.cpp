@@ -22,29 +22,39 @@ constexpr std::int64_t period_ns = 1'000'000;
 // One reception that is fed datagrams of a unit whose host clock runs with the samples.
 class ReceptionTest : public testing::Test {
 protected:
-  void listen(std::vector<SensorSettings> wanted) { reception = std::make_unique<Reception>(std::move(wanted), sink); }
+  void listen(std::vector<SensorSettings> wanted) {
+    reception = std::make_unique<Reception>(std::move(wanted), sink);
+  }
   void SetUp() override { listen({{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}}); }
 
-  static DatagramWriter::Data sample(std::uint32_t number, std::int64_t offset_ns = 0, std::uint32_t sensor = sensor_id) {
-    return {.sensor = sensor, .sample_number = number, .stamp_ns = start_ns + number * period_ns + offset_ns};
+  static DatagramWriter::Data sample(std::uint32_t number, std::int64_t offset_ns = 0,
+                                     std::uint32_t sensor = sensor_id) {
+    return {.sensor = sensor,
+            .sample_number = number,
+            .stamp_ns = start_ns + number * period_ns + offset_ns};
   }
 
-  void send(const DatagramWriter& datagram, Sender sender = unit_address) { reception->take(datagram.bytes(), sender, now); }
+  void send(const DatagramWriter& datagram, Sender sender = unit_address) {
+    reception->take(datagram.bytes(), sender, now);
+  }
 
   // Datagrams of twelve samples with the numbers first ... last.
-  void send_samples(std::uint32_t first, std::uint32_t last, std::int64_t offset_ns = 0, Sender sender = unit_address) {
+  void send_samples(std::uint32_t first, std::uint32_t last, std::int64_t offset_ns = 0,
+                    Sender sender = unit_address) {
     for (std::uint32_t n = first; n <= last;) {
       DatagramWriter datagram("DATA");
-      for (int i = 0; i < 12 && n <= last; ++i, ++n)
+      for (int i = 0; i < 12 && n <= last; ++i, ++n) {
         datagram.data(sample(n, offset_ns));
+      }
       pass(12 * period_ns);
       send(datagram, sender);
     }
   }
 
   void describe(std::uint32_t sensor) {
-    for (const auto& bytes : tests::mpu9250_descriptions(sensor))
+    for (const auto& bytes : tests::mpu9250_descriptions(sensor)) {
       reception->take(bytes, unit_address, now);
+    }
   }
 
   void pass(std::int64_t ns) {
@@ -69,14 +79,17 @@ TEST_F(ReceptionTest, HandsOnEverySampleOnce) {
   const auto counted = counts();
   EXPECT_EQ(counted.received, 1200U);
   EXPECT_EQ(sink.samples(sensor_id), 1200U);
-  EXPECT_EQ(counted.lost_in_unit + counted.lost_on_way + counted.duplicates + counted.stamps_not_trusted, 0U);
+  EXPECT_EQ(counted.lost_in_unit + counted.lost_on_way + counted.duplicates +
+                counted.stamps_not_trusted,
+            0U);
   std::uint64_t expected = 1;
   for (const auto& block : sink.blocks[sensor_id]) {
     EXPECT_EQ(block.first_sample, expected);
     EXPECT_LE(block.samples, 60U);
     expected += block.samples;
   }
-  EXPECT_EQ(sink.blocks[sensor_id][3].stamp_uncertainty_ns[0], 21U) << "a quarter of what the unit sends";
+  EXPECT_EQ(sink.blocks[sensor_id][3].stamp_uncertainty_ns[0], 21U)
+      << "a quarter of what the unit sends";
 }
 
 TEST_F(ReceptionTest, DescribesTheSensorBeforeOrAfterItsFirstSample) {
@@ -106,8 +119,9 @@ TEST_F(ReceptionTest, GivesUpWaitingForADescription) {
 TEST_F(ReceptionTest, TellsLossInTheUnitFromLossOnTheWay) {
   send_samples(1, 240);
   DatagramWriter datagram("DATA");
-  for (const std::uint32_t n : {241, 242, 244, 245, 246, 247, 248, 249, 250, 251, 252, 253})
+  for (const std::uint32_t n : {241, 242, 244, 245, 246, 247, 248, 249, 250, 251, 252, 253}) {
     datagram.data(sample(n));
+  }
   send(datagram);
   send_samples(266, 400);
   const auto counted = counts();
@@ -122,8 +136,9 @@ TEST_F(ReceptionTest, AGapShowsBetweenBlocks) {
   send_samples(253, 400);
   (void)counts();
   bool found = false;
-  for (const auto& block : sink.blocks[sensor_id])
+  for (const auto& block : sink.blocks[sensor_id]) {
     found = found || block.first_sample == 253;
+  }
   EXPECT_TRUE(found);
 }
 
@@ -161,10 +176,12 @@ TEST_F(ReceptionTest, ARestartOfTheNumberingBeginsANewSession) {
 
 TEST_F(ReceptionTest, StaleSamplesBeforeARestartAreNotHandedOn) {
   DatagramWriter first("DATA");
-  for (std::uint32_t n = 5001; n <= 5006; ++n)
+  for (std::uint32_t n = 5001; n <= 5006; ++n) {
     first.data(sample(n));
-  for (std::uint32_t n = 1; n <= 6; ++n)
+  }
+  for (std::uint32_t n = 1; n <= 6; ++n) {
     first.data(sample(n, 60'000'000'000));
+  }
   send(first);
   send_samples(7, 120, 60'000'000'000);
   const auto counted = counts();
@@ -177,10 +194,12 @@ TEST_F(ReceptionTest, StaleSamplesBeforeARestartAreNotHandedOn) {
 
 TEST_F(ReceptionTest, StaleSamplesBeforeAPauseAreNotHandedOn) {
   DatagramWriter first("DATA");
-  for (std::uint32_t n = 5001; n <= 5006; ++n)
+  for (std::uint32_t n = 5001; n <= 5006; ++n) {
     first.data(sample(n));
-  for (std::uint32_t n = 5007; n <= 5012; ++n)
+  }
+  for (std::uint32_t n = 5007; n <= 5012; ++n) {
     first.data(sample(n, 60'000'000'000));
+  }
   send(first);
   send_samples(5013, 5120, 60'000'000'000);
   const auto counted = counts();
@@ -191,8 +210,9 @@ TEST_F(ReceptionTest, StaleSamplesBeforeAPauseAreNotHandedOn) {
 
 TEST_F(ReceptionTest, ASlowSensorHasNoStaleSamples) {
   DatagramWriter first("DATA");
-  for (std::uint32_t n = 1; n <= 12; ++n)
+  for (std::uint32_t n = 1; n <= 12; ++n) {
     first.data(sample(n, n * 3'000'000'000LL));
+  }
   send(first);
   EXPECT_EQ(counts().stale, 0U);
   EXPECT_EQ(sink.samples(sensor_id), 12U);
@@ -202,8 +222,10 @@ TEST_F(ReceptionTest, StampsOfAnyYearAreOnlyNumbers) {
   DatagramWriter datagram("DATA");
   const std::int64_t latest_ns = std::int64_t{UINT32_MAX} * 1'000'000'000 + UINT32_MAX;
   std::uint32_t n = 0;
-  for (const std::int64_t stamp_ns : {latest_ns, std::int64_t{1}, latest_ns, std::int64_t{1'000'000'000}, latest_ns - 1})
+  for (const std::int64_t stamp_ns :
+       {latest_ns, std::int64_t{1}, latest_ns, std::int64_t{1'000'000'000}, latest_ns - 1}) {
     datagram.data({.sensor = sensor_id, .sample_number = ++n, .stamp_ns = stamp_ns});
+  }
   send(datagram);
   send_samples(6, 240);
   const auto counted = counts();
@@ -213,8 +235,11 @@ TEST_F(ReceptionTest, StampsOfAnyYearAreOnlyNumbers) {
 
 TEST_F(ReceptionTest, TheNumberWrapsWithoutLoss) {
   DatagramWriter datagram("DATA");
-  for (std::uint32_t i = 0; i < 12; ++i)
-    datagram.data({.sensor = sensor_id, .sample_number = UINT32_MAX - 5 + i, .stamp_ns = start_ns + i * period_ns});
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    datagram.data({.sensor = sensor_id,
+                   .sample_number = UINT32_MAX - 5 + i,
+                   .stamp_ns = start_ns + i * period_ns});
+  }
   send(datagram);
   const auto counted = counts();
   EXPECT_EQ(counted.received, 12U);
@@ -237,10 +262,13 @@ TEST_F(ReceptionTest, RejectedMessagesAreCountedAndNotTakenForLost) {
 }
 
 TEST_F(ReceptionTest, BrokenDatagramsAreCountedByCause) {
-  for (const auto* name : {"bad_truncated", "bad_varint", "bad_keyword", "bad_missing_required"})
+  for (const auto* name : {"bad_truncated", "bad_varint", "bad_keyword", "bad_missing_required"}) {
     reception->take(tests::wire_vector(name), unit_address, now);
+  }
   reception->finish(now);
-  const auto rejected = [&](Rejection cause) { return sink.reception.rejected[static_cast<std::size_t>(cause)]; };
+  const auto rejected = [&](Rejection cause) {
+    return sink.reception.rejected[static_cast<std::size_t>(cause)];
+  };
   EXPECT_EQ(rejected(Rejection::truncated), 1U);
   EXPECT_EQ(rejected(Rejection::bad_length), 1U);
   EXPECT_EQ(rejected(Rejection::unknown_keyword), 1U);
@@ -262,7 +290,8 @@ TEST_F(ReceptionTest, StampFaultsAreFlaggedAndCountedByName) {
   EXPECT_EQ(counted.stamp_flags[5], 1U);
   EXPECT_EQ(counted.stamp_flags[4], 1U);
   EXPECT_EQ(counted.stamp_flags[0], 1U);
-  EXPECT_THAT(sink.blocks[sensor_id].back().flags, testing::IsSupersetOf({stamp_no_uncertainty, stamp_repeated, stamp_second_slip}));
+  EXPECT_THAT(sink.blocks[sensor_id].back().flags,
+              testing::IsSupersetOf({stamp_no_uncertainty, stamp_repeated, stamp_second_slip}));
 }
 
 TEST_F(ReceptionTest, TheWireVectorsOfOneStreamGiveWhatTheySay) {
@@ -320,28 +349,34 @@ TEST_F(ReceptionTest, AUnitThatCameBackWithAnotherAddressIsTheSameUnit) {
 }
 
 TEST_F(ReceptionTest, MemoryIsBoundedAgainstInventedSensors) {
-  for (std::uint32_t i = 0; i < 3000; ++i)
+  for (std::uint32_t i = 0; i < 3000; ++i) {
     send(DatagramWriter("DATA").data(sample(1, 0, 0x10000000 + i)));
+  }
   reception->finish(now);
   EXPECT_LE(sink.reports.size(), Reception::max_sensors);
   EXPECT_GT(sink.reception.refused, 1900U);
 }
 
 TEST_F(ReceptionTest, MemoryIsBoundedAgainstInventedUnits) {
-  for (std::uint16_t port = 1; port <= 1000; ++port)
+  for (std::uint16_t port = 1; port <= 1000; ++port) {
     send(DatagramWriter("DATA").data(sample(1)), {0x7f000001, port});
+  }
   reception->finish(now);
   EXPECT_EQ(sink.reception.refused, 1000 - Reception::max_units);
 }
 
 TEST_F(ReceptionTest, ASyncSensorIsJoinedByItsStamps) {
-  listen({{.sensor = sensor_id, .sync_sensor = sync_id, .naming = {.names = {{"voltage_1", "sync"}}, .units = {}}}});
+  listen({{.sensor = sensor_id,
+           .sync_sensor = sync_id,
+           .naming = {.names = {{"voltage_1", "sync"}}, .units = {}}}});
   describe(sensor_id);
   const std::vector<std::string> voltages{"Voltage/0", "Voltage/1", "Voltage/2"};
-  for (const int type : {0, 1, 6})
+  for (const int type : {0, 1, 6}) {
     send(DatagramWriter("DSCP").description(sync_id, "ADC", type, voltages));
-  for (const int type : {3, 4, 5})
+  }
+  for (const int type : {3, 4, 5}) {
     send(DatagramWriter("DSCP").description(sync_id, "ADC", type, std::vector<float>{1, 2, 3}));
+  }
   for (std::uint32_t n = 1; n <= 240; n += 6) {
     DatagramWriter datagram("DATA");
     for (std::uint32_t i = n; i < n + 6; ++i) {

@@ -1,4 +1,5 @@
-// Keeps what a receiver hands on, for tests. May be read from another thread while the receiver runs.
+// Keeps what a receiver hands on, for tests. May be read from another thread while the receiver
+// runs.
 #pragma once
 
 #include <map>
@@ -12,7 +13,8 @@ namespace dyncal::tests {
 
 class RecordingSink : public drivers::smartup::SampleSink {
 public:
-  void on_description(std::uint32_t sensor, const drivers::SourceDescription& description) override {
+  void on_description(std::uint32_t sensor,
+                      const drivers::SourceDescription& description) override {
     const std::lock_guard lock(mutex);
     descriptions[sensor].push_back(description);
   }
@@ -40,8 +42,9 @@ public:
   std::size_t samples(std::uint32_t sensor) {
     const std::lock_guard lock(mutex);
     std::size_t samples = 0;
-    for (const auto& block : blocks[sensor])
+    for (const auto& block : blocks[sensor]) {
       samples += block.samples;
+    }
     return samples;
   }
 

@@ -44,10 +44,12 @@ TEST(SampleNumbering, GoesOnWhenTheNumberWraps) {
 
 TEST(SampleNumbering, RecognisesDuplicates) {
   SampleNumbering numbering;
-  for (std::uint32_t n = 1; n <= 100; ++n)
+  for (std::uint32_t n = 1; n <= 100; ++n) {
     (void)numbering.place(n, stamp(n));
-  for (std::uint32_t n = 89; n <= 100; ++n)
+  }
+  for (std::uint32_t n = 89; n <= 100; ++n) {
     EXPECT_EQ(numbering.place(n, stamp(n)).arrival, Arrival::duplicate);
+  }
   EXPECT_EQ(numbering.place(101, stamp(101)).arrival, Arrival::next);
 }
 
@@ -61,8 +63,9 @@ TEST(SampleNumbering, WhatComesAfterItsPlaceWasPassedIsLate) {
 
 TEST(SampleNumbering, RestartsWhenTheSensorIsInitialisedAgain) {
   SampleNumbering numbering;
-  for (std::uint32_t n = 1; n <= 1000; ++n)
+  for (std::uint32_t n = 1; n <= 1000; ++n) {
     (void)numbering.place(n, stamp(n));
+  }
   const auto place = numbering.place(1, stamp(31000));
   EXPECT_EQ(place.arrival, Arrival::restart);
   EXPECT_EQ(place.sample, 1U);
@@ -71,8 +74,9 @@ TEST(SampleNumbering, RestartsWhenTheSensorIsInitialisedAgain) {
 
 TEST(SampleNumbering, RestartsThoughTheFirstNumbersWereLost) {
   SampleNumbering numbering;
-  for (std::uint32_t n = 1; n <= 1000; ++n)
+  for (std::uint32_t n = 1; n <= 1000; ++n) {
     (void)numbering.place(n, stamp(n));
+  }
   EXPECT_EQ(numbering.place(25, stamp(31000)).arrival, Arrival::restart);
   // a number that the history knew with another stamp
   EXPECT_EQ(numbering.place(25, stamp(31000)).arrival, Arrival::duplicate);
@@ -87,8 +91,9 @@ TEST(SampleNumbering, RestartsBeyondHalfOfTheRangeToo) {
 
 TEST(SampleNumbering, RestartsWithoutUsableStampsOnceNumbersContinue) {
   SampleNumbering numbering;
-  for (std::uint32_t n = 1; n <= 1000; ++n)
+  for (std::uint32_t n = 1; n <= 1000; ++n) {
     (void)numbering.place(n, stamp(n));
+  }
   std::uint32_t n = 30; // the unit has lost its fix: time begins at zero
   int stale = 0;
   while (numbering.place(n, n).arrival == Arrival::stale && stale < 100) {
@@ -101,11 +106,13 @@ TEST(SampleNumbering, RestartsWithoutUsableStampsOnceNumbersContinue) {
 
 TEST(SampleNumbering, ADatagramFromBeforeTheRestartIsStale) {
   SampleNumbering numbering;
-  for (std::uint32_t n = 1; n <= 5000; ++n)
+  for (std::uint32_t n = 1; n <= 5000; ++n) {
     (void)numbering.place(n, stamp(n));
+  }
   (void)numbering.place(1, stamp(31000));
-  for (std::uint32_t n = 4990; n <= 5000; ++n)
+  for (std::uint32_t n = 4990; n <= 5000; ++n) {
     EXPECT_EQ(numbering.place(n, stamp(n)).arrival, Arrival::stale);
+  }
   EXPECT_EQ(numbering.place(2, stamp(31001)).arrival, Arrival::next);
 }
 

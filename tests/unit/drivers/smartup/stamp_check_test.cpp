@@ -23,7 +23,8 @@ public:
   // Flags of the next sample, whose stamp is off by `error_ns`.
   std::uint8_t next(std::int64_t error_ns = 0, std::uint32_t uncertainty_ns = 84) {
     ++sample_;
-    const auto offset_ns = static_cast<std::int64_t>(std::llround(static_cast<double>(sample_) * period_ns_));
+    const auto offset_ns =
+        static_cast<std::int64_t>(std::llround(static_cast<double>(sample_) * period_ns_));
     last_ns_ = start_ns + offset_ns + error_ns;
     return check_.check({sample_, last_ns_, uncertainty_ns, false});
   }
@@ -31,8 +32,9 @@ public:
   // Flags seen in `count` samples with the same error.
   std::map<int, int> run(int count, std::int64_t error_ns = 0) {
     std::map<int, int> flags;
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; ++i) {
       ++flags[next(error_ns)];
+    }
     return flags;
   }
 
@@ -69,8 +71,9 @@ TEST(StampCheck, TrustsTheJitterOfAnMpu9250) {
 TEST(StampCheck, TrustsLateAndEarlyPairs) {
   for (const std::int64_t late_ns : {4200, 20000, 60000}) {
     SimulatedSensor sensor(485000);
-    for (int i = 0; i < 50000; ++i)
+    for (int i = 0; i < 50000; ++i) {
       ASSERT_EQ(sensor.next(i % 2200 == 2199 ? late_ns : 0), 0) << i;
+    }
   }
 }
 
@@ -78,8 +81,9 @@ TEST(StampCheck, TrustsASensorThatIsPacedBySoftware) {
   SimulatedSensor sensor(10e6);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> jitter_ns(-800e3, 800e3);
-  for (int i = 0; i < 5000; ++i)
+  for (int i = 0; i < 5000; ++i) {
     ASSERT_EQ(sensor.next(std::llround(jitter_ns(random))), 0) << i;
+  }
 }
 
 TEST(StampCheck, TrustsASlowSensor) {
@@ -91,7 +95,8 @@ TEST(StampCheck, TrustsAClockThatDriftsWithTemperature) {
   StampCheck check;
   double stamp_ns = 0;
   for (std::uint64_t n = 1; n <= 200000; ++n) {
-    stamp_ns += 1e6 * (1.0 + 2e-3 * std::sin(static_cast<double>(n) / 20000.0)); // +-0.2 % over minutes
+    stamp_ns +=
+        1e6 * (1.0 + 2e-3 * std::sin(static_cast<double>(n) / 20000.0)); // +-0.2 % over minutes
     ASSERT_EQ(check.check({n, start_ns + std::llround(stamp_ns), 84, false}), 0) << n;
   }
 }
@@ -141,7 +146,8 @@ TEST(StampCheck, RecognisesTheOffsetOfAnExtraPulse) {
     (void)sensor.run(2000);
     auto flags = sensor.run(1000, offset_ns);
     EXPECT_EQ(flags[0], 0) << offset_ns;
-    EXPECT_GE(flags[stamp_offset_below_second], 999) << offset_ns; // the first of an early stretch runs backwards
+    EXPECT_GE(flags[stamp_offset_below_second], 999)
+        << offset_ns; // the first of an early stretch runs backwards
     EXPECT_EQ(sensor.run(2000), (Flags{{0, 2000}}));
   }
 }
@@ -203,18 +209,22 @@ TEST(StampCheck, FollowsASensorWhoseRateIsChanged) {
   StampCheck check;
   std::int64_t stamp_ns = start_ns;
   std::uint64_t n = 0;
-  for (int i = 0; i < 2000; ++i)
+  for (int i = 0; i < 2000; ++i) {
     (void)check.check({++n, stamp_ns += 1'000'000, 84, false});
-  for (int i = 0; i < 40000; ++i)
+  }
+  for (int i = 0; i < 40000; ++i) {
     (void)check.check({++n, stamp_ns += 500'000, 84, false});
-  for (int i = 0; i < 1000; ++i)
+  }
+  for (int i = 0; i < 1000; ++i) {
     ASSERT_EQ(check.check({++n, stamp_ns += 500'000, 84, false}), 0);
+  }
   EXPECT_NEAR(check.period_ns(), 500'000, 1);
 }
 
 TEST(StampCheck, EveryFlagHasAName) {
-  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit)
+  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit) {
     EXPECT_GT(std::string(stamp_flag_name(bit)).size(), 8U);
+  }
 }
 
 } // namespace

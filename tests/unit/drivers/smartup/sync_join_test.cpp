@@ -22,8 +22,9 @@ void add_sync(SyncJoin& join, std::int64_t stamp_ns) {
 std::vector<SampleRow> taken(SyncJoin& join) {
   std::vector<SampleRow> rows;
   SampleRow next;
-  while (join.take(next))
+  while (join.take(next)) {
     rows.push_back(next);
+  }
   return rows;
 }
 
@@ -66,8 +67,9 @@ TEST(SyncJoin, LeavesOutASyncSampleWhoseSensorSampleWasLost) {
 
 TEST(SyncJoin, RepeatedStampsAreJoinedInOrder) {
   SyncJoin join;
-  for (std::uint64_t n = 1; n <= 2; ++n)
+  for (std::uint64_t n = 1; n <= 2; ++n) {
     join.add(row(n, 100));
+  }
   join.add_sync(100, 1, {1.0F});
   join.add_sync(100, 1, {2.0F});
   const auto rows = taken(join);
@@ -78,13 +80,15 @@ TEST(SyncJoin, RepeatedStampsAreJoinedInOrder) {
 
 TEST(SyncJoin, WaitsNoLongerThanItsBound) {
   SyncJoin join;
-  for (std::uint64_t n = 1; n <= SyncJoin::max_wait; ++n)
+  for (std::uint64_t n = 1; n <= SyncJoin::max_wait; ++n) {
     join.add(row(n, static_cast<std::int64_t>(n)));
+  }
   EXPECT_TRUE(taken(join).empty());
   join.add(row(SyncJoin::max_wait + 1, 5000));
   EXPECT_EQ(taken(join).size(), 1U);
-  for (int i = 0; i < 3000; ++i)
+  for (int i = 0; i < 3000; ++i) {
     add_sync(join, -i);
+  }
   EXPECT_GE(join.sync_left_out(), 3000U - SyncJoin::max_wait);
 }
 

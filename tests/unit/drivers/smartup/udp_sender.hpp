@@ -13,7 +13,8 @@ namespace dyncal::tests {
 
 class UdpSender {
 public:
-  explicit UdpSender(std::uint16_t port) : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit UdpSender(std::uint16_t port)
+      : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     address_.sin_family = AF_INET;
     address_.sin_port = htons(port);
     address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -24,8 +25,9 @@ public:
 
   // True when the whole datagram has gone.
   bool send(const std::vector<std::uint8_t>& bytes) {
-    return sendto(descriptor_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) ==
-           static_cast<ssize_t>(bytes.size());
+    return sendto(descriptor_, bytes.data(), bytes.size(), 0,
+                  reinterpret_cast<const sockaddr*>(&address_),
+                  sizeof address_) == static_cast<ssize_t>(bytes.size());
   }
 
 private:

@@ -69,13 +69,18 @@ inline constexpr WireVector all_wire_vectors[] = {
 // clang-format on
 
 [[nodiscard]] inline std::vector<std::uint8_t> wire_vector(std::string_view name) {
-  const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
+  const auto digit = [](char c) {
+    return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10);
+  };
   std::vector<std::uint8_t> bytes;
   for (const auto& vector : all_wire_vectors) {
-    if (name != vector.name) continue;
+    if (name != vector.name) {
+      continue;
+    }
     const std::string_view hex = vector.hex;
-    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
       bytes.push_back(static_cast<std::uint8_t>(digit(hex[i]) << 4U | digit(hex[i + 1])));
+    }
   }
   return bytes;
 }

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 
 std::string wire_form(int shot, int announced = 4) {
   return R"({"protocol":"dyncal-series","version":1,"shot":)" + std::to_string(shot) +
-         R"(,"nominal_rate_hz":1000,"samples":2,"values":"int16","channels":[{"name":"x"}]})" + "\n#1" + std::to_string(announced) +
-         std::string("\x01\x00\x02\x00\n", 5);
+         R"(,"nominal_rate_hz":1000,"samples":2,"values":"int16","channels":[{"name":"x"}]})" +
+         "\n#1" + std::to_string(announced) + std::string("\x01\x00\x02\x00\n", 5);
 }
 
 // A device that the test writes to by hand; connections are accepted in the test's own thread.
@@ -36,7 +36,9 @@ public:
     address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
   }
   void accept() { client_ = Descriptor(::accept(listener_.number(), nullptr, nullptr)); }
-  void send(const std::string& bytes) const { ::send(client_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
+  void send(const std::string& bytes) const {
+    ::send(client_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
   void hang_up() { client_ = Descriptor(-1); }
   [[nodiscard]] const std::string& address() const { return address_; }
 
@@ -114,7 +116,8 @@ protected:
   }
   ~SeriesFolderTest() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, int shot) const {
-    std::ofstream(folder_ / "part") << "# nominal_rate_hz = 1000\n# shot = " << shot << "\nx\n1\n2\n";
+    std::ofstream(folder_ / "part")
+        << "# nominal_rate_hz = 1000\n# shot = " << shot << "\nx\n1\n2\n";
     std::filesystem::rename(folder_ / "part", folder_ / name);
   }
 

@@ -31,7 +31,8 @@ TEST(Series, AWrongNumberOfBytesIsRefused) {
 TEST(Series, AHeaderThatCannotBeIsRefused) {
   for (
       const char* text :
-      {"", "{}", "[]", "null", "0,\"No error\"", R"({"protocol":"dyncal-series","version":2})", R"({"protocol":5})",
+      {"", "{}", "[]", "null", "0,\"No error\"", R"({"protocol":"dyncal-series","version":2})",
+       R"({"protocol":5})",
        R"({"protocol":"dyncal-series","version":1,"shot":-1,"nominal_rate_hz":1000.0,"samples":2,"values":"int16","channels":[{"name":"x"}]})",
        R"({"protocol":"dyncal-series","version":1,"shot":1,"nominal_rate_hz":0,"samples":2,"values":"int16","channels":[{"name":"x"}]})",
        R"({"protocol":"dyncal-series","version":1,"shot":1,"nominal_rate_hz":1e3,"samples":1e18,"values":"int16","channels":[{"name":"x"}]})",
@@ -42,7 +43,8 @@ TEST(Series, AHeaderThatCannotBeIsRefused) {
 }
 
 TEST(Series, ACsvFileSaysTheSame) {
-  const auto series = parse_series_csv("# device = recorder 3\r\n# shot = 7\r\n# nominal_rate_hz = 1e3\r\nx, y\r\n1,2\r\n-0.5,4\r\n");
+  const auto series = parse_series_csv("# device = recorder 3\r\n# shot = 7\r\n# nominal_rate_hz = "
+                                       "1e3\r\nx, y\r\n1,2\r\n-0.5,4\r\n");
   ASSERT_TRUE(series.has_value()) << series.error().message;
   EXPECT_EQ(series->device, "recorder 3");
   EXPECT_EQ(series->shot, 7U);

@@ -77,13 +77,24 @@ protected:
     options.domain = test_domain;
     participant_.emplace(bus::Participant::create(options).value());
     service_ = SourceService::create(*participant_, {.software = "test"});
-    publisher_ =
-        service_->add({.bench = "bench", .source = "acs", .kind = SourceKind::acs, .silent_after = std::chrono::seconds(0)}).value();
-    reader_.emplace(participant_->reader<dyncal::SampleBlock>(bus::topics::acs_samples, bus::Profile::samples, "bench", wake_up_).value());
-    runs_.emplace(participant_->writer<dyncal::Measurement>(bus::topics::measurement, bus::Profile::state, "bench").value());
+    publisher_ = service_
+                     ->add({.bench = "bench",
+                            .source = "acs",
+                            .kind = SourceKind::acs,
+                            .silent_after = std::chrono::seconds(0)})
+                     .value();
+    reader_.emplace(participant_
+                        ->reader<dyncal::SampleBlock>(bus::topics::acs_samples,
+                                                      bus::Profile::samples, "bench", wake_up_)
+                        .value());
+    runs_.emplace(
+        participant_
+            ->writer<dyncal::Measurement>(bus::topics::measurement, bus::Profile::state, "bench")
+            .value());
     service_->start();
     source_.emplace(PlayedSource::prepare(file_settings(file_->path()), {}).value());
-    thread_ = std::jthread([this](const std::stop_token& stop) { EXPECT_TRUE(source_->run(*publisher_, stop)); });
+    thread_ = std::jthread(
+        [this](const std::stop_token& stop) { EXPECT_TRUE(source_->run(*publisher_, stop)); });
   }
   void TearDown() override {
     thread_ = {};

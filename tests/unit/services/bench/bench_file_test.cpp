@@ -79,38 +79,46 @@ TEST(BenchFile, RefusesAUnitThatIsNone) {
 }
 
 TEST(BenchFile, RefusesAKeyWithTheWrongUnit) {
-  EXPECT_THAT(problem_of(replaced(complete, "duration_s", "duration_ms")), HasSubstr("did you mean 'duration_s'"));
-  EXPECT_THAT(problem_of(replaced(complete, "duration_s = 2", "duration_s = \"2 s\"")), HasSubstr("must be a number in seconds"));
+  EXPECT_THAT(problem_of(replaced(complete, "duration_s", "duration_ms")),
+              HasSubstr("did you mean 'duration_s'"));
+  EXPECT_THAT(problem_of(replaced(complete, "duration_s = 2", "duration_s = \"2 s\"")),
+              HasSubstr("must be a number in seconds"));
 }
 
 TEST(BenchFile, RefusesARoleWhoseSourceDoesNotExist) {
   EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "asc/reference")),
               HasSubstr("names source 'asc', which [sources] does not have (it has: acs, dau)"));
-  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "reference")), HasSubstr("must be \"source/channel\""));
+  EXPECT_THAT(problem_of(replaced(complete, "acs/reference", "reference")),
+              HasSubstr("must be \"source/channel\""));
 }
 
 TEST(BenchFile, RefusesFrequenciesThatAreNotPositiveNumbers) {
   EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "\"12,5\"")), HasSubstr("holds \"12,5\""));
   EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "12.5")), HasSubstr("list of texts"));
-  EXPECT_THAT(problem_of(replaced(complete, "level = 10.0", "level = [1.0, 2.0, 3.0]")), HasSubstr("lists 3 levels for 2 frequencies"));
+  EXPECT_THAT(problem_of(replaced(complete, "level = 10.0", "level = [1.0, 2.0, 3.0]")),
+              HasSubstr("lists 3 levels for 2 frequencies"));
 }
 
 TEST(BenchFile, RefusesASourceFileThatDoesNotExist) {
-  const std::string text =
-      replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"", "driver = \"file\"\npath = \"nowhere.csv\"");
+  const std::string text = replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"",
+                                    "driver = \"file\"\npath = \"nowhere.csv\"");
   EXPECT_THAT(problem_of(text), HasSubstr("nowhere.csv, which does not exist"));
 }
 
 TEST(BenchFile, RefusesMissingTablesAndBrokenToml) {
   EXPECT_THAT(problem_of("bench = \"a\"\n"), HasSubstr("key 'excitation' is missing"));
   EXPECT_THAT(problem_of("bench = \"a\n"), HasSubstr("bench.toml:1: not valid TOML"));
-  EXPECT_THAT(read_bench_file("no-such-file.toml").error().message, HasSubstr("no-such-file.toml: cannot read"));
+  EXPECT_THAT(read_bench_file("no-such-file.toml").error().message,
+              HasSubstr("no-such-file.toml: cannot read"));
 }
 
 TEST(BenchFile, EvaluatesWholeRecordsAtAKnownFrequencyWhenToldTo) {
   std::string text = replaced(complete, "[\"10\", \"12.5\"]", "[\"80\"]");
-  text = replaced(text, "repetitions = 3\nsettling_s = 0.5\nduration_s = 2\n", "window = \"whole-record\"\n");
-  text = replaced(text, "[uncertainty]", "frequency_search_rel = 0\n[corrections]\nreference_delay_s = 2e-6\n[uncertainty]");
+  text = replaced(text, "repetitions = 3\nsettling_s = 0.5\nduration_s = 2\n",
+                  "window = \"whole-record\"\n");
+  text =
+      replaced(text, "[uncertainty]",
+               "frequency_search_rel = 0\n[corrections]\nreference_delay_s = 2e-6\n[uncertainty]");
   const auto file = parse_bench_file(text, "bench.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_TRUE(file->excitation.whole_record);
@@ -122,25 +130,30 @@ TEST(BenchFile, RefusesWholeRecordsOfSeveralSteps) {
   EXPECT_THAT(problem_of(replaced(complete, "repetitions = 3", "window = \"whole-record\"")),
               HasSubstr("key 'excitation.window' can be \"whole-record\" for one frequency"));
   std::string one = replaced(complete, "[\"10\", \"12.5\"]", "[\"80\"]");
-  EXPECT_THAT(problem_of(replaced(one, "repetitions = 3", "window = \"whole-record\"")), HasSubstr("has no meaning when window"));
+  EXPECT_THAT(problem_of(replaced(one, "repetitions = 3", "window = \"whole-record\"")),
+              HasSubstr("has no meaning when window"));
 }
 
 TEST(BenchFile, TheAnalogueMethodComparesChannelsOfOneSystem) {
   const std::string text = replaced(complete, "sample-timestamping", "analogue");
   EXPECT_THAT(problem_of(text), HasSubstr("compares channels of one system"));
   const auto file = parse_bench_file(
-      replaced(replaced(text, "sync_acs = \"acs/sync\"\nsync_dau = \"dau/sync\"\n", ""), "dau/acceleration_z", "acs/sensor"), "bench.toml");
+      replaced(replaced(text, "sync_acs = \"acs/sync\"\nsync_dau = \"dau/sync\"\n", ""),
+               "dau/acceleration_z", "acs/sensor"),
+      "bench.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(file->method.kind, EvaluationMethod::analogue);
 }
 
 TEST(BenchFile, RefusesASearchThatIsTooWide) {
-  EXPECT_THAT(problem_of(replaced(complete, "[uncertainty]", "frequency_search_rel = 0.5\n[uncertainty]")),
-              HasSubstr("frequency_search_rel"));
+  EXPECT_THAT(
+      problem_of(replaced(complete, "[uncertainty]", "frequency_search_rel = 0.5\n[uncertainty]")),
+      HasSubstr("frequency_search_rel"));
 }
 
 TEST(BenchFile, RefusesASensorIdThatIsNone) {
-  EXPECT_THAT(problem_of(replaced(complete, "0xbccb0100", "bccb")), HasSubstr("must be a sensor id such as"));
+  EXPECT_THAT(problem_of(replaced(complete, "0xbccb0100", "bccb")),
+              HasSubstr("must be a sensor id such as"));
 }
 
 } // namespace

@@ -24,19 +24,22 @@ protected:
   ~CanKeys() override { std::filesystem::remove_all(folder); }
 
   [[nodiscard]] Expected<BenchFile> bench(const std::string& keys) const {
-    return parse_bench_file("bench = \"acc-1\"\n[excitation]\nfrequencies_hz = [\"10\"]\nlevel = 10.0\n[generator]\ndriver = \"none\"\n"
-                            "[sources.acs]\ndriver = \"socket\"\naddress = \"127.0.0.1:5026\"\ntime_base = \"utc\"\n"
-                            "[method]\nkind = \"absolute-time\"\nreference = \"acs/reference\"\ndut = [\"sensor/x\"]\n"
-                            "[sources.sensor]\ndriver = \"can\"\n" +
-                                keys,
-                            folder / "bench.toml");
+    return parse_bench_file(
+        "bench = \"acc-1\"\n[excitation]\nfrequencies_hz = [\"10\"]\nlevel = "
+        "10.0\n[generator]\ndriver = \"none\"\n"
+        "[sources.acs]\ndriver = \"socket\"\naddress = \"127.0.0.1:5026\"\ntime_base = \"utc\"\n"
+        "[method]\nkind = \"absolute-time\"\nreference = \"acs/reference\"\ndut = [\"sensor/x\"]\n"
+        "[sources.sensor]\ndriver = \"can\"\n" +
+            keys,
+        folder / "bench.toml");
   }
   [[nodiscard]] std::string problem(const std::string& keys) const {
     const auto file = bench(keys);
     return file ? "accepted" : file.error().message;
   }
 
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("dyncal-can-keys-" + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("dyncal-can-keys-" + std::to_string(getpid()));
 };
 
 TEST_F(CanKeys, ReachTheDriverAsTheyStand) {
@@ -110,15 +113,23 @@ TEST_F(CanKeys, TakeALogInPlaceOfAnInterface) {
 }
 
 TEST_F(CanKeys, AreRefusedWithFileLineAndKey) {
-  EXPECT_THAT(problem("dbc = \"sensor.dbc\"\n"), HasSubstr("key 'sources.sensor.interface' is missing"));
+  EXPECT_THAT(problem("dbc = \"sensor.dbc\"\n"),
+              HasSubstr("key 'sources.sensor.interface' is missing"));
   EXPECT_THAT(problem("interface = \"can0\"\n"), HasSubstr("key 'sources.sensor.dbc' is missing"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"other.dbc\"\n"), HasSubstr("bench.toml:18: key 'sources.sensor.dbc' names "));
-  EXPECT_THAT(problem("log = \"other.log\"\ndbc = \"sensor.dbc\"\n"), HasSubstr("other.log, which does not exist"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nbitrate = 1\n"), HasSubstr("key 'sources.sensor.bitrate' is not known"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nplay = 1\n"), HasSubstr("key 'sources.sensor.play' is not known"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\ntime_source = \"gps\"\n"), HasSubstr("time_source"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nbit_rate_per_s = -1\n"), HasSubstr("must be positive, in bit/s"));
-  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nu_utc_s = -1e-6\n"), HasSubstr("must not be negative"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"other.dbc\"\n"),
+              HasSubstr("bench.toml:18: key 'sources.sensor.dbc' names "));
+  EXPECT_THAT(problem("log = \"other.log\"\ndbc = \"sensor.dbc\"\n"),
+              HasSubstr("other.log, which does not exist"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nbitrate = 1\n"),
+              HasSubstr("key 'sources.sensor.bitrate' is not known"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nplay = 1\n"),
+              HasSubstr("key 'sources.sensor.play' is not known"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\ntime_source = \"gps\"\n"),
+              HasSubstr("time_source"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nbit_rate_per_s = -1\n"),
+              HasSubstr("must be positive, in bit/s"));
+  EXPECT_THAT(problem("interface = \"can0\"\ndbc = \"sensor.dbc\"\nu_utc_s = -1e-6\n"),
+              HasSubstr("must not be negative"));
 }
 
 } // namespace

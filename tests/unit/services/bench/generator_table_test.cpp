@@ -33,8 +33,8 @@ sync_dau = "dau/sync"
 }
 
 TEST(GeneratorTable, HoldsToleranceAndLimits) {
-  const auto bench =
-      bench_with("driver = \"scpi\"\naddress = \"a:1\"\nlevel_tolerance_rel = 0.01\nmaximum_voltage_v = 2.5\nmaximum_level_m_s2 = 100\n");
+  const auto bench = bench_with("driver = \"scpi\"\naddress = \"a:1\"\nlevel_tolerance_rel = "
+                                "0.01\nmaximum_voltage_v = 2.5\nmaximum_level_m_s2 = 100\n");
   ASSERT_TRUE(bench) << bench.error().message;
   EXPECT_EQ(bench->generator.level_tolerance_rel, 0.01);
   EXPECT_EQ(bench->generator.maximum_voltage_v, 2.5);
@@ -50,7 +50,8 @@ TEST(GeneratorTable, LimitsMayBeAbsent) {
 }
 
 TEST(GeneratorTable, RefusesWhatCannotBe) {
-  const auto negative = bench_with("driver = \"scpi\"\naddress = \"a:1\"\nmaximum_voltage_v = -1\n");
+  const auto negative =
+      bench_with("driver = \"scpi\"\naddress = \"a:1\"\nmaximum_voltage_v = -1\n");
   ASSERT_FALSE(negative);
   EXPECT_THAT(negative.error().message, HasSubstr("maximum_voltage_v' must be positive"));
   const auto loop_by_hand = bench_with("driver = \"by-hand\"\nlevel_tolerance_rel = 0.01\n");

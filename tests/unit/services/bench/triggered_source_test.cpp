@@ -63,20 +63,26 @@ TEST(TriggeredSource, ABenchOfSeriesTimeStampingIsRead) {
 }
 
 TEST(TriggeredSource, TheCorrectionOfTheTriggerPhaseCanBeSwitchedOff) {
-  const auto file = parse_bench_file(with("shots = 7", "shots = 7\ntrigger_phase_correction = false"), "bench.toml");
+  const auto file = parse_bench_file(
+      with("shots = 7", "shots = 7\ntrigger_phase_correction = false"), "bench.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_FALSE(file->method.trigger_phase_correction);
 }
 
 TEST(TriggeredSource, RolesOfTheWrongKindOfSourceAreRefused) {
-  EXPECT_THAT(problem_of(with("\"dso/sync\"", "\"tss/sync\"")), HasSubstr("must have driver = \"oscilloscope\""));
-  EXPECT_THAT(problem_of(with("\"tss/z\"", "\"acs/z\"")), HasSubstr("must have driver = \"series\""));
+  EXPECT_THAT(problem_of(with("\"dso/sync\"", "\"tss/sync\"")),
+              HasSubstr("must have driver = \"oscilloscope\""));
+  EXPECT_THAT(problem_of(with("\"tss/z\"", "\"acs/z\"")),
+              HasSubstr("must have driver = \"series\""));
   EXPECT_THAT(problem_of(with("dut = [\"tss/x\", \"tss/z\"]\n", "")), HasSubstr("dut"));
-  EXPECT_THAT(problem_of(with("sync_acs = \"acs/sync\"", "sync_acs = \"dso/sync\"")), HasSubstr("share a clock"));
+  EXPECT_THAT(problem_of(with("sync_acs = \"acs/sync\"", "sync_acs = \"dso/sync\"")),
+              HasSubstr("share a clock"));
 }
 
 TEST(TriggeredSource, ASensorHasAnAddressOrAFolderAndNotBoth) {
-  EXPECT_THAT(problem_of(with("path = \"series\"", "path = \"series\"\naddress = \"127.0.0.1:5027\"")), HasSubstr("one of them"));
+  EXPECT_THAT(
+      problem_of(with("path = \"series\"", "path = \"series\"\naddress = \"127.0.0.1:5027\"")),
+      HasSubstr("one of them"));
   EXPECT_THAT(problem_of(with("path = \"series\"", "")), HasSubstr("one of them"));
 }
 
@@ -88,20 +94,24 @@ TEST(TriggeredSource, NumbersThatCannotBeAreRefused) {
 
 TEST(TriggeredSource, TheDelayComesFromTheFileOfItsCalibration) {
   const std::filesystem::path folder = testing::TempDir();
-  std::ofstream(folder / "delay.json") << R"({"instrument": "scope", "value_s": 2.365e-7, "u_s": 3e-10, "shots": 50})";
+  std::ofstream(folder / "delay.json")
+      << R"({"instrument": "scope", "value_s": 2.365e-7, "u_s": 3e-10, "shots": 50})";
   const std::string text = with("{ value_s = 236e-9, u_s = 1e-9 }", "{ file = \"delay.json\" }");
   const auto file = parse_bench_file(text, folder / "bench.toml");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_DOUBLE_EQ(file->corrections.dso_delay_s, 2.365e-7);
   EXPECT_DOUBLE_EQ(file->corrections.u_dso_delay_s, 3e-10);
 
-  for (const char* bad : {"", "[]", R"({"value_s": 1})", R"({"value_s": "1", "u_s": 1})", R"({"value_s": 1, "u_s": -1})"}) {
+  for (const char* bad : {"", "[]", R"({"value_s": 1})", R"({"value_s": "1", "u_s": 1})",
+                          R"({"value_s": 1, "u_s": -1})"}) {
     std::ofstream(folder / "delay.json") << bad;
     EXPECT_THAT(problem_of(text, folder / "bench.toml"), HasSubstr("delay.json")) << bad;
   }
   std::filesystem::remove(folder / "delay.json");
   EXPECT_THAT(problem_of(text, folder / "bench.toml"), HasSubstr("cannot be read"));
-  EXPECT_THAT(problem_of(with("{ value_s", "{ file = \"delay.json\", value_s"), folder / "bench.toml"), HasSubstr("the file says both"));
+  EXPECT_THAT(
+      problem_of(with("{ value_s", "{ file = \"delay.json\", value_s"), folder / "bench.toml"),
+      HasSubstr("the file says both"));
 }
 
 } // namespace

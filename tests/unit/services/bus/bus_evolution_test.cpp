@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/contract/topics.hpp"
 #include "services/bus/type_support_of.hpp"
+#include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 
 namespace dyncal::bus {
@@ -15,7 +15,8 @@ struct NewerCommand : Command {
   std::string reason;
 
   static std::size_t getCdrSerializedSize(const NewerCommand& sample) {
-    return Command::getCdrSerializedSize(sample) + 8 + sizeof(double) + 4 + sample.reason.size() + 1;
+    return Command::getCdrSerializedSize(sample) + 8 + sizeof(double) + 4 + sample.reason.size() +
+           1;
   }
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
     Command::serialize(cdr);
@@ -29,14 +30,19 @@ struct NewerCommand : Command {
 
 // Its bytes end in the middle of a member.
 struct BrokenCommand : Command {
-  void serialize(eprosima::fastcdr::Cdr& cdr) const { cdr << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000}; }
+  void serialize(eprosima::fastcdr::Cdr& cdr) const {
+    cdr << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
+  }
 };
 
 // Its key is longer than the contract allows.
 struct LongKeyCommand : Command {
-  static std::size_t getCdrSerializedSize(const LongKeyCommand& sample) { return Command::getCdrSerializedSize(sample) + 200; }
+  static std::size_t getCdrSerializedSize(const LongKeyCommand& sample) {
+    return Command::getCdrSerializedSize(sample) + 200;
+  }
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string(150, 'k') << std::uint32_t{0} << std::string("b") << std::string("r") << std::uint32_t{0} << std::string("s");
+    cdr << std::string(150, 'k') << std::uint32_t{0} << std::string("b") << std::string("r")
+        << std::uint32_t{0} << std::string("s");
   }
   void serializeKey(eprosima::fastcdr::Cdr& cdr) const { cdr << std::string(150, 'k'); }
 };
@@ -45,17 +51,20 @@ struct LongKeyCommand : Command {
 
 template <>
 const TypeSupport& type_support<NewerCommand>() {
-  static const TypeSupport support = make_type_support<NewerCommand>("dyncal::Command", KeyLayout{{64}, 0});
+  static const TypeSupport support =
+      make_type_support<NewerCommand>("dyncal::Command", KeyLayout{{64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<BrokenCommand>() {
-  static const TypeSupport support = make_type_support<BrokenCommand>("dyncal::Command", KeyLayout{{64}, 0});
+  static const TypeSupport support =
+      make_type_support<BrokenCommand>("dyncal::Command", KeyLayout{{64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<LongKeyCommand>() {
-  static const TypeSupport support = make_type_support<LongKeyCommand>("dyncal::Command", KeyLayout{{200}, 0});
+  static const TypeSupport support =
+      make_type_support<LongKeyCommand>("dyncal::Command", KeyLayout{{200}, 0});
   return support;
 }
 
@@ -72,17 +81,19 @@ protected:
     return command;
   }
 
-  // Takes until the sample sent last, whose target is "last", has come; returns what came before it.
+  // Takes until the sample sent last, whose target is "last", has come; returns what came before
+  // it.
   template <class T>
   std::vector<T> take_until_last(Reader<T>& reader) {
     std::vector<T> samples;
     bool last = false;
     EXPECT_TRUE(wait_for([&] {
       reader.take([&](const T& sample, const SampleInfo&) {
-        if (sample.target() == "last")
+        if (sample.target() == "last") {
           last = true;
-        else
+        } else {
           samples.push_back(sample);
+        }
       });
       return last;
     }));

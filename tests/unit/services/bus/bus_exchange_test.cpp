@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 
 class BusExchange : public BusPair {
 protected:
-  SampleBlock block(std::uint64_t number, const std::string& source = "dau", std::size_t values = 16) const {
+  SampleBlock block(std::uint64_t number, const std::string& source = "dau",
+                    std::size_t values = 16) const {
     SampleBlock block;
     block.bench(bench_);
     block.source(source);
@@ -43,7 +44,8 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
     reader.take([&](const SampleBlock& block, const SampleInfo& info) {
       ASSERT_TRUE(info.valid);
       EXPECT_EQ(block, this->block(block.block(), "dau", values));
-      EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000) << info.source_utc_ns;
+      EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000)
+          << info.source_utc_ns;
       numbers.push_back(block.block());
     });
     return numbers.size() >= blocks;
@@ -53,37 +55,44 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
     take();
   }
   ASSERT_TRUE(wait_for(take)) << numbers.size();
-  for (std::uint64_t i = 0; i < blocks; ++i)
+  for (std::uint64_t i = 0; i < blocks; ++i) {
     EXPECT_EQ(numbers[i], i);
+  }
   EXPECT_TRUE(writer.wait_for_acknowledgments(5s));
 }
 
 TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
   auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
   const std::uint64_t blocks = late_joiner_blocks + 200;
-  for (std::uint64_t i = 0; i < blocks; ++i)
+  for (std::uint64_t i = 0; i < blocks; ++i) {
     ASSERT_EQ(writer.write(block(i)), WriteOutcome::written);
+  }
   auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
   std::vector<std::uint64_t> numbers;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SampleBlock& block, const SampleInfo&) { numbers.push_back(block.block()); });
+    reader.take(
+        [&](const SampleBlock& block, const SampleInfo&) { numbers.push_back(block.block()); });
     return !numbers.empty() && numbers.back() == blocks - 1;
   })) << numbers.size();
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(late_joiner_blocks));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     EXPECT_EQ(numbers[i], 200 + i);
+  }
 }
 
 TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
   auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
   auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
   ASSERT_TRUE(wait_for_match(writer, reader));
-  // 8 kB each, so that neither the depth at either end nor a buffer of bytes between them takes them all.
+  // 8 kB each, so that neither the depth at either end nor a buffer of bytes between them takes
+  // them all.
   std::uint64_t written = 0;
   WriteOutcome outcome = WriteOutcome::written;
   for (; written < 20'000; ++written) {
     outcome = writer.write(block(written, "dau", 1000), 300ms);
-    if (outcome != WriteOutcome::written) break;
+    if (outcome != WriteOutcome::written) {
+      break;
+    }
   }
   EXPECT_EQ(outcome, WriteOutcome::timed_out);
   EXPECT_LE(written, static_cast<std::uint64_t>(late_joiner_blocks + untaken_blocks + 200));
@@ -105,20 +114,24 @@ TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
   auto writer = this->writer<SourceStatus>(topics::source_status, Profile::state);
   SourceStatus status;
   status.bench(bench_);
-  for (std::uint64_t update = 1; update <= 10; ++update)
+  for (std::uint64_t update = 1; update <= 10; ++update) {
     for (const char* source : {"dau", "acs", "can"}) {
       status.source(source);
       status.received(update);
       ASSERT_EQ(writer.write(status), WriteOutcome::written);
     }
+  }
   auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
   std::map<std::string, std::vector<std::uint64_t>> seen;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SourceStatus& sample, const SampleInfo&) { seen[sample.source().to_string()].push_back(sample.received()); });
+    reader.take([&](const SourceStatus& sample, const SampleInfo&) {
+      seen[sample.source().to_string()].push_back(sample.received());
+    });
     return seen.size() == 3;
   }));
-  for (const auto& [source, updates] : seen)
+  for (const auto& [source, updates] : seen) {
     EXPECT_EQ(updates, std::vector<std::uint64_t>{10}) << source;
+  }
 }
 
 TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
@@ -136,7 +149,9 @@ TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
   auto reader = this->reader<CalibrationResult>(topics::calibration_result, Profile::results);
   std::map<std::uint32_t, double> frequencies;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const CalibrationResult& sample, const SampleInfo&) { frequencies[sample.step()] = sample.frequency_hz(); });
+    reader.take([&](const CalibrationResult& sample, const SampleInfo&) {
+      frequencies[sample.step()] = sample.frequency_hz();
+    });
     return frequencies.size() == steps;
   })) << frequencies.size();
   EXPECT_EQ(frequencies.at(1999), 999.5);
@@ -155,7 +170,9 @@ TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
   // One side may match before the other: commands are repeated until they are answered.
   for (std::uint32_t step = 2; step < 200; ++step) {
     ASSERT_EQ(writer.write(command("dau", step)), WriteOutcome::written);
-    if (wait_for(take, 100ms)) break;
+    if (wait_for(take, 100ms)) {
+      break;
+    }
   }
   ASSERT_FALSE(steps.empty());
   EXPECT_NE(steps.front(), 1U);
@@ -166,12 +183,16 @@ TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
   auto reader = this->reader<SampleBlock>(topics::acs_samples, Profile::samples);
   const std::string shortest = "a";
   const std::string longest(64, 'z');
-  for (std::uint64_t i = 0; i < 20; ++i)
-    for (const std::string& source : {shortest, longest})
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    for (const std::string& source : {shortest, longest}) {
       ASSERT_EQ(writer.write(block(i, source)), WriteOutcome::written);
+    }
+  }
   std::map<std::string, std::uint64_t> next;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SampleBlock& block, const SampleInfo&) { EXPECT_EQ(block.block(), next[block.source().to_string()]++); });
+    reader.take([&](const SampleBlock& block, const SampleInfo&) {
+      EXPECT_EQ(block.block(), next[block.source().to_string()]++);
+    });
     return next[shortest] == 20 && next[longest] == 20;
   }));
   EXPECT_EQ(next.size(), 2U);
@@ -219,14 +240,16 @@ TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
 
 TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
   auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
-  auto writer = std::make_unique<Writer<SourceStatus>>(this->writer<SourceStatus>(topics::source_status, Profile::state));
+  auto writer = std::make_unique<Writer<SourceStatus>>(
+      this->writer<SourceStatus>(topics::source_status, Profile::state));
   SourceStatus status;
   status.bench(bench_);
   status.source("dau");
   ASSERT_EQ(writer->write(status), WriteOutcome::written);
   std::size_t valid = 0;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
+    reader.take(
+        [&](const SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
     return valid == 1;
   }));
   writer.reset();
@@ -245,7 +268,8 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
     const auto deadline = Clock::now() + patience;
     while (!got) {
       ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
-      reader.take([&](const SampleBlock& block, const SampleInfo&) { got = block.block() == expected; });
+      reader.take(
+          [&](const SampleBlock& block, const SampleInfo&) { got = block.block() == expected; });
     }
   }
 }
@@ -253,15 +277,20 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
 TEST_P(BusExchange, KeepsPartitionsApartAndReadsAllWithAStar) {
   auto mine = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-a").value();
   auto other = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-b").value();
-  auto one = reading_.reader<Command>(topics::command, Profile::state, bench_ + "-a", bell_).value();
+  auto one =
+      reading_.reader<Command>(topics::command, Profile::state, bench_ + "-a", bell_).value();
   auto all = reading_.reader<Command>(topics::command, Profile::state, bench_ + "*", bell_).value();
   ASSERT_EQ(mine.write(command("dau", 1)), WriteOutcome::written);
   ASSERT_EQ(other.write(command("acs", 2)), WriteOutcome::written);
   std::vector<std::string> of_one;
   std::vector<std::string> of_all;
   ASSERT_TRUE(wait_for([&] {
-    one.take([&](const Command& sample, const SampleInfo&) { of_one.push_back(sample.target().to_string()); });
-    all.take([&](const Command& sample, const SampleInfo&) { of_all.push_back(sample.target().to_string()); });
+    one.take([&](const Command& sample, const SampleInfo&) {
+      of_one.push_back(sample.target().to_string());
+    });
+    all.take([&](const Command& sample, const SampleInfo&) {
+      of_all.push_back(sample.target().to_string());
+    });
     return of_one.size() == 1 && of_all.size() == 2;
   }));
   EXPECT_EQ(of_one, std::vector<std::string>{"dau"});
@@ -272,14 +301,17 @@ TEST_P(BusExchange, LetsParticipantsGoBeforeTheirWritersAndReaders) {
   std::unique_ptr<Reader<SampleBlock>> reader;
   {
     Participant participant = join(GetParam().writer);
-    writer = std::make_unique<Writer<SampleBlock>>(participant.writer<SampleBlock>("DauSamples", Profile::samples, bench_).value());
+    writer = std::make_unique<Writer<SampleBlock>>(
+        participant.writer<SampleBlock>("DauSamples", Profile::samples, bench_).value());
   }
   {
     Participant participant = join(GetParam().reader);
-    reader = std::make_unique<Reader<SampleBlock>>(participant.reader<SampleBlock>("DauSamples", Profile::samples, bench_, bell_).value());
+    reader = std::make_unique<Reader<SampleBlock>>(
+        participant.reader<SampleBlock>("DauSamples", Profile::samples, bench_, bell_).value());
   }
   ASSERT_EQ(writer->write(block(0)), WriteOutcome::written);
-  EXPECT_TRUE(wait_for([&] { return reader->take([](const SampleBlock&, const SampleInfo&) {}) == 1; }));
+  EXPECT_TRUE(
+      wait_for([&] { return reader->take([](const SampleBlock&, const SampleInfo&) {}) == 1; }));
 }
 
 } // namespace

@@ -21,9 +21,11 @@ struct VendorPair {
 
 inline std::vector<VendorPair> vendor_pairs() {
   std::vector<VendorPair> pairs;
-  for (const Vendor writer : vendors_in_this_build())
-    for (const Vendor reader : vendors_in_this_build())
+  for (const Vendor writer : vendors_in_this_build()) {
+    for (const Vendor reader : vendors_in_this_build()) {
       pairs.push_back({writer, reader});
+    }
+  }
   return pairs;
 }
 
@@ -39,7 +41,8 @@ protected:
   const std::string bench_ = "bus-test-" + std::to_string(getpid());
   Participant writing_ = join(GetParam().writer);
   std::vector<std::string> warnings_; // of the reading one
-  Participant reading_ = join(GetParam().reader, [this](const std::string& warning) { warnings_.push_back(warning); });
+  Participant reading_ =
+      join(GetParam().reader, [this](const std::string& warning) { warnings_.push_back(warning); });
   std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
 
   static Participant join(Vendor vendor, std::function<void(const std::string&)> warn = {}) {
@@ -65,7 +68,9 @@ protected:
   [[nodiscard]] bool wait_for(Condition&& condition, std::chrono::milliseconds limit = patience) {
     const auto deadline = Clock::now() + limit;
     while (!condition()) {
-      if (Clock::now() >= deadline) return false;
+      if (Clock::now() >= deadline) {
+        return false;
+      }
       bell_->wait_until(std::min(deadline, Clock::now() + std::chrono::milliseconds(20)));
     }
     return true;

@@ -54,11 +54,13 @@ TEST_P(BusParticipant, RefusesAWriterForABenchWhoseNameIsTooLongOrAPattern) {
   auto participant = Participant::create(options());
   ASSERT_TRUE(participant);
   for (const std::string& bench : {std::string(65, 'b'), std::string("*"), std::string()}) {
-    const auto writer = participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, bench);
+    const auto writer =
+        participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, bench);
     ASSERT_FALSE(writer) << bench;
     EXPECT_EQ(writer.error().code, services::ErrorCode::bad_argument);
   }
-  EXPECT_TRUE(participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, std::string(64, 'b')));
+  EXPECT_TRUE(participant->writer<SampleBlock>(topics::dau_samples, Profile::samples,
+                                               std::string(64, 'b')));
 }
 
 TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
@@ -80,31 +82,37 @@ TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
   ASSERT_EQ(writer->write(command), WriteOutcome::written);
   std::size_t taken = 0;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (taken == 0 && bell->wait_until(deadline))
+  while (taken == 0 && bell->wait_until(deadline)) {
     taken = reader->take([](const Command&, const SampleInfo&) {});
+  }
   EXPECT_EQ(taken, 1U);
 }
 
 TEST_P(BusParticipant, CanBeMadeAgainAfterItIsGone) {
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(Participant::create(options()));
+  }
 }
 
 TEST(BusVendor, IsNamedByTheWordsOfThisBuild) {
-  for (const Vendor vendor : vendors_in_this_build())
+  for (const Vendor vendor : vendors_in_this_build()) {
     EXPECT_EQ(parse_vendor(vendor_word(vendor)), vendor);
+  }
   const auto wrong = parse_vendor("opendds");
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, services::ErrorCode::bad_argument);
   EXPECT_THAT(wrong.error().message, HasSubstr("\"opendds\""));
-  for (const Vendor vendor : vendors_in_this_build())
+  for (const Vendor vendor : vendors_in_this_build()) {
     EXPECT_THAT(wrong.error().message, HasSubstr(vendor_word(vendor)));
+  }
 }
 
 TEST(BusVendor, OutsideThisBuildIsRefusedByName) {
   for (const Vendor vendor : {Vendor::fast_dds, Vendor::cyclone_dds}) {
     const auto built = vendors_in_this_build();
-    if (std::find(built.begin(), built.end(), vendor) != built.end()) continue;
+    if (std::find(built.begin(), built.end(), vendor) != built.end()) {
+      continue;
+    }
     ParticipantOptions options;
     options.vendor = vendor;
     const auto participant = Participant::create(options);

@@ -53,14 +53,16 @@ TEST(CdrKey, AcceptsAStringOfItsBoundAndRefusesALongerOne) {
 }
 
 TEST(CdrKey, RefusesWhatEndsTooSoonOrIsNoPlainCdr) {
-  for (std::size_t count = 0; count < little_endian.size(); ++count)
+  for (std::size_t count = 0; count < little_endian.size(); ++count) {
     EXPECT_FALSE(read_key(bench_and_step, little_endian.data(), count)) << count;
+  }
   for (const char representation : {'\2', '\3', '\6', '\7', '\11'}) { // parameter lists and XCDR2
     std::string other = little_endian;
     other[1] = representation;
     EXPECT_FALSE(read_key(bench_and_step, other.data(), other.size()));
   }
-  const std::string no_end = payload_with_length(4, 60); // the character where the closing zero belongs is an x
+  const std::string no_end =
+      payload_with_length(4, 60); // the character where the closing zero belongs is an x
   EXPECT_FALSE(read_key(KeyLayout{{64}, 0}, no_end.data(), no_end.size()));
   const std::string huge = payload_with_length(0xFFFFFFFFU, 60);
   EXPECT_FALSE(read_key(KeyLayout{{64}, 0}, huge.data(), huge.size()));

@@ -26,8 +26,9 @@ TEST(Names, OfChannelsHaveUpTo128Characters) {
 
 TEST(Names, OfBenchesAreNoPatterns) {
   EXPECT_TRUE(check_bench_name("acc-1"));
-  for (const char* pattern : {"*", "acc*", "acc-?", "acc-[12]"})
+  for (const char* pattern : {"*", "acc*", "acc-?", "acc-[12]"}) {
     EXPECT_FALSE(check_bench_name(pattern)) << pattern;
+  }
 }
 
 } // namespace

@@ -57,7 +57,8 @@ TEST(TypeSupport, ReadsAMessageOfAnOlderTypeWithZerosForTheMissingMembers) {
   const SampleBlock written = example_block();
   const std::string bytes = bytes_of(written);
   SampleBlock read_back;
-  ASSERT_TRUE(read(read_back, bytes.substr(0, bytes.size() - sizeof(std::int64_t)))); // without received_utc_ns
+  ASSERT_TRUE(read(
+      read_back, bytes.substr(0, bytes.size() - sizeof(std::int64_t)))); // without received_utc_ns
   SampleBlock expected = written;
   expected.received_utc_ns(0);
   EXPECT_EQ(read_back, expected);
@@ -65,7 +66,8 @@ TEST(TypeSupport, ReadsAMessageOfAnOlderTypeWithZerosForTheMissingMembers) {
 
 TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
   SampleBlock read_back;
-  ASSERT_TRUE(read(read_back, bytes_of(example_block()) + std::string("more of it, by a later version")));
+  ASSERT_TRUE(
+      read(read_back, bytes_of(example_block()) + std::string("more of it, by a later version")));
   EXPECT_EQ(read_back, example_block());
 }
 
@@ -73,7 +75,7 @@ TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
 TEST(TypeSupport, RefusesAMessageThatIsCutInsideAMember) {
   const std::string bytes = bytes_of(example_block());
   SampleBlock sample;
-  EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 4)));                      // in received_utc_ns
+  EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 4))); // in received_utc_ns
   EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 8 - 3 * sizeof(double)))); // in values
   EXPECT_FALSE(read(sample, bytes.substr(0, cdr_header_bytes + 6)));                  // in bench
   EXPECT_FALSE(read(sample, ""));
@@ -87,14 +89,16 @@ TEST(TypeSupport, SurvivesAnyBytes) {
     damaged[i] = static_cast<char>(damaged[i] ^ 0xFF);
     (void)read(sample, damaged);
   }
-  for (std::size_t count = 0; count < bytes.size(); ++count)
+  for (std::size_t count = 0; count < bytes.size(); ++count) {
     (void)read(sample, bytes.substr(0, count));
+  }
 }
 
 template <class T>
 class EveryType : public testing::Test {};
-using Types = testing::Types<SourceDescription, SourceStatus, SampleBlock, TriggeredRecord, AcsPhasor, Measurement, Excitation,
-                             CalibrationResult, TransferFunction, SampleClockReport, ServiceStatus, Command>;
+using Types = testing::Types<SourceDescription, SourceStatus, SampleBlock, TriggeredRecord,
+                             AcsPhasor, Measurement, Excitation, CalibrationResult,
+                             TransferFunction, SampleClockReport, ServiceStatus, Command>;
 TYPED_TEST_SUITE(EveryType, Types);
 
 TYPED_TEST(EveryType, IsNamedAsInTheContract) {
@@ -117,8 +121,9 @@ TYPED_TEST(EveryType, HasItsKeyWhereTheLayoutSays) {
 TYPED_TEST(EveryType, AllowsItsLongestKeyAndHasAlwaysTheHashOfAKeyOver16Bytes) {
   const KeyLayout& layout = type_support<TypeParam>().key;
   Key longest;
-  for (const std::size_t bound : layout.string_bounds)
+  for (const std::size_t bound : layout.string_bounds) {
     longest.strings.emplace_back(bound, 'k');
+  }
   longest.numbers.assign(layout.numbers, 0);
   const std::string payload = key_payload(longest, ByteOrder::little);
   EXPECT_LE(payload.size(), max_key_payload_bytes);

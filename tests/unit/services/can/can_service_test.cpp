@@ -55,8 +55,9 @@ class CanService : public testing::Test {
 protected:
   CanService() {
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "sensor.dbc") << "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [-50|50] \"m/s^2\" S\n"
-                                            " SG_ counter : 16|16@1+ (1,0) [0|0] \"\" S\n";
+    std::ofstream(folder / "sensor.dbc")
+        << "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [-50|50] \"m/s^2\" S\n"
+           " SG_ counter : 16|16@1+ (1,0) [0|0] \"\" S\n";
     settings.name = "sensor";
     settings.driver = SourceDriver::can;
     CanSourceSettings& can = settings.can.emplace();
@@ -70,9 +71,10 @@ protected:
 
   // Publishes the events until the source has ended and that was heard.
   void publish(std::vector<BusEvent> events) {
-    auto source = CanSource::prepare(settings, [&](const SourceSettings&) -> std::unique_ptr<FrameSource> {
-      return std::make_unique<ScriptedSource>(can0(), std::move(events));
-    });
+    auto source =
+        CanSource::prepare(settings, [&](const SourceSettings&) -> std::unique_ptr<FrameSource> {
+          return std::make_unique<ScriptedSource>(can0(), std::move(events));
+        });
     ASSERT_TRUE(source) << source.error().message;
     auto publisher = service->add({.bench = bench, .source = "sensor", .kind = SourceKind::can});
     ASSERT_TRUE(publisher) << publisher.error().message;
@@ -80,19 +82,25 @@ protected:
     ASSERT_TRUE(source->run(**publisher, {}));
     ASSERT_TRUE(listener.until([&] {
       const auto status = listener.last_status("sensor");
-      const bool ended = status && status->state() == SOURCE_ENDED && listener.samples_of("sensor") == status->received();
+      const bool ended = status && status->state() == SOURCE_ENDED &&
+                         listener.samples_of("sensor") == status->received();
       // Topics come in no order among each other.
-      return ended && !listener.descriptions.empty() && !listener.blocks.empty() && listener.blocks.back().end_of_stream();
+      return ended && !listener.descriptions.empty() && !listener.blocks.empty() &&
+             listener.blocks.back().end_of_stream();
     }));
   }
   [[nodiscard]] std::uint64_t cause(const std::string& name) const {
     const auto status = listener.last_status("sensor");
-    for (const NamedCount& count : status->causes())
-      if (count.name() == name) return count.value();
+    for (const NamedCount& count : status->causes()) {
+      if (count.name() == name) {
+        return count.value();
+      }
+    }
     return 0;
   }
 
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("dyncal-can-service-" + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("dyncal-can-service-" + std::to_string(getpid()));
   const std::string bench = "can-" + std::to_string(getpid());
   SourceSettings settings;
   bus::Participant network = tests::participant(bus::Vendor::fast_dds, dds_domain);
@@ -103,8 +111,9 @@ protected:
 
 TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
   std::vector<BusEvent> events;
-  for (int k = 0; k < 3000; ++k)
+  for (int k = 0; k < 3000; ++k) {
     events.emplace_back(sample(k));
+  }
   publish(std::move(events));
   const SourceDescription& description = listener.descriptions.back();
   EXPECT_EQ(description.kind(), SOURCE_CAN);
@@ -122,7 +131,9 @@ TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
   std::uint64_t next = 0;
   for (const SampleBlock& block : listener.blocks) {
     EXPECT_EQ(block.session(), description.session());
-    if (block.sample_count() == 0) continue;
+    if (block.sample_count() == 0) {
+      continue;
+    }
     EXPECT_EQ(block.first_sample(), next);
     EXPECT_EQ(block.stamps_ns().size(), block.sample_count());
     EXPECT_EQ(block.stamp_uncertainty_ns().size(), block.sample_count());
@@ -136,8 +147,11 @@ TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
 
 TEST_F(CanService, TellsBusStateErrorCountersDropsAndGapsInTheStatus) {
   std::vector<BusEvent> events;
-  for (int k = 0; k < 2000; ++k)
-    if (k < 1000 || k >= 1007) events.emplace_back(sample(k));
+  for (int k = 0; k < 2000; ++k) {
+    if (k < 1000 || k >= 1007) {
+      events.emplace_back(sample(k));
+    }
+  }
   events.emplace_back(FramesLost{3});
   events.emplace_back(sample(2003));
   events.emplace_back(sample(2003));
@@ -157,8 +171,10 @@ TEST_F(CanService, TellsBusStateErrorCountersDropsAndGapsInTheStatus) {
   EXPECT_THAT(status->message(), HasSubstr("interface 'can0' is error passive"));
   // Seven missing samples show between the numbers of two blocks.
   bool gap = false;
-  for (std::size_t i = 1; i < listener.blocks.size(); ++i)
-    gap = gap || listener.blocks[i].first_sample() == listener.blocks[i - 1].first_sample() + listener.blocks[i - 1].sample_count() + 7;
+  for (std::size_t i = 1; i < listener.blocks.size(); ++i) {
+    gap = gap || listener.blocks[i].first_sample() == listener.blocks[i - 1].first_sample() +
+                                                          listener.blocks[i - 1].sample_count() + 7;
+  }
   EXPECT_TRUE(gap);
 }
 
@@ -178,30 +194,39 @@ TEST_F(CanService, SaysWhatIsWrongWithTheLinkInOneSentence) {
     return to_message(*stream, std::chrono::seconds(1));
   };
   EXPECT_EQ(said([](LinkState&) {}), "");
-  EXPECT_THAT(said([](LinkState& link) { link.present = false; }), HasSubstr("'can0' is not there; waiting for it"));
-  EXPECT_THAT(said([](LinkState& link) { link.up = false; }), HasSubstr("is down; 'ip link set can0 up'"));
-  EXPECT_THAT(said([](LinkState& link) { link.bus = BusState::bus_off; }), HasSubstr("is bus-off: check bit rate"));
+  EXPECT_THAT(said([](LinkState& link) { link.present = false; }),
+              HasSubstr("'can0' is not there; waiting for it"));
+  EXPECT_THAT(said([](LinkState& link) { link.up = false; }),
+              HasSubstr("is down; 'ip link set can0 up'"));
+  EXPECT_THAT(said([](LinkState& link) { link.bus = BusState::bus_off; }),
+              HasSubstr("is bus-off: check bit rate"));
   EXPECT_THAT(said([](LinkState& link) { link.carrier = false; }), HasSubstr("has no bus"));
   EXPECT_EQ(said([](LinkState&) {}), "");
-  EXPECT_THAT(to_message(*stream, std::chrono::seconds(3)), HasSubstr("none of the sensor's messages has come (0x123); check the ids"));
+  EXPECT_THAT(to_message(*stream, std::chrono::seconds(3)),
+              HasSubstr("none of the sensor's messages has come (0x123); check the ids"));
   CanFrame cut_short = sample(0);
   cut_short.length = 1;
   ASSERT_TRUE(stream->take(cut_short, sink)); // lacks its counter
   EXPECT_EQ(stream->counts().rejected, 1U);
-  EXPECT_EQ(to_counts(*stream).causes.front(), (std::pair<std::string, std::uint64_t>("frames received", 1)));
+  EXPECT_EQ(to_counts(*stream).causes.front(),
+            (std::pair<std::string, std::uint64_t>("frames received", 1)));
 }
 
 TEST_F(CanService, NamesTheSourceAndWhatIsWrongBeforeAnythingIsPublished) {
   const auto refused = [&](const std::string& dbc) {
     std::ofstream(folder / "sensor.dbc") << dbc;
-    const auto source = CanSource::prepare(
-        settings, [](const SourceSettings&) { return std::make_unique<ScriptedSource>(can0(), std::vector<BusEvent>{}); });
+    const auto source = CanSource::prepare(settings, [](const SourceSettings&) {
+      return std::make_unique<ScriptedSource>(can0(), std::vector<BusEvent>{});
+    });
     return source ? std::string("accepted") : source.error().message;
   };
-  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"furlong\" S\n SG_ counter : 16|16@1+ (1,0) [0|0] \"\" S\n"),
+  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"furlong\" S\n SG_ "
+                      "counter : 16|16@1+ (1,0) [0|0] \"\" S\n"),
               HasSubstr("source 'sensor': "));
-  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"g\" S\n"), HasSubstr("sensor.dbc:2: "));
-  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"g\" S\n"), HasSubstr("'counter'"));
+  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"g\" S\n"),
+              HasSubstr("sensor.dbc:2: "));
+  EXPECT_THAT(refused("BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"g\" S\n"),
+              HasSubstr("'counter'"));
 }
 
 TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) {
@@ -212,10 +237,12 @@ TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) 
   settings.can->sensor.channels = {{"x", "x"}};
   EXPECT_TRUE(CanSource::prepare(settings));
   std::ofstream(folder / "drive.log") << "(1.000000) can0 124#0102\n";
-  EXPECT_THAT(CanSource::prepare(settings).error().message, HasSubstr("drive.log has none of the sensor's messages"));
+  EXPECT_THAT(CanSource::prepare(settings).error().message,
+              HasSubstr("drive.log has none of the sensor's messages"));
   std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.000000) can0 123#012\n";
   EXPECT_THAT(CanSource::prepare(settings).error().message, HasSubstr("drive.log:2"));
-  const auto stream = *drivers::can::SensorStream::create(settings.can->sensor, *drivers::can::read_dbc_file(folder / "sensor.dbc"));
+  const auto stream = *drivers::can::SensorStream::create(
+      settings.can->sensor, *drivers::can::read_dbc_file(folder / "sensor.dbc"));
   struct Nowhere : drivers::can::SampleSink {
     void describe(const drivers::SourceDescription&) override {}
     void restart() override {}
@@ -232,7 +259,9 @@ TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) 
 // A recorded drive, through the program's own path: waits for the run, plays, and ends its stream.
 TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
   const std::filesystem::path data = DYNCAL_CAN_DATA;
-  if (!std::filesystem::exists(data / "css-canmod-gps-imu-10hz.log")) GTEST_SKIP() << "no recorded CAN log in " << data;
+  if (!std::filesystem::exists(data / "css-canmod-gps-imu-10hz.log")) {
+    GTEST_SKIP() << "no recorded CAN log in " << data;
+  }
   CanSourceSettings& can = *settings.can;
   can = {};
   can.log = data / "css-canmod-gps-imu-10hz.log";
@@ -242,32 +271,42 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
   can.sensor.bit_rates.nominal_per_s = 500e3;
   auto source = CanSource::prepare(settings);
   ASSERT_TRUE(source) << source.error().message;
-  auto publisher = service->add({.bench = bench, .source = "sensor", .kind = SourceKind::can, .silent_after = std::chrono::seconds(0)});
+  auto publisher = service->add({.bench = bench,
+                                 .source = "sensor",
+                                 .kind = SourceKind::can,
+                                 .silent_after = std::chrono::seconds(0)});
   ASSERT_TRUE(publisher);
   service->start();
-  std::jthread player([&](const std::stop_token& stop) { EXPECT_TRUE(source->run(**publisher, stop)); });
+  std::jthread player(
+      [&](const std::stop_token& stop) { EXPECT_TRUE(source->run(**publisher, stop)); });
   ASSERT_TRUE(listener.armed("sensor", "run-1"));
   EXPECT_EQ(listener.samples_of("sensor"), 0U);
   listener.set_state("run-1", MEASUREMENT_RUNNING);
-  ASSERT_TRUE(listener.until([&] { return !listener.blocks.empty() && listener.blocks.back().end_of_stream(); }));
+  ASSERT_TRUE(listener.until(
+      [&] { return !listener.blocks.empty() && listener.blocks.back().end_of_stream(); }));
   EXPECT_EQ(listener.samples_of("sensor"), 1669U);
   double sum[3] = {};
   std::uint64_t missing = 0;
   std::uint64_t next = 0;
   for (const SampleBlock& block : listener.blocks) {
-    if (block.sample_count() == 0) continue;
+    if (block.sample_count() == 0) {
+      continue;
+    }
     missing += block.first_sample() - next;
     next = block.first_sample() + block.sample_count();
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      for (std::size_t i = 0; i < block.sample_count(); ++i)
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      for (std::size_t i = 0; i < block.sample_count(); ++i) {
         sum[channel] += block.values()[channel * block.sample_count() + i];
+      }
+    }
   }
   EXPECT_NEAR(sum[0] / 1669.0, -0.3764, 5e-5);
   EXPECT_NEAR(sum[1] / 1669.0, 0.3417, 5e-5);
   EXPECT_NEAR(sum[2] / 1669.0, 10.0466, 5e-5);
   EXPECT_EQ(missing, 5U); // one pause of 606 ms
   ASSERT_TRUE(listener.until([&] { return listener.last_status("sensor")->lost_on_way() == 5; }));
-  EXPECT_GT(listener.descriptions.front().stamp_uncertainty_s(), 9.0); // nobody knows how the recorder's clock was kept
+  EXPECT_GT(listener.descriptions.front().stamp_uncertainty_s(),
+            9.0); // nobody knows how the recorder's clock was kept
 }
 
 } // namespace

@@ -7,7 +7,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string bench_text(const std::string& dau_time_base, const std::string& acs_time_base, int repetitions = 3) {
+std::string bench_text(const std::string& dau_time_base, const std::string& acs_time_base,
+                       int repetitions = 3) {
   return R"(bench = "acc-1"
 [excitation]
 frequencies_hz = ["10", "12.5"]
@@ -70,7 +71,8 @@ TEST(CalibrateAdc, APassTakesSyncForEverythingAndSetsTheVoltage) {
   ASSERT_EQ(pass.method.dut.size(), 1U);
   EXPECT_EQ(pass.method.dut[0].text(), "dau/sync");
   EXPECT_FALSE(pass.corrections.adc);
-  EXPECT_EQ(pass.excitation.levels_m_s2, (std::vector<double>{0.5 * 1.95 * 50.0, 0.5 * 1.95 * 50.0}));
+  EXPECT_EQ(pass.excitation.levels_m_s2,
+            (std::vector<double>{0.5 * 1.95 * 50.0, 0.5 * 1.95 * 50.0}));
   EXPECT_NE(pass.sha256, file.sha256);
   EXPECT_EQ(bench_of_adc_pass(file, {}).excitation.levels_m_s2, file.excitation.levels_m_s2);
 }

@@ -5,8 +5,8 @@
 namespace dyncal::bus {
 namespace {
 
-SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample, std::uint32_t samples,
-                     const char* source = "dau") {
+SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
+                     std::uint32_t samples, const char* source = "dau") {
   SampleBlock block;
   block.bench("acc-1");
   block.source(source);
@@ -20,13 +20,16 @@ SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t 
 TEST(SampleContinuity, FindsNothingInAnUnbrokenStream) {
   SampleContinuity continuity;
   EXPECT_TRUE(continuity.add(block_of(7, 0, 1000, 50)).first);
-  for (std::uint64_t i = 1; i < 100; ++i)
+  for (std::uint64_t i = 1; i < 100; ++i) {
     EXPECT_TRUE(continuity.add(block_of(7, i, 1000 + 50 * i, 50)).continuous());
+  }
   const ContinuityCounts counts = continuity.counts("acc-1", "dau");
   EXPECT_EQ(counts.blocks, 100U);
   EXPECT_EQ(counts.samples, 5000U);
   EXPECT_EQ(counts.sessions, 1U);
-  EXPECT_EQ(counts.missing_blocks + counts.missing_samples + counts.duplicates + counts.repeated_samples, 0U);
+  EXPECT_EQ(counts.missing_blocks + counts.missing_samples + counts.duplicates +
+                counts.repeated_samples,
+            0U);
 }
 
 TEST(SampleContinuity, CountsNothingAsMissingBeforeTheFirstBlockHeard) {

@@ -14,8 +14,9 @@ TEST(Unit, TranslatesShortFormsAndKeepsDSi) {
 }
 
 TEST(Unit, RefusesWhatIsNeither) {
-  for (const char* wrong : {"", "furlong", R"(\furlong)", R"(\milli)", R"(\tothe{2})", R"(\metre\tothe{x})", R"(\metre\tothe{-2)", R"(\A.U.)",
-                            R"(\milli\milli\metre)", "/hertz"}) {
+  for (const char* wrong :
+       {"", "furlong", R"(\furlong)", R"(\milli)", R"(\tothe{2})", R"(\metre\tothe{x})",
+        R"(\metre\tothe{-2)", R"(\A.U.)", R"(\milli\milli\metre)", "/hertz"}) {
     EXPECT_FALSE(to_d_si(wrong)) << wrong;
   }
 }

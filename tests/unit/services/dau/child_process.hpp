@@ -1,4 +1,5 @@
-// Starts a program and keeps what it says on standard error, for tests. Ends it at the latest with itself.
+// Starts a program and keeps what it says on standard error, for tests. Ends it at the latest with
+// itself.
 #pragma once
 
 #include <fcntl.h>
@@ -31,8 +32,9 @@ public:
     const int output = mkstemp(name.data());
     output_path_ = name;
     std::vector<char*> arguments;
-    for (auto& word : command)
+    for (auto& word : command) {
       arguments.push_back(word.data());
+    }
     arguments.push_back(nullptr);
     process_ = fork();
     if (process_ == 0) {
@@ -63,11 +65,15 @@ public:
       if (wait4(process_, &status, WNOHANG, &usage) == process_) {
         exit_ = Exit{.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
                      .cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-                              static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) * 1e-6};
+                              static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) *
+                                  1e-6};
         break;
       }
-      if (std::chrono::steady_clock::now() > deadline) return std::nullopt;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5)); // between two looks at a process that cannot wake us
+      if (std::chrono::steady_clock::now() > deadline) {
+        return std::nullopt;
+      }
+      std::this_thread::sleep_for(
+          std::chrono::milliseconds(5)); // between two looks at a process that cannot wake us
     }
     return exit_;
   }

@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/dau/bench_text.hpp"
-#include "tests/unit/services/dau/child_process.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
+#include "tests/unit/services/dau/bench_text.hpp"
+#include "tests/unit/services/dau/child_process.hpp"
 #include "tests/unit/services/source/bench_listener.hpp"
 
 namespace dyncal {
@@ -24,11 +24,13 @@ constexpr int dds_domain = 61;
 constexpr std::uint32_t sensor_id = 0xbccb0100;
 const std::string bench_name = "dau-" + std::to_string(getpid());
 
-// A unit with one MPU9250, three declared channels and the sync ADC, that runs at its real pace until it is destroyed.
+// A unit with one MPU9250, three declared channels and the sync ADC, that runs at its real pace
+// until it is destroyed.
 class SimulatedUnit {
 public:
   explicit SimulatedUnit(std::uint16_t port, std::uint32_t sensor = sensor_id)
-      : sender_(port), sensor_(sensor), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+      : sender_(port), sensor_(sensor),
+        thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
   void lose_datagrams(int count) { losing_ += count; }
 
@@ -36,23 +38,28 @@ private:
   void run(const std::stop_token& stop) {
     auto due = std::chrono::steady_clock::now();
     for (std::uint32_t n = 1; !stop.stop_requested(); n += 12) {
-      if ((n - 1) % 480 == 0) describe();
+      if ((n - 1) % 480 == 0) {
+        describe();
+      }
       DatagramWriter datagram("DATA");
-      for (std::uint32_t i = n; i < n + 12; ++i)
+      for (std::uint32_t i = n; i < n + 12; ++i) {
         datagram.data({.sensor = sensor_,
                        .sample_number = i,
                        .stamp_ns = 1'600'000'000'000'000'000 + i * 1'000'000LL,
                        .values = {{1, 0.5F}, {2, -0.5F}, {3, static_cast<float>(i)}, {11, 2.5F}}});
-      if (losing_ > 0)
+      }
+      if (losing_ > 0) {
         --losing_;
-      else
+      } else {
         sender_.send(datagram.bytes());
+      }
       std::this_thread::sleep_until(due += std::chrono::milliseconds(12));
     }
   }
   void describe() {
-    for (const auto& bytes : tests::mpu9250_descriptions(sensor_))
+    for (const auto& bytes : tests::mpu9250_descriptions(sensor_)) {
       sender_.send(bytes);
+    }
   }
 
   UdpSender sender_;
@@ -64,12 +71,14 @@ private:
 class DauProgram : public testing::TestWithParam<bus::Vendor> {
 protected:
   std::unique_ptr<ChildProcess> start(const std::vector<std::string>& benches) {
-    std::vector<std::string> command{DYNCAL_DAU, "--dds", bus::vendor_word(GetParam()), "--domain", std::to_string(dds_domain)};
+    std::vector<std::string> command{DYNCAL_DAU, "--dds", bus::vendor_word(GetParam()), "--domain",
+                                     std::to_string(dds_domain)};
     command.insert(command.end(), benches.begin(), benches.end());
     return std::make_unique<ChildProcess>(command);
   }
   std::string bench_file(const std::string& sensor = "0xbccb0100") {
-    return folder.write("bench.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, sensor)));
+    return folder.write(
+        "bench.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, sensor)));
   }
 
   tests::TemporaryFolder folder;
@@ -85,7 +94,8 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
 
   ASSERT_TRUE(listener.armed("dau", "run-1")) << program->said();
   const auto before = listener.samples_of("dau");
-  ASSERT_TRUE(listener.until([&] { return listener.samples_of("dau") > before + 1000; })) << program->said();
+  ASSERT_TRUE(listener.until([&] { return listener.samples_of("dau") > before + 1000; }))
+      << program->said();
 
   ASSERT_FALSE(listener.descriptions.empty());
   const auto& description = listener.descriptions.back();
@@ -100,16 +110,21 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
 
   std::uint64_t next = 0;
   for (const auto& block : listener.blocks) {
-    if (block.sample_count() == 0) continue;
+    if (block.sample_count() == 0) {
+      continue;
+    }
     EXPECT_TRUE(next == 0 || block.first_sample() == next);
     next = block.first_sample() + block.sample_count();
     ASSERT_EQ(block.values().size(), 4 * block.sample_count());
     EXPECT_EQ(block.values()[2 * block.sample_count()], static_cast<double>(block.first_sample()));
-    EXPECT_EQ(block.stamps_ns()[0], 1'600'000'000'000'000'000 + static_cast<std::int64_t>(block.first_sample()) * 1'000'000);
+    EXPECT_EQ(block.stamps_ns()[0],
+              1'600'000'000'000'000'000 +
+                  static_cast<std::int64_t>(block.first_sample()) * 1'000'000);
   }
 
   unit.lose_datagrams(2);
-  ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_on_way() == 24; })) << program->said();
+  ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_on_way() == 24; }))
+      << program->said();
   EXPECT_EQ(listener.last_status("dau")->lost_in_device(), 0U);
   EXPECT_EQ(listener.last_status("dau")->state(), SOURCE_RUNNING);
 
@@ -117,7 +132,9 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   const auto exit = program->wait_for(std::chrono::seconds(10));
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->status, 0) << program->said();
-  EXPECT_TRUE(listener.until([&] { return listener.blocks.back().end_of_stream() && listener.saw_state("dau", SOURCE_ENDED); }));
+  EXPECT_TRUE(listener.until([&] {
+    return listener.blocks.back().end_of_stream() && listener.saw_state("dau", SOURCE_ENDED);
+  }));
   EXPECT_THAT(program->said(), HasSubstr("sensor 0xbccb0100 is there"));
   EXPECT_THAT(program->said(), HasSubstr("samples lost on the way"));
 }
@@ -129,16 +146,20 @@ TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
   SimulatedUnit unit(port);
   ASSERT_TRUE(listener.until([&] {
     const auto status = listener.last_status("dau");
-    return status && status->state() == SOURCE_SILENT && status->message().find("0xbccb0100 (MPU_9250)") != std::string::npos;
+    return status && status->state() == SOURCE_SILENT &&
+           status->message().find("0xbccb0100 (MPU_9250)") != std::string::npos;
   })) << program->said();
-  EXPECT_THAT(listener.last_status("dau")->message(), HasSubstr("sensor 0x1fe40100 does not send to " + listen));
+  EXPECT_THAT(listener.last_status("dau")->message(),
+              HasSubstr("sensor 0x1fe40100 does not send to " + listen));
   EXPECT_THAT(program->said(), HasSubstr("sensor 0xbccb0100 (MPU_9250) sends to " + listen));
 }
 
 TEST_P(DauProgram, OneProcessServesSeveralBenches) {
   const std::string second = bench_name + "-b";
-  const auto first_file = folder.write("a.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, "0xbccb0100")));
-  const auto second_file = folder.write("b.toml", tests::bench_text(second, tests::smartup_source("dau", listen, "0x1fe40100")));
+  const auto first_file = folder.write(
+      "a.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, "0xbccb0100")));
+  const auto second_file = folder.write(
+      "b.toml", tests::bench_text(second, tests::smartup_source("dau", listen, "0x1fe40100")));
   auto network = tests::participant(GetParam(), dds_domain);
   tests::BenchListener here(network, bench_name, bus::topics::dau_samples);
   tests::BenchListener there(network, second, bus::topics::dau_samples);
@@ -172,7 +193,8 @@ TEST_P(DauProgramErrors, APortInUseIsOneLine) {
   const auto [status, line] = failure_of({bench_file()});
   close(blocker);
   EXPECT_NE(status, 0);
-  EXPECT_THAT(line, HasSubstr("cannot listen at UDP " + listen + ": another program uses this port"));
+  EXPECT_THAT(line,
+              HasSubstr("cannot listen at UDP " + listen + ": another program uses this port"));
 }
 
 TEST_P(DauProgramErrors, AMissingFileIsOneLine) {
@@ -188,15 +210,19 @@ TEST_P(DauProgramErrors, AMalformedSensorIsOneLine) {
 }
 
 TEST_P(DauProgramErrors, AnAddressOfAnotherHostIsOneLine) {
-  const auto file = folder.write("bench.toml", tests::bench_text(bench_name, tests::smartup_source("dau", "192.0.2.1:7654", "0xbccb0100")));
+  const auto file = folder.write(
+      "bench.toml",
+      tests::bench_text(bench_name, tests::smartup_source("dau", "192.0.2.1:7654", "0xbccb0100")));
   const auto [status, line] = failure_of({file});
   EXPECT_NE(status, 0);
   EXPECT_THAT(line, HasSubstr("no such address"));
 }
 
 const auto vendor_name = [](const auto& vendor) { return bus::vendor_word(vendor.param); };
-INSTANTIATE_TEST_SUITE_P(Bus, DauProgram, testing::ValuesIn(bus::vendors_in_this_build()), vendor_name);
-INSTANTIATE_TEST_SUITE_P(Bus, DauProgramErrors, testing::Values(bus::vendors_in_this_build().front()), vendor_name);
+INSTANTIATE_TEST_SUITE_P(Bus, DauProgram, testing::ValuesIn(bus::vendors_in_this_build()),
+                         vendor_name);
+INSTANTIATE_TEST_SUITE_P(Bus, DauProgramErrors,
+                         testing::Values(bus::vendors_in_this_build().front()), vendor_name);
 
 } // namespace
 } // namespace dyncal

@@ -23,7 +23,8 @@ TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
                                 .can_interface = "can0",
                                 .can_bus = "fd-5M"};
   for (const DemoPreset& preset : demo_presets()) {
-    const auto file = parse_bench_file(demo_bench_file(preset, "demo-1", addresses, {1e-3, 2e-3, 3e-7}), folder / "bench.toml");
+    const auto file = parse_bench_file(
+        demo_bench_file(preset, "demo-1", addresses, {1e-3, 2e-3, 3e-7}), folder / "bench.toml");
     ASSERT_TRUE(file) << preset.name << ": " << file.error().message;
     EXPECT_EQ(file->bench, "demo-1");
     EXPECT_EQ(file->excitation.frequencies_hz, preset.frequencies_hz);

@@ -42,13 +42,15 @@ TEST(TruthCheck, ComparesMagnitudeAndPhaseInStandardUncertainties) {
 }
 
 TEST(TruthCheck, TakesWholeTurnsOutOfThePhase) {
-  const auto check = check_truth(outcome(1.0, 3.12 - 2.0 * std::numbers::pi), truth_file(one_point));
+  const auto check =
+      check_truth(outcome(1.0, 3.12 - 2.0 * std::numbers::pi), truth_file(one_point));
   EXPECT_NEAR(check->worst, 2.0, 1e-9);
 }
 
 TEST(TruthCheck, AnExcitedChannelWithoutAResultIsAnError) {
   RunOutcome none;
-  EXPECT_THAT(check_truth(none, truth_file(one_point)).error().message, testing::HasSubstr("no result for acceleration_z at 40 Hz"));
+  EXPECT_THAT(check_truth(none, truth_file(one_point)).error().message,
+              testing::HasSubstr("no result for acceleration_z at 40 Hz"));
 }
 
 TEST(TruthCheck, AFileThatIsNoTruthIsAnError) {

@@ -34,8 +34,9 @@ TEST_F(VendorAssignment, NamedServicesGetTheirsAndTheOthersTheFirstOfTheBuild) {
 
 TEST_F(VendorAssignment, RefusesWordsThatAreNone) {
   EXPECT_FALSE(parse_vendor_assignment("opendds"));
-  EXPECT_THAT(parse_vendor_assignment("dso=fastdds").error().message,
-              testing::HasSubstr("names the service 'dso', but a demo has: acs, analysis, dau, run"));
+  EXPECT_THAT(
+      parse_vendor_assignment("dso=fastdds").error().message,
+      testing::HasSubstr("names the service 'dso', but a demo has: acs, analysis, dau, run"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// The service between the bus and instruments that answer over TCP: the virtual bench's oscilloscope and time series sensor, switched off
-// and on, and over bad lines.
+// The service between the bus and instruments that answer over TCP: the virtual bench's
+// oscilloscope and time series sensor, switched off and on, and over bad lines.
 #include "services/dso/bench_service.hpp"
 
 #include <chrono>
@@ -25,10 +25,12 @@ using testing::HasSubstr;
 constexpr int domain = 61;
 constexpr auto patience = 30s;
 
-// Both instruments, served from a thread of their own; bench time runs ten times as fast as the host's clock at most.
+// Both instruments, served from a thread of their own; bench time runs ten times as fast as the
+// host's clock at most.
 class Instruments {
 public:
-  explicit Instruments(device::ScopeFaults faults, std::uint16_t scope_port = 0, std::uint16_t sensor_port = 0) {
+  explicit Instruments(device::ScopeFaults faults, std::uint16_t scope_port = 0,
+                       std::uint16_t sensor_port = 0) {
     device::TriggeredSettings settings;
     settings.scope_listen = {"127.0.0.1", scope_port};
     settings.sensor_listen = {"127.0.0.1", sensor_port};
@@ -141,7 +143,9 @@ shots = {}
   [[nodiscard]] bool has_shots(std::uint32_t step, std::size_t count) {
     return trace_shots_[step].size() == count && series_shots_[step] == trace_shots_[step];
   }
-  [[nodiscard]] bool is(SourceState state) const { return status_seen_ && status_seen_->state() == state; }
+  [[nodiscard]] bool is(SourceState state) const {
+    return status_seen_ && status_seen_->state() == state;
+  }
 
   static bus::Participant join() {
     bus::ParticipantOptions options;
@@ -157,13 +161,20 @@ shots = {}
   std::uint16_t sensor_port_ = 0;
   bus::Participant participant_ = join();
   std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
-  bus::Writer<Excitation> excitation_ = participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench_).value();
+  bus::Writer<Excitation> excitation_ =
+      participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench_).value();
   bus::Reader<TriggeredRecord> traces_ =
-      participant_.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench_, bell_).value();
+      participant_
+          .reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench_, bell_)
+          .value();
   bus::Reader<TriggeredRecord> series_ =
-      participant_.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench_, bell_).value();
+      participant_
+          .reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench_, bell_)
+          .value();
   bus::Reader<SourceStatus> status_ =
-      participant_.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench_, bell_).value();
+      participant_
+          .reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench_, bell_)
+          .value();
   std::unique_ptr<BenchService> service_;
   std::map<std::uint32_t, std::set<std::uint64_t>> trace_shots_;
   std::map<std::uint32_t, std::set<std::uint64_t>> series_shots_;
@@ -220,7 +231,9 @@ TEST_P(BadLine, IsNamedAndItsShotsAreRepeated) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, BadLine, testing::Values("half-answer", "garbage", "wrong-length", "other-answer", "disconnect"),
+INSTANTIATE_TEST_SUITE_P(Faults, BadLine,
+                         testing::Values("half-answer", "garbage", "wrong-length", "other-answer",
+                                         "disconnect"),
                          [](const auto& fault) {
                            std::string name = fault.param;
                            std::erase(name, '-');

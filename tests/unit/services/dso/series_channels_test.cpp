@@ -18,7 +18,8 @@ drivers::tss::Series series_of_two() {
 }
 
 TEST(SeriesChannels, AreSelectedByOurNamesInTheOrderOfTheBenchFile) {
-  const auto selected = select_channels(series_of_two(), {{"CH1", "temperature"}}, {"acceleration_z", "temperature"});
+  const auto selected =
+      select_channels(series_of_two(), {{"CH1", "temperature"}}, {"acceleration_z", "temperature"});
   ASSERT_TRUE(selected.has_value()) << selected.error().message;
   EXPECT_EQ(selected->values, (std::vector<double>{10, 20, 30, 1, 2, 3}));
   EXPECT_EQ(selected->channels[0].name, "acceleration_z");
@@ -34,7 +35,8 @@ TEST(SeriesChannels, WhatNobodyCalibratesIsLeftOut) {
 TEST(SeriesChannels, AMissingChannelIsNamedWithThoseThereAre) {
   const auto selected = select_channels(series_of_two(), {}, {"acceleration_x"});
   ASSERT_FALSE(selected.has_value());
-  EXPECT_THAT(selected.error().message, testing::HasSubstr("'acceleration_x'; it has: CH1, acceleration_z"));
+  EXPECT_THAT(selected.error().message,
+              testing::HasSubstr("'acceleration_x'; it has: CH1, acceleration_z"));
 }
 
 } // namespace

@@ -9,7 +9,8 @@
 
 namespace dyncal::tests {
 
-inline void expect_drawing_agrees(const std::vector<CalibrationResult>& results, std::size_t expected_results) {
+inline void expect_drawing_agrees(const std::vector<CalibrationResult>& results,
+                                  std::size_t expected_results) {
   ASSERT_EQ(results.size(), expected_results);
   for (const CalibrationResult& result : results) {
     ASSERT_TRUE(result.valid()) << result.problem();

@@ -14,7 +14,8 @@ namespace {
 
 using testing::HasSubstr;
 
-EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement, std::size_t evaluations_at_once = 0) {
+EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement,
+                          std::size_t evaluations_at_once = 0) {
   auto recipe = parse_recipe(measurement);
   EXPECT_TRUE(recipe) << recipe.error().message;
   RunEvaluator evaluator(std::move(*recipe), evaluations_at_once);
@@ -65,7 +66,8 @@ TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_EQ(result.channel().to_string(), "dau/acceleration_z");
     EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
-    EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s, 4.0 * result.u_phase_rad());
+    EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s,
+                4.0 * result.u_phase_rad());
     EXPECT_LT(result.u_magnitude(), 1e-3);
     EXPECT_LT(result.u_phase_rad(), 1e-3);
     EXPECT_EQ(result.unit(), R"(\one)");
@@ -84,7 +86,8 @@ TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
   ASSERT_EQ(output.results.size(), 2U);
   for (const CalibrationResult& result : output.results) {
     ASSERT_TRUE(result.valid()) << result.problem();
-    EXPECT_NEAR(result.magnitude(), 0.1, 4.0 * result.u_magnitude()); // sync is a tenth of the reference
+    EXPECT_NEAR(result.magnitude(), 0.1,
+                4.0 * result.u_magnitude()); // sync is a tenth of the reference
     EXPECT_NEAR(result.phase_rad(), 0.0, 4.0 * result.u_phase_rad());
     EXPECT_EQ(result.fits().size(), 2U);
     EXPECT_EQ(result.samples().size(), 1U);
@@ -109,10 +112,13 @@ TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_TRUE(result.flags().empty()) << result.flags().front();
     EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
-    // 0.05 s ln(0.1 / 1e-4) = 0.35 s after the beginning, whole blocks of periods and the window's edge beside it.
+    // 0.05 s ln(0.1 / 1e-4) = 0.35 s after the beginning, whole blocks of periods and the window's
+    // edge beside it.
     const double begin_s = run.off_s + (result.step() - 1) * (run.on_s + run.off_s);
     EXPECT_NEAR(static_cast<double>(result.samples()[0].first_ns()) * 1e-9 - begin_s, 0.4, 0.15);
-    EXPECT_NEAR(static_cast<double>(result.samples()[0].last_ns() - result.samples()[0].first_ns()) * 1e-9, 0.6, 0.001);
+    EXPECT_NEAR(
+        static_cast<double>(result.samples()[0].last_ns() - result.samples()[0].first_ns()) * 1e-9,
+        0.6, 0.001);
   }
 }
 
@@ -189,7 +195,8 @@ TEST(RunEvaluator, SaysWhichSyncIsMissingForAStepThatWasNotExcited) {
   ASSERT_EQ(output.results.size(), 3U);
   EXPECT_TRUE(output.results[0].valid());
   EXPECT_FALSE(output.results[1].valid());
-  EXPECT_THAT(output.results[1].problem(), HasSubstr("no steady sine of 63 Hz was found in acs/sync"));
+  EXPECT_THAT(output.results[1].problem(),
+              HasSubstr("no steady sine of 63 Hz was found in acs/sync"));
   EXPECT_TRUE(std::isnan(output.results[1].magnitude()));
   EXPECT_TRUE(output.results[2].valid());
 }
@@ -201,7 +208,8 @@ TEST(RunEvaluator, RefusesASourceWithoutTheChannelAndListsThoseItHas) {
   RunEvaluator evaluator(*parse_recipe(measurement));
   const auto described = evaluator.describe(run.dau_description());
   ASSERT_FALSE(described);
-  EXPECT_EQ(described.error().message, "source 'dau' has no channel 'synch'; it has: acceleration_z, temperature, sync");
+  EXPECT_EQ(described.error().message,
+            "source 'dau' has no channel 'synch'; it has: acceleration_z, temperature, sync");
 }
 
 TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {

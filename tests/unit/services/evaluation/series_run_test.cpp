@@ -1,4 +1,5 @@
-// Series time stamping in the evaluation of a run: which shots count, and what a result says of them.
+// Series time stamping in the evaluation of a run: which shots count, and what a result says of
+// them.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -6,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/evaluation/run_evaluator.hpp"
 #include "services/evaluation/method/shot_record.hpp"
+#include "services/evaluation/run_evaluator.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
 namespace dyncal::services {
@@ -20,7 +21,8 @@ constexpr double real_rate_hz = 1003.0;
 constexpr double dso_delay_s = 236e-9;
 constexpr double magnitude = 0.95;
 constexpr double delay_s = 1.5e-3;
-constexpr double beta_rad[] = {-0.021, -0.012, -0.017, -0.025, -0.015}; // of the triggers: always early
+constexpr double beta_rad[] = {-0.021, -0.012, -0.017, -0.025,
+                               -0.015}; // of the triggers: always early
 
 class SeriesRun : public testing::Test {
 protected:
@@ -43,11 +45,13 @@ protected:
     evaluator_.emplace(*recipe);
     ASSERT_TRUE(evaluator_->describe(run_.acs_description()));
     ASSERT_TRUE(evaluator_->describe(description("dso", SOURCE_DSO, "sync", R"(\volt)")));
-    ASSERT_TRUE(evaluator_->describe(description("tss", SOURCE_TSS, "acceleration_z", R"(\metre\second\tothe{-2})")));
+    ASSERT_TRUE(evaluator_->describe(
+        description("tss", SOURCE_TSS, "acceleration_z", R"(\metre\second\tothe{-2})")));
     EXPECT_TRUE(evaluator_->undescribed().empty());
   }
 
-  static SourceDescription description(const char* source, SourceKind kind, const char* channel, const char* unit) {
+  static SourceDescription description(const char* source, SourceKind kind, const char* channel,
+                                       const char* unit) {
     SourceDescription message;
     message.bench("synthetic");
     message.source(source);
@@ -60,8 +64,8 @@ protected:
   }
 
   // One shot as the oscilloscope and the sensor record it.
-  static std::pair<TriggeredRecord, TriggeredRecord> shot(std::uint64_t number, std::uint32_t step, double frequency_hz,
-                                                          std::size_t samples = 1000) {
+  static std::pair<TriggeredRecord, TriggeredRecord>
+  shot(std::uint64_t number, std::uint32_t step, double frequency_hz, std::size_t samples = 1000) {
     std::mt19937_64 random(number);
     std::normal_distribution<double> noise(0.0, 1e-3);
     const double w = 2.0 * std::numbers::pi * frequency_hz;
@@ -69,7 +73,10 @@ protected:
     TriggeredRecord trace = head("dso", number, step, 2000, 2.0 / frequency_hz / 2000.0);
     trace.first_sample_s(-1.0 / frequency_hz);
     for (std::size_t i = 0; i < 2000; ++i) {
-      trace.values()[i] = std::sin(w * (trace.first_sample_s() + static_cast<double>(i) * trace.interval_s()) + beta) + noise(random);
+      trace.values()[i] =
+          std::sin(w * (trace.first_sample_s() + static_cast<double>(i) * trace.interval_s()) +
+                   beta) +
+          noise(random);
     }
     TriggeredRecord series = head("tss", number, step, samples, 1.0 / nominal_rate_hz);
     for (std::size_t n = 0; n < samples; ++n) {
@@ -79,7 +86,8 @@ protected:
     return {trace, series};
   }
 
-  static TriggeredRecord head(const char* source, std::uint64_t number, std::uint32_t step, std::size_t samples, double interval_s) {
+  static TriggeredRecord head(const char* source, std::uint64_t number, std::uint32_t step,
+                              std::size_t samples, double interval_s) {
     TriggeredRecord record;
     record.bench("synthetic");
     record.source(source);
@@ -142,7 +150,8 @@ TEST_F(SeriesRun, GivesMagnitudePhaseAndRateOfTheSensor) {
     EXPECT_FALSE(result.data_sha256().empty());
   }
   ASSERT_EQ(output.clock_reports.size(), 1U);
-  EXPECT_NEAR(output.clock_reports[0].mean_interval_s(), 1.0 / real_rate_hz, 4.0 * output.clock_reports[0].u_mean_interval_s());
+  EXPECT_NEAR(output.clock_reports[0].mean_interval_s(), 1.0 / real_rate_hz,
+              4.0 * output.clock_reports[0].u_mean_interval_s());
   EXPECT_DOUBLE_EQ(output.clock_reports[0].nominal_rate_hz(), nominal_rate_hz);
   ASSERT_EQ(output.transfer_functions.size(), 1U);
 }

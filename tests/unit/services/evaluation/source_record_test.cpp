@@ -20,8 +20,10 @@ TEST(SourceRecord, HoldsTheSameSamplesHoweverTheyWereCut) {
   for (const SampleBlock& block : run.dau_blocks()) {
     ASSERT_TRUE(fine.add(block));
   }
-  EXPECT_TRUE(std::equal(coarse.stamps_ns().begin(), coarse.stamps_ns().end(), fine.stamps_ns().begin(), fine.stamps_ns().end()));
-  EXPECT_TRUE(std::equal(coarse.column(0).begin(), coarse.column(0).end(), fine.column(0).begin(), fine.column(0).end()));
+  EXPECT_TRUE(std::equal(coarse.stamps_ns().begin(), coarse.stamps_ns().end(),
+                         fine.stamps_ns().begin(), fine.stamps_ns().end()));
+  EXPECT_TRUE(std::equal(coarse.column(0).begin(), coarse.column(0).end(), fine.column(0).begin(),
+                         fine.column(0).end()));
   EXPECT_TRUE(fine.ended());
 }
 
@@ -73,10 +75,13 @@ TEST(SourceRecord, GivesAwayAPartThatSaysTheSameOfItsTime) {
   EXPECT_EQ(part.flags().size(), 801U);
   EXPECT_TRUE(std::equal(part.stamps_ns().begin(), part.stamps_ns().end(), stamps.begin() + 100));
   for (std::size_t channel = 0; channel < run.dau_description().channels().size(); ++channel) {
-    EXPECT_TRUE(std::equal(part.column(channel).begin(), part.column(channel).end(), record.column(channel).begin() + 100));
+    EXPECT_TRUE(std::equal(part.column(channel).begin(), part.column(channel).end(),
+                           record.column(channel).begin() + 100));
   }
-  EXPECT_EQ(part.lost_between(stamps[100], stamps[900]), record.lost_between(stamps[100], stamps[900]));
-  EXPECT_EQ(part.stamp_uncertainty_s(stamps[100], stamps[900]), record.stamp_uncertainty_s(stamps[100], stamps[900]));
+  EXPECT_EQ(part.lost_between(stamps[100], stamps[900]),
+            record.lost_between(stamps[100], stamps[900]));
+  EXPECT_EQ(part.stamp_uncertainty_s(stamps[100], stamps[900]),
+            record.stamp_uncertainty_s(stamps[100], stamps[900]));
   EXPECT_EQ(part.source(), "dau");
   EXPECT_TRUE(record.part(stamps.back() + 1, stamps.back() + 2).stamps_ns().empty());
 }

@@ -77,7 +77,8 @@ TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
     if (stamp_ns < stretch.begin_ns || stamp_ns > stretch.end_ns) {
       continue;
     }
-    const bool measured = std::isfinite(block.values()[i]) && std::isfinite(block.values()[5000 + i]);
+    const bool measured =
+        std::isfinite(block.values()[i]) && std::isfinite(block.values()[5000 + i]);
     const bool later = expected.empty() || stamp_ns > block.stamps_ns()[expected.back()];
     if (block.flags()[i] == 0 && measured && later) {
       expected.push_back(i);

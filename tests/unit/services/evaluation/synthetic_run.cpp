@@ -20,7 +20,8 @@ ChannelDescription channel(const char* name, const char* unit) {
   return description;
 }
 
-SourceDescription description(const char* source, SourceKind kind, const std::vector<ChannelDescription>& channels) {
+SourceDescription description(const char* source, SourceKind kind,
+                              const std::vector<ChannelDescription>& channels) {
   SourceDescription message;
   message.bench("synthetic");
   message.source(source);
@@ -30,7 +31,8 @@ SourceDescription description(const char* source, SourceKind kind, const std::ve
   return message;
 }
 
-SampleBlock block_head(const char* source, std::uint64_t number, std::uint64_t first_sample, std::size_t samples, std::uint32_t channels) {
+SampleBlock block_head(const char* source, std::uint64_t number, std::uint64_t first_sample,
+                       std::size_t samples, std::uint32_t channels) {
   SampleBlock block;
   block.bench("synthetic");
   block.source(source);
@@ -70,13 +72,15 @@ Measurement SyntheticRun::measurement() const {
 }
 
 SourceDescription SyntheticRun::acs_description() const {
-  return description("acs", SOURCE_ACS, {channel("reference", R"(\metre\second\tothe{-2})"), channel("sync", R"(\volt)")});
+  return description(
+      "acs", SOURCE_ACS,
+      {channel("reference", R"(\metre\second\tothe{-2})"), channel("sync", R"(\volt)")});
 }
 
 SourceDescription SyntheticRun::dau_description() const {
-  return description(
-      "dau", SOURCE_DAU,
-      {channel("acceleration_z", R"(\metre\second\tothe{-2})"), channel("temperature", R"(\degreecelsius)"), channel("sync", R"(\volt)")});
+  return description("dau", SOURCE_DAU,
+                     {channel("acceleration_z", R"(\metre\second\tothe{-2})"),
+                      channel("temperature", R"(\degreecelsius)"), channel("sync", R"(\volt)")});
 }
 
 double SyntheticRun::duration_s() const {
@@ -87,19 +91,24 @@ double SyntheticRun::excitation(double t_s, double& phase_turns) const {
   const double period = on_s + off_s;
   const double in_list = t_s - off_s;
   const auto index = static_cast<std::ptrdiff_t>(std::floor(in_list / period));
-  if (index < 0 || index >= static_cast<std::ptrdiff_t>(steps.size()) || in_list - static_cast<double>(index) * period > on_s) {
+  if (index < 0 || index >= static_cast<std::ptrdiff_t>(steps.size()) ||
+      in_list - static_cast<double>(index) * period > on_s) {
     return 0.0;
   }
   const SyntheticStep& step = steps[static_cast<std::size_t>(index)];
   phase_turns = std::stod(step.frequency_hz) * t_s;
   const double on_for_s = in_list - static_cast<double>(index) * period;
-  return settling_time_constant_s > 0.0 ? step.amplitude * (1.0 - 0.1 * std::exp(-on_for_s / settling_time_constant_s)) : step.amplitude;
+  return settling_time_constant_s > 0.0
+             ? step.amplitude * (1.0 - 0.1 * std::exp(-on_for_s / settling_time_constant_s))
+             : step.amplitude;
 }
 
 double SyntheticRun::signal(double t_s, double gain, double delay) const {
   double phase_turns = 0.0;
   const double amplitude = excitation(t_s, phase_turns);
-  const double turns = t_s == 0.0 ? 0.0 : phase_turns * (t_s - delay) / t_s; // steady from its first instant: nothing to settle
+  const double turns = t_s == 0.0 ? 0.0
+                                  : phase_turns * (t_s - delay) /
+                                        t_s; // steady from its first instant: nothing to settle
   return amplitude * gain * std::sin(2.0 * std::numbers::pi * turns);
 }
 
@@ -134,7 +143,8 @@ std::vector<SampleBlock> SyntheticRun::dau_blocks() const {
     const std::size_t count = std::min<std::size_t>(block_samples, total - first);
     SampleBlock block = block_head("dau", number, first + 1, count, 3);
     for (std::size_t i = 0; i < count; ++i) {
-      const auto t_ns = static_cast<std::int64_t>(std::llround(static_cast<double>(first + i) * dau_interval_s * 1e9));
+      const auto t_ns = static_cast<std::int64_t>(
+          std::llround(static_cast<double>(first + i) * dau_interval_s * 1e9));
       const double t = static_cast<double>(t_ns) * 1e-9;
       block.stamps_ns().push_back(dau_epoch_ns + t_ns);
       block.values()[i] = signal(t, magnitude, delay_s) + 10.0 * normal(random);

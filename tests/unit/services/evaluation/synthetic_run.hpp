@@ -1,4 +1,5 @@
-// A run made by formula: an ACS and a DAU in unrelated clocks that record the same sine steps, with a sensor of known magnitude and delay.
+// A run made by formula: an ACS and a DAU in unrelated clocks that record the same sine steps, with
+// a sensor of known magnitude and delay.
 #pragma once
 
 #include <cstdint>

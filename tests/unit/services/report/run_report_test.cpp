@@ -56,7 +56,8 @@ RunOutcome outcome() {
   result.frequency_text_hz("20");
   result.problem("no steady sine");
   one.results.push_back(result);
-  one.transfer_functions = {function("dau/acceleration_z", 1.0), function("dau/angular_velocity_x", 1e-4)};
+  one.transfer_functions = {function("dau/acceleration_z", 1.0),
+                            function("dau/angular_velocity_x", 1e-4)};
   SampleClockReport clock;
   clock.source("dau");
   clock.mean_interval_s(996.96e-6);
@@ -85,7 +86,8 @@ TEST(RunReport, TableShowsChannelsThatRespondAndNamesTheOthers) {
   const std::string table = result_table(outcome());
   EXPECT_THAT(table, HasSubstr("dau/acceleration_z\n"));
   EXPECT_THAT(table, HasSubstr("group delay 8.1 ms"));
-  EXPECT_THAT(table, HasSubstr("No response above three times its uncertainty in: dau/angular_velocity_x"));
+  EXPECT_THAT(
+      table, HasSubstr("No response above three times its uncertainty in: dau/angular_velocity_x"));
 }
 
 TEST(RunReport, TableListsWhatHasNoResultAndWhy) {
@@ -94,7 +96,8 @@ TEST(RunReport, TableListsWhatHasNoResultAndWhy) {
 }
 
 TEST(RunReport, AFileThatCannotBeWrittenIsAnError) {
-  EXPECT_THAT(write_json("/nowhere/result.json", {}).error().message, HasSubstr("/nowhere/result.json: cannot write"));
+  EXPECT_THAT(write_json("/nowhere/result.json", {}).error().message,
+              HasSubstr("/nowhere/result.json: cannot write"));
 }
 
 } // namespace

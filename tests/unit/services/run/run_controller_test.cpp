@@ -86,10 +86,15 @@ private:
   bus::Participant participant_ = join();
   std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
   bus::Reader<Measurement> measurement_ =
-      participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state, bench_, bell_).value();
-  bus::Writer<ServiceStatus> status_ = participant_.writer<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench_).value();
+      participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state, bench_, bell_)
+          .value();
+  bus::Writer<ServiceStatus> status_ =
+      participant_.writer<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench_)
+          .value();
   bus::Writer<TransferFunction> transfer_functions_ =
-      participant_.writer<TransferFunction>(bus::topics::transfer_function, bus::Profile::results, bench_).value();
+      participant_
+          .writer<TransferFunction>(bus::topics::transfer_function, bus::Profile::results, bench_)
+          .value();
 };
 
 TEST(RunController, WaitsForAllTransferFunctionsWhenTheLastComesAfterTheEndWasAnnounced) {

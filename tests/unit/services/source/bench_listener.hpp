@@ -29,19 +29,28 @@ class BenchListener {
 public:
   BenchListener(bus::Participant& network, std::string bench, const char* sample_topic)
       : bench_(std::move(bench)),
-        descriptions_(*network.reader<SourceDescription>(bus::topics::source_description, bus::Profile::state, bench_, wake_up_)),
-        statuses_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench_, wake_up_)),
-        samples_(*network.reader<SampleBlock>(sample_topic, bus::Profile::samples, bench_, wake_up_)),
+        descriptions_(*network.reader<SourceDescription>(bus::topics::source_description,
+                                                         bus::Profile::state, bench_, wake_up_)),
+        statuses_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
+                                                bench_, wake_up_)),
+        samples_(
+            *network.reader<SampleBlock>(sample_topic, bus::Profile::samples, bench_, wake_up_)),
         commands_(*network.writer<Command>(bus::topics::command, bus::Profile::command, bench_)),
-        measurements_(*network.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench_)) {}
+        measurements_(
+            *network.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench_)) {}
 
   // Reads until the condition holds. False when it does not within the time.
-  bool until(const std::function<bool()>& condition, std::chrono::seconds limit = std::chrono::seconds(20)) {
+  bool until(const std::function<bool()>& condition,
+             std::chrono::seconds limit = std::chrono::seconds(20)) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (true) {
       take();
-      if (condition()) return true;
-      if (std::chrono::steady_clock::now() > deadline) return false;
+      if (condition()) {
+        return true;
+      }
+      if (std::chrono::steady_clock::now() > deadline) {
+        return false;
+      }
       wake_up_->wait_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(50));
     }
   }
@@ -64,7 +73,9 @@ public:
         asked = std::chrono::steady_clock::now();
       }
       for (const auto& block : blocks) {
-        if (block.answers_run() == run) return true;
+        if (block.answers_run() == run) {
+          return true;
+        }
       }
       return false;
     });
@@ -78,25 +89,31 @@ public:
     measurements_.write(measurement);
   }
 
-  // Samples of one source in the order they came; fails the test on a gap that the numbers of blocks and samples do not explain.
+  // Samples of one source in the order they came; fails the test on a gap that the numbers of
+  // blocks and samples do not explain.
   [[nodiscard]] std::uint64_t samples_of(const std::string& source) const {
     std::uint64_t count = 0;
-    for (const auto& block : blocks)
+    for (const auto& block : blocks) {
       count += source == block.source().c_str() ? block.sample_count() : 0;
+    }
     return count;
   }
 
   [[nodiscard]] std::optional<SourceStatus> last_status(const std::string& source) const {
     std::optional<SourceStatus> last;
     for (const auto& status : statuses) {
-      if (source == status.source().c_str()) last = status;
+      if (source == status.source().c_str()) {
+        last = status;
+      }
     }
     return last;
   }
 
   [[nodiscard]] bool saw_state(const std::string& source, SourceState state) const {
     for (const auto& status : statuses) {
-      if (source == status.source().c_str() && status.state() == state) return true;
+      if (source == status.source().c_str() && status.state() == state) {
+        return true;
+      }
     }
     return false;
   }
@@ -108,13 +125,19 @@ public:
 private:
   void take() {
     descriptions_.take([&](const SourceDescription& message, const bus::SampleInfo& info) {
-      if (info.valid) descriptions.push_back(message);
+      if (info.valid) {
+        descriptions.push_back(message);
+      }
     });
     statuses_.take([&](const SourceStatus& message, const bus::SampleInfo& info) {
-      if (info.valid) statuses.push_back(message);
+      if (info.valid) {
+        statuses.push_back(message);
+      }
     });
     samples_.take([&](const SampleBlock& message, const bus::SampleInfo& info) {
-      if (info.valid) blocks.push_back(message);
+      if (info.valid) {
+        blocks.push_back(message);
+      }
     });
   }
 

@@ -9,7 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-RingEntry entry(std::uint64_t first_sample, Clock::time_point offered = {}, std::size_t samples = 50) {
+RingEntry entry(std::uint64_t first_sample, Clock::time_point offered = {},
+                std::size_t samples = 50) {
   RingEntry entry;
   entry.block.first_sample = first_sample;
   entry.block.samples = samples;
@@ -23,10 +24,12 @@ constexpr Clock::time_point start{std::chrono::seconds(1000)};
 TEST(BlockRing, KeepsTheOrder) {
   BlockRing ring({});
   EXPECT_TRUE(ring.empty());
-  for (std::uint64_t n = 0; n < 100; ++n)
+  for (std::uint64_t n = 0; n < 100; ++n) {
     EXPECT_TRUE(ring.offer(entry(n)));
-  for (std::uint64_t n = 0; n < 100; ++n)
+  }
+  for (std::uint64_t n = 0; n < 100; ++n) {
     EXPECT_EQ(ring.take()->block.first_sample, n);
+  }
   EXPECT_FALSE(ring.take());
 }
 
@@ -34,8 +37,9 @@ TEST(BlockRing, HoldsSixtySecondsOfALiveSourceAndThenDropsTheNewest) {
   BlockRing ring({});
   const auto block = std::chrono::milliseconds(50);
   int taken = 0;
-  for (int n = 0; n < 1400; ++n)
+  for (int n = 0; n < 1400; ++n) {
     taken += ring.offer(entry(static_cast<std::uint64_t>(n), start + n * block)) ? 1 : 0;
+  }
   EXPECT_EQ(taken, 60 * 20 + 1);
   EXPECT_EQ(ring.dropped_samples(), (1400U - 1201U) * 50U);
   EXPECT_DOUBLE_EQ(ring.fill(), 1.0);
@@ -47,8 +51,9 @@ TEST(BlockRing, HoldsNoMoreBytesThanItsBound) {
   const auto size = held_bytes(entry(0).block);
   BlockRing ring({.span = std::chrono::hours(1), .bytes = 10 * size});
   int taken = 0;
-  for (int n = 0; n < 20; ++n)
+  for (int n = 0; n < 20; ++n) {
     taken += ring.offer(entry(0, start)) ? 1 : 0;
+  }
   EXPECT_EQ(taken, 10);
   EXPECT_NEAR(ring.fill(), 1.0, 1e-9);
 }
@@ -72,14 +77,16 @@ TEST(BlockRing, AFileWaitsForRoom) {
   BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
   std::stop_source stop;
   std::jthread file([&] {
-    for (std::uint64_t n = 0; n < 50; ++n)
+    for (std::uint64_t n = 0; n < 50; ++n) {
       ring.offer_waiting(entry(n), stop.get_token());
+    }
   });
   for (std::uint64_t n = 0; n < 50;) {
-    if (const auto taken = ring.take())
+    if (const auto taken = ring.take()) {
       EXPECT_EQ(taken->block.first_sample, n++);
-    else
+    } else {
       std::this_thread::yield();
+    }
   }
   EXPECT_EQ(ring.dropped_samples(), 0U);
 }

@@ -24,9 +24,11 @@ drivers::SampleBlock block_from(std::uint64_t first, std::size_t samples = 50) {
   drivers::SampleBlock block;
   block.first_sample = first;
   block.samples = samples;
-  block.clock = drivers::RegularClock{.origin_ns = 1000, .interval_numerator_ns = 1'000'000, .interval_denominator = 1};
-  for (std::size_t i = 0; i < 2 * samples; ++i)
+  block.clock = drivers::RegularClock{
+      .origin_ns = 1000, .interval_numerator_ns = 1'000'000, .interval_denominator = 1};
+  for (std::size_t i = 0; i < 2 * samples; ++i) {
     block.values.push_back(static_cast<double>(first + i));
+  }
   return block;
 }
 
@@ -45,9 +47,11 @@ drivers::SourceDescription two_channels(const std::string& first_name = "referen
 
 class SourceServiceTest : public testing::TestWithParam<bus::Vendor> {
 protected:
-  std::shared_ptr<SourcePublisher> add(const std::string& bench = bench_name, const std::string& source = "acs",
-                                       std::chrono::nanoseconds silent_after = std::chrono::seconds(2)) {
-    auto publisher = service->add({.bench = bench, .source = source, .kind = SourceKind::acs, .silent_after = silent_after});
+  std::shared_ptr<SourcePublisher>
+  add(const std::string& bench = bench_name, const std::string& source = "acs",
+      std::chrono::nanoseconds silent_after = std::chrono::seconds(2)) {
+    auto publisher = service->add(
+        {.bench = bench, .source = source, .kind = SourceKind::acs, .silent_after = silent_after});
     EXPECT_TRUE(publisher) << publisher.error().message;
     return *publisher;
   }
@@ -63,8 +67,9 @@ TEST_P(SourceServiceTest, PublishesDescriptionStatusAndBlocksInOrder) {
   source->describe(two_channels());
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
-  for (std::uint64_t n = 0; n < 100; ++n)
+  for (std::uint64_t n = 0; n < 100; ++n) {
     EXPECT_TRUE(source->offer(block_from(n * 50)));
+  }
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") == 5000; }));
 
   std::uint64_t next_sample = 0;
@@ -94,7 +99,8 @@ TEST_P(SourceServiceTest, AnswersArmWithAnEmptyBlockBehindWhatWasWritten) {
   source->offer(block_from(0));
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-7"));
-  const auto answer = std::ranges::find_if(listener.blocks, [](const auto& block) { return block.answers_run() == "run-7"; });
+  const auto answer = std::ranges::find_if(
+      listener.blocks, [](const auto& block) { return block.answers_run() == "run-7"; });
   EXPECT_EQ(answer->sample_count(), 0U);
   EXPECT_EQ(answer->first_sample(), 50U);
   EXPECT_FALSE(answer->end_of_stream());
@@ -119,7 +125,8 @@ TEST_P(SourceServiceTest, AChangedDescriptionIsPublishedAgain) {
   ASSERT_TRUE(listener.until([&] { return listener.descriptions.size() == 1; }));
   source->describe(two_channels());
   source->describe(two_channels("laser"));
-  ASSERT_TRUE(listener.until([&] { return listener.descriptions.back().channels()[0].name() == "laser"; }));
+  ASSERT_TRUE(
+      listener.until([&] { return listener.descriptions.back().channels()[0].name() == "laser"; }));
   EXPECT_EQ(listener.descriptions.size(), 2U);
 }
 
@@ -135,7 +142,8 @@ TEST_P(SourceServiceTest, ANewSessionHasItsOwnNumberAndDescription) {
   const auto& last = listener.blocks.back();
   EXPECT_EQ(last.block(), 0U);
   EXPECT_NE(last.session(), listener.blocks.front().session());
-  EXPECT_TRUE(listener.until([&] { return listener.descriptions.back().session() == last.session(); }));
+  EXPECT_TRUE(
+      listener.until([&] { return listener.descriptions.back().session() == last.session(); }));
 }
 
 TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
@@ -144,8 +152,10 @@ TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
   service->start();
   EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_SILENT); }));
   source->offer(block_from(0));
-  EXPECT_TRUE(listener.until([&] { return listener.last_status("acs")->state() == SOURCE_RUNNING; }));
-  EXPECT_TRUE(listener.until([&] { return listener.last_status("acs")->state() == SOURCE_SILENT; }));
+  EXPECT_TRUE(
+      listener.until([&] { return listener.last_status("acs")->state() == SOURCE_RUNNING; }));
+  EXPECT_TRUE(
+      listener.until([&] { return listener.last_status("acs")->state() == SOURCE_SILENT; }));
 }
 
 TEST_P(SourceServiceTest, AFileIsNeverSilent) {
@@ -184,10 +194,13 @@ TEST_P(SourceServiceTest, StopPublishesWhatIsHeldAndSaysEnded) {
   source->describe(two_channels());
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
-  for (std::uint64_t n = 0; n < 200; ++n)
+  for (std::uint64_t n = 0; n < 200; ++n) {
     source->offer(block_from(n * 50));
+  }
   service->stop();
-  EXPECT_TRUE(listener.until([&] { return listener.samples_of("acs") == 10000 && listener.blocks.back().end_of_stream(); }));
+  EXPECT_TRUE(listener.until([&] {
+    return listener.samples_of("acs") == 10000 && listener.blocks.back().end_of_stream();
+  }));
   EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_ENDED); }));
 }
 
@@ -225,7 +238,8 @@ TEST_P(SourceServiceTest, MeasuresTheRate) {
     auto due = std::chrono::steady_clock::now();
     for (std::uint64_t n = 0; !stop.stop_requested(); n += 50) {
       source->offer(block_from(n));
-      std::this_thread::sleep_until(due += std::chrono::milliseconds(50)); // the pace of the device, not a wait for a result
+      std::this_thread::sleep_until(
+          due += std::chrono::milliseconds(50)); // the pace of the device, not a wait for a result
     }
   });
   EXPECT_TRUE(listener.until([&] {
@@ -258,7 +272,9 @@ TEST_P(SourceServiceTest, AFileWaitsForItsRunAndPlaysEachRunOnce) {
   ASSERT_TRUE(listener.until([&] { return played() == std::vector<std::string>{"run-1"}; }));
   listener.set_state("run-1", MEASUREMENT_DONE);
   listener.set_state("run-2", MEASUREMENT_RUNNING);
-  EXPECT_TRUE(listener.until([&] { return played() == std::vector<std::string>{"run-1", "run-2"}; }));
+  EXPECT_TRUE(listener.until([&] {
+    return played() == std::vector<std::string>{"run-1", "run-2"};
+  }));
   stop.request_stop();
 }
 
@@ -272,8 +288,9 @@ TEST_P(SourceServiceTest, BenchesAreKeptApart) {
   elsewhere->offer(block_from(0, 10));
   here->offer(block_from(0));
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") > 0; }));
-  for (const auto& block : listener.blocks)
+  for (const auto& block : listener.blocks) {
     EXPECT_EQ(block.bench().c_str(), bench_name);
+  }
 }
 
 TEST_P(SourceServiceTest, RefusesNamesThatCannotBe) {

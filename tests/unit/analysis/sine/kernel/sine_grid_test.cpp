@@ -17,12 +17,14 @@ namespace {
 
 constexpr std::int64_t interval_ns = 996'960;
 
-std::vector<std::int64_t> jittering_stamps(std::size_t n, std::int64_t jitter_ns, unsigned seed = 3) {
+std::vector<std::int64_t> jittering_stamps(std::size_t n, std::int64_t jitter_ns,
+                                           unsigned seed = 3) {
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::int64_t> shift(-jitter_ns, jitter_ns);
   std::vector<std::int64_t> stamps;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
     stamps.push_back(epoch_ns + static_cast<std::int64_t>(i) * interval_ns + shift(random));
+  }
   return stamps;
 }
 
@@ -30,8 +32,9 @@ std::vector<double> any_values(std::size_t n, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> value(0.3, 2.0);
   std::vector<double> values(n);
-  for (double& y : values)
+  for (double& y : values) {
     y = value(random);
+  }
   return values;
 }
 
@@ -43,11 +46,14 @@ struct Input {
   TimeAxis axis{};
 
   Input(std::vector<std::int64_t> at, std::size_t channels) : stamps(std::move(at)) {
-    for (std::size_t j = 0; j < channels; ++j)
+    for (std::size_t j = 0; j < channels; ++j) {
       values.push_back(any_values(stamps.size(), static_cast<unsigned>(j)));
-    for (const auto& one : values)
+    }
+    for (const auto& one : values) {
       pointers.push_back(one.data());
-    axis = {frequency.turns_per_ns_high(), frequency.turns_per_ns_low(), stamps[stamps.size() / 3] - 1'000'000'000'000'000, 1e-9};
+    }
+    axis = {frequency.turns_per_ns_high(), frequency.turns_per_ns_low(),
+            stamps[stamps.size() / 3] - 1'000'000'000'000'000, 1e-9};
   }
 };
 
@@ -59,20 +65,25 @@ TEST(SampleGrid, GivesTheSameBitsOnEveryInstructionSet) {
       ASSERT_TRUE(grid);
       for (std::size_t n = lanes; n <= grid_call_samples; n += n < 300 ? lanes : 41 * lanes) {
         for (std::size_t channels = 1; channels <= grid_call_channels; ++channels) {
-          std::vector<Parameters> start(channels, with_start ? Parameters{0.3, -1.2, 0.1} : Parameters{0.0, 0.0, 0.1});
+          std::vector<Parameters> start(channels, with_start ? Parameters{0.3, -1.2, 0.1}
+                                                             : Parameters{0.0, 0.0, 0.1});
           DesignSums first{};
           std::vector<ResidualSums> first_residuals(channels);
-          EXPECT_EQ(baseline_kernel.fit_on_grid(input.stamps.data(), n, input.axis, *grid, input.pointers.data(), channels, start.data(),
+          EXPECT_EQ(baseline_kernel.fit_on_grid(input.stamps.data(), n, input.axis, *grid,
+                                                input.pointers.data(), channels, start.data(),
                                                 first, first_residuals.data()),
                     n);
           for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
             DesignSums sums{};
             std::vector<ResidualSums> residuals(channels);
-            EXPECT_EQ((*kernel)->fit_on_grid(input.stamps.data(), n, input.axis, *grid, input.pointers.data(), channels, start.data(), sums,
+            EXPECT_EQ((*kernel)->fit_on_grid(input.stamps.data(), n, input.axis, *grid,
+                                             input.pointers.data(), channels, start.data(), sums,
                                              residuals.data()),
                       n);
             EXPECT_EQ(std::memcmp(&sums, &first, sizeof sums), 0) << (*kernel)->name << ' ' << n;
-            EXPECT_EQ(std::memcmp(residuals.data(), first_residuals.data(), channels * sizeof(ResidualSums)), 0)
+            EXPECT_EQ(std::memcmp(residuals.data(), first_residuals.data(),
+                                  channels * sizeof(ResidualSums)),
+                      0)
                 << (*kernel)->name << ' ' << n;
           }
         }
@@ -83,21 +94,23 @@ TEST(SampleGrid, GivesTheSameBitsOnEveryInstructionSet) {
 
 // Both in units of what rounding leaves of sums of this many terms of order one.
 TEST(SampleGrid, AgreesWithTheGeneralForm) {
-  for (const std::int64_t jitter_ns : {0, 60, 600, 3'000, 7'000}) { // twice 7 us, of the sample and of the anchor, are 7 mrad
+  for (const std::int64_t jitter_ns :
+       {0, 60, 600, 3'000, 7'000}) { // twice 7 us, of the sample and of the anchor, are 7 mrad
     for (const Parameters& p : {Parameters{0.0, 0.0, 0.3}, Parameters{1.5, -0.4, 0.3}}) {
       const Input input(jittering_stamps(grid_call_samples, jitter_ns), 1);
       const auto grid = sample_grid(input.stamps, input.frequency);
       ASSERT_TRUE(grid);
       DesignSums sums{}, expected{};
       ResidualSums residuals{}, expected_residuals{};
-      ASSERT_EQ(best_kernel().fit_on_grid(input.stamps.data(), grid_call_samples, input.axis, *grid, input.pointers.data(), 1, &p, sums,
-                                          &residuals),
+      ASSERT_EQ(best_kernel().fit_on_grid(input.stamps.data(), grid_call_samples, input.axis, *grid,
+                                          input.pointers.data(), 1, &p, sums, &residuals),
                 grid_call_samples);
       for (std::size_t i = 0; i < grid_call_samples; i += block_samples) {
         const double* values = input.pointers[0] + i;
         DesignSums block{};
         ResidualSums block_residuals{};
-        best_kernel().fit_block(input.stamps.data() + i, block_samples, input.axis, &values, 1, &p, block, &block_residuals);
+        best_kernel().fit_block(input.stamps.data() + i, block_samples, input.axis, &values, 1, &p,
+                                block, &block_residuals);
         expected.s += block.s;
         expected.c += block.c;
         expected.ss += block.ss;
@@ -135,10 +148,12 @@ TEST(SampleGrid, GivesTheSameSeriesOnEveryInstructionSetAndByTheGeneralForm) {
     const Parameters start[] = {{0.3, -1.2, 0.1}, {}};
     const auto grid = sample_grid(input.stamps, input.frequency);
     ASSERT_TRUE(grid);
-    for (const std::size_t n : {std::size_t{8}, std::size_t{200}, std::size_t{264}, block_samples}) {
+    for (const std::size_t n :
+         {std::size_t{8}, std::size_t{200}, std::size_t{264}, block_samples}) {
       const auto series_by = [&](const SineKernel& kernel) {
         SeriesOfCall series;
-        EXPECT_EQ(kernel.series_on_grid(input.stamps.data(), n, input.axis, *grid, input.pointers.data(), 2, start, series.design,
+        EXPECT_EQ(kernel.series_on_grid(input.stamps.data(), n, input.axis, *grid,
+                                        input.pointers.data(), 2, start, series.design,
                                         series.slope, series.residuals, series.residual_slopes),
                   n);
         return series;
@@ -155,13 +170,15 @@ TEST(SampleGrid, GivesTheSameSeriesOnEveryInstructionSetAndByTheGeneralForm) {
       const double tolerance = 1e-15 * static_cast<double>(n);
       const double* const actual = &first.slope.u;
       const double* const expected = &slope.u;
-      for (std::size_t k = 0; k < sizeof slope / sizeof(double); ++k)
+      for (std::size_t k = 0; k < sizeof slope / sizeof(double); ++k) {
         EXPECT_NEAR(actual[k], expected[k], tolerance) << k;
+      }
       EXPECT_NEAR(first.design.sc, design.sc, tolerance);
       for (std::size_t j = 0; j < 2; ++j) {
         ResidualSums residuals;
         ResidualSlopeSums residual_slopes;
-        best_kernel().residuals_with_slope(input.pointers[j], n, basis, start[j], residuals, residual_slopes);
+        best_kernel().residuals_with_slope(input.pointers[j], n, basis, start[j], residuals,
+                                           residual_slopes);
         EXPECT_NEAR(first.residuals[j].es, residuals.es, 5.0 * tolerance);
         EXPECT_NEAR(first.residual_slopes[j].eus, residual_slopes.eus, 5.0 * tolerance);
         EXPECT_NEAR(first.residual_slopes[j].euc, residual_slopes.euc, 5.0 * tolerance);
@@ -180,8 +197,8 @@ TEST(SampleGrid, TakesBlocksUpToTheFirstThatIsTooFar) {
     DesignSums sums{};
     ResidualSums residuals{};
     for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
-      EXPECT_EQ((*kernel)->fit_on_grid(input.stamps.data(), grid_call_samples, input.axis, *grid, input.pointers.data(), 1, &start, sums,
-                                       &residuals),
+      EXPECT_EQ((*kernel)->fit_on_grid(input.stamps.data(), grid_call_samples, input.axis, *grid,
+                                       input.pointers.data(), 1, &start, sums, &residuals),
                 late / grid_samples * grid_samples);
     }
   }
@@ -197,9 +214,9 @@ TEST(SampleGrid, TakesNoBlockWhoseStampsDoNotIncrease) {
     input.stamps[where] = input.stamps[where - 1];
     DesignSums sums{};
     ResidualSums residuals{};
-    EXPECT_EQ(
-        best_kernel().fit_on_grid(input.stamps.data(), grid_samples, input.axis, *grid, input.pointers.data(), 1, &start, sums, &residuals),
-        0U);
+    EXPECT_EQ(best_kernel().fit_on_grid(input.stamps.data(), grid_samples, input.axis, *grid,
+                                        input.pointers.data(), 1, &start, sums, &residuals),
+              0U);
   }
 }
 
@@ -211,14 +228,16 @@ TEST(SampleGrid, IsNotMadeForShortRecords) {
 struct LongSums {
   long double a = 0.0L, b = 0.0L, c = 0.0L, rss = 0.0L;
 
-  LongSums(const Frequency& f, const std::vector<std::int64_t>& stamps, const std::vector<double>& values, std::int64_t reference_ns) {
+  LongSums(const Frequency& f, const std::vector<std::int64_t>& stamps,
+           const std::vector<double>& values, std::int64_t reference_ns) {
     const auto n = static_cast<long double>(stamps.size());
     std::vector<long double> sine, cosine;
     long double s = 0.0L, k = 0.0L, ss = 0.0L, sk = 0.0L, y1 = 0.0L, ys = 0.0L, yk = 0.0L;
     for (std::size_t i = 0; i < stamps.size(); ++i) {
       const auto dt = static_cast<long double>(stamps[i] - reference_ns);
       const long double turns = dt * f.turns_per_ns_high() + dt * f.turns_per_ns_low();
-      const long double x = 2.0L * std::numbers::pi_v<long double> * (turns - std::nearbyint(turns));
+      const long double x =
+          2.0L * std::numbers::pi_v<long double> * (turns - std::nearbyint(turns));
       sine.push_back(std::sin(x));
       cosine.push_back(std::cos(x));
       const long double y = values[i];
@@ -249,8 +268,9 @@ TEST(SampleGrid, KeepsTwelveDigitsOfParametersAndNineOfTheResiduals) {
       Signal signal;
       signal.frequency_hz = "80.02";
       auto stamps = jittering_stamps(n, 60);
-      for (std::size_t i = n / 2; i < n; ++i)
+      for (std::size_t i = n / 2; i < n; ++i) {
         stamps[i] += 123'456'789; // a gap within a block
+      }
       const auto values = noisy(values_of(signal, stamps), noise, 5);
       const LongSums expected(f, stamps, values, epoch_ns);
       const std::span<const double> channels[] = {values};
@@ -259,7 +279,8 @@ TEST(SampleGrid, KeepsTwelveDigitsOfParametersAndNineOfTheResiduals) {
       EXPECT_NEAR(fit->front().sine, static_cast<double>(expected.a), 5e-15) << noise << ' ' << n;
       EXPECT_NEAR(fit->front().cosine, static_cast<double>(expected.b), 5e-15) << noise << ' ' << n;
       EXPECT_NEAR(fit->front().offset, static_cast<double>(expected.c), 5e-15) << noise << ' ' << n;
-      EXPECT_NEAR(fit->front().rss / static_cast<double>(expected.rss), 1.0, 5e-10) << noise << ' ' << n;
+      EXPECT_NEAR(fit->front().rss / static_cast<double>(expected.rss), 1.0, 5e-10)
+          << noise << ' ' << n;
     }
   }
 }

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/sine/kernel/composed_fma.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/sine/kernel/composed_fma.hpp"
 #include "analysis/sine/sine_solve.hpp"
 
 namespace dyncal::analysis::kernel {
@@ -31,20 +31,24 @@ struct BlockInput {
     std::mt19937_64 random(seed);
     std::uniform_int_distribution<std::int64_t> step(1, 2'000'000);
     std::normal_distribution<double> value(0.3, 2.0);
-    std::int64_t stamp = 1'700'000'000'123'456'789 + static_cast<std::int64_t>(random() % 1'000'000'000'000'000);
-    for (std::size_t i = 0; i < n; ++i)
+    std::int64_t stamp =
+        1'700'000'000'123'456'789 + static_cast<std::int64_t>(random() % 1'000'000'000'000'000);
+    for (std::size_t i = 0; i < n; ++i) {
       stamps.push_back(stamp += step(random));
+    }
     for (int j = 0; j < 5; ++j) {
       values.emplace_back();
-      for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < n; ++i) {
         values.back().push_back(value(random));
+      }
       start.push_back({value(random), value(random), value(random)});
     }
-    for (const auto& channel : values)
+    for (const auto& channel : values) {
       pointers.push_back(channel.data());
+    }
     const Frequency f = Frequency::from_hz(std::abs(value(random)) * 100.0 + 1e-3);
-    axis = {f.turns_per_ns_high(), f.turns_per_ns_low(), stamps.front() - static_cast<std::int64_t>(random() % 1'000'000'000'000'000),
-            1e-9};
+    axis = {f.turns_per_ns_high(), f.turns_per_ns_low(),
+            stamps.front() - static_cast<std::int64_t>(random() % 1'000'000'000'000'000), 1e-9};
   }
 };
 
@@ -54,10 +58,12 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
     BlockBasis first_basis{};
     DesignSums first{};
     SlopeSums first_slope{};
-    ASSERT_TRUE(baseline_kernel.design_with_slope(input.stamps.data(), n, input.axis, first_basis, first, first_slope));
+    ASSERT_TRUE(baseline_kernel.design_with_slope(input.stamps.data(), n, input.axis, first_basis,
+                                                  first, first_slope));
     DesignMoments first_moments{};
     BlockBasis unused{};
-    ASSERT_TRUE(baseline_kernel.design_moments(input.stamps.data(), n, input.axis, unused, first_moments));
+    ASSERT_TRUE(
+        baseline_kernel.design_moments(input.stamps.data(), n, input.axis, unused, first_moments));
     for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
       SCOPED_TRACE(std::string((*kernel)->name) + " n = " + std::to_string(n));
       BlockBasis basis{};
@@ -68,25 +74,30 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
       EXPECT_TRUE(same_bits(moments, first_moments));
       EXPECT_TRUE((*kernel)->design(input.stamps.data(), n, input.axis, basis, sums));
       EXPECT_TRUE(same_bits(sums, first));
-      EXPECT_TRUE((*kernel)->design_with_slope(input.stamps.data(), n, input.axis, basis, sums, slope));
+      EXPECT_TRUE(
+          (*kernel)->design_with_slope(input.stamps.data(), n, input.axis, basis, sums, slope));
       EXPECT_TRUE(same_bits(sums, first));
       EXPECT_TRUE(same_bits(slope, first_slope));
       EXPECT_EQ(std::memcmp(basis.sine, first_basis.sine, n * sizeof(double)), 0);
       EXPECT_EQ(std::memcmp(basis.cosine, first_basis.cosine, n * sizeof(double)), 0);
       std::vector<ResidualSums> together(input.start.size());
-      EXPECT_TRUE((*kernel)->fit_block(input.stamps.data(), n, input.axis, input.pointers.data(), input.start.size(), input.start.data(),
-                                       sums, together.data()));
+      EXPECT_TRUE((*kernel)->fit_block(input.stamps.data(), n, input.axis, input.pointers.data(),
+                                       input.start.size(), input.start.data(), sums,
+                                       together.data()));
       EXPECT_TRUE(same_bits(sums, first));
       for (std::size_t j = 0; j < input.start.size(); ++j) {
         ResidualSums expected{}, actual{};
         ResidualSlopeSums expected_slope{}, actual_slope{};
         ResidualMoments expected_moments{}, actual_moments{};
-        baseline_kernel.residuals_with_slope(input.pointers[j], n, first_basis, input.start[j], expected, expected_slope);
-        baseline_kernel.residual_moments(input.pointers[j], n, first_basis, input.start[j], expected_moments);
+        baseline_kernel.residuals_with_slope(input.pointers[j], n, first_basis, input.start[j],
+                                             expected, expected_slope);
+        baseline_kernel.residual_moments(input.pointers[j], n, first_basis, input.start[j],
+                                         expected_moments);
         (*kernel)->residuals(input.pointers[j], n, basis, input.start[j], actual);
         EXPECT_TRUE(same_bits(actual, expected));
         EXPECT_TRUE(same_bits(together[j], expected));
-        (*kernel)->residuals_with_slope(input.pointers[j], n, basis, input.start[j], actual, actual_slope);
+        (*kernel)->residuals_with_slope(input.pointers[j], n, basis, input.start[j], actual,
+                                        actual_slope);
         EXPECT_TRUE(same_bits(actual, expected));
         EXPECT_TRUE(same_bits(actual_slope, expected_slope));
         (*kernel)->residual_moments(input.pointers[j], n, basis, input.start[j], actual_moments);
@@ -102,7 +113,8 @@ TEST(SineKernel, ReducesPhasesOfMonthsToRounding) {
   std::mt19937_64 random(4);
   const std::int64_t origin = 1'700'000'000'000'000'000;
   for (std::size_t i = 0; i < block_samples; ++i) {
-    stamps.push_back(origin - (std::int64_t{1} << 50) + static_cast<std::int64_t>(i) * (std::int64_t{1} << 42) +
+    stamps.push_back(origin - (std::int64_t{1} << 50) +
+                     static_cast<std::int64_t>(i) * (std::int64_t{1} << 42) +
                      static_cast<std::int64_t>(random() % 1'000'000'000));
   }
   const TimeAxis axis{f.turns_per_ns_high(), f.turns_per_ns_low(), origin, 1e-9};
@@ -111,7 +123,8 @@ TEST(SineKernel, ReducesPhasesOfMonthsToRounding) {
     DesignSums sums;
     ASSERT_TRUE((*kernel)->design(stamps.data(), stamps.size(), axis, basis, sums));
     for (std::size_t i = 0; i < stamps.size(); ++i) {
-      const long double x = 2.0L * std::numbers::pi_v<long double> * static_cast<long double>(f.reduced_turns(stamps[i] - origin));
+      const long double x = 2.0L * std::numbers::pi_v<long double> *
+                            static_cast<long double>(f.reduced_turns(stamps[i] - origin));
       EXPECT_NEAR(basis.sine[i], static_cast<double>(std::sin(x)), 8e-16)
           << (*kernel)->name; // the reduced phase itself carries 2e-16 turns
       EXPECT_NEAR(basis.cosine[i], static_cast<double>(std::cos(x)), 8e-16) << (*kernel)->name;
@@ -125,7 +138,8 @@ TEST(SineKernel, SineAndCosineOfTurnsAreWithinOneAndAThirdEMinus16) {
     const double turns = i / 200'000.0;
     const long double x = 2.0L * std::numbers::pi_v<long double> * static_cast<long double>(turns);
     const auto [s, c] = sine_cosine_of_turns(turns);
-    worst = std::max({worst, std::abs(static_cast<long double>(s) - std::sin(x)), std::abs(static_cast<long double>(c) - std::cos(x))});
+    worst = std::max({worst, std::abs(static_cast<long double>(s) - std::sin(x)),
+                      std::abs(static_cast<long double>(c) - std::cos(x))});
   }
   EXPECT_LT(worst, 1.3e-16L);
 }
@@ -138,7 +152,8 @@ TEST(SineKernel, SeesEveryStampThatIsNotLater) {
         input.stamps[where] = input.stamps[where - 1] - back;
         BlockBasis basis;
         DesignSums sums;
-        EXPECT_FALSE((*kernel)->design(input.stamps.data(), 40, input.axis, basis, sums)) << (*kernel)->name << ' ' << where;
+        EXPECT_FALSE((*kernel)->design(input.stamps.data(), 40, input.axis, basis, sums))
+            << (*kernel)->name << ' ' << where;
       }
     }
   }
@@ -151,19 +166,22 @@ TEST(SineKernel, SumsModelsOfManyColumnsWithTheSameBitsOnEveryInstructionSet) {
   for (std::size_t n = 1; n <= block_samples; n += n < 20 ? 1 : 41) {
     std::vector<double> columns(count * block_samples), values(n), coefficients(count);
     for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < n; ++i) {
         columns[k * block_samples + i] = value(random);
+      }
       coefficients[k] = value(random);
     }
-    for (double& y : values)
+    for (double& y : values) {
       y = value(random);
+    }
     std::vector<double> first_residuals, first_products;
     double first_squares = 0.0;
     for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
       SCOPED_TRACE(std::string((*kernel)->name) + " n = " + std::to_string(n));
       std::vector<double> residuals(block_samples), products(count);
       double squares = 0.0;
-      (*kernel)->model_residuals(values.data(), n, columns.data(), count, coefficients.data(), residuals.data(), squares);
+      (*kernel)->model_residuals(values.data(), n, columns.data(), count, coefficients.data(),
+                                 residuals.data(), squares);
       (*kernel)->model_products(residuals.data(), n, columns.data(), count, products.data());
       if (first_products.empty()) {
         first_residuals = residuals;
@@ -173,16 +191,19 @@ TEST(SineKernel, SumsModelsOfManyColumnsWithTheSameBitsOnEveryInstructionSet) {
         std::vector<long double> expected_products(count);
         for (std::size_t i = 0; i < n; ++i) {
           long double e = values[i];
-          for (std::size_t k = 0; k < count; ++k)
+          for (std::size_t k = 0; k < count; ++k) {
             e -= static_cast<long double>(coefficients[k]) * columns[k * block_samples + i];
+          }
           ASSERT_NEAR(residuals[i], static_cast<double>(e), 1e-14);
           expected_squares += e * e;
-          for (std::size_t k = 0; k < count; ++k)
+          for (std::size_t k = 0; k < count; ++k) {
             expected_products[k] += e * columns[k * block_samples + i];
+          }
         }
         EXPECT_NEAR(squares, static_cast<double>(expected_squares), 1e-14 * squares + 1e-14);
-        for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t k = 0; k < count; ++k) {
           EXPECT_NEAR(products[k], static_cast<double>(expected_products[k]), 1e-12);
+        }
       }
       EXPECT_EQ(std::memcmp(residuals.data(), first_residuals.data(), n * sizeof(double)), 0);
       EXPECT_EQ(std::memcmp(products.data(), first_products.data(), count * sizeof(double)), 0);
@@ -197,11 +218,13 @@ TEST(SineKernel, RowsPastTheEndDoNotCount) {
     BlockBasis basis;
     DesignSums sums;
     ASSERT_TRUE((*kernel)->design(input.stamps.data(), 13, input.axis, basis, sums));
-    for (std::size_t i = 13; i < 16; ++i)
+    for (std::size_t i = 13; i < 16; ++i) {
       EXPECT_EQ(basis.sine[i], 0.0);
+    }
     double s = 0.0;
-    for (std::size_t i = 0; i < 13; ++i)
+    for (std::size_t i = 0; i < 13; ++i) {
       s += basis.sine[i];
+    }
     EXPECT_NEAR(sums.s, s, 1e-14);
   }
 }
@@ -210,7 +233,8 @@ TEST(ComposedFma, EqualsTheFusedMultiplyAddBitForBit) {
   std::mt19937_64 random(1);
   const auto any = [&](int spread) {
     const double mantissa = 1.0 + std::ldexp(static_cast<double>(random() >> 12), -52);
-    const int exponent = static_cast<int>(random() % static_cast<unsigned>(2 * spread + 1)) - spread;
+    const int exponent =
+        static_cast<int>(random() % static_cast<unsigned>(2 * spread + 1)) - spread;
     return std::ldexp(random() % 2 ? mantissa : -mantissa, exponent);
   };
   for (int i = 0; i < 1'000'000; ++i) {
@@ -218,8 +242,11 @@ TEST(ComposedFma, EqualsTheFusedMultiplyAddBitForBit) {
     const double b[2] = {any(200), any(3)};
     // Mostly cancelling sums, where roundings show.
     const double product = a[1] * b[1];
-    const double c[2] = {any(400), i % 3 == 0 ? -product : (i % 3 == 1 ? -product * (1.0 + any(0) * 1e-16) : any(60))};
-    const Double2 result = composed_fma(Double2{a[0], a[1]}, Double2{b[0], b[1]}, Double2{c[0], c[1]});
+    const double c[2] = {any(400),
+                         i % 3 == 0 ? -product
+                                    : (i % 3 == 1 ? -product * (1.0 + any(0) * 1e-16) : any(60))};
+    const Double2 result =
+        composed_fma(Double2{a[0], a[1]}, Double2{b[0], b[1]}, Double2{c[0], c[1]});
     ASSERT_EQ(result[0], std::fma(a[0], b[0], c[0])) << a[0] << ' ' << b[0] << ' ' << c[0];
     ASSERT_EQ(result[1], std::fma(a[1], b[1], c[1])) << a[1] << ' ' << b[1] << ' ' << c[1];
   }

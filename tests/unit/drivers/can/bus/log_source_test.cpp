@@ -21,12 +21,14 @@ protected:
     std::ofstream(path) << text;
     return path;
   }
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / ("dyncal-log-" + std::to_string(getpid()) + ".log");
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("dyncal-log-" + std::to_string(getpid()) + ".log");
 };
 
 TEST_F(Log, GivesTheFramesOfItsInterfaceInOrderAndEnds) {
-  LogSource source(write("(5.000000) can0 123#01\n(5.000100) can1 123#02\n(5.000200) can0 124#03\n(1000005.0003) can0 123#04\n"), "can0",
-                   0.0);
+  LogSource source(write("(5.000000) can0 123#01\n(5.000100) can1 123#02\n(5.000200) can0 "
+                         "124#03\n(1000005.0003) can0 123#04\n"),
+                   "can0", 0.0);
   const auto link = source.open(sensor_only);
   ASSERT_TRUE(link) << link.error().message;
   EXPECT_TRUE(link->up);
@@ -44,19 +46,25 @@ TEST_F(Log, WaitsForTheNextFrameUntilItIsStopped) {
   LogSource source(write("(5.000000) can0 123#01\n(1005.000000) can0 123#02\n"), "", 1.0);
   ASSERT_TRUE(source.open(sensor_only));
   std::vector<BusEvent> events;
-  while (events.empty())
+  while (events.empty()) {
     EXPECT_EQ(source.read(events, std::chrono::milliseconds(10)).value(), ReadState::more);
+  }
   std::jthread stopper([&] { source.stop(); });
-  for (auto state = ReadState::more; state != ReadState::stopped;)
+  for (auto state = ReadState::more; state != ReadState::stopped;) {
     state = source.read(events, std::chrono::seconds(10)).value();
+  }
   EXPECT_EQ(events.size(), 1U);
 }
 
 TEST_F(Log, SaysWhatIsWrongWithItInOneLine) {
   EXPECT_THAT(LogSource(write("(5.0) can0 124#01\n"), "", 0.0).open(sensor_only).error().message,
               HasSubstr("has none of the sensor's messages; check 'messages'"));
-  EXPECT_THAT(LogSource(write("(5.0) can0 123#01\n"), "can7", 0.0).open(sensor_only).error().message, HasSubstr("on interface 'can7'"));
-  EXPECT_THAT(LogSource(write("(5.0) can0 123#01\nrubbish\n"), "", 0.0).open(sensor_only).error().message, HasSubstr(".log:2"));
+  EXPECT_THAT(
+      LogSource(write("(5.0) can0 123#01\n"), "can7", 0.0).open(sensor_only).error().message,
+      HasSubstr("on interface 'can7'"));
+  EXPECT_THAT(
+      LogSource(write("(5.0) can0 123#01\nrubbish\n"), "", 0.0).open(sensor_only).error().message,
+      HasSubstr(".log:2"));
 }
 
 } // namespace

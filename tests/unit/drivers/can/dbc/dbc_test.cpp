@@ -24,11 +24,12 @@ std::string refusal(const std::string& text) {
   return file ? "accepted" : file.error().message;
 }
 
-const std::string accelerometer = "VERSION \"\"\r\n\r\nNS_ :\r\n\tCM_\r\n\tBA_\r\n\r\nBS_:\r\nBU_: Sensor Host\r\n\r\n"
-                                  "BO_ 291 Acceleration: 8 Sensor\r\n"
-                                  " SG_ x : 0|16@1- (0.001,0) [-32|32] \"m/s^2\" Host\r\n"
-                                  " SG_ y : 23|16@0- (0.001,0) [0|0] \"m/s^2\" Host,\r\n Sensor\r\n"
-                                  " SG_ counter:32|8@1+(1,0)[0|255]\"\" Vector__XXX\r\n";
+const std::string accelerometer =
+    "VERSION \"\"\r\n\r\nNS_ :\r\n\tCM_\r\n\tBA_\r\n\r\nBS_:\r\nBU_: Sensor Host\r\n\r\n"
+    "BO_ 291 Acceleration: 8 Sensor\r\n"
+    " SG_ x : 0|16@1- (0.001,0) [-32|32] \"m/s^2\" Host\r\n"
+    " SG_ y : 23|16@0- (0.001,0) [0|0] \"m/s^2\" Host,\r\n Sensor\r\n"
+    " SG_ counter:32|8@1+(1,0)[0|255]\"\" Vector__XXX\r\n";
 
 TEST(Dbc, ReadsMessagesAndSignalsWithTheirLayout) {
   const DbcFile file = parsed(accelerometer);
@@ -54,7 +55,8 @@ TEST(Dbc, TakesSignsExponentsAndMissingLimitsAsFilesWriteThem) {
 }
 
 TEST(Dbc, DoesNotTakeThePseudoMessageOfUnusedSignalsForAFrame) {
-  const DbcFile file = parsed("BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+  const DbcFile file = parsed("BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ a : "
+                              "0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
                               " SG_ a : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n" +
                               accelerometer);
   ASSERT_EQ(file.messages.size(), 1U);
@@ -62,12 +64,14 @@ TEST(Dbc, DoesNotTakeThePseudoMessageOfUnusedSignalsForAFrame) {
 }
 
 TEST(Dbc, KnowsExtendedIdsFrameFormatsCycleTimesAndLongNames) {
-  const DbcFile file =
-      parsed("BO_ 2147483649 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" S\nBO_ 2 B: 64 S\n SG_ t : 504|8@1+ (1,0) [0|0] \"\" S\n"
-             "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"StandardCAN_FD\",\"J1939PG\";\n"
-             "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\nBA_ \"VFrameFormat\" BO_ 2147483649 3;\n"
-             "BA_ \"VFrameFormat\" BO_ 2 2;\nBA_ \"GenMsgCycleTime\" BO_ 2 10;\n"
-             "BA_ \"SystemSignalLongSymbol\" SG_ 2 t \"acceleration_of_the_armature\";\n");
+  const DbcFile file = parsed(
+      "BO_ 2147483649 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" S\nBO_ 2 B: 64 S\n SG_ t : 504|8@1+ "
+      "(1,0) [0|0] \"\" S\n"
+      "BA_DEF_ BO_ \"VFrameFormat\" ENUM "
+      "\"StandardCAN\",\"ExtendedCAN\",\"StandardCAN_FD\",\"J1939PG\";\n"
+      "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\nBA_ \"VFrameFormat\" BO_ 2147483649 3;\n"
+      "BA_ \"VFrameFormat\" BO_ 2 2;\nBA_ \"GenMsgCycleTime\" BO_ 2 10;\n"
+      "BA_ \"SystemSignalLongSymbol\" SG_ 2 t \"acceleration_of_the_armature\";\n");
   EXPECT_TRUE(file.messages.at(0).extended);
   EXPECT_EQ(file.messages.at(0).id, 1U);
   EXPECT_EQ(file.messages.at(0).format, FrameFormat::j1939);
@@ -77,12 +81,21 @@ TEST(Dbc, KnowsExtendedIdsFrameFormatsCycleTimesAndLongNames) {
 }
 
 TEST(Dbc, ReadsWindows1252AndUtf8Units) {
-  EXPECT_EQ(parsed("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\xb0/s\" S\n").messages.at(0).signals.at(0).unit, "\u00b0/s");
-  EXPECT_EQ(parsed("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\u00b0/s\" S\n").messages.at(0).signals.at(0).unit, "\u00b0/s");
+  EXPECT_EQ(parsed("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\xb0/s\" S\n")
+                .messages.at(0)
+                .signals.at(0)
+                .unit,
+            "\u00b0/s");
+  EXPECT_EQ(parsed("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"\u00b0/s\" S\n")
+                .messages.at(0)
+                .signals.at(0)
+                .unit,
+            "\u00b0/s");
 }
 
 TEST(Dbc, PassesOverCommentsWithSemicolonsLineEndsAndQuotes) {
-  const DbcFile file = parsed("CM_ \"one; two\nBO_ 9 Nothing: 8 S \\\" three\";\n" + accelerometer + "CM_ SG_ 291 x \"ends in \\\";\n");
+  const DbcFile file = parsed("CM_ \"one; two\nBO_ 9 Nothing: 8 S \\\" three\";\n" + accelerometer +
+                              "CM_ SG_ 291 x \"ends in \\\";\n");
   EXPECT_EQ(file.messages.size(), 1U);
   EXPECT_THAT(file.warnings, IsEmpty());
 }
@@ -91,11 +104,13 @@ TEST(Dbc, WarnsOfAnUnknownStatementAndReadsOn) {
   const DbcFile file = parsed("NEW_THING_ 1 2 \"a;b\" 3;\n" + accelerometer);
   EXPECT_EQ(file.messages.size(), 1U);
   ASSERT_EQ(file.warnings.size(), 1U);
-  EXPECT_THAT(file.warnings[0], HasSubstr("sensor.dbc:1: passed over the unknown statement 'NEW_THING_'"));
+  EXPECT_THAT(file.warnings[0],
+              HasSubstr("sensor.dbc:1: passed over the unknown statement 'NEW_THING_'"));
 }
 
 TEST(Dbc, ReadsSimpleMultiplexingWhereverTheSwitchStands) {
-  const DbcFile file = parsed("BO_ 1 A: 8 S\n SG_ a m2 : 8|8@1+ (1,0) [0|0] \"\" S\n SG_ m M : 0|8@1+ (1,0) [0|0] \"\" S\n");
+  const DbcFile file = parsed("BO_ 1 A: 8 S\n SG_ a m2 : 8|8@1+ (1,0) [0|0] \"\" S\n SG_ m M : "
+                              "0|8@1+ (1,0) [0|0] \"\" S\n");
   const DbcSignal& a = file.messages.at(0).signals.at(0);
   ASSERT_TRUE(a.multiplexing);
   EXPECT_EQ(a.multiplexing->switch_signal, 1U);
@@ -103,11 +118,14 @@ TEST(Dbc, ReadsSimpleMultiplexingWhereverTheSwitchStands) {
 }
 
 TEST(Dbc, ReadsCascadedMultiplexingWithRanges) {
-  const DbcFile file =
-      parsed("BO_ 1 A: 8 S\n SG_ top M : 0|8@1+ (1,0) [0|0] \"\" S\n SG_ below m1M : 8|8@1+ (1,0) [0|0] \"\" S\n"
-             " SG_ leaf m3 : 16|8@1+ (1,0) [0|0] \"\" S\nSG_MUL_VAL_ 1 leaf below 3-5, 9-9;\nSG_MUL_VAL_ 1 below top 1-1;\n");
+  const DbcFile file = parsed("BO_ 1 A: 8 S\n SG_ top M : 0|8@1+ (1,0) [0|0] \"\" S\n SG_ below "
+                              "m1M : 8|8@1+ (1,0) [0|0] \"\" S\n"
+                              " SG_ leaf m3 : 16|8@1+ (1,0) [0|0] \"\" S\nSG_MUL_VAL_ 1 leaf below "
+                              "3-5, 9-9;\nSG_MUL_VAL_ 1 below top 1-1;\n");
   const DbcMessage& message = file.messages.at(0);
-  const auto state = [&](std::vector<std::uint8_t> data) { return decode_signal(message, message.signals[2], data).state; };
+  const auto state = [&](std::vector<std::uint8_t> data) {
+    return decode_signal(message, message.signals[2], data).state;
+  };
   EXPECT_EQ(state({1, 4, 7}), SignalState::valid);
   EXPECT_EQ(state({1, 9, 7}), SignalState::valid);
   EXPECT_EQ(state({1, 6, 7}), SignalState::absent);
@@ -118,16 +136,20 @@ TEST(Dbc, RefusesWhatWouldDecodeWronglyWithFileAndLine) {
   EXPECT_THAT(refusal("\nBO_ x A: 8 S\n"), HasSubstr("sensor.dbc:2: BO_ must read"));
   EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|8@2+ (1,0) [0|0] \"\" S\n"),
               HasSubstr("sensor.dbc:2: signal 's' must have 'start|length@order sign'"));
-  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1;0) [0|0] \"\" S\n"), HasSubstr("found ';0) [0|0]"));
+  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1;0) [0|0] \"\" S\n"),
+              HasSubstr("found ';0) [0|0]"));
   EXPECT_THAT(refusal("SG_ s : 0|8@1+ (1,0) [0|0] \"\" S\n"), HasSubstr("belongs to no message"));
   EXPECT_THAT(refusal("BO_ 4000 A: 8 S\n"), HasSubstr("id that no frame can have"));
-  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s m0 : 0|8@1+ (1,0) [0|0] \"\" S\n"), HasSubstr("has no switch"));
-  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ a m0M : 0|8@1+ (1,0) [0|0] \"\" S\n SG_ b m0M : 8|8@1+ (1,0) [0|0] \"\" S\n"
+  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s m0 : 0|8@1+ (1,0) [0|0] \"\" S\n"),
+              HasSubstr("has no switch"));
+  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ a m0M : 0|8@1+ (1,0) [0|0] \"\" S\n SG_ b m0M : 8|8@1+ "
+                      "(1,0) [0|0] \"\" S\n"
                       "SG_MUL_VAL_ 1 a b 0-0;\nSG_MUL_VAL_ 1 b a 0-0;\n"),
               HasSubstr("switches itself"));
   EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|16@1- (1,0) [0|0] \"\" S\nSIG_VALTYPE_ 1 s : 1;\n"),
               HasSubstr("sensor.dbc:3: signal 's' is declared"));
-  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"m/s^2 S\n"), HasSubstr("sensor.dbc:2"));
+  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ s : 0|8@1+ (1,0) [0|0] \"m/s^2 S\n"),
+              HasSubstr("sensor.dbc:2"));
 }
 
 TEST(Dbc, SaysWhatIsWrongWithAFileThatCannotBeRead) {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "drivers/can/message_index.hpp"
 #include "drivers/can/dbc/signal_unit.hpp"
+#include "drivers/can/message_index.hpp"
 
 namespace dyncal::drivers::can {
 namespace {
@@ -23,7 +23,10 @@ TEST(SignalDecoder, DecodesARealImuFrameByItsHandMadeSolution) {
   // CANmod.gps, id 9, data FF43104A01FA8F7F: 0.125 m/s^2 and 0.25 deg/s a bit.
   const std::vector<std::uint8_t> data = {0xFF, 0x43, 0x10, 0x4A, 0x01, 0xFA, 0x8F, 0x7F};
   const auto value = [&](unsigned start, unsigned length, double factor, double offset) {
-    return static_cast<double>(raw_bits(signal(start, length, ByteOrder::intel, RawType::unsigned_integer), data).value_or(0)) * factor +
+    return static_cast<double>(
+               raw_bits(signal(start, length, ByteOrder::intel, RawType::unsigned_integer), data)
+                   .value_or(0)) *
+               factor +
            offset;
   };
   EXPECT_EQ(value(1, 10, 0.125, -64), -0.125);
@@ -39,19 +42,25 @@ TEST(SignalDecoder, ReadsMotorolaAcrossBytesAndToTheEndOfAnFdFrame) {
   data[62] = 0x0A;
   data[63] = 0xBC;
   // Most significant bit 3 of byte 62, twelve bits.
-  EXPECT_EQ(raw_bits(signal(62 * 8 + 3, 12, ByteOrder::motorola, RawType::unsigned_integer), data), 0xABCU);
-  EXPECT_EQ(raw_bits(signal(62 * 8 + 3, 13, ByteOrder::motorola, RawType::unsigned_integer), data), std::nullopt);
+  EXPECT_EQ(raw_bits(signal(62 * 8 + 3, 12, ByteOrder::motorola, RawType::unsigned_integer), data),
+            0xABCU);
+  EXPECT_EQ(raw_bits(signal(62 * 8 + 3, 13, ByteOrder::motorola, RawType::unsigned_integer), data),
+            std::nullopt);
 }
 
 TEST(SignalDecoder, ExtendsTheSignOfEveryWidth) {
   EXPECT_EQ(raw_integer(signal(0, 3, ByteOrder::intel, RawType::signed_integer), 0b100), -4);
-  EXPECT_EQ(raw_integer(signal(0, 64, ByteOrder::intel, RawType::signed_integer), ~std::uint64_t{0}), -1);
-  EXPECT_EQ(raw_number(signal(0, 64, ByteOrder::intel, RawType::unsigned_integer), ~std::uint64_t{0}), 18446744073709551616.0);
+  EXPECT_EQ(
+      raw_integer(signal(0, 64, ByteOrder::intel, RawType::signed_integer), ~std::uint64_t{0}), -1);
+  EXPECT_EQ(
+      raw_number(signal(0, 64, ByteOrder::intel, RawType::unsigned_integer), ~std::uint64_t{0}),
+      18446744073709551616.0);
 }
 
 TEST(SignalDecoder, GivesNoValueWhereTheFrameIsTooShort) {
   DbcMessage message;
-  message.signals = {signal(0, 16, ByteOrder::intel, RawType::signed_integer), signal(16, 16, ByteOrder::intel, RawType::signed_integer)};
+  message.signals = {signal(0, 16, ByteOrder::intel, RawType::signed_integer),
+                     signal(16, 16, ByteOrder::intel, RawType::signed_integer)};
   std::vector<DecodedSignal> decoded;
   decode_message(message, std::vector<std::uint8_t>{1, 0, 9}, decoded);
   EXPECT_EQ(decoded[0].state, SignalState::valid);

@@ -25,7 +25,8 @@ TEST(CanBus, SendsAFrameAtOnceWhenItIsIdleAndForAsLongAsItsBitsLast) {
   const auto sent = bus.next_before(1.1);
   ASSERT_TRUE(sent);
   EXPECT_DOUBLE_EQ(sent->start_s, 1.0);
-  EXPECT_NEAR(sent->end_s - sent->start_s, drivers::can::frame_duration_s(frame_of(0x100), half_megabit), 1e-12);
+  EXPECT_NEAR(sent->end_s - sent->start_s,
+              drivers::can::frame_duration_s(frame_of(0x100), half_megabit), 1e-12);
 }
 
 TEST(CanBus, LetsTheLowestIdGoFirstButInterruptsNothing) {
@@ -54,7 +55,7 @@ TEST(CanSensor, NumbersEverySampleAndSharesTheBusWithTheOthers) {
   double foreign_s = 0.0;
   std::uint64_t samples = 0;
   std::uint64_t waited = 0;
-  for (int slice = 1; slice <= 500; ++slice)
+  for (int slice = 1; slice <= 500; ++slice) {
     sensor.advance_to(0.02 * slice, at_rest, [&](const SentFrame& sent) {
       EXPECT_GE(sent.start_s, busy_until_s);
       EXPECT_GE(sent.start_s, sent.ready_s);
@@ -64,10 +65,12 @@ TEST(CanSensor, NumbersEverySampleAndSharesTheBusWithTheOthers) {
         return;
       }
       EXPECT_EQ(sent.frame.data[6] | sent.frame.data[7] << 8, static_cast<int>(samples & 0xFFFF));
-      EXPECT_NEAR(sent.ready_s, static_cast<double>(samples) / sensor.rate_hz() + settings.latency_s, 1e-9);
+      EXPECT_NEAR(sent.ready_s,
+                  static_cast<double>(samples) / sensor.rate_hz() + settings.latency_s, 1e-9);
       waited += sent.start_s > sent.ready_s ? 1 : 0;
       ++samples;
     });
+  }
   EXPECT_NEAR(static_cast<double>(samples), 10.0 * sensor.rate_hz(), 2.0);
   EXPECT_NEAR(foreign_s / 10.0, 0.3, 0.03);
   EXPECT_GT(waited, samples / 5);

@@ -1,4 +1,5 @@
-// What the bench's instruments record, evaluated by eq. (3) and (4), must give what the bench says is true.
+// What the bench's instruments record, evaluated by eq. (3) and (4), must give what the bench says
+// is true.
 #include <cmath>
 #include <complex>
 #include <gtest/gtest.h>
@@ -50,7 +51,8 @@ BenchSettings settings(const std::string& preset, std::uint64_t seed) {
   return result;
 }
 
-analysis::SampleStampingInput input_of(const Recording& recording, const VirtualBench& bench, const std::string& frequency) {
+analysis::SampleStampingInput input_of(const Recording& recording, const VirtualBench& bench,
+                                       const std::string& frequency) {
   analysis::SampleStampingInput input{.frequency = *analysis::Frequency::parse(frequency)};
   input.acs_stamps_ns = recording.acs_stamps_ns;
   input.reference = {"reference", recording.reference, 0.0};
@@ -82,17 +84,21 @@ TEST_P(BenchTruth, AgreesWithTheEvaluationOfTheSamples) {
     ASSERT_TRUE(result) << result.error().message;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const analysis::TransferPoint& point = result->points[axis];
-      const std::complex<double> truth = bench.settings().preset.axes[axis].at(std::strtod(frequency, nullptr)) / reference_error;
+      const std::complex<double> truth =
+          bench.settings().preset.axes[axis].at(std::strtod(frequency, nullptr)) / reference_error;
       const std::complex<double> ratio = point.h / truth;
       // 1e-4: harmonics and hum that a window of other length weighs differently in both systems.
-      EXPECT_NEAR(std::abs(ratio), 1.0, 4.0 * point.u_magnitude / point.magnitude + 1e-4) << frequency << " Hz, axis " << axis;
-      EXPECT_NEAR(std::arg(ratio), 0.0, 4.0 * point.u_phase_rad + 1e-4) << frequency << " Hz, axis " << axis;
+      EXPECT_NEAR(std::abs(ratio), 1.0, 4.0 * point.u_magnitude / point.magnitude + 1e-4)
+          << frequency << " Hz, axis " << axis;
+      EXPECT_NEAR(std::arg(ratio), 0.0, 4.0 * point.u_phase_rad + 1e-4)
+          << frequency << " Hz, axis " << axis;
       EXPECT_LT(point.u_magnitude / point.magnitude, axis == 2 ? 2e-3 : 0.1);
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryPreset, BenchTruth, testing::Values("mpu9250-paper", "mpu9250-ptb", "bma280"));
+INSTANTIATE_TEST_SUITE_P(EveryPreset, BenchTruth,
+                         testing::Values("mpu9250-paper", "mpu9250-ptb", "bma280"));
 
 TEST(VirtualBench, GivesTheSameSamplesHoweverTimeIsCut) {
   VirtualBench coarse(settings("mpu9250-paper", 5));
@@ -131,7 +137,9 @@ TEST(VirtualBench, AccelerationSettlesAfterAChange) {
   VirtualBench bench(settings("mpu9250-paper", 5));
   bench.set_drive({40.0, 0.2, true});
   const auto largest = [](const std::vector<double>& values) {
-    return std::abs(*std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    return std::abs(*std::max_element(values.begin(), values.end(), [](double a, double b) {
+      return std::abs(a) < std::abs(b);
+    }));
   };
   const double at_once = largest(record(bench, 0.01, 0.01).reference);
   record(bench, 0.5, 0.05);

@@ -31,14 +31,16 @@ Record record(SensorKind kind, double thermal_cycle_s, std::size_t samples) {
 }
 
 TEST(SensorClock, Mpu9250ShowsTheIntervalsOfThePaperOver8000Seconds) {
-  const IntervalStatistics found = statistics_of(record(SensorKind::mpu9250, 8000.0, 8'020'000).intervals_ns);
+  const IntervalStatistics found =
+      statistics_of(record(SensorKind::mpu9250, 8000.0, 8'020'000).intervals_ns);
   EXPECT_NEAR(found.mean, 996959.9, 0.5);
   EXPECT_NEAR(found.sd, 21.06, 0.05 * 21.06);
   EXPECT_NEAR(found.spread, 334.0, 0.12 * 334.0); // two rare late edges decide it
 }
 
 TEST(SensorClock, Mpu9250ShowsTheSamePictureInAShortCycle) {
-  const IntervalStatistics found = statistics_of(record(SensorKind::mpu9250, 100.0, 100'000).intervals_ns);
+  const IntervalStatistics found =
+      statistics_of(record(SensorKind::mpu9250, 100.0, 100'000).intervals_ns);
   EXPECT_NEAR(found.mean, 996960.0, 2.0);
   EXPECT_NEAR(found.sd, 21.06, 0.07 * 21.06);
   EXPECT_NEAR(found.spread, 334.0, 0.15 * 334.0);
@@ -50,7 +52,8 @@ TEST(SensorClock, Mpu9250IntervalRisesWithTemperature) {
   const IntervalStatistics temperature = statistics_of(found.temperatures_degc);
   double correlation = 0.0;
   for (std::size_t i = 0; i < found.intervals_ns.size(); ++i) {
-    correlation += (found.intervals_ns[i] - interval.mean) * (found.temperatures_degc[i] - temperature.mean);
+    correlation +=
+        (found.intervals_ns[i] - interval.mean) * (found.temperatures_degc[i] - temperature.mean);
   }
   correlation /= static_cast<double>(found.intervals_ns.size()) * interval.sd * temperature.sd;
   EXPECT_NEAR(correlation, 0.64, 0.05);
@@ -77,8 +80,11 @@ TEST(SensorClock, Bma280HasALateAndAnEarlySampleEvery2200Samples) {
     early += deviation < -2000.0 ? 1 : 0;
   }
   EXPECT_EQ(late, early);
-  EXPECT_NEAR(static_cast<double>(found.intervals_ns.size() - late - early) / static_cast<double>(late), 2191.0, 0.05 * 2191.0);
-  EXPECT_NEAR(statistics_of(centre).sd, std::hypot(12.0, 3.78), 0.05 * 12.6); // noise and the quantum of two stamps
+  EXPECT_NEAR(static_cast<double>(found.intervals_ns.size() - late - early) /
+                  static_cast<double>(late),
+              2191.0, 0.05 * 2191.0);
+  EXPECT_NEAR(statistics_of(centre).sd, std::hypot(12.0, 3.78),
+              0.05 * 12.6); // noise and the quantum of two stamps
 }
 
 TEST(DauClock, ErrorOfItsStampsIsThatOfTheModel) {
@@ -86,7 +92,8 @@ TEST(DauClock, ErrorOfItsStampsIsThatOfTheModel) {
   std::vector<double> errors_ns;
   for (double time_s = 0.0; time_s < 20'000.0; time_s += 0.1) {
     const std::int64_t true_ns = std::llround(time_s * 1e9);
-    errors_ns.push_back(static_cast<double>(clock.stamp(time_s).utc_ns - clock.start_ns() - true_ns));
+    errors_ns.push_back(
+        static_cast<double>(clock.stamp(time_s).utc_ns - clock.start_ns() - true_ns));
   }
   const IntervalStatistics error = statistics_of(errors_ns);
   EXPECT_NEAR(error.mean, 0.0, 5.0);
@@ -100,8 +107,8 @@ TEST(DauClock, StampsLieOnTheLatticeOfTheCounter) {
   for (double time_s = 0.1; time_s < 0.9; time_s += 0.000997) {
     const DauStamp stamp = clock.stamp(time_s);
     const double ticks = static_cast<double>(stamp.ticks - first.ticks);
-    EXPECT_NEAR(static_cast<double>(stamp.utc_ns - first.utc_ns), ticks / (DauClock::nominal_hz * (1.0 + clock.crystal_error())) * 1e9,
-                40.0);
+    EXPECT_NEAR(static_cast<double>(stamp.utc_ns - first.utc_ns),
+                ticks / (DauClock::nominal_hz * (1.0 + clock.crystal_error())) * 1e9, 40.0);
     EXPECT_GT(stamp.uncertainty_ns, 0U);
   }
 }
@@ -109,7 +116,8 @@ TEST(DauClock, StampsLieOnTheLatticeOfTheCounter) {
 TEST(DauClock, BenchTimeZeroIsItsStartTime) {
   DauClock clock(11, 1'600'000'000'750'000'000);
   EXPECT_NEAR(static_cast<double>(clock.stamp(0.0).utc_ns - 1'600'000'000'750'000'000), 0.0, 100.0);
-  EXPECT_NEAR(static_cast<double>(clock.stamp(10.0).utc_ns - 1'600'000'010'750'000'000), 0.0, 100.0);
+  EXPECT_NEAR(static_cast<double>(clock.stamp(10.0).utc_ns - 1'600'000'010'750'000'000), 0.0,
+              100.0);
 }
 
 } // namespace

@@ -19,7 +19,8 @@ SensorUnitSettings settings(const std::string& preset, double highest_level_m_s2
   return result;
 }
 
-std::vector<UnitSample> samples_of(SensorUnit& unit, const Excitation& excitation, double duration_s) {
+std::vector<UnitSample> samples_of(SensorUnit& unit, const Excitation& excitation,
+                                   double duration_s) {
   std::vector<UnitSample> samples;
   while (auto sample = unit.next_before(duration_s, excitation)) {
     samples.push_back(*sample);
@@ -61,7 +62,8 @@ TEST(SensorUnit, Bma280MeasuresThreeAxesTemperatureAndAdcs) {
   for (std::size_t i = 0; i < unit_channels; ++i) {
     EXPECT_EQ(samples.front().data[i].has_value(), i < 3 || (i >= 9 && i <= 12)) << i;
   }
-  EXPECT_NEAR(statistics_of(column(samples, 0)).sd, 120e-6 * gravity * std::sqrt(0.5 / 485e-6), 0.05 * 0.0379);
+  EXPECT_NEAR(statistics_of(column(samples, 0)).sd, 120e-6 * gravity * std::sqrt(0.5 / 485e-6),
+              0.05 * 0.0379);
   EXPECT_NEAR(statistics_of(column(samples, 9)).mean, 25.0, 0.1);
 }
 

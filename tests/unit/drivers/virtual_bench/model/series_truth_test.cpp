@@ -1,4 +1,5 @@
-// Series time stamping against the truth of the virtual bench: models of ACS, oscilloscope and time series sensor, without sockets.
+// Series time stamping against the truth of the virtual bench: models of ACS, oscilloscope and time
+// series sensor, without sockets.
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -6,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/instrument/trigger_delay.hpp"
 #include "analysis/method/series_stamping.hpp"
 #include "analysis/method/start_latency.hpp"
-#include "analysis/instrument/trigger_delay.hpp"
 #include "drivers/virtual_bench/model/acs_instrument.hpp"
 #include "drivers/virtual_bench/model/oscilloscope_model.hpp"
 #include "drivers/virtual_bench/model/series_sensor.hpp"
@@ -23,8 +24,8 @@ constexpr double reference_phase_rad = 1.7e-3;
 class BenchOfModels {
 public:
   explicit BenchOfModels(const char* frequency_text, bool free_running = false)
-      : frequency_(*analysis::Frequency::parse(frequency_text)), excitation_(ExciterModel{}), acs_(acs_settings()),
-        scope_(TriggerSettings{}), sensor_(sensor_settings(free_running)) {
+      : frequency_(*analysis::Frequency::parse(frequency_text)), excitation_(ExciterModel{}),
+        acs_(acs_settings()), scope_(TriggerSettings{}), sensor_(sensor_settings(free_running)) {
     excitation_.change(0.0, {frequency_.hz(), 0.4, true, false});
     scope_.setting.inputs = {ScopeInput{5.0, 0.0, true}, ScopeInput{1.0, -1.5, true}};
     scope_.setting.seconds_per_division = 0.2 / frequency_.hz();
@@ -45,7 +46,8 @@ public:
   }
 
   // `corrected` false: as if every trigger came at the zero crossing.
-  analysis::SeriesStampingResult evaluate(bool corrected, double start_latency_s = 0.0, double start_scatter_s = 0.0) {
+  analysis::SeriesStampingResult evaluate(bool corrected, double start_latency_s = 0.0,
+                                          double start_scatter_s = 0.0) {
     std::vector<std::int64_t> stamps;
     std::vector<double> reference;
     std::vector<double> sync;
@@ -79,7 +81,9 @@ public:
     return result.value();
   }
 
-  [[nodiscard]] std::complex<double> truth() const { return sensor_.settings().response.at(frequency_.hz()); }
+  [[nodiscard]] std::complex<double> truth() const {
+    return sensor_.settings().response.at(frequency_.hz());
+  }
   [[nodiscard]] double real_rate_hz() const { return sensor_.real_rate_hz(); }
   [[nodiscard]] double angular_hz() const { return two_pi * frequency_.hz(); }
 
@@ -139,8 +143,10 @@ TEST_P(SeriesTruthTest, MagnitudePhaseAndRateMeetTheTruthWithinFourStandardUncer
   const auto result = bench.evaluate(true);
   const analysis::RepetitionMean& mean = result.channels.at(0).mean;
   EXPECT_LT(std::abs(mean.magnitude - std::abs(bench.truth())), 4.0 * mean.u_magnitude);
-  EXPECT_LT(std::abs(std::remainder(mean.phase_rad - std::arg(bench.truth()), two_pi)), 4.0 * mean.u_phase_rad);
-  EXPECT_LT(std::abs(result.rate.real_rate_hz - bench.real_rate_hz()), 4.0 * result.rate.u_real_rate_hz);
+  EXPECT_LT(std::abs(std::remainder(mean.phase_rad - std::arg(bench.truth()), two_pi)),
+            4.0 * mean.u_phase_rad);
+  EXPECT_LT(std::abs(result.rate.real_rate_hz - bench.real_rate_hz()),
+            4.0 * result.rate.u_real_rate_hz);
   EXPECT_LT(mean.u_phase_rad, 4e-3);
 }
 
@@ -165,8 +171,10 @@ TEST(SeriesStart, IsFoundToBeFixedOrUniform) {
       offsets_s.push_back(std::arg(shot.h / result.channels.at(0).mean.h) / bench.angular_hz());
       u_s = shot.u_random_phase_rad / bench.angular_hz();
     }
-    const auto start = analysis::judge_start_latency(offsets_s, u_s, 1.0 / result.rate.real_rate_hz);
-    EXPECT_EQ(start.kind, free_running ? analysis::StartKind::uniform : analysis::StartKind::fixed) << start.scatter_s << " s, u " << u_s;
+    const auto start =
+        analysis::judge_start_latency(offsets_s, u_s, 1.0 / result.rate.real_rate_hz);
+    EXPECT_EQ(start.kind, free_running ? analysis::StartKind::uniform : analysis::StartKind::fixed)
+        << start.scatter_s << " s, u " << u_s;
   }
 }
 
@@ -174,13 +182,16 @@ TEST(SeriesStart, HalfASampleIsCorrectedForASensorThatRunsFree) {
   BenchOfModels bench("80", true);
   bench.take_shots(16);
   const double sample_s = 1.0 / bench.real_rate_hz();
-  const auto mean = bench.evaluate(true, 0.5 * sample_s, sample_s / std::sqrt(12.0)).channels.at(0).mean;
-  EXPECT_LT(std::abs(std::remainder(mean.phase_rad - std::arg(bench.truth()), two_pi)), 4.0 * mean.u_phase_rad);
+  const auto mean =
+      bench.evaluate(true, 0.5 * sample_s, sample_s / std::sqrt(12.0)).channels.at(0).mean;
+  EXPECT_LT(std::abs(std::remainder(mean.phase_rad - std::arg(bench.truth()), two_pi)),
+            4.0 * mean.u_phase_rad);
   EXPECT_GT(mean.u_phase_rad, 0.02); // 16 shots of a uniform start
 }
 
 // One trace of both inputs with the delays of the model.
-std::vector<analysis::ShotDelay> delays(OscilloscopeModel& scope, Excitation& excitation, double frequency_hz, bool rectangle, int shots) {
+std::vector<analysis::ShotDelay> delays(OscilloscopeModel& scope, Excitation& excitation,
+                                        double frequency_hz, bool rectangle, int shots) {
   excitation.change(0.0, {frequency_hz, 0.05, true, rectangle});
   scope.setting.inputs = {ScopeInput{5.0, 0.0, true}, ScopeInput{1.0, -1.5, true}};
   scope.setting.seconds_per_division = rectangle ? 100e-9 : 0.1 / frequency_hz;
@@ -198,14 +209,16 @@ std::vector<analysis::ShotDelay> delays(OscilloscopeModel& scope, Excitation& ex
     std::array<std::vector<double>, 2> volts;
     for (std::size_t input = 0; input < 2; ++input) {
       for (const char code : scope.record()->codes[input]) {
-        volts[input].push_back((static_cast<double>(static_cast<unsigned char>(code)) - 128.0) / 25.0 *
-                                   scope.setting.inputs[input].volts_per_division -
+        volts[input].push_back((static_cast<double>(static_cast<unsigned char>(code)) - 128.0) /
+                                   25.0 * scope.setting.inputs[input].volts_per_division -
                                scope.setting.inputs[input].offset_v);
       }
     }
-    const analysis::DelayTrace trace{scope.setting.origin_s(), scope.setting.interval_s(), volts[0], volts[1]};
+    const analysis::DelayTrace trace{scope.setting.origin_s(), scope.setting.interval_s(), volts[0],
+                                     volts[1]};
     const auto delay =
-        rectangle ? analysis::delay_by_rectangle(trace) : analysis::delay_by_sine(trace, analysis::Frequency::from_hz(frequency_hz));
+        rectangle ? analysis::delay_by_rectangle(trace)
+                  : analysis::delay_by_sine(trace, analysis::Frequency::from_hz(frequency_hz));
     EXPECT_TRUE(delay.has_value()) << delay.error().message;
     found.push_back(delay.value_or(analysis::ShotDelay{}));
   }
@@ -229,7 +242,8 @@ TEST(TriggerDelayOfTheModel, IsFoundWithinANanosecondByTheSine) {
   ASSERT_TRUE(mean.has_value());
   EXPECT_LE(mean->u_delay_s, 1e-9);
   EXPECT_LT(std::abs(mean->delay_s - scope.output_delay_s()), 1e-9) << mean->delay_s;
-  EXPECT_GT(mean->scatter_from_zero_crossing_s, 50.0 * mean->scatter_s); // noise of the trigger is in the one, not in the other
+  EXPECT_GT(mean->scatter_from_zero_crossing_s,
+            50.0 * mean->scatter_s); // noise of the trigger is in the one, not in the other
 }
 
 } // namespace

@@ -89,9 +89,10 @@ TEST(StampFaults, RepeatedHasTheTimeOfTheSampleBeforeAndATinyUncertainty) {
 TEST(StampFaults, NoUncertaintyNoFixAndLossAreAsLikelyAsAsked) {
   const Outcome outcome = apply({{"no-uncertainty", 0.02}, {"no-fix", 0.03}, {"unit-loss", 0.04}});
   EXPECT_NEAR(outcome.lost, 0.04 * samples, 120);
-  const auto zero_uncertainty =
-      std::count_if(outcome.spoiled.begin(), outcome.spoiled.end(), [](const auto& s) { return s.uncertainty_ns == 0; });
-  const auto no_time = std::count_if(outcome.spoiled.begin(), outcome.spoiled.end(), [](const auto& s) { return s.utc_ns == 0; });
+  const auto zero_uncertainty = std::count_if(outcome.spoiled.begin(), outcome.spoiled.end(),
+                                              [](const auto& s) { return s.uncertainty_ns == 0; });
+  const auto no_time = std::count_if(outcome.spoiled.begin(), outcome.spoiled.end(),
+                                     [](const auto& s) { return s.utc_ns == 0; });
   EXPECT_NEAR(static_cast<double>(zero_uncertainty), 0.02 * samples, 100);
   EXPECT_NEAR(static_cast<double>(no_time), 0.03 * samples, 120);
 }

@@ -48,7 +48,8 @@ TEST_F(TriggerModelTest, NoiseMakesTheTriggerComeEarlyByTensOfMilliradians) {
     const double mean = sum / shots;
     EXPECT_LT(mean, -0.012) << frequency_hz;
     EXPECT_GT(mean, -0.04) << frequency_hz;
-    EXPECT_GT(std::sqrt(squares / shots - mean * mean), 5e-4) << frequency_hz; // it scatters as well
+    EXPECT_GT(std::sqrt(squares / shots - mean * mean), 5e-4)
+        << frequency_hz; // it scatters as well
   }
 }
 

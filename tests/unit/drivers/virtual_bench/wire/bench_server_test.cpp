@@ -55,7 +55,9 @@ private:
 
 class CollectingSink : public acs::BlockSink {
 public:
-  void begin_session(const SourceDescription& description) override { descriptions.push_back(description); }
+  void begin_session(const SourceDescription& description) override {
+    descriptions.push_back(description);
+  }
   void take(SampleBlock block) override { blocks.push_back(std::move(block)); }
 
   std::vector<SourceDescription> descriptions;
@@ -93,7 +95,9 @@ protected:
     stop_.raise();
     thread_ = {};
   }
-  [[nodiscard]] std::string address(std::uint16_t port) const { return "127.0.0.1:" + std::to_string(port); }
+  [[nodiscard]] std::string address(std::uint16_t port) const {
+    return "127.0.0.1:" + std::to_string(port);
+  }
 
   VirtualBench bench_{bench_settings()};
   UnitReceiver receiver_;
@@ -133,13 +137,17 @@ TEST_F(ServedBench, RunsAStepAsFastAsTheConsumersAllow) {
   for (const SampleBlock& block : sink.blocks) {
     ASSERT_EQ(block.first_sample, next);
     next += block.samples;
-    largest = std::max(largest, *std::max_element(block.values.begin(), block.values.begin() + static_cast<std::ptrdiff_t>(block.samples)));
+    largest = std::max(largest, *std::max_element(block.values.begin(),
+                                                  block.values.begin() +
+                                                      static_cast<std::ptrdiff_t>(block.samples)));
     EXPECT_EQ(block.clock->stamp_ns(block.first_sample), bench_.acs().stamp_ns(block.first_sample));
   }
-  EXPECT_NEAR(static_cast<double>(next), 120000.0, 1.0); // the end of the stream comes after the last sample
+  EXPECT_NEAR(static_cast<double>(next), 120000.0,
+              1.0); // the end of the stream comes after the last sample
   EXPECT_NEAR(largest, 10.0, 0.7);
   const auto datagrams = receiver_.finish();
-  const auto data = std::count_if(datagrams.begin(), datagrams.end(), [](const std::string& d) { return d.starts_with("DATA"); });
+  const auto data = std::count_if(datagrams.begin(), datagrams.end(),
+                                  [](const std::string& d) { return d.starts_with("DATA"); });
   EXPECT_NEAR(static_cast<double>(data), 600.0, 15.0);
   EXPECT_EQ(datagrams.size() - static_cast<std::size_t>(data), 12U); // two bursts of six
 }
@@ -148,7 +156,8 @@ TEST_F(ServedBench, KeepsRealTimeWhenAskedTo) {
   start(2.0, 1.0);
   const auto begin = std::chrono::steady_clock::now();
   thread_ = {};
-  const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double passed_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   EXPECT_GT(passed_s, 0.45);
   EXPECT_DOUBLE_EQ(bench_.now_s(), 1.0);
 }
@@ -156,7 +165,8 @@ TEST_F(ServedBench, KeepsRealTimeWhenAskedTo) {
 TEST_F(ServedBench, WaitsForAClientOfTheStreamThatDoesNotRead) {
   start(1000.0, 1000.0);
   StopSignal never;
-  const auto connection = TcpConnection::connect({"127.0.0.1", server_->acs_port()}, std::chrono::seconds(2), never);
+  const auto connection =
+      TcpConnection::connect({"127.0.0.1", server_->acs_port()}, std::chrono::seconds(2), never);
   ASSERT_TRUE(connection);
   auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
   ASSERT_TRUE(generator) << generator.error().message;
@@ -182,7 +192,8 @@ TEST_F(ServedBench, WaitsForAReceiverOfTheDatagramsThatDoesNotRead) {
   std::size_t before = 0;
   do {
     before = waiting;
-    ASSERT_TRUE((*generator)->wait_until_s((*generator)->clock_now_s().value() + 0.5, already_stopped()));
+    ASSERT_TRUE(
+        (*generator)->wait_until_s((*generator)->clock_now_s().value() + 0.5, already_stopped()));
     waiting = udp_receive_queue(receiver_.port());
   } while ((waiting == 0 || waiting != before) && std::chrono::steady_clock::now() < deadline);
   EXPECT_GT(waiting, 64U * 1024U);
@@ -196,7 +207,8 @@ TEST_F(ServedBench, PassesErrorsOfTheInstrumentOn) {
   const auto refused = (*generator)->set_frequency("1e9");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::refused);
-  EXPECT_NE(refused.error().message.find("-222,\"Data out of range\""), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("-222,\"Data out of range\""), std::string::npos)
+      << refused.error().message;
   EXPECT_TRUE((*generator)->set_frequency("50"));
 }
 

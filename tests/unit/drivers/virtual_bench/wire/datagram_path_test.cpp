@@ -8,7 +8,8 @@ namespace {
 
 std::vector<int> send_numbers(const PathSettings& settings, int count) {
   std::vector<int> arrived;
-  DatagramPath path(6, settings, [&](const std::string& datagram) { arrived.push_back(std::stoi(datagram)); });
+  DatagramPath path(6, settings,
+                    [&](const std::string& datagram) { arrived.push_back(std::stoi(datagram)); });
   for (int i = 0; i < count; ++i) {
     path.send(std::to_string(i));
   }
@@ -23,7 +24,8 @@ TEST(DatagramPath, DeliversInOrderWhenNothingIsWrong) {
 
 TEST(DatagramPath, LosesAndDoublesAsLikelyAsAsked) {
   EXPECT_NEAR(static_cast<double>(send_numbers({.loss = 0.1}, 10'000).size()), 9000.0, 150.0);
-  EXPECT_NEAR(static_cast<double>(send_numbers({.duplicate = 0.1}, 10'000).size()), 11'000.0, 150.0);
+  EXPECT_NEAR(static_cast<double>(send_numbers({.duplicate = 0.1}, 10'000).size()), 11'000.0,
+              150.0);
 }
 
 TEST(DatagramPath, SwapsADatagramWithTheNextOne) {

@@ -11,11 +11,14 @@ namespace dyncal::drivers::virtual_bench {
 namespace {
 
 TEST(ReceiveQueue, ReadsTheKernelsTable) {
-  std::istringstream table(
-      "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode ref pointer drops\n"
-      "  101: 0100007F:1DE6 00000000:0000 07 00000001:00001200 00:00000000 00000000     0        0 5 2 0 0\n"
-      "  102: 00000000:1DE6 00000000:0000 07 00000000:00000240 00:00000000 00000000     0        0 6 2 0 0\n"
-      "  103: 00000000:1DE7 00000000:0000 07 00000000:0000FFFF 00:00000000 00000000     0        0 7 2 0 0\n");
+  std::istringstream table("  sl  local_address rem_address   st tx_queue rx_queue tr tm->when "
+                           "retrnsmt   uid  timeout inode ref pointer drops\n"
+                           "  101: 0100007F:1DE6 00000000:0000 07 00000001:00001200 00:00000000 "
+                           "00000000     0        0 5 2 0 0\n"
+                           "  102: 00000000:1DE6 00000000:0000 07 00000000:00000240 00:00000000 "
+                           "00000000     0        0 6 2 0 0\n"
+                           "  103: 00000000:1DE7 00000000:0000 07 00000000:0000FFFF 00:00000000 "
+                           "00000000     0        0 7 2 0 0\n");
   EXPECT_EQ(udp_receive_queue(table, 7654), 0x1200U);
 }
 
@@ -31,7 +34,8 @@ TEST(ReceiveQueue, SeesWhatNobodyHasRead) {
   EXPECT_EQ(udp_receive_queue(port), 0U);
   const Descriptor sender(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const char datagram[900] = {};
-  sendto(sender.number(), datagram, sizeof(datagram), 0, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+  sendto(sender.number(), datagram, sizeof(datagram), 0, reinterpret_cast<sockaddr*>(&address),
+         sizeof(address));
   EXPECT_GE(udp_receive_queue(port), sizeof(datagram));
 }
 

@@ -12,7 +12,9 @@ protected:
     result.preset = *preset_by_name("bma280");
     return result;
   }
-  std::string ask(const std::string& line) { return instrument_.execute(line).line.value_or("(nothing)"); }
+  std::string ask(const std::string& line) {
+    return instrument_.execute(line).line.value_or("(nothing)");
+  }
 
   VirtualBench bench_{settings()};
   ScpiInstrument instrument_{bench_};

@@ -94,9 +94,12 @@ UnitSample sample(std::uint32_t number, std::size_t channels) {
 }
 
 TEST(SmartUpPacker, WritesTheBytesOfTheUnitsFormat) {
-  // A message of 13 channels from the published test vectors for this format, with its length in front.
-  const std::string message = from_hex("59088082ace60b100318d3fd90fc0520fc83e8172854350000003e3d000080be450ae81c414d6f12833a556f1203bb"
-                                       "5da69b443b65000048416d0000f0c175000025427d0000fc4185010000803f8d01000000c095010000003f");
+  // A message of 13 channels from the published test vectors for this format, with its length in
+  // front.
+  const std::string message = from_hex(
+      "59088082ace60b100318d3fd90fc0520fc83e8172854350000003e3d000080be450ae81c414d6f12833a556f1203"
+      "bb"
+      "5da69b443b65000048416d0000f0c175000025427d0000fc4185010000803f8d01000000c095010000003f");
   UnitSample published;
   published.sample_number = 3;
   published.uncertainty_ns = 84;
@@ -104,7 +107,8 @@ TEST(SmartUpPacker, WritesTheBytesOfTheUnitsFormat) {
   for (const auto& [field, value] : expected.floats) {
     published.data[field - 6] = value;
   }
-  published.utc_ns = static_cast<std::int64_t>(expected.numbers.at(3)) * 1'000'000'000 + static_cast<std::int64_t>(expected.numbers.at(4));
+  published.utc_ns = static_cast<std::int64_t>(expected.numbers.at(3)) * 1'000'000'000 +
+                     static_cast<std::int64_t>(expected.numbers.at(4));
   SmartUpPacker packer(static_cast<std::uint32_t>(expected.numbers.at(1)), "MPU 9250", false);
   std::optional<std::string> datagram;
   std::string wanted = "DATA";
@@ -160,7 +164,8 @@ TEST(SmartUpPacker, LeavesOutChannelsThatAreNotMeasured) {
 TEST(SmartUpPacker, DescribesDeclaredChannelsInSixDatagrams) {
   const SmartUpPacker packer(0xbccb0100, "MPU 9250", true);
   const std::vector<UnitChannel> channels{
-      {2, "acceleration_z", "Z Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration/2", -20.0, 20.0, 65536.0, true},
+      {2, "acceleration_z", "Z Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration/2", -20.0,
+       20.0, 65536.0, true},
       {10, "sync", "Voltage", "\\volt", "Voltage/0", -10.0, 10.0, 4096.0, false}};
   const std::vector<std::string> datagrams = packer.descriptions(channels);
   ASSERT_EQ(datagrams.size(), 6U);

@@ -1,4 +1,5 @@
-// Oscilloscope and time series sensor of the virtual bench, through the drivers that real ones are reached with.
+// Oscilloscope and time series sensor of the virtual bench, through the drivers that real ones are
+// reached with.
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
 
 #include <atomic>
@@ -21,7 +22,8 @@ using testing::HasSubstr;
 
 constexpr double frequency_hz = 100.0;
 
-// Serves both instruments from a thread of its own; bench time runs ten times as fast as the host's clock at most.
+// Serves both instruments from a thread of its own; bench time runs ten times as fast as the host's
+// clock at most.
 class TriggeredServerTest : public testing::Test {
 protected:
   void start(ScopeFaults faults = {}, std::size_t piece_bytes = 0, bool on = true) {
@@ -50,7 +52,9 @@ protected:
     }
   }
   Expected<dso::Shot> shoot() {
-    if (auto ready = scope_->prepare({.before_trigger_s = 0.01, .after_trigger_s = 0.01, .points = 10'000}); !ready) {
+    if (auto ready =
+            scope_->prepare({.before_trigger_s = 0.01, .after_trigger_s = 0.01, .points = 10'000});
+        !ready) {
       return tl::unexpected(ready.error());
     }
     return scope_->acquire(milliseconds(2000));
@@ -75,7 +79,8 @@ TEST_F(TriggeredServerTest, AShotHasSyncRisingThroughZeroAtTheTrigger) {
   double cosine = 0.0;
   const auto& volts = shot->traces[0].volts; // two whole periods
   for (std::size_t i = 0; i < volts.size(); ++i) {
-    const double angle = 2.0 * std::numbers::pi * frequency_hz * (shot->first_sample_s + static_cast<double>(i) * shot->interval_s);
+    const double angle = 2.0 * std::numbers::pi * frequency_hz *
+                         (shot->first_sample_s + static_cast<double>(i) * shot->interval_s);
     sine += volts[i] * std::sin(angle);
     cosine += volts[i] * std::cos(angle);
   }
@@ -113,7 +118,8 @@ TEST_F(TriggeredServerTest, WithoutSyncNothingTriggers) {
 
 TEST_F(TriggeredServerTest, AnUnknownCommandIsAnErrorInTheInstrumentsWords) {
   start();
-  auto connection = ScpiConnection::connect("oscilloscope", scope_->address(), milliseconds(500), stop_);
+  auto connection =
+      ScpiConnection::connect("oscilloscope", scope_->address(), milliseconds(500), stop_);
   ASSERT_TRUE(connection.has_value());
   const auto refused = connection->command(":DISPlay:BEAM ON");
   ASSERT_FALSE(refused.has_value());
@@ -122,8 +128,10 @@ TEST_F(TriggeredServerTest, AnUnknownCommandIsAnErrorInTheInstrumentsWords) {
   EXPECT_FALSE(connection->command(":CHAN1:SCAL 200").has_value());
 }
 
-// Whatever a bad line makes of the answers: an error every now and then, never a hang, never a wrong shot.
-class FaultyScopeTest : public TriggeredServerTest, public testing::WithParamInterface<const char*> {};
+// Whatever a bad line makes of the answers: an error every now and then, never a hang, never a
+// wrong shot.
+class FaultyScopeTest : public TriggeredServerTest,
+                        public testing::WithParamInterface<const char*> {};
 
 TEST_P(FaultyScopeTest, TheDriverSaysSoAndGoesOn) {
   start({{GetParam(), 0.02}});
@@ -144,7 +152,9 @@ TEST_P(FaultyScopeTest, TheDriverSaysSoAndGoesOn) {
   EXPECT_GT(shots, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, FaultyScopeTest, testing::Values("half-answer", "garbage", "other-answer", "disconnect", "slow"),
+INSTANTIATE_TEST_SUITE_P(Faults, FaultyScopeTest,
+                         testing::Values("half-answer", "garbage", "other-answer", "disconnect",
+                                         "slow"),
                          [](const auto& fault) {
                            std::string name = fault.param;
                            std::erase(name, '-');

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
 #include "services/evaluation/run_evaluator.hpp"
+#include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
 namespace dyncal::services {
@@ -19,7 +19,8 @@ using testing::HasSubstr;
 
 constexpr double u_stamp_s = 5e-6;
 
-// The acceleration of the synthetic DAU as a sensor on CAN would send it: every second sample, under its own name and numbers.
+// The acceleration of the synthetic DAU as a sensor on CAN would send it: every second sample,
+// under its own name and numbers.
 std::vector<SampleBlock> on_can(const tests::SyntheticRun& run, const std::string& source) {
   std::vector<SampleBlock> blocks;
   std::uint64_t number = 0;
@@ -58,8 +59,9 @@ SourceDescription can_description(const std::string& source) {
 // The synthetic ACS on the time scale of the synthetic DAU.
 std::vector<SampleBlock> acs_in_utc(const tests::SyntheticRun& run) {
   std::vector<SampleBlock> blocks = run.acs_blocks();
-  for (SampleBlock& block : blocks)
+  for (SampleBlock& block : blocks) {
     block.origin_ns(run.dau_blocks().front().stamps_ns().front());
+  }
   return blocks;
 }
 
@@ -77,14 +79,19 @@ Measurement absolute(const tests::SyntheticRun& run) {
   return measurement;
 }
 
-std::vector<CalibrationResult> evaluate(RunEvaluator& evaluator, const std::vector<std::vector<SampleBlock>>& sources) {
+std::vector<CalibrationResult> evaluate(RunEvaluator& evaluator,
+                                        const std::vector<std::vector<SampleBlock>>& sources) {
   std::vector<CalibrationResult> results;
   std::size_t longest = 0;
-  for (const auto& blocks : sources)
+  for (const auto& blocks : sources) {
     longest = std::max(longest, blocks.size());
+  }
   for (std::size_t i = 0; i < longest; ++i) {
-    for (const auto& blocks : sources)
-      if (i < blocks.size()) evaluator.add(blocks[i]);
+    for (const auto& blocks : sources) {
+      if (i < blocks.size()) {
+        evaluator.add(blocks[i]);
+      }
+    }
     const EvaluationOutput output = evaluator.take_output();
     results.insert(results.end(), output.results.begin(), output.results.end());
   }
@@ -93,17 +100,22 @@ std::vector<CalibrationResult> evaluate(RunEvaluator& evaluator, const std::vect
 }
 
 double u_of(const CalibrationResult& result, const std::string& row) {
-  for (const BudgetContribution& line : result.budget())
-    if (line.name() == row) return line.u_phase_rad();
+  for (const BudgetContribution& line : result.budget()) {
+    if (line.name() == row) {
+      return line.u_phase_rad();
+    }
+  }
   return -1.0;
 }
 
 void expect_truth(const CalibrationResult& result, const tests::SyntheticRun& run) {
   ASSERT_TRUE(result.valid()) << result.problem();
   EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
-  EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s, 4.0 * result.u_phase_rad());
+  EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s,
+              4.0 * result.u_phase_rad());
   EXPECT_LT(result.u_phase_rad(), 5e-3);
-  EXPECT_NEAR(u_of(result, "offset between the clocks"), 2.0 * std::numbers::pi * result.frequency_hz() * u_stamp_s, 1e-9);
+  EXPECT_NEAR(u_of(result, "offset between the clocks"),
+              2.0 * std::numbers::pi * result.frequency_hz() * u_stamp_s, 1e-9);
 }
 
 TEST(ApartStep, LinksSensorsByAbsoluteTimeWithoutAnySync) {
@@ -113,13 +125,15 @@ TEST(ApartStep, LinksSensorsByAbsoluteTimeWithoutAnySync) {
   ASSERT_TRUE(evaluator.describe(in_utc(run.acs_description())));
   ASSERT_TRUE(evaluator.describe(can_description("can")));
   ASSERT_TRUE(evaluator.describe(can_description("other")));
-  const auto results = evaluate(evaluator, {acs_in_utc(run), on_can(run, "can"), on_can(run, "other")});
+  const auto results =
+      evaluate(evaluator, {acs_in_utc(run), on_can(run, "can"), on_can(run, "other")});
   ASSERT_EQ(results.size(), 4U); // two steps, two sensors
   for (const CalibrationResult& result : results) {
     expect_truth(result, run);
     EXPECT_EQ(result.fits().size(), 2U);
     EXPECT_EQ(result.samples().size(), 2U);
-    EXPECT_EQ(result.flags(), std::vector<std::string>{"acs: nothing is known of the uncertainty of its clock"});
+    EXPECT_EQ(result.flags(),
+              std::vector<std::string>{"acs: nothing is known of the uncertainty of its clock"});
   }
   EXPECT_EQ(results[0].channel().to_string(), "can/acceleration_z");
   EXPECT_EQ(results[1].channel().to_string(), "other/acceleration_z");
@@ -134,7 +148,8 @@ TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
   ASSERT_TRUE(evaluator.describe(run.acs_description())); // a clock of its own
   ASSERT_TRUE(evaluator.describe(in_utc(run.dau_description())));
   ASSERT_TRUE(evaluator.describe(can_description("can")));
-  const auto results = evaluate(evaluator, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")});
+  const auto results =
+      evaluate(evaluator, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")});
   ASSERT_EQ(results.size(), 2U);
   for (const CalibrationResult& result : results) {
     expect_truth(result, run);
@@ -161,24 +176,28 @@ TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   ASSERT_TRUE(by_sync.describe(run.acs_description()));
   ASSERT_TRUE(by_sync.describe(in_utc(run.dau_description())));
   ASSERT_TRUE(by_sync.describe(can_description("can")));
-  tests::expect_drawing_agrees(evaluate(by_sync, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")}), 2);
+  tests::expect_drawing_agrees(
+      evaluate(by_sync, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")}), 2);
 }
 
 TEST(ApartStep, RefusesSettlingFromTheDataWithASentence) {
   Measurement measurement = absolute({});
   measurement.settling_from_data(true);
-  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("give the longest settling as settling_s"));
+  EXPECT_THAT(parse_recipe(measurement).error().message,
+              HasSubstr("give the longest settling as settling_s"));
 }
 
 TEST(ApartStep, RefusesClocksThatCannotBeCompared) {
   const tests::SyntheticRun run;
   RunEvaluator by_time(*parse_recipe(absolute(run)));
-  EXPECT_THAT(by_time.describe(run.acs_description()).error().message, HasSubstr("'acs' has a clock of its own, but absolute time"));
+  EXPECT_THAT(by_time.describe(run.acs_description()).error().message,
+              HasSubstr("'acs' has a clock of its own, but absolute time"));
   Measurement measurement = run.measurement();
   measurement.dut() = {"can/acceleration_z"};
   RunEvaluator by_sync(*parse_recipe(measurement));
   ASSERT_TRUE(by_sync.describe(run.dau_description()));
-  EXPECT_THAT(by_sync.describe(can_description("can")).error().message, HasSubstr("must be stamped on one time scale"));
+  EXPECT_THAT(by_sync.describe(can_description("can")).error().message,
+              HasSubstr("must be stamped on one time scale"));
 }
 
 TEST(ApartStep, GivesNoNumberForAStepWhoseSamplesAreNotThere) {
@@ -195,16 +214,19 @@ TEST(ApartStep, GivesNoNumberForAStepWhoseSamplesAreNotThere) {
   ASSERT_EQ(results.size(), 2U);
   expect_truth(results[0], run);
   EXPECT_FALSE(results[1].valid());
-  EXPECT_THAT(results[1].problem(), HasSubstr("can: no sample with a trusted stamp lies in the step"));
+  EXPECT_THAT(results[1].problem(),
+              HasSubstr("can: no sample with a trusted stamp lies in the step"));
 }
 
 TEST(ApartStep, NeedsToKnowItsSensors) {
   Measurement measurement = absolute({});
   measurement.dut().clear();
-  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("names no channel under calibration"));
+  EXPECT_THAT(parse_recipe(measurement).error().message,
+              HasSubstr("names no channel under calibration"));
   Measurement mixed = tests::SyntheticRun{}.measurement();
   mixed.dut() = {"can/acceleration_z", "dau/acceleration_z"};
-  EXPECT_THAT(parse_recipe(mixed).error().message, HasSubstr("either all of the source of sync_dau or none"));
+  EXPECT_THAT(parse_recipe(mixed).error().message,
+              HasSubstr("either all of the source of sync_dau or none"));
 }
 
 } // namespace

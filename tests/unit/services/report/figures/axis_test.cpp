@@ -22,18 +22,23 @@ Range range(Scale scale, double low, double high) {
 std::vector<std::string> labels(const Axis& axis) {
   std::vector<std::string> result;
   for (const auto& tick : axis.ticks) {
-    if (!tick.label.empty()) result.push_back(tick.label);
+    if (!tick.label.empty()) {
+      result.push_back(tick.label);
+    }
   }
   return result;
 }
 
 TEST(LinearAxis, HasTicksAtMultiplesOfOneTwoOrFive) {
-  EXPECT_THAT(labels(make_axis(range(Scale::linear, -0.04, 1.04), 6)), ElementsAre("0.0", "0.2", "0.4", "0.6", "0.8", "1.0"));
-  EXPECT_THAT(labels(make_axis(range(Scale::linear, -10.5, 0.5), 5)), ElementsAre("−10", "−5", "0"));
+  EXPECT_THAT(labels(make_axis(range(Scale::linear, -0.04, 1.04), 6)),
+              ElementsAre("0.0", "0.2", "0.4", "0.6", "0.8", "1.0"));
+  EXPECT_THAT(labels(make_axis(range(Scale::linear, -10.5, 0.5), 5)),
+              ElementsAre("−10", "−5", "0"));
 }
 
 TEST(LinearAxis, KeepsTheDecimalsThatTellTicksApartOnALargeOffset) {
-  EXPECT_THAT(labels(make_axis(range(Scale::linear, 996.89, 997.01), 4)), ElementsAre("996.90", "996.95", "997.00"));
+  EXPECT_THAT(labels(make_axis(range(Scale::linear, 996.89, 997.01), 4)),
+              ElementsAre("996.90", "996.95", "997.00"));
 }
 
 TEST(LinearAxis, TakesOutACommonPowerOfTenWhenNumbersAreVerySmallOrLarge) {
@@ -57,7 +62,8 @@ TEST(LogarithmicAxis, LabelsOneTwoAndFiveOfAShortRange) {
 }
 
 TEST(LogarithmicAxis, LabelsPowersOfTenOfALongRange) {
-  EXPECT_THAT(labels(make_axis(range(Scale::logarithmic, 0.6, 2e6), 8)), ElementsAre("10⁰", "10¹", "10²", "10³", "10⁴", "10⁵", "10⁶"));
+  EXPECT_THAT(labels(make_axis(range(Scale::logarithmic, 0.6, 2e6), 8)),
+              ElementsAre("10⁰", "10¹", "10²", "10³", "10⁴", "10⁵", "10⁶"));
 }
 
 TEST(LogarithmicAxis, SkipsPowersWhereThereIsNoRoom) {
@@ -65,7 +71,8 @@ TEST(LogarithmicAxis, SkipsPowersWhereThereIsNoRoom) {
 }
 
 TEST(LogarithmicAxis, FallsBackToEvenTicksInLessThanHalfADecade) {
-  EXPECT_THAT(labels(make_axis(range(Scale::logarithmic, 78, 122), 5)), ElementsAre("80", "90", "100", "110", "120"));
+  EXPECT_THAT(labels(make_axis(range(Scale::logarithmic, 78, 122), 5)),
+              ElementsAre("80", "90", "100", "110", "120"));
 }
 
 TEST(LogarithmicAxis, PutsTheGeometricMeanInTheMiddle) {
@@ -97,7 +104,8 @@ TEST(RangeOfAnAxis, HasSomeWidthAfterPaddingWhateverWentIn) {
 TEST(RangeOfAnAxis, YieldsAFewTicksForAnyWidth) {
   for (int exponent = -12; exponent <= 12; ++exponent) {
     for (const double mantissa : {1.0, 1.9, 2.1, 4.9, 5.1, 9.9}) {
-      const auto count = labels(make_axis(range(Scale::linear, 0, mantissa * std::pow(10.0, exponent)), 6)).size();
+      const auto count =
+          labels(make_axis(range(Scale::linear, 0, mantissa * std::pow(10.0, exponent)), 6)).size();
       EXPECT_GE(count, 3U) << mantissa << "e" << exponent;
       EXPECT_LE(count, 8U) << mantissa << "e" << exponent;
     }

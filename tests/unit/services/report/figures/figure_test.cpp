@@ -15,7 +15,8 @@ using testing::HasSubstr;
 class FigureFiles : public testing::Test {
 protected:
   FigureFiles() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dyncal-figures-XXXXXX").string();
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "dyncal-figures-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
   ~FigureFiles() override { std::filesystem::remove_all(folder_); }
@@ -31,7 +32,8 @@ std::string content(const std::filesystem::path& path) {
 TEST_F(FigureFiles, AreWrittenIntoAFolderThatIsMade) {
   const auto paths = write({"name", "<svg/>", "a,b\n"}, folder_ / "new" / "folder");
   ASSERT_TRUE(paths) << paths.error().message;
-  EXPECT_THAT(*paths, testing::ElementsAre(folder_ / "new/folder/name.svg", folder_ / "new/folder/name.csv"));
+  EXPECT_THAT(*paths, testing::ElementsAre(folder_ / "new/folder/name.svg",
+                                           folder_ / "new/folder/name.csv"));
   EXPECT_EQ(content((*paths)[0]), "<svg/>");
   EXPECT_EQ(content((*paths)[1]), "a,b\n");
 }
@@ -53,7 +55,8 @@ TEST_F(FigureFiles, AreNotLeftHalfWrittenWithoutAnError) {
 }
 
 TEST(CsvNumber, GivesBackTheSameBits) {
-  for (const double value : {0.1, 1.0 / 3.0, 996.9551234567891e-6, -5e-324, 1.7976931348623157e308}) {
+  for (const double value :
+       {0.1, 1.0 / 3.0, 996.9551234567891e-6, -5e-324, 1.7976931348623157e308}) {
     EXPECT_EQ(std::strtod(csv_number(value).c_str(), nullptr), value);
   }
 }

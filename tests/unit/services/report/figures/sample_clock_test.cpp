@@ -34,7 +34,8 @@ std::size_t bars_of(const Figure& figure) {
 }
 
 TEST(IntervalHistogram, HasABarForEveryTickOfANarrowDistribution) {
-  const auto figure = interval_histogram_figure(histogram_of({count_of(107670, 1), count_of(107671, 3000), count_of(107673, 20)}), "h");
+  const auto figure = interval_histogram_figure(
+      histogram_of({count_of(107670, 1), count_of(107671, 3000), count_of(107673, 20)}), "h");
   EXPECT_EQ(problem_of(figure.svg), "");
   EXPECT_EQ(bars_of(figure), 3U);
   EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("= 1 tick")));
@@ -42,8 +43,9 @@ TEST(IntervalHistogram, HasABarForEveryTickOfANarrowDistribution) {
 
 TEST(IntervalHistogram, MergesWholeTicksOfAWideDistribution) {
   std::vector<IntervalCount> counts;
-  for (std::int64_t tick = 52000; tick < 53000; ++tick)
+  for (std::int64_t tick = 52000; tick < 53000; ++tick) {
     counts.push_back(count_of(tick, 2));
+  }
   const auto figure = interval_histogram_figure(histogram_of(counts), "h");
   EXPECT_EQ(bars_of(figure), 84U); // 1000 ticks, 12 a bin
   EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("= 12 ticks")));
@@ -51,11 +53,14 @@ TEST(IntervalHistogram, MergesWholeTicksOfAWideDistribution) {
 }
 
 TEST(IntervalHistogram, HasNoBarForATickThatDidNotOccur) {
-  EXPECT_EQ(bars_of(interval_histogram_figure(histogram_of({count_of(100, 5), count_of(101, 0), count_of(102, 5)}), "h")), 2U);
+  EXPECT_EQ(bars_of(interval_histogram_figure(
+                histogram_of({count_of(100, 5), count_of(101, 0), count_of(102, 5)}), "h")),
+            2U);
 }
 
 TEST(IntervalHistogram, CountsWhatALostSampleMadeInsteadOfShowingIt) {
-  const auto figure = interval_histogram_figure(histogram_of({count_of(107671, 3000), count_of(2 * 107671, 2)}), "h");
+  const auto figure = interval_histogram_figure(
+      histogram_of({count_of(107671, 3000), count_of(2 * 107671, 2)}), "h");
   EXPECT_EQ(bars_of(figure), 1U);
   EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("2 beyond the axis")));
   EXPECT_THAT(figure.csv, ContainsRegex("\n215342,[0-9.]+,2\n"));
@@ -64,13 +69,15 @@ TEST(IntervalHistogram, CountsWhatALostSampleMadeInsteadOfShowingIt) {
 TEST(IntervalHistogram, IsDrawnWhenThereIsNothingOrNothingVaries) {
   const std::vector<std::vector<IntervalCount>> degenerate = {
       {}, {count_of(1, 0)}, {count_of(0, 7)}, {count_of(107671, 1)}, {count_of(107671, 1000000)}};
-  for (const auto& counts : degenerate)
+  for (const auto& counts : degenerate) {
     EXPECT_EQ(problem_of(interval_histogram_figure(histogram_of(counts), "h").svg), "");
+  }
   EXPECT_THAT(texts_of(interval_histogram_figure({}, "h").svg), Contains("no data"));
 }
 
 TEST(IntervalHistogram, NeedsNoTick) {
-  const IntervalHistogramData data{.title = "no tick", .counts = {{0, 996900.0, 3}, {0, 996950.0, 900}, {0, 997000.0, 5}}};
+  const IntervalHistogramData data{
+      .title = "no tick", .counts = {{0, 996900.0, 3}, {0, 996950.0, 900}, {0, 997000.0, 5}}};
   EXPECT_EQ(bars_of(interval_histogram_figure(data, "h")), 3U);
 }
 
@@ -84,27 +91,34 @@ TEST(IntervalOverTemperature, ShowsEveryIntervalAndEveryBin) {
   const auto figure = interval_over_temperature_figure(data, "t");
   EXPECT_EQ(problem_of(figure.svg), "");
   std::size_t dots = 0;
-  for (auto at = figure.svg.find("h0"); at != std::string::npos; at = figure.svg.find("h0", at + 1))
+  for (auto at = figure.svg.find("h0"); at != std::string::npos;
+       at = figure.svg.find("h0", at + 1)) {
     ++dots;
+  }
   EXPECT_EQ(dots, 50U);
-  EXPECT_EQ(count_elements(figure.svg, "circle"), 2U + 2U) << "two bins with a count, two in the legend";
+  EXPECT_EQ(count_elements(figure.svg, "circle"), 2U + 2U)
+      << "two bins with a count, two in the legend";
   EXPECT_THAT(figure.csv, HasSubstr("kind,temperature_degc,interval_ns,sd_interval_ns,count\n"));
 }
 
 TEST(IntervalOverTemperature, IsDrawnWhenThereIsNothingOrNothingVaries) {
   EXPECT_EQ(problem_of(interval_over_temperature_figure({}, "t").svg), "");
-  const IntervalOverTemperatureData equal{.title = "t", .temperature_degc = {28, 28}, .interval_ns = {5e5, 5e5}};
+  const IntervalOverTemperatureData equal{
+      .title = "t", .temperature_degc = {28, 28}, .interval_ns = {5e5, 5e5}};
   EXPECT_EQ(problem_of(interval_over_temperature_figure(equal, "t").svg), "");
-  const IntervalOverTemperatureData uneven{.title = "t", .temperature_degc = {28, 29}, .interval_ns = {5e5}};
+  const IntervalOverTemperatureData uneven{
+      .title = "t", .temperature_degc = {28, 29}, .interval_ns = {5e5}};
   EXPECT_EQ(problem_of(interval_over_temperature_figure(uneven, "t").svg), "");
 }
 
 TEST(IntervalOverTime, ShowsEveryIntervalOfTheCloseUp) {
   IntervalOverTimeData data{.title = "bma280", .close_up_first_time_s = 0.33};
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 100; ++i) {
     data.overview.push_back({0.01 * i, 484900, i % 40 == 0 ? 489200.0 : 485100.0, 485000});
-  for (int i = 0; i < 40; ++i)
+  }
+  for (int i = 0; i < 40; ++i) {
     data.close_up_ns.push_back(i == 20 ? 489200 : (i == 21 ? 480800 : 485000));
+  }
   const auto figure = interval_over_time_figure(data, "time");
   EXPECT_EQ(problem_of(figure.svg), "");
   EXPECT_EQ(count_elements(figure.svg, "circle"), 40U + 1);
@@ -114,8 +128,9 @@ TEST(IntervalOverTime, ShowsEveryIntervalOfTheCloseUp) {
 
 TEST(IntervalOverTime, IsNotFlattenedByALostSample) {
   IntervalOverTimeData data{.title = "gap"};
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 100; ++i) {
     data.overview.push_back({0.01 * i, 484990, i == 50 ? 970000.0 : 485010.0, 485000});
+  }
   const auto texts = texts_of(interval_over_time_figure(data, "time").svg);
   EXPECT_THAT(texts, Contains("485.000"));
   EXPECT_THAT(texts, Contains(HasSubstr("in 1 of 100 stretches")));
@@ -123,7 +138,8 @@ TEST(IntervalOverTime, IsNotFlattenedByALostSample) {
 
 TEST(IntervalOverTime, IsDrawnWhenThereIsNothingOrOnePoint) {
   EXPECT_EQ(problem_of(interval_over_time_figure({}, "time").svg), "");
-  const IntervalOverTimeData one{.title = "one", .overview = {{0, 1e6, 1e6, 1e6}}, .close_up_ns = {1e6}};
+  const IntervalOverTimeData one{
+      .title = "one", .overview = {{0, 1e6, 1e6, 1e6}}, .close_up_ns = {1e6}};
   EXPECT_EQ(problem_of(interval_over_time_figure(one, "time").svg), "");
 }
 

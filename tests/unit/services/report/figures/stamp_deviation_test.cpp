@@ -17,8 +17,10 @@ StampDeviationData data_of(std::size_t seconds) {
   data.title = "deviation";
   data.comments = {"positive: too late"};
   data.tick_s = 9.26e-9;
-  for (std::size_t s = 0; s < seconds; ++s)
-    data.deviations.push_back({s / 100, static_cast<double>(s), 50e-9 * std::sin(0.1 * static_cast<double>(s))});
+  for (std::size_t s = 0; s < seconds; ++s) {
+    data.deviations.push_back(
+        {s / 100, static_cast<double>(s), 50e-9 * std::sin(0.1 * static_cast<double>(s))});
+  }
   data.allan = {{1.0, 1e-8}, {2.0, 5e-9}};
   return data;
 }

@@ -26,7 +26,8 @@ TEST(SvgDocument, IsWellFormedWithEveryElement) {
   svg.polyline(points, {});
   svg.polygon(points, "#123456", 0.4);
   svg.rectangle({0, 0, 5, 5}, "none", {});
-  for (const auto marker : {Marker::none, Marker::circle, Marker::square, Marker::triangle, Marker::cross, Marker::dot}) {
+  for (const auto marker : {Marker::none, Marker::circle, Marker::square, Marker::triangle,
+                            Marker::cross, Marker::dot}) {
     svg.marker(marker, {5, 5}, 3, {});
   }
   svg.dots(points, 2, {});

@@ -25,8 +25,8 @@ TransferFunctionData low_pass(std::size_t frequencies) {
   data.title = "acc-1: dau/acceleration_z";
   for (std::size_t i = 0; i < frequencies; ++i) {
     const double frequency_hz = 10 * std::pow(10.0, 0.1 * static_cast<double>(i));
-    const TransferPoint mean{frequency_hz, 1 / std::hypot(1.0, frequency_hz / 180), 1e-3, -2 * std::numbers::pi * frequency_hz * delay_s,
-                             2e-3};
+    const TransferPoint mean{frequency_hz, 1 / std::hypot(1.0, frequency_hz / 180), 1e-3,
+                             -2 * std::numbers::pi * frequency_hz * delay_s, 2e-3};
     data.mean.push_back(mean);
     for (std::uint32_t repetition = 1; repetition <= 3; ++repetition) {
       auto point = mean;
@@ -40,13 +40,15 @@ TransferFunctionData low_pass(std::size_t frequencies) {
 std::size_t lines_without_comments(const std::string& csv) {
   std::istringstream stream(csv);
   std::size_t count = 0;
-  for (std::string line; std::getline(stream, line);)
+  for (std::string line; std::getline(stream, line);) {
     count += line.starts_with("#") ? 0 : 1;
+  }
   return count;
 }
 
 TEST(TransferFunctionFigure, ShowsEveryPointOfEveryRepetitionInBothPanels) {
-  const auto svg = transfer_function_figure(low_pass(4), "tf").svg; // too few low frequencies for an inset
+  const auto svg =
+      transfer_function_figure(low_pass(4), "tf").svg; // too few low frequencies for an inset
   EXPECT_EQ(problem_of(svg), "");
   // #1 are circles: one for each point and panel, and one in the legend.
   EXPECT_EQ(count_elements(svg, "circle"), 2U * 4 + 1);
@@ -62,9 +64,11 @@ TEST(TransferFunctionFigure, EnlargesLowFrequenciesWhereThereIsRoom) {
 TEST(TransferFunctionFigure, DrawsWrappedRepetitionsInTheTurnOfTheMean) {
   const auto data = low_pass(14);
   auto unwrapped = data;
-  for (std::size_t i = 0; i < data.repetitions.size(); ++i)
+  for (std::size_t i = 0; i < data.repetitions.size(); ++i) {
     unwrapped.repetitions[i].point.phase_rad = data.mean[i / 3].phase_rad;
-  EXPECT_EQ(transfer_function_figure(data, "tf").svg, transfer_function_figure(unwrapped, "tf").svg);
+  }
+  EXPECT_EQ(transfer_function_figure(data, "tf").svg,
+            transfer_function_figure(unwrapped, "tf").svg);
 }
 
 TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
@@ -72,8 +76,9 @@ TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
   data.unit = "(rad/s)/(m/s²)";
   data.group_delay = GroupDelay{delay_s, 1e-6, 0};
   const auto texts = texts_of(transfer_function_figure(data, "tf").svg);
-  for (const auto* text : {"acc-1: dau/acceleration_z", "frequency in Hz", "magnitude in (rad/s)/(m/s²)", "phase (lead) in rad", "#1", "#2",
-                           "#3", "group delay 8.1 ms", "10", "20", "50", "100", "200"}) {
+  for (const auto* text : {"acc-1: dau/acceleration_z", "frequency in Hz",
+                           "magnitude in (rad/s)/(m/s²)", "phase (lead) in rad", "#1", "#2", "#3",
+                           "group delay 8.1 ms", "10", "20", "50", "100", "200"}) {
     EXPECT_THAT(texts, Contains(text));
   }
 }
@@ -107,7 +112,8 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
   data.group_delay = GroupDelay{delay_s, 1e-6, 0.25};
   const auto csv = transfer_function_figure(data, "tf").csv;
   EXPECT_THAT(csv, HasSubstr("phase: lead, rad"));
-  EXPECT_THAT(csv, HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad\n"));
+  EXPECT_THAT(csv,
+              HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad\n"));
   EXPECT_THAT(csv, HasSubstr("intercept 0.25 rad"));
   EXPECT_THAT(csv, HasSubstr("\nmean,10,"));
   EXPECT_EQ(lines_without_comments(csv), 1U + 2 * 3 + 2);

@@ -6,7 +6,8 @@
 
 namespace dyncal::services::figures {
 
-// Empty when the text is well-formed XML with the root <svg> and without a number that is none; else what is wrong.
+// Empty when the text is well-formed XML with the root <svg> and without a number that is none;
+// else what is wrong.
 std::string problem_of(const std::string& svg);
 
 // How many elements of this name the document has.
