@@ -4,8 +4,7 @@
 // what to do about it. Drivers return tl::expected<T, Error>; they throw nothing and log nothing.
 #pragma once
 
-#include <string>
-#include <tl/expected.hpp>
+#include "analysis/base/failure.hpp"
 
 namespace dyncal::drivers {
 
@@ -18,10 +17,7 @@ enum class ErrorCode {
   invalid_setting // the caller asked for something that cannot be
 };
 
-struct Error {
-  ErrorCode code;
-  std::string message;
-};
+using Error = Failure<ErrorCode>;
 
 template <class T>
 using Expected = tl::expected<T, Error>;

@@ -4,8 +4,7 @@
 // to do about it.
 #pragma once
 
-#include <string>
-#include <tl/expected.hpp>
+#include "analysis/base/failure.hpp"
 
 namespace dyncal::services {
 
@@ -20,10 +19,7 @@ enum class ErrorCode {
   no_result     // the run ended without what it was for
 };
 
-struct Error {
-  ErrorCode code;
-  std::string message;
-};
+using Error = Failure<ErrorCode>;
 
 template <class T>
 using Expected = tl::expected<T, Error>;

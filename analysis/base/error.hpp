@@ -2,8 +2,7 @@
 // nothing.
 #pragma once
 
-#include <string>
-#include <tl/expected.hpp>
+#include "analysis/base/failure.hpp"
 
 namespace dyncal::analysis {
 
@@ -19,10 +18,7 @@ enum class ErrorCode {
   invalid_argument        // sizes or settings that contradict each other
 };
 
-struct Error {
-  ErrorCode code;
-  std::string message; // one sentence: what, where, what to do
-};
+using Error = Failure<ErrorCode>;
 
 template <class T>
 using Expected = tl::expected<T, Error>;

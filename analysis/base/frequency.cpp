@@ -143,17 +143,16 @@ Expected<Frequency> Frequency::parse(std::string_view decimal_hz) {
   std::string quoted = "'";
   quoted.append(decimal_hz.substr(0, 64)).append("'");
   if (!DecimalReader(decimal_hz).read(decimal)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument,
-              "the frequency " + quoted + " is not a decimal number; write hertz such as 12.5"});
+    return fail(ErrorCode::invalid_argument,
+                "the frequency " + quoted + " is not a decimal number; write hertz such as 12.5");
   }
   // Outside of this range neither a sample rate nor the arithmetic could follow.
   const bool zero = decimal.digits.high == 0.0;
   const double magnitude = zero ? 0.0 : std::log10(decimal.digits.high) + decimal.exponent;
   if (zero || decimal.negative || magnitude < -12.0 || magnitude > 12.0) {
-    return tl::unexpected(Error{ErrorCode::frequency_out_of_range,
-                                "the frequency " + quoted +
-                                    " Hz must lie between 1e-12 and 1e12; it must be positive"});
+    return fail(ErrorCode::frequency_out_of_range,
+                "the frequency " + quoted +
+                    " Hz must lie between 1e-12 and 1e12; it must be positive");
   }
   const DoubleDouble per_ns = scaled_by_ten(decimal.digits, decimal.exponent - 9);
   return Frequency(per_ns.high, per_ns.low);

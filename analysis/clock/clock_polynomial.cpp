@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace dyncal::analysis {
-namespace {
-
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
-} // namespace
-
 double ClockPolynomial::time_error_s(std::int64_t time_ns) const {
   const double u = static_cast<double>(time_ns - origin_ns) * 1e-9 / half_span_s;
   double value = 0.0;
@@ -33,24 +25,24 @@ double ClockPolynomial::rate_error(std::int64_t time_ns) const {
 Expected<ClockPolynomial> fit_clock_polynomial(std::span<const BlockPhase> blocks, int order,
                                                Loss loss) {
   if (blocks.empty() || order < 1 || order > 12) {
-    return failure(ErrorCode::invalid_argument,
-                   "a clock polynomial has an order from 1 to 12 and needs blocks");
+    return fail(ErrorCode::invalid_argument,
+                "a clock polynomial has an order from 1 to 12 and needs blocks");
   }
   std::int64_t first = blocks.front().time_ns, last = first;
   std::size_t steps = 0;
   for (const BlockPhase& block : blocks) {
     if (!(block.angular_frequency > 0.0) || !(block.u_phase_rad > 0.0) ||
         !std::isfinite(block.phase_rad)) {
-      return failure(ErrorCode::invalid_argument,
-                     "every block needs a frequency, a phase and a positive uncertainty");
+      return fail(ErrorCode::invalid_argument,
+                  "every block needs a frequency, a phase and a positive uncertainty");
     }
     first = std::min(first, block.time_ns);
     last = std::max(last, block.time_ns);
     steps = std::max(steps, block.step + 1);
   }
   if (steps > blocks.size()) {
-    return failure(ErrorCode::invalid_argument,
-                   "the steps of the blocks must be numbered from 0 without gaps");
+    return fail(ErrorCode::invalid_argument,
+                "the steps of the blocks must be numbered from 0 without gaps");
   }
   ClockPolynomial result;
   result.origin_ns = first + (last - first) / 2;
@@ -94,7 +86,7 @@ Expected<ClockPolynomial> fit_clock_polynomial(std::span<const BlockPhase> block
   };
   const auto solution = solve_least_squares(problem);
   if (!solution) {
-    return tl::unexpected(solution.error());
+    return fail(solution.error());
   }
 
   for (std::size_t k = 0; k < powers; ++k) {

@@ -37,18 +37,16 @@ Expected<std::vector<ClockComparison>>
 compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
                         std::span<const double> sync, int periods) {
   if (stamps_ns.size() != sync.size() || periods < 1) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument,
-              "a clock comparison needs as many stamps as values, and a period at least"});
+    return fail(ErrorCode::invalid_argument,
+                "a clock comparison needs as many stamps as values, and a period at least");
   }
   if (stamps_ns.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "there are no samples to compare the clock by"});
+    return fail(ErrorCode::too_few_samples, "there are no samples to compare the clock by");
   }
   const std::array whole_record{sync};
   const auto whole = fit_sine(frequency, stamps_ns.front(), stamps_ns, whole_record);
   if (!whole) {
-    return tl::unexpected(whole.error());
+    return fail(whole.error());
   }
   const std::complex<double> mean((*whole)[0].sine, (*whole)[0].cosine);
 
@@ -56,8 +54,7 @@ compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t
   const auto count = static_cast<std::int64_t>(
       static_cast<double>(stamps_ns.back() - stamps_ns.front()) / block_ns);
   if (count < 3) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "a clock comparison needs three blocks"});
+    return fail(ErrorCode::too_few_samples, "a clock comparison needs three blocks");
   }
   std::vector<ClockComparison> result;
   auto first = stamps_ns.begin();
@@ -81,8 +78,7 @@ compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t
     result.push_back(block);
   }
   if (result.size() < 3) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "too many samples are missing to compare the clock"});
+    return fail(ErrorCode::too_few_samples, "too many samples are missing to compare the clock");
   }
   return result;
 }

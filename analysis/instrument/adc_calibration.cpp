@@ -11,10 +11,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 std::string number(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -38,13 +34,13 @@ bool by_amplitude_and_frequency(const AdcCalibrationPoint& a, const AdcCalibrati
 Expected<std::vector<AdcCalibrationPoint>>
 of_one_amplitude(std::span<const AdcCalibrationPoint> points, std::optional<double> wanted_vpp) {
   if (points.empty()) {
-    return failure(ErrorCode::invalid_argument, "the ADC calibration has no points");
+    return fail(ErrorCode::invalid_argument, "the ADC calibration has no points");
   }
   double chosen = points.front().test_amplitude_vpp;
   for (const AdcCalibrationPoint& point : points) {
     if (!(point.frequency_hz > 0.0) || !(point.gain > 0.0) || !std::isfinite(point.phase_lag_rad)) {
-      return failure(ErrorCode::invalid_argument,
-                     "the ADC calibration has a point without frequency, gain or phase");
+      return fail(ErrorCode::invalid_argument,
+                  "the ADC calibration has a point without frequency, gain or phase");
     }
     if (wanted_vpp) {
       if (std::abs(std::log(point.test_amplitude_vpp / *wanted_vpp)) <
@@ -52,15 +48,15 @@ of_one_amplitude(std::span<const AdcCalibrationPoint> points, std::optional<doub
         chosen = point.test_amplitude_vpp;
       }
     } else if (!same(point.test_amplitude_vpp, chosen)) {
-      return failure(ErrorCode::invalid_argument,
-                     "the ADC calibration has several test amplitudes (" + number(chosen) +
-                         " and " + number(point.test_amplitude_vpp) + " Vpp), choose one");
+      return fail(ErrorCode::invalid_argument,
+                  "the ADC calibration has several test amplitudes (" + number(chosen) + " and " +
+                      number(point.test_amplitude_vpp) + " Vpp), choose one");
     }
   }
   if (wanted_vpp && !(std::abs(std::log2(chosen / *wanted_vpp)) <= 1.0)) {
-    return failure(ErrorCode::out_of_calibration,
-                   "the ADC was not calibrated near " + number(*wanted_vpp) +
-                       " Vpp, the nearest test amplitude is " + number(chosen) + " Vpp");
+    return fail(ErrorCode::out_of_calibration,
+                "the ADC was not calibrated near " + number(*wanted_vpp) +
+                    " Vpp, the nearest test amplitude is " + number(chosen) + " Vpp");
   }
   std::vector<AdcCalibrationPoint> result;
   std::copy_if(
@@ -253,15 +249,15 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
                                       std::optional<double> test_amplitude_vpp) {
   const auto points = of_one_amplitude(all_points, test_amplitude_vpp);
   if (!points) {
-    return tl::unexpected(points.error());
+    return fail(points.error());
   }
   const double lowest = points->front().frequency_hz;
   const double highest = points->back().frequency_hz;
   if (!(frequency_hz >= lowest * (1.0 - 1e-9) && frequency_hz <= highest * (1.0 + 1e-9))) {
-    return failure(ErrorCode::out_of_calibration,
-                   number(frequency_hz) +
-                       " Hz is outside the range in which the ADC was calibrated, " +
-                       number(lowest) + " Hz to " + number(highest) + " Hz");
+    return fail(ErrorCode::out_of_calibration,
+                number(frequency_hz) +
+                    " Hz is outside the range in which the ADC was calibrated, " + number(lowest) +
+                    " Hz to " + number(highest) + " Hz");
   }
   if (points->size() == 1) {
     const AdcCalibrationPoint& only = points->front();
@@ -272,9 +268,9 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   std::vector<double> f, gains, lags, u_gains, u_lags;
   for (const AdcCalibrationPoint& point : *points) {
     if (!f.empty() && same(point.frequency_hz, f.back())) {
-      return failure(ErrorCode::invalid_argument,
-                     "the ADC calibration has " + number(point.frequency_hz) +
-                         " Hz twice, make one point of repeated measurements first");
+      return fail(ErrorCode::invalid_argument,
+                  "the ADC calibration has " + number(point.frequency_hz) +
+                      " Hz twice, make one point of repeated measurements first");
     }
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));

@@ -36,14 +36,13 @@ Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor
                                          double max_apart_s,
                                          const AdcComparisonUncertainty& uncertainty) {
   if (!usable(acs) || !usable(dau)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument, "a sync signal has no amplitude or no frequency"});
+    return fail(ErrorCode::invalid_argument, "a sync signal has no amplitude or no frequency");
   }
   const double apart_s = static_cast<double>(dau.reference_ns - acs.reference_ns) * 1e-9;
   if (!(std::abs(apart_s) <= max_apart_s)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                "the records of the two systems lie " + std::to_string(apart_s) +
-                                    " s apart: their stamps are not on one time scale"});
+    return fail(ErrorCode::invalid_argument,
+                "the records of the two systems lie " + std::to_string(apart_s) +
+                    " s apart: their stamps are not on one time scale");
   }
   const double half_s = 0.5 * apart_s; // from the ACS's instant onwards, from the DAU's back
   const double phase_rad = std::arg(phasor_of(dau)) - turn_rad * dau.frequency_hz * half_s -

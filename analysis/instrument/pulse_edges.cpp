@@ -246,14 +246,13 @@ std::uint64_t SortedPulses::count(PulseFault fault, PulseInput input) const {
 Expected<SortedPulses> sort_pulse_edges(std::span<const PulseEdge> record,
                                         const PulseEdgeSettings& settings) {
   if (!(settings.tolerance_s > 0.0 && settings.tolerance_s < 0.1)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                "the tolerance of a pulse must be above 0 and below 0.1 s"});
+    return fail(ErrorCode::invalid_argument,
+                "the tolerance of a pulse must be above 0 and below 0.1 s");
   }
   const double second_ticks =
       record.size() < 3 ? 0.0 : usual_interval(record, Counter(record), settings.tolerance_s);
   if (!(second_ticks >= min_second_ticks)) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "the record has no edges that are a second apart"});
+    return fail(ErrorCode::too_few_samples, "the record has no edges that are a second apart");
   }
   SortedPulses sorted = Sorter(record, settings.tolerance_s, second_ticks).sort();
   std::size_t kept = 0;
@@ -262,9 +261,8 @@ Expected<SortedPulses> sort_pulse_edges(std::span<const PulseEdge> record,
   }
   // Any edges have a most usual distance: only when most of them lie on its grid is it a second.
   if (2 * kept < record.size()) {
-    return tl::unexpected(Error{ErrorCode::too_few_samples,
-                                "most edges of the record are not whole seconds apart: "
-                                "is it a record of pulses per second?"});
+    return fail(ErrorCode::too_few_samples, "most edges of the record are not whole seconds apart: "
+                                            "is it a record of pulses per second?");
   }
   return sorted;
 }

@@ -218,8 +218,8 @@ std::optional<PulsePrediction> predict_gps_pulses(const SortedPulses& pulses) {
 Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
                                                     const StampDeviationSettings& settings) {
   if (!(settings.u_reference_s >= 0.0)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                "the uncertainty of the reference pulse must not be negative"});
+    return fail(ErrorCode::invalid_argument,
+                "the uncertainty of the reference pulse must not be negative");
   }
   StampDeviationStatistics statistics;
   std::vector<Raw> raws;
@@ -230,8 +230,8 @@ Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
     begin_s += length_s(pulses.sessions[i], pulses.ticks_per_second) + 1.0;
   }
   if (raws.size() < 3) {
-    return tl::unexpected(Error{ErrorCode::too_few_samples,
-                                "fewer than three edges of the reference pulse have a stamp"});
+    return fail(ErrorCode::too_few_samples,
+                "fewer than three edges of the reference pulse have a stamp");
   }
   remove_whole_seconds(raws, settings.reference_offset_s);
   std::vector<double> deviations_s;

@@ -12,10 +12,6 @@
 namespace dyncal::analysis {
 namespace {
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 double quantile(std::vector<double> values, double part) {
   const auto place =
       values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -46,14 +42,14 @@ MeanAndScatter mean_and_scatter(std::span<const ShotDelay> shots, Value value) {
 
 Expected<double> rising_edge_s(double first_s, double interval_s, std::span<const double> volts) {
   if (volts.size() < 10 || !(interval_s > 0.0)) {
-    return failure(ErrorCode::too_few_samples, "a trace of fewer than 10 samples shows no edge");
+    return fail(ErrorCode::too_few_samples, "a trace of fewer than 10 samples shows no edge");
   }
   const std::vector<double> all(volts.begin(), volts.end());
   const double low = quantile(all, 0.02);
   const double high = quantile(all, 0.98);
   const double height = high - low;
   const auto no_edge = [] {
-    return failure(ErrorCode::no_excitation, "the trace shows no rising edge");
+    return fail(ErrorCode::no_excitation, "the trace shows no rising edge");
   };
   // The last sample below 20 % before the first one above 80 %.
   const auto above =
@@ -72,8 +68,8 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
   const auto low_again =
       std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
   if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
-    return failure(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of "
-                                             "them belongs to the trigger is unknown");
+    return fail(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of "
+                                          "them belongs to the trigger is unknown");
   }
   // Line through what lies between, both neighbours included when the edge is as steep as the
   // sampling.
@@ -107,11 +103,11 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
 Expected<ShotDelay> delay_by_rectangle(const DelayTrace& trace) {
   const auto in = rising_edge_s(trace.first_s, trace.interval_s, trace.sync);
   if (!in) {
-    return failure(in.error().code, "sync: " + in.error().message);
+    return fail(in.error().code, "sync: " + in.error().message);
   }
   const auto out = rising_edge_s(trace.first_s, trace.interval_s, trace.output);
   if (!out) {
-    return failure(out.error().code, "trigger output: " + out.error().message);
+    return fail(out.error().code, "trigger output: " + out.error().message);
   }
   return ShotDelay{*out - *in, *out - *in};
 }
@@ -119,7 +115,7 @@ Expected<ShotDelay> delay_by_rectangle(const DelayTrace& trace) {
 Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& frequency) {
   const auto out = rising_edge_s(trace.first_s, trace.interval_s, trace.output);
   if (!out) {
-    return failure(out.error().code, "trigger output: " + out.error().message);
+    return fail(out.error().code, "trigger output: " + out.error().message);
   }
   // Femtoseconds: oscilloscopes sample faster than whole nanoseconds can say. The frequency is in
   // turns per femtosecond times 1e9.
@@ -130,7 +126,7 @@ Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& freq
   const std::array channels{trace.sync};
   const auto fits = fit_sine(Frequency::from_hz(frequency.hz() * 1e-6), 0, stamps_fs, channels);
   if (!fits) {
-    return failure(fits.error().code, "sync: " + fits.error().message);
+    return fail(fits.error().code, "sync: " + fits.error().message);
   }
   const double zero_s = -fits->front().phase_rad() / (2.0 * std::numbers::pi * frequency.hz());
   return ShotDelay{*out, *out - zero_s};
@@ -138,7 +134,7 @@ Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& freq
 
 Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, double interval_s) {
   if (shots.size() < 3) {
-    return failure(ErrorCode::too_few_samples, "the delay needs three shots at least");
+    return fail(ErrorCode::too_few_samples, "the delay needs three shots at least");
   }
   const auto tau = [](const ShotDelay& shot) { return shot.output_delay_s; };
   const MeanAndScatter output = mean_and_scatter(shots, tau);

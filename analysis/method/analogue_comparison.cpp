@@ -26,7 +26,7 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
   const auto system = evaluate_system(input.frequency, input.frequency_search_rel, input.stamps_ns,
                                       input.reference, input.dut);
   if (!system) {
-    return tl::unexpected(system.error());
+    return fail(system.error());
   }
   const RecordedSeries& reference = system->pilot;
   const double w = reference.result.frequency.angular();
@@ -50,7 +50,7 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
   const auto acs = evaluate_system(input.frequency, input.frequency_search_rel,
                                    input.reference_stamps_ns, input.reference, {});
   if (!acs) {
-    return tl::unexpected(acs.error());
+    return fail(acs.error());
   }
   const RecordedSeries& reference = acs->pilot;
   ComparisonResult result{reference.result, {}};
@@ -63,7 +63,7 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
     auto point = evaluate_stamped_apart(reference.result, link, common, input.dut_stamps_ns,
                                         channel, stamps);
     if (!point) {
-      return tl::unexpected(point.error());
+      return fail(point.error());
     }
     result.points.push_back(std::move(*point));
   }

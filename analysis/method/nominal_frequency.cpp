@@ -14,8 +14,8 @@ Expected<NominalFrequency> real_rate_from_apparent_frequency(double nominal_rate
                                                              double apparent_hz,
                                                              double u_apparent_hz) {
   if (!(nominal_rate_hz > 0.0) || !(applied_hz > 0.0) || !(apparent_hz > 0.0)) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                "nominal rate, applied and apparent frequency must be positive"});
+    return fail(ErrorCode::invalid_argument,
+                "nominal rate, applied and apparent frequency must be positive");
   }
   NominalFrequency result;
   result.apparent_hz = apparent_hz;
@@ -33,8 +33,7 @@ Expected<NominalFrequency> evaluate_nominal_frequency(double nominal_rate_hz,
                                                       std::span<const double> samples,
                                                       double rate_tolerance_rel) {
   if (!(nominal_rate_hz > 0.0)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument, "the nominal sample rate must be positive"});
+    return fail(ErrorCode::invalid_argument, "the nominal sample rate must be positive");
   }
   const EquidistantAxis axis(1.0 / nominal_rate_hz);
   const std::vector<std::int64_t> stamps_ns = axis.stamps_ns(samples.size());
@@ -43,7 +42,7 @@ Expected<NominalFrequency> evaluate_nominal_frequency(double nominal_rate_hz,
   const auto fit = fit_sine_and_frequency(axis.on_axis(applied.hz()), rate_tolerance_rel, middle_ns,
                                           stamps_ns, channels);
   if (!fit) {
-    return tl::unexpected(fit.error());
+    return fail(fit.error());
   }
   return real_rate_from_apparent_frequency(nominal_rate_hz, applied.hz(), u_applied_hz,
                                            axis.hz(fit->frequency.hz()),

@@ -26,7 +26,7 @@ Expected<TransferPoint> evaluate_stamped_apart(const SeriesFit& pilot, std::comp
                                                const StampsApart& stamps) {
   const auto sensor = evaluate_weak_series(pilot.frequency, dut_stamps_ns, dut);
   if (!sensor) {
-    return tl::unexpected(sensor.error());
+    return fail(sensor.error());
   }
   const double turns =
       pilot.frequency.reduced_turns(sensor->result.reference_ns - pilot.reference_ns);

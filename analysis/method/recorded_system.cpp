@@ -16,7 +16,7 @@ constexpr double weak_phasor = 10.0;   // u: below, magnitude and phase are not 
 
 tl::unexpected<Error> of_series(const std::string& series, Error error) {
   error.message = series + ": " + error.message;
-  return tl::unexpected(std::move(error));
+  return fail(std::move(error));
 }
 
 struct FitNoise {
@@ -124,10 +124,10 @@ Expected<RecordedSystem> evaluate_system(const Frequency& nominal, double freque
   all.insert(all.end(), others.begin(), others.end());
   auto series = evaluate_series(frequency, u_frequency_hz, stamps_ns, all);
   if (!series) {
-    return tl::unexpected(series.error());
+    return fail(series.error());
   }
   if (const auto excited = require_excitation(series->front()); !excited) {
-    return tl::unexpected(excited.error());
+    return fail(excited.error());
   }
   RecordedSystem system{std::move(series->front()), {}};
   system.others.assign(std::make_move_iterator(series->begin() + 1),
@@ -140,7 +140,7 @@ Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency,
                                               const ChannelSamples& channel) {
   auto series = evaluate_series(frequency, 0.0, stamps_ns, std::span(&channel, 1));
   if (!series) {
-    return tl::unexpected(series.error());
+    return fail(series.error());
   }
   return std::move(series->front());
 }

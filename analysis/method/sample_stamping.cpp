@@ -81,18 +81,18 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
                                    input.sync_acs, std::span(&input.reference, 1));
   if (!acs) {
-    return tl::unexpected(acs.error());
+    return fail(acs.error());
   }
   const bool apart = !input.dut_stamps_ns.empty();
   const auto dau = evaluate_system(
       input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
       apart ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
   if (!dau) {
-    return tl::unexpected(dau.error());
+    return fail(dau.error());
   }
   const RecordedSeries& reference = acs->others.front();
   if (const auto excited = require_excitation(reference); !excited) {
-    return tl::unexpected(excited.error());
+    return fail(excited.error());
   }
 
   // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
@@ -117,7 +117,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
         dau->pilot.result, link, common, input.dut_stamps_ns, dut,
         {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
     if (!point) {
-      return tl::unexpected(point.error());
+      return fail(point.error());
     }
     result.points.push_back(std::move(*point));
   }

@@ -59,7 +59,7 @@ Expected<TriggerPhase> fit_trigger(const SeriesShot& shot, const Frequency& freq
   const auto fits =
       fit_sine(axis.on_axis(frequency.hz()), 0, axis.stamps_ns(shot.dso_sync.size()), channels);
   if (!fits) {
-    return tl::unexpected(fits.error());
+    return fail(fits.error());
   }
   const SineFit& fit = fits->front();
   return TriggerPhase{std::complex<double>(fit.sine, fit.cosine) *
@@ -88,11 +88,11 @@ Expected<FrequencyFit> fit_apparent_frequency(const SeriesStampingInput& input,
   auto series = shots_of_channel(input, 0);
   const auto raw = fit_sine_and_frequency(start, input.rate_tolerance_rel, 0, stamps, series);
   if (!raw) {
-    return tl::unexpected(raw.error());
+    return fail(raw.error());
   }
   const auto undisturbed = fit_sine_beside_disturbances(raw->frequency, 0, stamps, series);
   if (!undisturbed) {
-    return tl::unexpected(undisturbed.error());
+    return fail(undisturbed.error());
   }
   bool cleaned = false;
   for (std::size_t j = 0; j < series.size(); ++j) {
@@ -144,16 +144,16 @@ Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs
 
 Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input) {
   if (const auto problem = problem_with(input)) {
-    return tl::unexpected(*problem);
+    return fail(*problem);
   }
   const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
                                    input.sync_acs, std::span(&input.reference, 1));
   if (!acs) {
-    return tl::unexpected(acs.error());
+    return fail(acs.error());
   }
   const RecordedSeries& reference = acs->others.front();
   if (const auto excited = require_excitation(reference); !excited) {
-    return tl::unexpected(excited.error());
+    return fail(excited.error());
   }
   const SeriesFit& sync = acs->pilot.result;
   const double w = sync.frequency.angular();
@@ -162,7 +162,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   for (std::size_t j = 0; j < input.shots.size(); ++j) {
     const auto trigger = fit_trigger(input.shots[j], sync.frequency);
     if (!trigger) {
-      return tl::unexpected(of_shot(j, "oscilloscope", trigger.error()));
+      return fail(of_shot(j, "oscilloscope", trigger.error()));
     }
     triggers.push_back(*trigger);
   }
@@ -172,13 +172,13 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
       axis.stamps_ns(input.shots.front().series.front().size());
   const auto pilot = fit_apparent_frequency(input, axis.on_axis(sync.frequency.hz()), stamps);
   if (!pilot) {
-    return tl::unexpected(of_channel(input.channels.front(), pilot.error()));
+    return fail(of_channel(input.channels.front(), pilot.error()));
   }
   const auto rate = real_rate_from_apparent_frequency(
       input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
       axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
   if (!rate) {
-    return tl::unexpected(rate.error());
+    return fail(rate.error());
   }
 
   // Everything that is the same for all shots: the reference's phasor against sync, and the way
@@ -198,7 +198,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
     const auto fits =
         fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
     if (!fits) {
-      return tl::unexpected(of_channel(input.channels[c], fits.error()));
+      return fail(of_channel(input.channels[c], fits.error()));
     }
     SeriesChannelResult channel{input.channels[c], {}, {}};
     for (std::size_t j = 0; j < fits->size(); ++j) {
@@ -207,7 +207,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
     }
     const auto mean = mean_of_repetitions(channel.shots);
     if (!mean) {
-      return tl::unexpected(mean.error());
+      return fail(mean.error());
     }
     channel.mean = *mean;
     result.channels.push_back(std::move(channel));

@@ -16,10 +16,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double weakest_phase_rad = 0.5; // a point less certain than this does not count
 constexpr std::size_t min_to_search = 6;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 std::string hertz(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -121,10 +117,9 @@ Expected<std::vector<double>> unwrap_points_that_count(const std::vector<PhasePo
     const double step = wrap_phase(phase - predicted);
     const double u = std::hypot(points[i].u_phase_rad, points[i - 1].u_phase_rad);
     if (std::abs(step) >= pi - 3.0 * u) {
-      return failure(ErrorCode::not_converged, "the phase cannot be unwrapped from " +
-                                                   hertz(points[i - 1].frequency_hz) + " to " +
-                                                   hertz(points[i].frequency_hz) +
-                                                   ", measure at closer frequencies");
+      return fail(ErrorCode::not_converged,
+                  "the phase cannot be unwrapped from " + hertz(points[i - 1].frequency_hz) +
+                      " to " + hertz(points[i].frequency_hz) + ", measure at closer frequencies");
     }
     unwrapped.push_back(predicted + step);
   }
@@ -222,17 +217,17 @@ std::vector<double> place_on_line(std::span<const PhasePoint> points,
 Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
                                           const CommonPhaseUncertainty& common) {
   if (const auto problem = problem_with(points)) {
-    return tl::unexpected(*problem);
+    return fail(*problem);
   }
   const std::vector<PhasePoint> counted = points_that_count(points);
   if (counted.size() < 2) {
-    return failure(
+    return fail(
         ErrorCode::too_few_samples,
         "a group delay needs the phase at two frequencies with an uncertainty below 0.5 rad");
   }
   const auto phases = unwrap_points_that_count(counted);
   if (!phases) {
-    return tl::unexpected(phases.error());
+    return fail(phases.error());
   }
 
   const Line line = fit_line(counted, *phases);
@@ -259,7 +254,7 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
 Expected<std::vector<double>> unwrap_phase(std::span<const PhasePoint> points) {
   const auto result = evaluate_group_delay(points);
   if (!result) {
-    return tl::unexpected(result.error());
+    return fail(result.error());
   }
   return result->unwrapped_rad;
 }

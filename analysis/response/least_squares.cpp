@@ -14,10 +14,6 @@
 namespace dyncal::analysis {
 namespace {
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
@@ -111,8 +107,7 @@ ceres::Solver::Options solver_options(const Strategy& strategy) {
 }
 
 Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
-  Expected<LeastSquaresSolution> best =
-      failure(ErrorCode::not_converged, "the model was not fitted");
+  Expected<LeastSquaresSolution> best = fail(ErrorCode::not_converged, "the model was not fitted");
   double lowest = std::numeric_limits<double>::infinity();
   for (const Strategy& strategy : strategies) {
     LeastSquaresSolution solution;
@@ -123,7 +118,7 @@ Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
     ceres::Solve(solver_options(strategy), &problem, &summary);
     if (summary.termination_type != ceres::CONVERGENCE) {
       if (!best) {
-        best = failure(ErrorCode::not_converged, "the model was not fitted: " + summary.message);
+        best = fail(ErrorCode::not_converged, "the model was not fitted: " + summary.message);
       }
       continue;
     }
@@ -163,7 +158,7 @@ public:
         jacobian(problem.residuals * parameters.size());
     if (!problem.evaluate(parameters, residuals, jacobian) || !finite(residuals) ||
         !finite(jacobian)) {
-      return failure(ErrorCode::not_finite, "the model has no value near the end of the search");
+      return fail(ErrorCode::not_finite, "the model has no value near the end of the search");
     }
     Linearised result;
     result.residuals_ = Eigen::Map<Eigen::VectorXd>(residuals.data(), n);
@@ -207,8 +202,8 @@ public:
 
 private:
   static tl::unexpected<Error> undetermined() {
-    return failure(ErrorCode::ill_conditioned,
-                   "the measured values do not determine all parameters of the model");
+    return fail(ErrorCode::ill_conditioned,
+                "the measured values do not determine all parameters of the model");
   }
 
   [[nodiscard]] double variance_factor(ResidualVariance variance) const {
@@ -275,11 +270,11 @@ Expected<LeastSquaresSolution> solve_least_squares(const LeastSquaresProblem& pr
   const bool needs_scatter =
       problem.variance == ResidualVariance::estimated || problem.loss != Loss::none;
   if (p == 0 || n < p || (needs_scatter && n == p)) {
-    return failure(ErrorCode::too_few_samples, "a model needs more values than it has parameters");
+    return fail(ErrorCode::too_few_samples, "a model needs more values than it has parameters");
   }
   std::vector<double> residuals(n);
   if (!problem.evaluate(problem.start, residuals, {}) || !finite(residuals)) {
-    return failure(ErrorCode::not_finite, "the model has no value at the start of the search");
+    return fail(ErrorCode::not_finite, "the model has no value at the start of the search");
   }
 
   auto solution = search(problem);
@@ -288,7 +283,7 @@ Expected<LeastSquaresSolution> solve_least_squares(const LeastSquaresProblem& pr
   }
   const auto minimum = polish(problem, solution->parameters);
   if (!minimum) {
-    return tl::unexpected(minimum.error());
+    return fail(minimum.error());
   }
   const RowMajor covariance = minimum->covariance(problem.variance);
   solution->covariance.assign(covariance.data(), covariance.data() + covariance.size());

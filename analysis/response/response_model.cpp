@@ -17,10 +17,6 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t max_parameters = 5;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 bool has_first_order(ResponseKind kind) {
   return kind == ResponseKind::first_order || kind == ResponseKind::second_and_first_order;
 }
@@ -85,7 +81,7 @@ Expected<Eigen::MatrixXd> whitening(std::span<const ResponsePoint> points,
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) {
-    return failure(ErrorCode::invalid_argument, "the uncertainties of a response must be positive");
+    return fail(ErrorCode::invalid_argument, "the uncertainties of a response must be positive");
   }
   return Eigen::MatrixXd(factor.matrixL().solve(Eigen::MatrixXd::Identity(2 * n, 2 * n)));
 }
@@ -145,7 +141,7 @@ Expected<Start> start_of(std::span<const ResponsePoint> points) {
   }
   const auto delay = evaluate_group_delay(phases);
   if (!delay) {
-    return tl::unexpected(delay.error());
+    return fail(delay.error());
   }
   return Start{delay->delay_s, delay->polarity_inverted};
 }
@@ -228,22 +224,22 @@ Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const Respons
   for (const ResponsePoint& point : points) {
     if (!(std::abs(point.h) > 0.0) || !(point.u_magnitude_rel > 0.0) ||
         !(point.u_phase_rad > 0.0)) {
-      return failure(ErrorCode::invalid_argument,
-                     "every point of a response needs a magnitude and positive uncertainties");
+      return fail(ErrorCode::invalid_argument,
+                  "every point of a response needs a magnitude and positive uncertainties");
     }
   }
   if (loss != Loss::none &&
       (common.gain_rel > 0.0 || common.delay_s > 0.0 || common.phase_rad > 0.0)) {
-    return failure(ErrorCode::invalid_argument,
-                   "a robust fit takes points that are independent, without common uncertainties");
+    return fail(ErrorCode::invalid_argument,
+                "a robust fit takes points that are independent, without common uncertainties");
   }
   const auto start = start_of(points);
   if (!start) {
-    return tl::unexpected(start.error());
+    return fail(start.error());
   }
   const auto white = whitening(points, common);
   if (!white) {
-    return tl::unexpected(white.error());
+    return fail(white.error());
   }
   const Layout layout{kind, 1.0 / (2.0 * pi * points.back().frequency_hz)};
 
@@ -252,7 +248,7 @@ Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const Respons
   problem.evaluate = ResponseResiduals(layout, start->inverted, points, *white);
   problem.loss = loss;
   Expected<LeastSquaresSolution> best =
-      failure(ErrorCode::not_converged, "the model was not fitted from any start");
+      fail(ErrorCode::not_converged, "the model was not fitted from any start");
   for (std::vector<double>& x : starting_points(layout, *start, points)) {
     problem.start = std::move(x);
     auto solution = solve_least_squares(problem);
@@ -261,7 +257,7 @@ Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const Respons
     }
   }
   if (!best) {
-    return tl::unexpected(best.error());
+    return fail(best.error());
   }
   return describe(layout, start->inverted, *best);
 }

@@ -10,16 +10,11 @@ namespace {
 
 constexpr double min_reciprocal_condition = 1e-6;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 } // namespace
 
 Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation> excitations) {
   if (excitations.size() < 3) {
-    return failure(ErrorCode::too_few_samples,
-                   "a 3x3 response needs excitations in three directions");
+    return fail(ErrorCode::too_few_samples, "a 3x3 response needs excitations in three directions");
   }
   const auto n = static_cast<Eigen::Index>(excitations.size());
   Eigen::Matrix<std::complex<double>, 3, Eigen::Dynamic> motion(3, n), answer(3, n);
@@ -31,7 +26,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
     }
   }
   if (!motion.allFinite() || !answer.allFinite()) {
-    return failure(ErrorCode::not_finite, "a phasor of the three axes is no number");
+    return fail(ErrorCode::not_finite, "a phasor of the three axes is no number");
   }
 
   const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition(motion,
@@ -40,8 +35,8 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
   TriaxialResponse result;
   result.reciprocal_condition = singular(0) > 0.0 ? singular(2) / singular(0) : 0.0;
   if (!(result.reciprocal_condition > min_reciprocal_condition)) {
-    return failure(ErrorCode::ill_conditioned,
-                   "the excitations do not move the sensor in three different directions");
+    return fail(ErrorCode::ill_conditioned,
+                "the excitations do not move the sensor in three different directions");
   }
   const Eigen::MatrixXcd inverse = decomposition.matrixV() * singular.cwiseInverse().asDiagonal() *
                                    decomposition.matrixU().adjoint(); // n x 3
@@ -70,11 +65,11 @@ Expected<TransverseSensitivity>
 transverse_sensitivity(const Axes& column, const std::array<double, 3>& u_column, std::size_t axis,
                        const std::array<double, 3>& own_response, double transverse_motion_rel) {
   if (axis >= 3 || !(transverse_motion_rel >= 0.0)) {
-    return failure(ErrorCode::invalid_argument, "an axis is 0, 1 or 2, and the bound not negative");
+    return fail(ErrorCode::invalid_argument, "an axis is 0, 1 or 2, and the bound not negative");
   }
   const double main = std::abs(column[axis]);
   if (!(main > 0.0)) {
-    return failure(ErrorCode::no_excitation, "the excited axis did not answer");
+    return fail(ErrorCode::no_excitation, "the excited axis did not answer");
   }
   TransverseSensitivity result;
   result.ratio[axis] = 1.0;

@@ -174,7 +174,7 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_
                              std::span<const std::span<const double>> channels) {
   const auto plain = fit_sine(frequency, reference_ns, stamps_ns, channels);
   if (!plain) {
-    return tl::unexpected(plain.error());
+    return fail(plain.error());
   }
   const std::vector<Disturbances> found =
       search(frequency, reference_ns, stamps_ns, channels, *plain);

@@ -9,7 +9,7 @@ constexpr int max_harmonics = 100;
 constexpr int max_drift = 8;
 
 tl::unexpected<Error> refuse(const char* message) {
-  return tl::unexpected(Error{ErrorCode::invalid_argument, message});
+  return fail(ErrorCode::invalid_argument, message);
 }
 
 } // namespace
@@ -35,7 +35,7 @@ Expected<SineBasis> SineBasis::make(const Record& record, const Frequency& frequ
   frequencies.insert(frequencies.end(), basis.lines.begin(), basis.lines.end());
   for (const Frequency& one : frequencies) {
     if (const auto carried = record.carries(one); !carried) {
-      return tl::unexpected(carried.error());
+      return fail(carried.error());
     }
   }
   return SineBasis(record, basis, std::move(frequencies));

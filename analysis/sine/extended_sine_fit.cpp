@@ -49,7 +49,7 @@ public:
     for (std::size_t i = 0; i < values.size(); i += block_samples) {
       const std::size_t n = std::min(block_samples, values.size() - i);
       if (!basis_.fill(i, n, design_.data())) {
-        return tl::unexpected(record_.not_increasing());
+        return fail(record_.not_increasing());
       }
       double squares = 0.0;
       kernel_.model_residuals(values.data() + i, n, design_.data(), basis_.columns(),
@@ -67,7 +67,7 @@ public:
       }
     }
     if (!std::isfinite(system.ee)) {
-      return tl::unexpected(record_.not_finite());
+      return fail(record_.not_finite());
     }
     return system;
   }
@@ -161,18 +161,18 @@ Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequen
   result.coefficients = starting_level(columns, values.front());
   const auto first = fitter.pass(values, result.coefficients, {}, nullptr, true);
   if (!first) {
-    return tl::unexpected(first.error());
+    return fail(first.error());
   }
   const ScaledInverse inverse(first->normal);
   if (!inverse.usable()) {
-    return tl::unexpected(indistinct(frequency));
+    return fail(indistinct(frequency));
   }
   result.inverse = inverse.matrix();
   result.coefficients += result.inverse * first->right;
   for (int i = 0; i < max_refinements; ++i) {
     const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
     if (!again) {
-      return tl::unexpected(again.error());
+      return fail(again.error());
     }
     const Eigen::VectorXd step = result.inverse * again->right;
     result.coefficients += step;
@@ -201,7 +201,7 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
   std::vector<double> residuals(n), weights(n), work(n);
   auto sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
   if (!sums) {
-    return tl::unexpected(sums.error());
+    return fail(sums.error());
   }
   double scale = scale_of(residuals, result.coefficients, work);
   for (int iteration = 0; iteration < max_reweightings; ++iteration) {
@@ -209,18 +209,18 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
                    [&](double r) { return robust_weight(weighting, r, scale); });
     sums = fitter.pass(values, result.coefficients, weights, nullptr, true);
     if (!sums) {
-      return tl::unexpected(sums.error());
+      return fail(sums.error());
     }
     const ScaledInverse inverse(sums->normal);
     if (!inverse.usable()) {
-      return tl::unexpected(indistinct(frequency));
+      return fail(indistinct(frequency));
     }
     const Eigen::VectorXd step = inverse.matrix() * sums->right;
     result.coefficients += step;
     ++result.iterations;
     sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
     if (!sums) {
-      return tl::unexpected(sums.error());
+      return fail(sums.error());
     }
     result.rss = sums->ee;
     // Parameters that move by less than a millionth of their uncertainty stay.
@@ -243,9 +243,8 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
     }
     scale = scale_of(residuals, result.coefficients, work);
   }
-  return tl::unexpected(
-      Error{ErrorCode::not_converged,
-            "the robust weights did not settle; more than a few per cent of outliers?"});
+  return fail(ErrorCode::not_converged,
+              "the robust weights did not settle; more than a few per cent of outliers?");
 }
 
 FurtherPhasor further_phasor(const ChannelSolution& solution, std::size_t column, double hz,
@@ -313,45 +312,43 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
                   std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
   if (!record) {
-    return tl::unexpected(record.error());
+    return fail(record.error());
   }
   auto columns = SineBasis::make(*record, frequency, basis);
   if (!columns) {
-    return tl::unexpected(columns.error());
+    return fail(columns.error());
   }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument,
-              "the reference instant is more than 292 years away from the record"});
+    return fail(ErrorCode::invalid_argument,
+                "the reference instant is more than 292 years away from the record");
   }
   Fitter fitter(*record, std::move(*columns));
   std::vector<ExtendedFit> fits;
   for (const std::span<const double> values : channels) {
     auto solution = least_squares(fitter, frequency, values);
     if (!solution) {
-      return tl::unexpected(solution.error());
+      return fail(solution.error());
     }
     // Tukey's weights have several solutions: they start from Huber's, which has one.
     if (weighting != Weighting::none) {
       if (const auto done = reweight(fitter, frequency, Weighting::huber, values, *solution);
           !done) {
-        return tl::unexpected(done.error());
+        return fail(done.error());
       }
     }
     if (weighting == Weighting::tukey) {
       if (const auto done = reweight(fitter, frequency, weighting, values, *solution); !done) {
-        return tl::unexpected(done.error());
+        return fail(done.error());
       }
     }
     fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
   }
   if (std::none_of(fits.begin(), fits.end(),
                    [](const ExtendedFit& fit) { return stands_out(fit.fundamental); })) {
-    return tl::unexpected(
-        Error{ErrorCode::no_excitation,
-              "no sine of " + std::to_string(frequency.hz()) +
-                  " Hz stands out of the noise in any channel; check frequency and window"});
+    return fail(ErrorCode::no_excitation,
+                "no sine of " + std::to_string(frequency.hz()) +
+                    " Hz stands out of the noise in any channel; check frequency and window");
   }
   return fits;
 }

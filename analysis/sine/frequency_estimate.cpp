@@ -19,9 +19,8 @@ Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_n
   for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
     intervals.push_back(stamps_ns[i] - stamps_ns[i - 1]);
     if (intervals.back() <= 0) {
-      return tl::unexpected(
-          Error{ErrorCode::stamps_not_increasing,
-                "a stamp is not later than the one before it (sample " + std::to_string(i) + ")"});
+      return fail(ErrorCode::stamps_not_increasing,
+                  "a stamp is not later than the one before it (sample " + std::to_string(i) + ")");
     }
   }
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
@@ -70,12 +69,11 @@ double interpolated_bin(const std::vector<double>& power, std::size_t peak) {
 Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
                                        std::span<const std::span<const double>> columns) {
   if (stamps_ns.size() < min_samples) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency"});
+    return fail(ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency");
   }
   const auto interval_ns = median_interval_ns(stamps_ns);
   if (!interval_ns) {
-    return tl::unexpected(interval_ns.error());
+    return fail(interval_ns.error());
   }
   std::vector<std::size_t> places;
   for (const std::int64_t stamp : stamps_ns) {
@@ -92,12 +90,12 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
   Eigen::FFT<double> transform;
   for (const std::span<const double> column : columns) {
     if (column.size() != stamps_ns.size()) {
-      return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                  "a column has not as many values as there are stamps"});
+      return fail(ErrorCode::invalid_argument,
+                  "a column has not as many values as there are stamps");
     }
     if (!std::all_of(column.begin(), column.end(),
                      [](double value) { return std::isfinite(value); })) {
-      return tl::unexpected(Error{ErrorCode::not_finite, "a value is not a finite number"});
+      return fail(ErrorCode::not_finite, "a value is not a finite number");
     }
     const std::vector<double> grid = on_grid(places, column, size);
     if (grid.empty()) {
@@ -111,8 +109,7 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
     }
   }
   if (!excited) {
-    return tl::unexpected(
-        Error{ErrorCode::no_excitation, "all values are the same: there is no sine to find"});
+    return fail(ErrorCode::no_excitation, "all values are the same: there is no sine to find");
   }
   const auto peak =
       static_cast<std::size_t>(std::max_element(power.begin() + 1, power.end()) - power.begin());

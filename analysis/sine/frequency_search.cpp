@@ -38,10 +38,10 @@ Expected<std::vector<Parameters>> levels(const Record& record, const Frequency& 
   }
   const auto sums = accumulate(record, frequency, start, selection);
   if (!sums) {
-    return tl::unexpected(sums.error());
+    return fail(sums.error());
   }
   if (!all_finite(*sums)) {
-    return tl::unexpected(record.not_finite());
+    return fail(record.not_finite());
   }
   for (std::size_t j = 0; j < start.size(); ++j) {
     start[j].offset += sums->channels[j].e / sums->samples;
@@ -104,7 +104,7 @@ Expected<GridPoint> search_grid(const Record& record, const Frequency& start,
                                 double half_range_bins, double bin_hz) {
   const auto level = levels(record, start, {});
   if (!level) {
-    return tl::unexpected(level.error());
+    return fail(level.error());
   }
   const int half = static_cast<int>(std::ceil(half_range_bins / grid_step_bins));
   GridPoint best;
@@ -116,7 +116,7 @@ Expected<GridPoint> search_grid(const Record& record, const Frequency& start,
     }
     const auto sums = accumulate(record, frequency, *level);
     if (!sums) {
-      return tl::unexpected(sums.error());
+      return fail(sums.error());
     }
     const GridPoint point = misfit_of(*sums, *level, bins);
     if (point.misfit < best.misfit) {
@@ -185,13 +185,13 @@ Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency,
     const std::size_t samples = std::min(length, n - i);
     DesignSums design;
     if (!kernel.design(stamps + i, samples, axis, basis, design)) {
-      return tl::unexpected(record.not_increasing());
+      return fail(record.not_increasing());
     }
     const std::int64_t middle_ns = stamps[i] + (stamps[i + samples - 1] - stamps[i]) / 2;
     const double position =
         static_cast<double>(middle_ns - stamps[0]) / (2.0 * record.half_span_ns());
     if (!(position >= 0.0 && position <= 1.0)) {
-      return tl::unexpected(record.not_increasing());
+      return fail(record.not_increasing());
     }
     const std::size_t cell =
         std::min(count - 1, static_cast<std::size_t>(position * static_cast<double>(count)));
@@ -210,18 +210,18 @@ Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start
                                     double half_range_bins, bool whole) {
   const auto level = levels(record, start, whole ? Selection{} : part_of(record.size()));
   if (!level) {
-    return tl::unexpected(level.error());
+    return fail(level.error());
   }
   const std::size_t count = std::bit_ceil(static_cast<std::size_t>(3.0 * half_range_bins));
   auto cells = cell_phasors(record, start, *level, count, whole);
   if (!cells) {
-    return tl::unexpected(cells.error());
+    return fail(cells.error());
   }
   const std::size_t length = padding * count;
   std::vector<double> power(length, 0.0);
   for (std::size_t j = 0; j < level->size(); ++j) {
     if (!std::isfinite(cells->square[j])) {
-      return tl::unexpected(record.not_finite());
+      return fail(record.not_finite());
     }
     fourier_transform(cells->phasors[j]);
     // With the amplitude removed rss falls by 2 |Z|^2 / n; the sum of n log(rss) is what is to be
@@ -286,13 +286,13 @@ Expected<Frequency> search_frequency(const Record& record, const Frequency& star
     found = search(true);
   }
   if (!found && found.error().code == ErrorCode::stamps_not_increasing) {
-    return tl::unexpected(record.not_increasing());
+    return fail(record.not_increasing());
   }
   if (!found && found.error().code == ErrorCode::not_finite) {
-    return tl::unexpected(record.not_finite());
+    return fail(record.not_finite());
   }
   if (!found) {
-    return tl::unexpected(found.error());
+    return fail(found.error());
   }
   return start.shifted_by_hz(found->bins * bin_hz);
 }

@@ -166,13 +166,13 @@ Expected<SeriesSums> accumulate_series(const Record& record, const Frequency& fr
     for (std::size_t done = grid ? pass.add_on_grid(i, n, *grid) : 0; done < n;) {
       const std::size_t rest = std::min(n - done, block_samples);
       if (!pass.add(i + done, rest)) {
-        return tl::unexpected(record.not_increasing());
+        return fail(record.not_increasing());
       }
       done += rest;
     }
   }
   if (!pass.increasing()) {
-    return tl::unexpected(record.not_increasing());
+    return fail(record.not_increasing());
   }
   return pass.sums();
 }

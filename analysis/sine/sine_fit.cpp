@@ -62,10 +62,10 @@ Expected<Start> pilot(const Record& record, const Frequency& frequency, bool pla
   }
   const auto sums = pilot_sums(record, frequency, start.parameters);
   if (!sums) {
-    return tl::unexpected(sums.error());
+    return fail(sums.error());
   }
   if (!all_finite(*sums)) {
-    return tl::unexpected(record.not_finite());
+    return fail(record.not_finite());
   }
   const NormalMatrix matrix(sums->samples, sums->design);
   start.plain = plain_allowed && matrix.smallest > 0.1;
@@ -162,22 +162,21 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
                                         std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 3);
   if (!record) {
-    return tl::unexpected(record.error());
+    return fail(record.error());
   }
   if (const auto carried = record->carries(frequency); !carried) {
-    return tl::unexpected(carried.error());
+    return fail(carried.error());
   }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_argument,
-              "the reference instant is more than 292 years away from the record"});
+    return fail(ErrorCode::invalid_argument,
+                "the reference instant is more than 292 years away from the record");
   }
   record->fetch_beginning();
   const auto grid = sample_grid(record->stamps(), frequency);
   auto start = pilot(*record, frequency, grid.has_value());
   if (!start) {
-    return tl::unexpected(start.error());
+    return fail(start.error());
   }
 
   std::vector<SineFit> fits(channels.size());
@@ -186,14 +185,14 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
     const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid)
                            : accumulate(*record, frequency, start->parameters);
     if (!sums) {
-      return tl::unexpected(sums.error());
+      return fail(sums.error());
     }
     if (!all_finite(*sums)) {
-      return tl::unexpected(record->not_finite());
+      return fail(record->not_finite());
     }
     const NormalMatrix matrix(sums->samples, sums->design);
     if (!matrix.well_conditioned()) {
-      return tl::unexpected(ill_conditioned(*record, frequency));
+      return fail(ill_conditioned(*record, frequency));
     }
     bool again = false;
     for (std::size_t j = 0; j < fits.size(); ++j) {
@@ -208,10 +207,9 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
     start->plain = false;
   }
   if (std::none_of(fits.begin(), fits.end(), [](const SineFit& fit) { return stands_out(fit); })) {
-    return tl::unexpected(
-        Error{ErrorCode::no_excitation,
-              "no sine of " + std::to_string(frequency.hz()) +
-                  " Hz stands out of the noise in any channel; check frequency and window"});
+    return fail(ErrorCode::no_excitation,
+                "no sine of " + std::to_string(frequency.hz()) +
+                    " Hz stands out of the noise in any channel; check frequency and window");
   }
   const double turns = frequency.reduced_turns(shift_ns);
   for (SineFit& fit : fits) {

@@ -30,10 +30,6 @@ struct Estimate {
   int passes = 0;
 };
 
-tl::unexpected<Error> fail(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 double radians_to_hz(const Record& record, double delta) {
   return delta / (3.141592653589793 * record.span_s());
 }
@@ -61,10 +57,10 @@ double series_error(const SeriesSums& sums, const FrequencySolution& solution) {
 Expected<void> pass(const Record& record, Selection selection, Estimate& estimate, double& error) {
   const auto sums = accumulate_series(record, estimate.frequency, estimate.start, selection);
   if (!sums) {
-    return tl::unexpected(sums.error());
+    return fail(sums.error());
   }
   if (!all_finite(*sums)) {
-    return tl::unexpected(record.not_finite());
+    return fail(record.not_finite());
   }
   const Segment segment = sums->segment();
   estimate.solution = solve_frequency({&segment, 1}, estimate.start, 0.0, series_limit);
@@ -121,7 +117,7 @@ Expected<void> check_arguments(const Record& record, const Frequency& start, dou
 Expected<Estimate> estimate_of(const Record& record, const Frequency& start, double search_rel) {
   auto found = search_frequency(record, start, search_rel);
   if (!found) {
-    return tl::unexpected(found.error());
+    return fail(found.error());
   }
   Estimate estimate{*found, {}, {}, 0};
   for (const auto& channel : record.channels()) {
@@ -135,7 +131,7 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
     // A part that does not settle decides nothing; the whole record is tried all the same.
     const auto done = iterate(record, part, close_rad, estimate);
     if (!done && done.error().code != ErrorCode::not_converged) {
-      return tl::unexpected(done.error());
+      return fail(done.error());
     }
     if (!done) {
       estimate.frequency = *found;
@@ -150,7 +146,7 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
   const std::size_t length = wanted / (wanted < grid_samples ? lanes : grid_samples) *
                              (wanted < grid_samples ? lanes : grid_samples);
   if (const auto done = iterate(record, {length, length}, allowed_error_rad, estimate); !done) {
-    return tl::unexpected(done.error());
+    return fail(done.error());
   }
   return estimate;
 }
@@ -163,10 +159,10 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
                                               std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 4);
   if (!record) {
-    return tl::unexpected(record.error());
+    return fail(record.error());
   }
   if (const auto checked = check_arguments(*record, start, search_rel); !checked) {
-    return tl::unexpected(checked.error());
+    return fail(checked.error());
   }
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
@@ -175,7 +171,7 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
   }
   const auto estimate = estimate_of(*record, start, search_rel);
   if (!estimate) {
-    return tl::unexpected(estimate.error());
+    return fail(estimate.error());
   }
 
   FrequencyFit result{
@@ -206,7 +202,7 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
                     " Hz, outside of the search range; check the start frequency");
   }
   if (const auto carried = record->carries(result.frequency); !carried) {
-    return tl::unexpected(carried.error());
+    return fail(carried.error());
   }
   return result;
 }

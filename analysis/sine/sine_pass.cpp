@@ -15,10 +15,6 @@ constexpr std::int64_t max_span_ns = std::int64_t{1} << 51;
 // Of blocks beside the grid, before it is given up.
 constexpr std::size_t max_left_over = 8;
 
-tl::unexpected<Error> fail(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 // Sums of any number of blocks, with what rounding took from them: the squares of a thousand blocks
 // have the digits of one's.
 class Totals {
@@ -184,7 +180,7 @@ Expected<void> Record::carries(const Frequency& frequency) const {
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   if (*middle <= 0) {
-    return tl::unexpected(not_increasing());
+    return fail(not_increasing());
   }
   const double rate_hz = 1e9 / static_cast<double>(*middle);
   if (frequency.hz() <= 0.5 * rate_hz) {
@@ -250,7 +246,7 @@ Expected<PassSums> accumulate(const Record& record, const Frequency& frequency,
   Stretches stretches(record, frequency, start);
   for (std::size_t i = 0; i < record.size(); i += selection.step) {
     if (!stretches.add(i, std::min(selection.length, record.size() - i))) {
-      return tl::unexpected(record.not_increasing());
+      return fail(record.not_increasing());
     }
   }
   return stretches.sums();
@@ -271,7 +267,7 @@ Expected<PassSums> accumulate(const Record& record, const Frequency& frequency,
       best_kernel().fit_block(stamps.data(), stamps.size(), record.axis(frequency), channels.data(),
                               start.size(), start.data(), sums.design, sums.channels.data());
   if (!increasing) {
-    return tl::unexpected(record.not_increasing());
+    return fail(record.not_increasing());
   }
   return sums;
 }
@@ -294,12 +290,12 @@ Expected<PassSums> accumulate(const Record& record, const Frequency& frequency,
     ++left_over;
     const std::size_t n = std::min(rest, grid_samples);
     if (!stretches.add(i, n)) {
-      return tl::unexpected(record.not_increasing());
+      return fail(record.not_increasing());
     }
     i += n;
   }
   if (!stretches.increasing()) {
-    return tl::unexpected(record.not_increasing());
+    return fail(record.not_increasing());
   }
   return stretches.sums();
 }

@@ -251,11 +251,11 @@ Expected<std::int64_t> SineStream::State::shift_to(std::int64_t reference_ns) co
 
 Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns) {
   if (const auto checked = ready(3); !checked) {
-    return tl::unexpected(checked.error());
+    return fail(checked.error());
   }
   const auto shift_ns = shift_to(reference_ns);
   if (!shift_ns) {
-    return tl::unexpected(shift_ns.error());
+    return fail(shift_ns.error());
   }
   if (closed_ == 0) {
     std::vector<std::span<const double>> channels;

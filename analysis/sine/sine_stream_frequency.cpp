@@ -89,7 +89,7 @@ void SineStream::State::add_spectra(std::span<const Segment> segments, double st
 Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
                                                              std::int64_t reference_ns) {
   if (const auto checked = ready(4); !checked) {
-    return tl::unexpected(checked.error());
+    return fail(checked.error());
   }
   if (!(search_rel >= 0.0 && search_rel < 1.0)) {
     return fail(
@@ -98,7 +98,7 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
   }
   const auto shift_ns = shift_to(reference_ns);
   if (!shift_ns) {
-    return tl::unexpected(shift_ns.error());
+    return fail(shift_ns.error());
   }
   std::vector<Segment> segments;
   double half_length_s = 0.0;

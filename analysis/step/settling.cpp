@@ -29,8 +29,7 @@ Expected<std::vector<Block>> block_phasors(const Frequency& frequency,
   const double periods_per_block = std::max(1.0, std::ceil(periods / max_blocks));
   const double count = std::floor(periods / periods_per_block);
   if (count < min_blocks) {
-    return tl::unexpected(
-        Error{ErrorCode::too_few_samples, "settling cannot be seen in fewer than eight periods"});
+    return fail(ErrorCode::too_few_samples, "settling cannot be seen in fewer than eight periods");
   }
   const double block_ns = periods_per_block * period_ns;
   // Blocks end with the record, so that its end is what counts as settled.
@@ -50,7 +49,7 @@ Expected<std::vector<Block>> block_phasors(const Frequency& frequency,
     const auto fit =
         fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels);
     if (!fit) {
-      return tl::unexpected(fit.error());
+      return fail(fit.error());
     }
     blocks.push_back({stamps_ns[begin], {(*fit)[0].sine, (*fit)[0].cosine}});
     first = last;
@@ -64,12 +63,12 @@ Expected<Settling> find_settling(const Frequency& frequency,
                                  std::span<const std::int64_t> stamps_ns,
                                  std::span<const double> values, const SettlingSettings& settings) {
   if (stamps_ns.size() != values.size() || stamps_ns.size() < 2) {
-    return tl::unexpected(Error{ErrorCode::invalid_argument,
-                                "settling needs as many stamps as values, and two at least"});
+    return fail(ErrorCode::invalid_argument,
+                "settling needs as many stamps as values, and two at least");
   }
   const auto blocks = block_phasors(frequency, stamps_ns, values);
   if (!blocks) {
-    return tl::unexpected(blocks.error());
+    return fail(blocks.error());
   }
 
   const std::size_t settled = blocks->size() - blocks->size() / 3;
@@ -79,8 +78,7 @@ Expected<Settling> find_settling(const Frequency& frequency,
   }
   const double size = std::abs(mean);
   if (!(size > 0.0)) {
-    return tl::unexpected(
-        Error{ErrorCode::no_excitation, "there is no sine whose settling could be found"});
+    return fail(ErrorCode::no_excitation, "there is no sine whose settling could be found");
   }
   std::vector<double> deviations;
   for (std::size_t k = settled; k < blocks->size(); ++k) {
@@ -102,9 +100,8 @@ Expected<Settling> find_settling(const Frequency& frequency,
       continue;
     }
     if (k + 1 >= blocks->size() || 2 * k >= blocks->size()) {
-      return tl::unexpected(
-          Error{ErrorCode::not_converged,
-                "the excitation does not settle: less than half of the record is steady"});
+      return fail(ErrorCode::not_converged,
+                  "the excitation does not settle: less than half of the record is steady");
     }
     result.begin_ns = (*blocks)[k + 1].begin_ns;
     result.max_deviation = std::max(result.max_deviation, deviation / size);

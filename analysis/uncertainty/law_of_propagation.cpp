@@ -8,7 +8,7 @@ namespace dyncal::analysis {
 namespace {
 
 tl::unexpected<Error> invalid(std::string message) {
-  return tl::unexpected(Error{ErrorCode::invalid_argument, std::move(message)});
+  return fail(ErrorCode::invalid_argument, std::move(message));
 }
 
 } // namespace

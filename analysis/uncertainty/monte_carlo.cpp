@@ -15,10 +15,6 @@ namespace {
 
 constexpr std::size_t batch = 10'000;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 class Draws {
 public:
   static Expected<Draws> prepare(std::span<const InputQuantity> inputs,
@@ -28,15 +24,15 @@ public:
     draws.inputs_.assign(inputs.begin(), inputs.end());
     draws.random_.seed(seed);
     if (const auto checked = propagate_uncertainty(inputs, correlations); !checked) {
-      return tl::unexpected(checked.error());
+      return fail(checked.error());
     }
     const auto n = static_cast<Eigen::Index>(inputs.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
     for (const InputCorrelation& correlation : correlations) {
       for (const std::size_t i : {correlation.first, correlation.second}) {
         if (inputs[i].distribution != Distribution::normal) {
-          return failure(ErrorCode::invalid_argument,
-                         inputs[i].name + ": only normal inputs can be drawn with a correlation");
+          return fail(ErrorCode::invalid_argument,
+                      inputs[i].name + ": only normal inputs can be drawn with a correlation");
         }
       }
       const auto i = static_cast<Eigen::Index>(correlation.first),
@@ -45,8 +41,8 @@ public:
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
     if (factor.info() != Eigen::Success) {
-      return failure(ErrorCode::invalid_argument,
-                     "the correlation matrix of the inputs is not positive definite");
+      return fail(ErrorCode::invalid_argument,
+                  "the correlation matrix of the inputs is not positive definite");
     }
     draws.factor_ = factor.matrixL();
     draws.normal_draws_.resize(n);
@@ -177,15 +173,15 @@ Expected<MonteCarloResult> propagate_distributions(std::span<const InputQuantity
                                                    const MonteCarloSettings& settings) {
   auto draws = Draws::prepare(inputs, correlations, settings.seed);
   if (!draws) {
-    return tl::unexpected(draws.error());
+    return fail(draws.error());
   }
   Gathering gathering(settings.probability);
   for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
     for (std::size_t i = 0; i < batch; ++i) {
       const double value = model(draws->next());
       if (!std::isfinite(value)) {
-        return failure(ErrorCode::not_finite,
-                       "the measurement model gave no number for a drawn set of inputs");
+        return fail(ErrorCode::not_finite,
+                    "the measurement model gave no number for a drawn set of inputs");
       }
       gathering.add(value);
     }
@@ -243,7 +239,7 @@ Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point,
                                             std::span<const SeriesFit> link,
                                             const MonteCarloSettings& settings) {
   if (link.size() != 1 && link.size() != 3) {
-    return failure(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
+    return fail(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
   }
   DrawnChain chain;
   chain.add_fit(point.dut);
@@ -262,7 +258,7 @@ Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point,
   }
   auto draws = Draws::prepare(chain.inputs, chain.correlations, settings.seed);
   if (!draws) {
-    return tl::unexpected(draws.error());
+    return fail(draws.error());
   }
 
   const std::complex<double> corrections = point.h / quotient(estimates, phasors);
@@ -275,7 +271,7 @@ Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point,
         h *= (1.0 + drawn[row]) * std::polar(1.0, drawn[row + 1]);
       }
       if (!std::isfinite(h.real()) || !std::isfinite(h.imag())) {
-        return failure(ErrorCode::not_finite, "a drawn phasor was 0");
+        return fail(ErrorCode::not_finite, "a drawn phasor was 0");
       }
       magnitude.add(std::abs(h));
       phase.add(point.phase_rad + wrap_phase(std::arg(h) - point.phase_rad));

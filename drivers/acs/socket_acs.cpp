@@ -38,20 +38,19 @@ std::int64_t host_utc_ns() {
 Expected<void> SocketAcs::connect(milliseconds limit) {
   const auto address = parse_address(settings_.address);
   if (!address) {
-    return tl::unexpected(address.error());
+    return fail(address.error());
   }
   auto connection = TcpConnection::connect(*address, limit, stop_);
   if (!connection) {
-    return tl::unexpected(connection.error());
+    return fail(connection.error());
   }
   const auto line = connection->read_line(max_description, limit);
   if (!line) {
-    return tl::unexpected(line.error());
+    return fail(line.error());
   }
   auto stream = parse_stream_description(*line);
   if (!stream) {
-    return tl::unexpected(
-        Error{stream.error().code, settings_.address + ": " + stream.error().message});
+    return fail(stream.error().code, settings_.address + ": " + stream.error().message);
   }
   stream_ = std::move(*stream);
   connection_.emplace(std::move(*connection));
@@ -71,7 +70,7 @@ Expected<SourceDescription> SocketAcs::describe() {
     const bool later = connected.error().code == ErrorCode::refused ||
                        connected.error().code == ErrorCode::disconnected;
     if (!later || left <= retry_interval || stop_.wait_for(retry_interval)) {
-      return tl::unexpected(connected.error());
+      return fail(connected.error());
     }
   }
 }
@@ -94,7 +93,7 @@ Expected<void> SocketAcs::run(BlockSink& sink) {
       return {};
     }
     if (ended.error().code != ErrorCode::disconnected) {
-      return tl::unexpected(ended.error());
+      return fail(ended.error());
     }
     if (auto again = connect_again(); !again) {
       return again;
@@ -121,14 +120,14 @@ Expected<void> SocketAcs::read_session(BlockSink& sink) {
     auto frame = read_frame();
     if (!frame || frame->samples == 0) {
       hand_over();
-      return frame ? Expected<void>{} : Expected<void>(tl::unexpected(frame.error()));
+      return frame ? Expected<void>{} : Expected<void>(fail(frame.error()));
     }
     if (frame->first_sample < next_sample) {
       hand_over();
-      return tl::unexpected(
-          Error{ErrorCode::malformed,
-                settings_.address + ": sample numbers go back from " + std::to_string(next_sample) +
-                    " to " + std::to_string(frame->first_sample) + " within a connection"});
+      return fail(ErrorCode::malformed, settings_.address + ": sample numbers go back from " +
+                                            std::to_string(next_sample) + " to " +
+                                            std::to_string(frame->first_sample) +
+                                            " within a connection");
     }
     if (frame->first_sample != next_sample) {
       hand_over();
@@ -145,20 +144,20 @@ Expected<void> SocketAcs::read_session(BlockSink& sink) {
 Expected<SampleBlock> SocketAcs::read_frame() {
   std::array<char, 16> header{}; // magic, samples, first_sample
   if (auto read = connection_->read_exactly(header, frame_limit); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   SampleBlock frame;
   frame.samples = load<std::uint32_t>(header.data() + 4);
   frame.first_sample = load<std::uint64_t>(header.data() + 8);
   if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > max_samples) {
-    return tl::unexpected(Error{
-        ErrorCode::malformed, settings_.address + ": what comes is not a frame of the ACS stream"});
+    return fail(ErrorCode::malformed,
+                settings_.address + ": what comes is not a frame of the ACS stream");
   }
   const std::size_t channels = stream_.scale.size();
   const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);
   payload_.resize(frame.samples * channels * width);
   if (auto read = connection_->read_exactly(payload_, frame_limit); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   frame.values.resize(frame.samples * channels);
   for (std::size_t i = 0; i < frame.samples; ++i) {

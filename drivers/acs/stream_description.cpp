@@ -139,8 +139,7 @@ Expected<StreamDescription> parse_stream_description(const std::string& line) {
   }
   StreamDescription stream = problem.empty() ? parse_members(object, problem) : StreamDescription{};
   if (!problem.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::malformed, "the instrument's description line: " + problem});
+    return fail(ErrorCode::malformed, "the instrument's description line: " + problem);
   }
   return stream;
 }

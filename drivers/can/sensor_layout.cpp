@@ -10,7 +10,7 @@ namespace dyncal::drivers::can {
 namespace {
 
 tl::unexpected<Error> refused(std::string message) {
-  return tl::make_unexpected(Error{ErrorCode::invalid_setting, std::move(message)});
+  return fail(ErrorCode::invalid_setting, std::move(message));
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -128,7 +128,7 @@ Expected<void> add_channels(const SensorSettings& settings, SensorLayout& layout
       auto channel = lay_out_channel(
           settings, layout, m, i, named == settings.channels.end() ? signal : named->second, dbc);
       if (!channel) {
-        return tl::make_unexpected(channel.error());
+        return fail(channel.error());
       }
       const bool taken = std::any_of(layout.channels.begin(), layout.channels.end(),
                                      [&](const ChannelLayout& other) {
@@ -164,7 +164,7 @@ Expected<void> add_keys(const SensorSettings& settings, SensorLayout& layout, co
   }
   auto keys = find_keys(layout, name, dbc);
   if (!keys) {
-    return tl::make_unexpected(keys.error());
+    return fail(keys.error());
   }
   layout.keys = std::move(*keys);
   layout.key_is_time = !settings.time_field.empty();
@@ -223,7 +223,7 @@ Expected<SensorLayout> lay_out(const SensorSettings& settings, const DbcFile& db
   SensorLayout layout;
   auto messages = choose_messages(settings, dbc);
   if (!messages) {
-    return tl::make_unexpected(messages.error());
+    return fail(messages.error());
   }
   layout.messages = std::move(*messages);
   layout.nominal_rate_hz = settings.nominal_rate_hz;
@@ -232,11 +232,11 @@ Expected<SensorLayout> lay_out(const SensorSettings& settings, const DbcFile& db
   }
   for (const auto step : {add_keys, add_channels}) {
     if (auto done = step(settings, layout, dbc); !done) {
-      return tl::make_unexpected(done.error());
+      return fail(done.error());
     }
   }
   if (auto good = check_time_source(settings, layout); !good) {
-    return tl::make_unexpected(good.error());
+    return fail(good.error());
   }
   return layout;
 }

@@ -35,7 +35,7 @@ Expected<std::unique_ptr<SensorStream>> SensorStream::create(SensorSettings sett
   std::unique_ptr<SensorStream> stream(new SensorStream(std::move(settings), std::move(dbc)));
   auto layout = lay_out(stream->settings_, *stream->dbc_);
   if (!layout) {
-    return tl::make_unexpected(layout.error());
+    return fail(layout.error());
   }
   stream->layout_ = std::move(*layout);
   stream->index_.emplace(stream->layout_.messages);
@@ -65,11 +65,11 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
     settings_.bit_rates.data_per_s = link.data_bit_rate_per_s;
   }
   if (settings_.correct_frame_duration && settings_.bit_rates.nominal_per_s <= 0.0) {
-    return tl::make_unexpected(Error{
+    return fail(
         ErrorCode::invalid_setting,
         "interface '" + link.name +
             "' does not say its bit rate, which the duration of a frame follows from; give it with "
-            "'bit_rate_per_s'"});
+            "'bit_rate_per_s'");
   }
   timer_.emplace(settings_, link);
   u_utc_s_ = settings_.time_base == TimeBase::local
@@ -214,17 +214,17 @@ Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink)
   }
   if (settings_.correct_frame_duration && frame.bit_rate_switch &&
       settings_.bit_rates.data_per_s <= 0.0) {
-    return tl::make_unexpected(
-        Error{ErrorCode::invalid_setting,
-              link_.name + ": the sensor switches to a data bit rate, which the interface does not "
-                           "say; give it with 'data_bit_rate_per_s'"});
+    return fail(ErrorCode::invalid_setting,
+                link_.name +
+                    ": the sensor switches to a data bit rate, which the interface does not "
+                    "say; give it with 'data_bit_rate_per_s'");
   }
   if (settings_.time_source == TimeSource::hardware_stamp && frame.hardware_ns == 0) {
-    return tl::make_unexpected(Error{
+    return fail(
         ErrorCode::invalid_setting,
         link_.name +
             ": time source 'hardware-stamp' is asked for, but the adapter stamps no frames; leave "
-            "'time_source' out or name 'kernel-stamp'"});
+            "'time_source' out or name 'kernel-stamp'");
   }
   last_kernel_ns_ = frame.kernel_ns;
   if (!timer_->add(frame)) {

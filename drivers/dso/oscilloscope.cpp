@@ -59,7 +59,7 @@ Expected<void> Oscilloscope::connect() {
   auto connection =
       ScpiConnection::connect("oscilloscope", settings_.address, settings_.answer_limit, stop_);
   if (!connection) {
-    return tl::unexpected(connection.error());
+    return fail(connection.error());
   }
   // Errors from before our time are not ours.
   if (auto cleared = connection->send("*CLS"); !cleared) {
@@ -67,7 +67,7 @@ Expected<void> Oscilloscope::connect() {
   }
   const auto identity = connection->query("*IDN?");
   if (!identity) {
-    return tl::unexpected(identity.error());
+    return fail(identity.error());
   }
   commands_ =
       settings_.family.empty() ? scope_by_identity(*identity) : scope_by_family(settings_.family);
@@ -76,11 +76,10 @@ Expected<void> Oscilloscope::connect() {
     for (const ScopeCommands& scope : known_scopes()) {
       families += (families.empty() ? "" : ", ") + std::string(scope.family);
     }
-    return tl::unexpected(
-        Error{ErrorCode::refused,
-              message("'" + shown(*identity) +
-                      "' is none of the known oscilloscopes; name the family it follows (" +
-                      families + ")")});
+    return fail(ErrorCode::refused,
+                message("'" + shown(*identity) +
+                        "' is none of the known oscilloscopes; name the family it follows (" +
+                        families + ")"));
   }
   for (const char* setting : commands_->set_up) {
     if (auto done = connection->command(setting); !done) {
@@ -97,9 +96,8 @@ Expected<void> Oscilloscope::prepare(const Acquisition& acquisition) {
   if (settings_.trigger_input >= settings_.inputs.size() ||
       !(acquisition.before_trigger_s >= 0.0) || !(acquisition.after_trigger_s > 0.0) ||
       acquisition.points == 0) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_setting,
-              message("there is no input to trigger on, or no window to record")});
+    return fail(ErrorCode::invalid_setting,
+                message("there is no input to trigger on, or no window to record"));
   }
   if (connection_ && connection_->lost()) {
     give_up_connection();
@@ -156,17 +154,17 @@ Expected<void> Oscilloscope::apply(const Acquisition& acquisition) {
 
 Expected<Shot> Oscilloscope::acquire(milliseconds trigger_limit) {
   if (!wanted_) {
-    return tl::unexpected(Error{ErrorCode::invalid_setting, message("no acquisition is prepared")});
+    return fail(ErrorCode::invalid_setting, message("no acquisition is prepared"));
   }
   if (auto ready = prepare(Acquisition(*wanted_)); !ready) {
-    return tl::unexpected(ready.error());
+    return fail(ready.error());
   }
   if (auto armed = connection_->command(commands_->single); !armed) {
-    return tl::unexpected(armed.error());
+    return fail(armed.error());
   }
   const auto triggered_utc_ns = wait_for_trigger(trigger_limit);
   if (!triggered_utc_ns) {
-    return tl::unexpected(triggered_utc_ns.error());
+    return fail(triggered_utc_ns.error());
   }
   auto shot = read_shot();
   if (shot) {
@@ -180,7 +178,7 @@ Expected<std::int64_t> Oscilloscope::wait_for_trigger(milliseconds limit) {
   for (;;) {
     const auto state = connection_->query(commands_->state);
     if (!state) {
-      return tl::unexpected(state.error());
+      return fail(state.error());
     }
     if (std::any_of(commands_->finished.begin(), commands_->finished.end(),
                     [&](const char* word) { return *state == word; })) {
@@ -188,17 +186,16 @@ Expected<std::int64_t> Oscilloscope::wait_for_trigger(milliseconds limit) {
     }
     if (Clock::now() >= deadline) {
       if (auto stopped = connection_->command(commands_->stop); !stopped) {
-        return tl::unexpected(stopped.error());
+        return fail(stopped.error());
       }
-      return tl::unexpected(
-          Error{ErrorCode::timeout,
-                message("no trigger within " + std::to_string(limit.count()) +
-                        " ms; is sync connected to input " +
-                        std::to_string(settings_.inputs[settings_.trigger_input].input) +
-                        ", and does the generator run?")});
+      return fail(ErrorCode::timeout,
+                  message("no trigger within " + std::to_string(limit.count()) +
+                          " ms; is sync connected to input " +
+                          std::to_string(settings_.inputs[settings_.trigger_input].input) +
+                          ", and does the generator run?"));
     }
     if (stop_.wait_for(poll_interval)) {
-      return tl::unexpected(Error{ErrorCode::disconnected, message("stopped")});
+      return fail(ErrorCode::disconnected, message("stopped"));
     }
   }
 }
@@ -210,7 +207,7 @@ Expected<Shot> Oscilloscope::read_shot() {
     Preamble preamble;
     auto trace = read_trace(input, preamble);
     if (!trace) {
-      return tl::unexpected(trace.error());
+      return fail(trace.error());
     }
     if (shot.traces.empty()) {
       shot.first_sample_s = preamble.first_sample_s();
@@ -219,8 +216,7 @@ Expected<Shot> Oscilloscope::read_shot() {
     } else if (preamble.points != points || preamble.first_sample_s() != shot.first_sample_s ||
                preamble.x_increment_s != shot.interval_s) {
       give_up_connection();
-      return tl::unexpected(
-          Error{ErrorCode::malformed, message("the traces of one shot have different time axes")});
+      return fail(ErrorCode::malformed, message("the traces of one shot have different time axes"));
     }
     shot.traces.push_back(std::move(*trace));
   }
@@ -231,19 +227,18 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
   if (auto done =
           connection_->command(":WAVeform:SOURce " + for_input(commands_->input_name, input.input));
       !done) {
-    return tl::unexpected(done.error());
+    return fail(done.error());
   }
   // Read back: an instrument that is one answer behind betrays itself here.
   const auto source = connection_->query(":WAVeform:SOURce?");
   if (!source) {
-    return tl::unexpected(source.error());
+    return fail(source.error());
   }
   if (*source != for_input(commands_->input_name_short, input.input)) {
     give_up_connection();
-    return tl::unexpected(
-        Error{ErrorCode::malformed,
-              message("answers :WAVeform:SOURce? with '" + shown(*source) + "' instead of " +
-                      for_input(commands_->input_name_short, input.input))});
+    return fail(ErrorCode::malformed,
+                message("answers :WAVeform:SOURce? with '" + shown(*source) + "' instead of " +
+                        for_input(commands_->input_name_short, input.input)));
   }
   if (commands_->points != nullptr) {
     const std::size_t points = commands_->memory_depth != nullptr
@@ -252,17 +247,17 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
     if (auto done =
             connection_->command(std::string(commands_->points) + " " + std::to_string(points));
         !done) {
-      return tl::unexpected(done.error());
+      return fail(done.error());
     }
   }
   const auto answer = connection_->query(":WAVeform:PREamble?");
   if (!answer) {
-    return tl::unexpected(answer.error());
+    return fail(answer.error());
   }
   auto preamble = parse_preamble(*answer);
   if (!preamble) {
     give_up_connection();
-    return tl::unexpected(Error{ErrorCode::malformed, message(preamble.error().message)});
+    return fail(ErrorCode::malformed, message(preamble.error().message));
   }
   return preamble;
 }
@@ -270,7 +265,7 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
 Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& preamble) {
   const auto answer = read_preamble(input);
   if (!answer) {
-    return tl::unexpected(answer.error());
+    return fail(answer.error());
   }
   preamble = *answer;
   Trace trace{input.name, {}, preamble.y_increment_v};
@@ -281,20 +276,19 @@ Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& p
       const std::string last = std::to_string(trace.volts.size() + wanted);
       for (const std::string& part : {":WAVeform:STARt " + first, ":WAVeform:STOP " + last}) {
         if (auto done = connection_->command(part); !done) {
-          return tl::unexpected(done.error());
+          return fail(done.error());
         }
       }
     }
     const auto codes = connection_->query_block(":WAVeform:DATA?", wanted);
     if (!codes) {
-      return tl::unexpected(codes.error());
+      return fail(codes.error());
     }
     if (codes->size() != wanted) {
       give_up_connection();
-      return tl::unexpected(
-          Error{ErrorCode::malformed,
-                message("a block of " + std::to_string(codes->size()) + " bytes where " +
-                        std::to_string(wanted) + " samples were asked for")});
+      return fail(ErrorCode::malformed,
+                  message("a block of " + std::to_string(codes->size()) + " bytes where " +
+                          std::to_string(wanted) + " samples were asked for"));
     }
     append_volts(preamble, commands_->voltage, *codes, trace.volts);
   }

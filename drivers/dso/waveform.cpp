@@ -18,8 +18,7 @@ bool whole_and_positive(double value) {
 
 Expected<Preamble> parse_preamble(std::string_view answer) {
   const auto malformed = [answer](const char* why) {
-    return tl::unexpected(
-        Error{ErrorCode::malformed, "the preamble '" + shown(answer) + "' " + why});
+    return fail(ErrorCode::malformed, "the preamble '" + shown(answer) + "' " + why);
   };
   const auto fields = parse_scpi_numbers(answer);
   if (!fields || fields->size() != field_count) {

@@ -26,18 +26,18 @@ std::string_view next_lines(std::string_view& rest) {
 Expected<std::unique_ptr<CsvReader>> CsvReader::open(const FileSettings& settings) {
   auto file = MappedFile::open(settings.path);
   if (!file) {
-    return tl::unexpected(file.error());
+    return fail(file.error());
   }
   std::unique_ptr<CsvReader> reader(new CsvReader(settings, std::move(*file)));
   if (auto header = reader->read_header(); !header) {
-    return tl::unexpected(header.error());
+    return fail(header.error());
   }
   return reader;
 }
 
 tl::unexpected<Error> CsvReader::malformed(std::size_t line, const std::string& problem) const {
-  return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ":" +
-                                                        std::to_string(line) + ": " + problem});
+  return fail(ErrorCode::malformed,
+              settings_.path.string() + ":" + std::to_string(line) + ": " + problem);
 }
 
 Expected<void> CsvReader::read_header() {
@@ -57,14 +57,13 @@ Expected<void> CsvReader::read_header() {
   }
   layout_ = std::move(*layout);
   if (!layout_.has_time && !settings_.sample_rate) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_setting,
-              settings_.path.string() +
-                  ": no column t_ns and no sample_rate_hz; one of them must tell the time"});
+    return fail(ErrorCode::invalid_setting,
+                settings_.path.string() +
+                    ": no column t_ns and no sample_rate_hz; one of them must tell the time");
   }
   auto described = describe_file_channels(settings_, layout_.channels);
   if (!described) {
-    return tl::unexpected(described.error());
+    return fail(described.error());
   }
   description_ = std::move(*described);
   return {};
@@ -96,7 +95,7 @@ Expected<bool> CsvReader::next_stretch() {
     ahead_.pop_front();
     read_ahead();
     if (const auto order = check_order(); !order) {
-      return tl::unexpected(order.error());
+      return fail(order.error());
     }
   }
   return true;
@@ -154,7 +153,7 @@ SampleBlock CsvReader::next_piece(std::size_t samples) {
 Expected<SampleBlock> CsvReader::read(std::size_t samples) {
   const auto more = next_stretch();
   if (!more) {
-    return tl::unexpected(more.error());
+    return fail(more.error());
   }
   if (!*more) {
     return SampleBlock{};

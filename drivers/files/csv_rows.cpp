@@ -236,7 +236,7 @@ tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) 
     double number = 0.0;
     if (name.empty() || is_whole(name, number)) {
       return tl::unexpected("column " + std::to_string(layout.columns.size() + 1) +
-                            " has no name; the first line must name the columns");
+                  " has no name; the first line must name the columns");
     }
     if (std::find(layout.columns.begin(), layout.columns.end(), name) != layout.columns.end()) {
       return tl::unexpected("two columns are called '" + std::string(name) + "'");

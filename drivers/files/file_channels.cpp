@@ -15,9 +15,8 @@ std::string listed(const std::vector<std::string>& names) {
 
 tl::unexpected<Error> unknown(const FileSettings& settings, const char* what,
                               const std::string& name, const std::vector<std::string>& known) {
-  return tl::unexpected(Error{ErrorCode::not_found, settings.path.string() + ": no " + what + " '" +
-                                                        name +
-                                                        "'; the file has: " + listed(known)});
+  return fail(ErrorCode::not_found, settings.path.string() + ": no " + what + " '" + name +
+                                        "'; the file has: " + listed(known));
 }
 
 } // namespace
@@ -40,9 +39,8 @@ Expected<SourceDescription> describe_file_channels(const FileSettings& settings,
     ChannelDescription channel;
     channel.name = renamed == settings.channels.end() ? name : renamed->second;
     if (std::find(ours.begin(), ours.end(), channel.name) != ours.end()) {
-      return tl::unexpected(
-          Error{ErrorCode::invalid_setting,
-                settings.path.string() + ": two channels are called '" + channel.name + "'"});
+      return fail(ErrorCode::invalid_setting,
+                  settings.path.string() + ": two channels are called '" + channel.name + "'");
     }
     ours.push_back(channel.name);
     const auto unit = settings.units.find(channel.name);

@@ -27,7 +27,7 @@ template <class Reader>
 Expected<std::unique_ptr<SampleReader>> open_as(const FileSettings& settings) {
   auto reader = Reader::open(settings);
   if (!reader) {
-    return tl::unexpected(reader.error());
+    return fail(reader.error());
   }
   return std::unique_ptr<SampleReader>(std::move(*reader));
 }
@@ -47,19 +47,18 @@ Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings
 Expected<SourceDescription> FileSource::describe() {
   auto reader = open_reader(settings_);
   if (!reader) {
-    return tl::unexpected(reader.error());
+    return fail(reader.error());
   }
   reader_ = std::move(*reader);
   // Two samples tell the pace, and a file that is wrong from its first row on is refused before
   // anything is announced.
   auto first = reader_->read(2);
   if (!first) {
-    return tl::unexpected(first.error());
+    return fail(first.error());
   }
   if (first->samples == 0) {
-    return tl::unexpected(
-        Error{ErrorCode::malformed,
-              settings_.path.string() + ": no samples below the names of the columns"});
+    return fail(ErrorCode::malformed,
+                settings_.path.string() + ": no samples below the names of the columns");
   }
   first_ = std::move(*first);
   return reader_->description();
@@ -96,7 +95,7 @@ Expected<void> FileSource::run(BlockSink& sink) {
     sink.take(std::move(block));
     auto next = reader_->read(samples);
     if (!next) {
-      return tl::unexpected(next.error());
+      return fail(next.error());
     }
     block = std::move(*next);
   }

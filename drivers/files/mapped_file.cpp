@@ -10,10 +10,9 @@ namespace dyncal::drivers::acs {
 namespace {
 
 tl::unexpected<Error> unreadable(const std::filesystem::path& path) {
-  return tl::unexpected(
-      Error{ErrorCode::not_found,
-            path.string() +
-                ": cannot read this file; does it exist, is it a file, and may you read it?"});
+  return fail(ErrorCode::not_found,
+              path.string() +
+                  ": cannot read this file; does it exist, is it a file, and may you read it?");
 }
 
 } // namespace

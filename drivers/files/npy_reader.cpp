@@ -25,7 +25,7 @@ void copy_as(const char* from, std::size_t row_bytes, std::size_t rows, Number* 
 Expected<std::unique_ptr<NpyReader>> NpyReader::open(const FileSettings& settings) {
   auto file = MappedFile::open(settings.path);
   if (!file) {
-    return tl::unexpected(file.error());
+    return fail(file.error());
   }
   std::unique_ptr<NpyReader> reader(new NpyReader(settings, std::move(*file)));
   auto header = NpyHeader::of(reader->file_.text());
@@ -34,13 +34,13 @@ Expected<std::unique_ptr<NpyReader>> NpyReader::open(const FileSettings& setting
   }
   reader->header_ = std::move(*header);
   if (auto named = reader->name_fields(); !named) {
-    return tl::unexpected(named.error());
+    return fail(named.error());
   }
   return reader;
 }
 
 tl::unexpected<Error> NpyReader::malformed(const std::string& problem) const {
-  return tl::unexpected(Error{ErrorCode::malformed, settings_.path.string() + ": " + problem});
+  return fail(ErrorCode::malformed, settings_.path.string() + ": " + problem);
 }
 
 Expected<void> NpyReader::name_fields() {
@@ -60,14 +60,13 @@ Expected<void> NpyReader::name_fields() {
     channels_.push_back(field);
   }
   if (!time_ && !settings_.sample_rate) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_setting,
-              settings_.path.string() +
-                  ": no field t_ns and no sample_rate_hz; one of them must tell the time"});
+    return fail(ErrorCode::invalid_setting,
+                settings_.path.string() +
+                    ": no field t_ns and no sample_rate_hz; one of them must tell the time");
   }
   auto described = describe_file_channels(settings_, names);
   if (!described) {
-    return tl::unexpected(described.error());
+    return fail(described.error());
   }
   description_ = std::move(*described);
   return {};
@@ -136,7 +135,7 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
     copy(*time_, block.samples, block.stamps_ns.data());
   }
   if (const auto order = check_order(numbers, block); !order) {
-    return tl::unexpected(order.error());
+    return fail(order.error());
   }
   block.values.resize(block.samples * channels_.size());
   for (std::size_t channel = 0; channel < channels_.size(); ++channel) {

@@ -32,15 +32,14 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   std::unique_ptr<WavReader> reader(new WavReader());
   reader->path_ = settings.path.string();
   if (!std::filesystem::is_regular_file(settings.path)) {
-    return tl::unexpected(
-        Error{ErrorCode::not_found,
-              reader->path_ + ": cannot read this file; does it exist, and may you read it?"});
+    return fail(ErrorCode::not_found,
+                reader->path_ + ": cannot read this file; does it exist, and may you read it?");
   }
   SF_INFO info{};
   reader->file_.reset(sf_open(reader->path_.c_str(), SFM_READ, &info));
   if (!reader->file_) {
-    return tl::unexpected(Error{ErrorCode::malformed, reader->path_ + ": cannot be read as WAV (" +
-                                                          sf_strerror(nullptr) + ")"});
+    return fail(ErrorCode::malformed,
+                reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")");
   }
   std::vector<std::string> names;
   for (int channel = 1; channel <= info.channels; ++channel) {
@@ -48,7 +47,7 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   }
   auto description = describe_file_channels(settings, names);
   if (!description) {
-    return tl::unexpected(description.error());
+    return fail(description.error());
   }
   reader->description_ = *description;
   reader->rate_ = settings.sample_rate.value_or(SampleRate{info.samplerate, 1});
@@ -67,9 +66,8 @@ Expected<SampleBlock> WavReader::read(std::size_t samples) {
   const sf_count_t count =
       sf_readf_double(file_.get(), frames_.data(), static_cast<sf_count_t>(samples));
   if (sf_error(file_.get()) != SF_ERR_NO_ERROR) {
-    return tl::unexpected(Error{ErrorCode::malformed, path_ + ": sample " +
-                                                          std::to_string(next_sample_) + ": " +
-                                                          sf_strerror(file_.get())});
+    return fail(ErrorCode::malformed, path_ + ": sample " + std::to_string(next_sample_) + ": " +
+                                          sf_strerror(file_.get()));
   }
   SampleBlock block;
   block.first_sample = next_sample_;

@@ -77,9 +77,8 @@ Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit)
       return false; // the rest of the line is still to come
     }
     if (read(input_, &byte, 1) != 1) {
-      return tl::unexpected(
-          Error{ErrorCode::disconnected,
-                "generator by hand: standard input has ended, nobody can confirm the settings"});
+      return fail(ErrorCode::disconnected,
+                  "generator by hand: standard input has ended, nobody can confirm the settings");
     }
     if (byte == '\n') {
       asked_ = false;

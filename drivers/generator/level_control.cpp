@@ -17,38 +17,32 @@ std::string number(double value) {
   return text;
 }
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 } // namespace
 
 Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
                                    const LevelLimits& limits) {
   const double voltage_v = level_m_s2 / level_per_volt;
   if (!(voltage_v > 0.0) || !std::isfinite(voltage_v)) {
-    return failure(ErrorCode::invalid_setting,
-                   "a level of " + number(level_m_s2) + " m/s^2 cannot be set");
+    return fail(ErrorCode::invalid_setting,
+                "a level of " + number(level_m_s2) + " m/s^2 cannot be set");
   }
   if (level_m_s2 > limits.maximum_level_m_s2 * rounding) {
-    return failure(
-        ErrorCode::invalid_setting,
-        "a level of " + number(level_m_s2) +
-            " m/s^2 is above generator.maximum_level_m_s2 = " + number(limits.maximum_level_m_s2));
+    return fail(ErrorCode::invalid_setting, "a level of " + number(level_m_s2) +
+                                                " m/s^2 is above generator.maximum_level_m_s2 = " +
+                                                number(limits.maximum_level_m_s2));
   }
   if (voltage_v > limits.maximum_voltage_v * rounding) {
-    return failure(
-        ErrorCode::invalid_setting,
-        "a level of " + number(level_m_s2) + " m/s^2 needs " + number(voltage_v) +
-            " V, above generator.maximum_voltage_v = " + number(limits.maximum_voltage_v));
+    return fail(ErrorCode::invalid_setting,
+                "a level of " + number(level_m_s2) + " m/s^2 needs " + number(voltage_v) +
+                    " V, above generator.maximum_voltage_v = " + number(limits.maximum_voltage_v));
   }
   return voltage_v;
 }
 
 Expected<LevelControl> LevelControl::start(const LevelTarget& target, const LevelLimits& limits) {
   if (!(target.tolerance_rel > 0.0) || target.corrections < 1) {
-    return failure(ErrorCode::invalid_setting,
-                   "the level needs a tolerance above 0 and at least one correction");
+    return fail(ErrorCode::invalid_setting,
+                "the level needs a tolerance above 0 and at least one correction");
   }
   const double level_m_s2 = target.level_m_s2 * (target.response_known ? 1.0 : first_part);
   const auto possible =
@@ -56,11 +50,11 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
                         {.maximum_voltage_v = std::numeric_limits<double>::infinity(),
                          .maximum_level_m_s2 = limits.maximum_level_m_s2});
   if (!possible) {
-    return tl::unexpected(possible.error());
+    return fail(possible.error());
   }
   const auto voltage_v = voltage_for_level(level_m_s2, target.level_per_volt, limits);
   if (!voltage_v) {
-    return tl::unexpected(voltage_v.error());
+    return fail(voltage_v.error());
   }
   LevelControl control(target, limits);
   control.voltage_v_ = *voltage_v;
@@ -71,13 +65,13 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
 Expected<bool> LevelControl::take(double measured_m_s2) {
   if (!std::isfinite(measured_m_s2) ||
       measured_m_s2 < min_response * voltage_v_ * level_per_volt_) {
-    return failure(ErrorCode::refused,
-                   "the reference shows " + number(measured_m_s2) + " m/s^2 at " +
-                       number(voltage_v_) + " V where " + number(voltage_v_ * level_per_volt_) +
-                       " are expected: is the amplifier on, and the reference connected?");
+    return fail(ErrorCode::refused,
+                "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
+                    " V where " + number(voltage_v_ * level_per_volt_) +
+                    " are expected: is the amplifier on, and the reference connected?");
   }
   if (measured_m_s2 > limits_.maximum_level_m_s2 * rounding) {
-    return failure(
+    return fail(
         ErrorCode::refused,
         "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
             " V, above generator.maximum_level_m_s2 = " + number(limits_.maximum_level_m_s2));
@@ -87,15 +81,15 @@ Expected<bool> LevelControl::take(double measured_m_s2) {
     return true;
   }
   if (changes_ == target_.corrections) {
-    return failure(ErrorCode::refused,
-                   "the level is " + number(measured_m_s2) + " m/s^2 in place of " +
-                       number(target_.level_m_s2) + " after " + std::to_string(changes_) +
-                       " corrections: is the exciter steady, or level_tolerance_rel = " +
-                       number(target_.tolerance_rel) + " too narrow?");
+    return fail(ErrorCode::refused,
+                "the level is " + number(measured_m_s2) + " m/s^2 in place of " +
+                    number(target_.level_m_s2) + " after " + std::to_string(changes_) +
+                    " corrections: is the exciter steady, or level_tolerance_rel = " +
+                    number(target_.tolerance_rel) + " too narrow?");
   }
   const auto next_v = voltage_for_level(target_.level_m_s2, level_per_volt_, limits_);
   if (!next_v) {
-    return tl::unexpected(next_v.error());
+    return fail(next_v.error());
   }
   voltage_v_ = *next_v;
   ++changes_;

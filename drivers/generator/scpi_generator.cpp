@@ -18,7 +18,7 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
   std::unique_ptr<ScpiGenerator> generator(new ScpiGenerator());
   generator->address_ = address;
   if (auto connected = generator->reconnect(); !connected) {
-    return tl::unexpected(connected.error());
+    return fail(connected.error());
   }
   generator->choose_clock();
   return generator;
@@ -41,11 +41,11 @@ void ScpiGenerator::choose_clock() {
 Expected<void> ScpiGenerator::reconnect() {
   auto connection = ScpiConnection::connect("generator", address_, answer_limit, never_);
   if (!connection) {
-    return tl::unexpected(connection.error());
+    return fail(connection.error());
   }
   const auto identity = connection->query("*IDN?");
   if (!identity) {
-    return tl::unexpected(identity.error());
+    return fail(identity.error());
   }
   identity_ = *identity;
   // An instrument that was switched off in between has forgotten all of this.
@@ -62,7 +62,7 @@ Expected<void> ScpiGenerator::reconnect() {
 Expected<std::string> ScpiGenerator::query(const std::string& text) {
   if (connection_->lost()) {
     if (auto connected = reconnect(); !connected) {
-      return tl::unexpected(connected.error());
+      return fail(connected.error());
     }
   }
   return connection_->query(text);
@@ -83,9 +83,8 @@ Expected<void> ScpiGenerator::set_frequency(const std::string& decimal_hz) {
 
 Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
   if (!(amplitude_v >= 0.0 && amplitude_v <= 1000.0)) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_setting,
-              "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set"});
+    return fail(ErrorCode::invalid_setting,
+                "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set");
   }
   return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }
@@ -101,14 +100,14 @@ Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
   const auto answer = query(text);
   if (!answer) {
-    return tl::unexpected(answer.error());
+    return fail(answer.error());
   }
   double time_s = 0.0;
   const auto [end, status] =
       std::from_chars(answer->data(), answer->data() + answer->size(), time_s);
   if (status != std::errc()) {
-    return tl::unexpected(Error{ErrorCode::malformed, "generator " + address_ + " answers " + text +
-                                                          " with '" + *answer + "'"});
+    return fail(ErrorCode::malformed,
+                "generator " + address_ + " answers " + text + " with '" + *answer + "'");
   }
   return time_s;
 }

@@ -15,7 +15,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 tl::unexpected<Error> malformed(std::string message) {
-  return tl::unexpected(Error{ErrorCode::malformed, std::move(message)});
+  return fail(ErrorCode::malformed, std::move(message));
 }
 
 } // namespace

@@ -17,8 +17,7 @@ Expected<ScpiConnection> ScpiConnection::connect(std::string instrument, std::st
                                                  const StopSignal& stop) {
   auto transport = connect_scpi_transport(address, connect_limit, stop);
   if (!transport) {
-    return tl::unexpected(
-        Error{transport.error().code, instrument + " " + transport.error().message});
+    return fail(transport.error().code, instrument + " " + transport.error().message);
   }
   return ScpiConnection(std::move(instrument), std::move(address), answer_limit,
                         std::move(*transport));
@@ -33,7 +32,7 @@ ScpiConnection::ScpiConnection(std::string instrument, std::string address,
 // The transport's errors begin with the address.
 tl::unexpected<Error> ScpiConnection::failure(const Error& error, const std::string& text) {
   lost_ = true;
-  return tl::unexpected(Error{error.code, instrument_ + " " + error.message + " (" + text + ")"});
+  return fail(error.code, instrument_ + " " + error.message + " (" + text + ")");
 }
 
 tl::unexpected<Error> ScpiConnection::misunderstood(const Error& error, const std::string& text) {
@@ -57,7 +56,7 @@ Expected<std::string> ScpiConnection::query(const std::string& text) {
         text);
   }
   if (auto sent = send(text); !sent) {
-    return tl::unexpected(sent.error());
+    return fail(sent.error());
   }
   auto answer = transport_->read_line(max_line, answer_limit_);
   if (!answer) {
@@ -69,7 +68,7 @@ Expected<std::string> ScpiConnection::query(const std::string& text) {
 Expected<double> ScpiConnection::query_number(const std::string& text) {
   const auto answer = query(text);
   if (!answer) {
-    return tl::unexpected(answer.error());
+    return fail(answer.error());
   }
   auto number = parse_scpi_number(*answer);
   if (!number) {
@@ -84,7 +83,7 @@ Expected<void> ScpiConnection::command(const std::string& text) {
   }
   const auto answer = query(":SYSTem:ERRor?");
   if (!answer) {
-    return tl::unexpected(answer.error());
+    return fail(answer.error());
   }
   const auto error = parse_instrument_error(*answer);
   if (!error) {
@@ -93,8 +92,8 @@ Expected<void> ScpiConnection::command(const std::string& text) {
   if (error->code == 0) {
     return {};
   }
-  return tl::unexpected(Error{ErrorCode::refused, instrument_ + " " + address_ + " refuses " +
-                                                      text + ": " + shown(*answer)});
+  return fail(ErrorCode::refused,
+              instrument_ + " " + address_ + " refuses " + text + ": " + shown(*answer));
 }
 
 Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
@@ -105,7 +104,7 @@ Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
         text);
   }
   if (auto sent = send(text); !sent) {
-    return tl::unexpected(sent.error());
+    return fail(sent.error());
   }
   auto block = read_block(longest);
   if (!block) {
@@ -116,11 +115,11 @@ Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
 
 Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
   const auto malformed = [this](const std::string& message) {
-    return tl::unexpected(Error{ErrorCode::malformed, address_ + ": " + message});
+    return fail(ErrorCode::malformed, address_ + ": " + message);
   };
   char header[2];
   if (auto read = transport_->read_exactly(header, answer_limit_); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   const auto digit_count = parse_block_digit_count({header, sizeof(header)});
   if (!digit_count) {
@@ -128,7 +127,7 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
   }
   char digits[9];
   if (auto read = transport_->read_exactly({digits, *digit_count}, answer_limit_); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   const auto length = parse_block_length({digits, *digit_count});
   if (!length) {
@@ -140,11 +139,11 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
   }
   std::vector<char> block(*length);
   if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   const auto end = transport_->read_line(max_line, answer_limit_);
   if (!end) {
-    return tl::unexpected(end.error());
+    return fail(end.error());
   }
   if (!end->empty()) {
     return malformed("a block is longer than the " + std::to_string(*length) +

@@ -33,11 +33,11 @@ Expected<std::unique_ptr<ScpiTransport>> connect_scpi_transport(const std::strin
   }
   const auto parsed = parse_address(address);
   if (!parsed) {
-    return tl::unexpected(parsed.error());
+    return fail(parsed.error());
   }
   auto connection = TcpConnection::connect(*parsed, limit, stop);
   if (!connection) {
-    return tl::unexpected(connection.error());
+    return fail(connection.error());
   }
   return std::make_unique<SocketTransport>(std::move(*connection));
 }

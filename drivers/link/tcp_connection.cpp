@@ -19,10 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-  return tl::unexpected(Error{code, std::move(message)});
-}
-
 int milliseconds_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
   return static_cast<int>(std::clamp<long long>(left, 0, 3'600'000));
@@ -58,8 +54,8 @@ Expected<std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>> resolve(const Addre
   const int status =
       getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
   if (status != 0) {
-    return failure(ErrorCode::not_found,
-                   address.text() + ": no host of this name (" + gai_strerror(status) + ")");
+    return fail(ErrorCode::not_found,
+                address.text() + ": no host of this name (" + gai_strerror(status) + ")");
   }
   return std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>(found, &freeaddrinfo);
 }
@@ -112,9 +108,9 @@ Expected<Address> parse_address(std::string_view text) {
     whole = status == std::errc() && rest == end;
   }
   if (!whole) {
-    return failure(ErrorCode::malformed,
-                   "\"" + std::string(text) +
-                       "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
+    return fail(ErrorCode::malformed,
+                "\"" + std::string(text) +
+                    "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
   }
   std::string_view host = text.substr(0, colon);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
@@ -165,7 +161,7 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address,
   const auto deadline = Clock::now() + limit;
   auto targets = resolve(address);
   if (!targets) {
-    return tl::unexpected(targets.error());
+    return fail(targets.error());
   }
   int status = ECONNREFUSED;
   for (const addrinfo* target = targets->get(); target != nullptr; target = target->ai_next) {
@@ -181,23 +177,22 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address,
     }
   }
   if (status == ECANCELED) {
-    return failure(ErrorCode::disconnected, address.text() + ": stopped while connecting");
+    return fail(ErrorCode::disconnected, address.text() + ": stopped while connecting");
   }
   if (status == ETIMEDOUT) {
-    return failure(ErrorCode::timeout,
-                   address.text() +
-                       ": no answer; is the instrument switched on and in this network?");
+    return fail(ErrorCode::timeout,
+                address.text() + ": no answer; is the instrument switched on and in this network?");
   }
-  return failure(ErrorCode::refused, address.text() + ": " + std::strerror(status) +
-                                         "; is the instrument switched on?");
+  return fail(ErrorCode::refused,
+              address.text() + ": " + std::strerror(status) + "; is the instrument switched on?");
 }
 
 Expected<void> TcpConnection::wait(short events, Clock::time_point deadline) {
   switch (wait_for_events(socket_.number(), events, stop_->descriptor(), deadline)) {
   case Ready::stopped:
-    return failure(ErrorCode::disconnected, address_.text() + ": stopped");
+    return fail(ErrorCode::disconnected, address_.text() + ": stopped");
   case Ready::timed_out:
-    return failure(ErrorCode::timeout, address_.text() + ": the instrument does not answer");
+    return fail(ErrorCode::timeout, address_.text() + ": the instrument does not answer");
   case Ready::yes:
     break;
   }
@@ -215,8 +210,8 @@ Expected<void> TcpConnection::send_all(std::string_view bytes, std::chrono::mill
         return ready;
       }
     } else if (errno != EINTR) {
-      return failure(ErrorCode::disconnected,
-                     address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+      return fail(ErrorCode::disconnected,
+                  address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
     }
   }
   return {};
@@ -229,16 +224,16 @@ Expected<std::size_t> TcpConnection::receive(std::span<char> bytes, Clock::time_
       return static_cast<std::size_t>(count);
     }
     if (count == 0) {
-      return failure(ErrorCode::disconnected,
-                     address_.text() + ": the instrument has closed the connection");
+      return fail(ErrorCode::disconnected,
+                  address_.text() + ": the instrument has closed the connection");
     }
     if (errno == EAGAIN || errno == EWOULDBLOCK) {
       if (auto ready = wait(POLLIN, deadline); !ready) {
-        return tl::unexpected(ready.error());
+        return fail(ready.error());
       }
     } else if (errno != EINTR) {
-      return failure(ErrorCode::disconnected,
-                     address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
+      return fail(ErrorCode::disconnected,
+                  address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
     }
   }
 }
@@ -258,14 +253,14 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest,
       return line;
     }
     if (received_.size() > longest) {
-      return failure(ErrorCode::malformed, address_.text() + ": a line without an end after " +
-                                               std::to_string(longest) + " bytes");
+      return fail(ErrorCode::malformed, address_.text() + ": a line without an end after " +
+                                            std::to_string(longest) + " bytes");
     }
     searched = received_.size();
     char chunk[4096];
     auto count = receive(chunk, deadline);
     if (!count) {
-      return tl::unexpected(count.error());
+      return fail(count.error());
     }
     received_.append(chunk, *count);
   }
@@ -285,7 +280,7 @@ Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::m
   while (!bytes.empty()) {
     auto count = receive(bytes, deadline);
     if (!count) {
-      return tl::unexpected(count.error());
+      return fail(count.error());
     }
     bytes = bytes.subspan(*count);
   }

@@ -25,8 +25,8 @@ public:
   Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override {
     const int size = static_cast<int>(message.size());
     if (lxi_send(device_, message.data(), size, static_cast<int>(limit.count())) != size) {
-      return tl::unexpected(Error{ErrorCode::disconnected,
-                                  address_ + ": the instrument does not take what is sent to it"});
+      return fail(ErrorCode::disconnected,
+                  address_ + ": the instrument does not take what is sent to it");
     }
     return {};
   }
@@ -38,9 +38,8 @@ public:
           std::find(received_.begin() + static_cast<std::ptrdiff_t>(taken_), received_.end(), '\n');
       const std::size_t size = static_cast<std::size_t>(end - received_.begin()) - taken_;
       if (size > longest) {
-        return tl::unexpected(Error{ErrorCode::malformed, address_ +
-                                                              ": a line without an end after " +
-                                                              std::to_string(longest) + " bytes"});
+        return fail(ErrorCode::malformed, address_ + ": a line without an end after " +
+                                              std::to_string(longest) + " bytes");
       }
       if (end != received_.end()) {
         std::string line(received_.data() + taken_, size);
@@ -51,7 +50,7 @@ public:
         return line;
       }
       if (auto more = receive(deadline); !more) {
-        return tl::unexpected(more.error());
+        return fail(more.error());
       }
     }
   }
@@ -77,8 +76,7 @@ private:
   Expected<void> receive(Clock::time_point deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) {
-      return tl::unexpected(
-          Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
+      return fail(ErrorCode::timeout, address_ + ": the instrument does not answer");
     }
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(taken_));
     taken_ = 0;
@@ -88,8 +86,7 @@ private:
                                   static_cast<int>(left));
     received_.resize(held + static_cast<std::size_t>(std::max(count, 0)));
     if (count <= 0) {
-      return tl::unexpected(
-          Error{ErrorCode::timeout, address_ + ": the instrument does not answer"});
+      return fail(ErrorCode::timeout, address_ + ": the instrument does not answer");
     }
     return {};
   }
@@ -111,19 +108,19 @@ Expected<std::unique_ptr<ScpiTransport>> connect_vxi11_transport(const std::stri
     host.resize(slash);
   }
   if (host.empty() || device.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::malformed,
-              "\"" + address + "\" is not a VXI-11 address: write vxi11:HOST or vxi11:HOST/inst0"});
+    return fail(ErrorCode::malformed,
+                "\"" + address +
+                    "\" is not a VXI-11 address: write vxi11:HOST or vxi11:HOST/inst0");
   }
   static std::once_flag once;
   std::call_once(once, [] { lxi_init(); });
   const int number =
       lxi_connect(host.c_str(), 0, device.c_str(), static_cast<int>(limit.count()), VXI11);
   if (number < 0) {
-    return tl::unexpected(Error{
+    return fail(
         ErrorCode::refused,
         address +
-            ": no VXI-11 instrument answers; is it switched on, and does it offer VXI-11 (LXI)?"});
+            ": no VXI-11 instrument answers; is it switched on, and does it offer VXI-11 (LXI)?");
   }
   return std::make_unique<Vxi11Transport>(number, address);
 }

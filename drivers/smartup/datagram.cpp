@@ -148,7 +148,7 @@ public:
       if (!reader.delimited(text)) {
         return false;
       }
-      if (tag.field == name) {
+      if (tag.field == name_field) {
         message_.sensor_name = text_of(text);
         has_name_ = true;
       } else if (tag.field >= first_text_field && tag.field < first_text_field + channels_of_unit) {

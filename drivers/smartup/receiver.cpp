@@ -66,9 +66,8 @@ Error cannot_listen(const std::string& listen, int error) {
 Expected<ListenAddress> parse_listen_address(const std::string& text) {
   const auto colon = text.rfind(':');
   const auto bad = [&] {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_setting,
-              "cannot listen at '" + text + "': write IPV4-ADDRESS:PORT, e.g. 0.0.0.0:7654"});
+    return fail(ErrorCode::invalid_setting,
+                "cannot listen at '" + text + "': write IPV4-ADDRESS:PORT, e.g. 0.0.0.0:7654");
   };
   if (colon == std::string::npos) {
     return bad();
@@ -152,11 +151,11 @@ public:
   static Expected<std::unique_ptr<Socket>> open(Endpoint endpoint) {
     auto listen = parse_listen_address(endpoint.listen);
     if (!listen) {
-      return tl::unexpected(listen.error());
+      return fail(listen.error());
     }
     const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (descriptor < 0) {
-      return tl::unexpected(cannot_listen(endpoint.listen, errno));
+      return fail(cannot_listen(endpoint.listen, errno));
     }
     auto opened =
         std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.sink));
@@ -169,7 +168,7 @@ public:
     setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
     sockaddr_in address = socket_address(*listen);
     if (bind(descriptor, generic(address), sizeof address) != 0) {
-      return tl::unexpected(cannot_listen(endpoint.listen, errno));
+      return fail(cannot_listen(endpoint.listen, errno));
     }
     return opened;
   }
@@ -243,15 +242,14 @@ Expected<std::unique_ptr<Receiver>> Receiver::create(std::vector<Endpoint> endpo
   for (auto& endpoint : endpoints) {
     auto opened = Socket::open(std::move(endpoint));
     if (!opened) {
-      return tl::unexpected(opened.error());
+      return fail(opened.error());
     }
     receiver->sockets_.push_back(std::move(*opened));
   }
   receiver->stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (receiver->stop_event_ < 0) {
-    return tl::unexpected(
-        Error{ErrorCode::refused,
-              std::string("cannot make an event to stop the receiver: ") + std::strerror(errno)});
+    return fail(ErrorCode::refused,
+                std::string("cannot make an event to stop the receiver: ") + std::strerror(errno));
   }
   return receiver;
 }

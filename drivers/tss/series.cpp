@@ -18,7 +18,7 @@ constexpr std::size_t max_samples = 50'000'000;
 constexpr std::size_t max_channels = 64;
 
 tl::unexpected<Error> malformed(const std::string& message) {
-  return tl::unexpected(Error{ErrorCode::malformed, message});
+  return fail(ErrorCode::malformed, message);
 }
 
 std::size_t bytes_of(ValueForm form) {
@@ -194,7 +194,7 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
     }
     header.form = *form;
     if (auto possible = check(header.series); !possible) {
-      return tl::unexpected(possible.error());
+      return fail(possible.error());
     }
     return header;
   } catch (const nlohmann::json::exception&) {
@@ -257,7 +257,7 @@ Expected<Series> parse_series_csv(std::string_view text) {
   }
   series.samples = columns.empty() ? 0 : columns.front().size();
   if (auto possible = check(series); !possible) {
-    return tl::unexpected(possible.error());
+    return fail(possible.error());
   }
   for (const auto& column : columns) {
     series.values.insert(series.values.end(), column.begin(), column.end());

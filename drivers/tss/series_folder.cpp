@@ -20,7 +20,7 @@ public:
   Expected<void> discard_pending() override {
     auto names = csv_names();
     if (!names) {
-      return tl::unexpected(names.error());
+      return fail(names.error());
     }
     seen_ = std::move(*names);
     looked_ = true;
@@ -30,14 +30,14 @@ public:
   Expected<Series> next(milliseconds limit) override {
     if (!looked_) {
       if (auto done = discard_pending(); !done) {
-        return tl::unexpected(done.error());
+        return fail(done.error());
       }
     }
     const auto deadline = Clock::now() + limit;
     for (;;) {
       const auto names = csv_names();
       if (!names) {
-        return tl::unexpected(names.error());
+        return fail(names.error());
       }
       for (const std::string& name : *names) { // in the order of their names
         if (seen_.insert(name).second) {
@@ -89,7 +89,7 @@ private:
   }
 
   static tl::unexpected<Error> failure(ErrorCode code, std::string message) {
-    return tl::unexpected(Error{code, "time series sensor " + std::move(message)});
+    return fail(code, "time series sensor " + std::move(message));
   }
 
   std::filesystem::path folder_;

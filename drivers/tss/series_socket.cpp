@@ -26,7 +26,7 @@ public:
     while (connection_ && connection_->has_unread()) {
       if (auto old = next(leftover_limit);
           !old && old.error().code == ErrorCode::disconnected && stop_.raised()) {
-        return tl::unexpected(old.error());
+        return fail(old.error());
       }
     }
     return connect();
@@ -34,7 +34,7 @@ public:
 
   Expected<Series> next(milliseconds limit) override {
     if (auto connected = connect(); !connected) {
-      return tl::unexpected(connected.error());
+      return fail(connected.error());
     }
     auto line = connection_->read_line(max_header, limit);
     if (!line) {
@@ -82,38 +82,37 @@ private:
     std::array<char, 2> head{};
     std::array<char, 9> digits{};
     if (auto read = connection_->read_exactly(head, rest_limit); !read) {
-      return tl::unexpected(read.error());
+      return fail(read.error());
     }
     const auto count = parse_block_digit_count({head.data(), head.size()});
     if (!count) {
-      return tl::unexpected(Error{ErrorCode::malformed, address_ + ": " + count.error().message});
+      return fail(ErrorCode::malformed, address_ + ": " + count.error().message);
     }
     if (auto read = connection_->read_exactly({digits.data(), *count}, rest_limit); !read) {
-      return tl::unexpected(read.error());
+      return fail(read.error());
     }
     const auto length = parse_block_length({digits.data(), *count});
     if (!length || *length != wanted) {
-      return tl::unexpected(Error{ErrorCode::malformed,
-                                  address_ + ": a block of '" + shown({digits.data(), *count}) +
-                                      "' bytes where the series has " + std::to_string(wanted)});
+      return fail(ErrorCode::malformed,
+                  address_ + ": a block of '" + shown({digits.data(), *count}) +
+                      "' bytes where the series has " + std::to_string(wanted));
     }
     std::vector<char> bytes(wanted);
     if (auto read = connection_->read_exactly(bytes, rest_limit); !read) {
-      return tl::unexpected(read.error());
+      return fail(read.error());
     }
     const auto end = connection_->read_line(max_header, rest_limit);
     if (!end) {
-      return tl::unexpected(end.error());
+      return fail(end.error());
     }
     if (!end->empty()) {
-      return tl::unexpected(
-          Error{ErrorCode::malformed, address_ + ": a series is longer than it announces"});
+      return fail(ErrorCode::malformed, address_ + ": a series is longer than it announces");
     }
     return bytes;
   }
 
   static tl::unexpected<Error> failure(const Error& error) {
-    return tl::unexpected(Error{error.code, "time series sensor " + error.message});
+    return fail(error.code, "time series sensor " + error.message);
   }
   tl::unexpected<Error> give_up(const Error& error) {
     connection_.reset();

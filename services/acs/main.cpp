@@ -28,7 +28,7 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
     if (!bench) {
-      return tl::unexpected(bench.error());
+      return fail(bench.error());
     }
     add_network_settings(bench->network, network);
     for (const SourceSettings& settings : bench->sources) {
@@ -37,8 +37,7 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
       }
       auto source = PlayedSource::prepare(settings, stop);
       if (!source) {
-        return tl::unexpected(
-            Error{source.error().code, fmt::format("{}: {}", file, source.error().message)});
+        return fail(source.error().code, fmt::format("{}: {}", file, source.error().message));
       }
       SourceOptions options;
       options.bench = bench->bench;
@@ -50,9 +49,8 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
     }
   }
   if (sources.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_argument,
-              "no source with driver \"socket\" or \"file\" in the bench files given"});
+    return fail(ErrorCode::bad_argument,
+                "no source with driver \"socket\" or \"file\" in the bench files given");
   }
   return sources;
 }
@@ -61,7 +59,7 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
                    const std::stop_token& stop) {
   auto sources = prepare(files, network, stop);
   if (!sources) {
-    return tl::unexpected(sources.error());
+    return fail(sources.error());
   }
   return run_sources("dyncal-acs", *sources, network, stop);
 }

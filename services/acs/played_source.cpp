@@ -27,11 +27,11 @@ Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver,
   const std::stop_callback stop_driver(stop, [&driver] { driver.stop(); });
   auto description = driver.describe();
   if (stop.stop_requested()) {
-    return tl::unexpected(Error{ErrorCode::interrupted,
-                                fmt::format("stopped while opening source '{}'", settings.name)});
+    return fail(ErrorCode::interrupted,
+                fmt::format("stopped while opening source '{}'", settings.name));
   }
   if (!description) {
-    return tl::unexpected(named(settings, description.error()));
+    return fail(named(settings, description.error()));
   }
   return *description;
 }
@@ -46,20 +46,18 @@ Expected<void> rename_channels(const SourceSettings& settings,
   for (const auto& [device_name, name] : settings.channels) {
     const auto found = std::ranges::find(channels, device_name, &drivers::ChannelDescription::name);
     if (found == channels.end()) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("source '{}': the instrument at {} has no channel '{}'", settings.name,
-                            settings.address, device_name)});
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("source '{}': the instrument at {} has no channel '{}'",
+                              settings.name, settings.address, device_name));
     }
     found->name = name;
   }
   for (const auto& [name, unit] : settings.units) {
     const auto found = std::ranges::find(channels, name, &drivers::ChannelDescription::name);
     if (found == channels.end()) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("source '{}': a unit is given for '{}', which is no channel of it",
-                            settings.name, name)});
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("source '{}': a unit is given for '{}', which is no channel of it",
+                              settings.name, name));
     }
     found->unit = unit;
   }
@@ -117,11 +115,10 @@ Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSetti
   if (settings.sample_rate_hz) {
     file.sample_rate = drivers::acs::sample_rate_from_hz(*settings.sample_rate_hz);
     if (!file.sample_rate) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
-                            "1e-6 and 1e9 Hz with at most nine decimals",
-                            settings.name, *settings.sample_rate_hz)});
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
+                              "1e-6 and 1e9 Hz with at most nine decimals",
+                              settings.name, *settings.sample_rate_hz));
     }
   }
   return std::make_unique<drivers::acs::FileSource>(std::move(file));
@@ -140,14 +137,14 @@ Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
                                              const std::stop_token& stop) {
   auto driver = make_driver(settings);
   if (!driver) {
-    return tl::unexpected(driver.error());
+    return fail(driver.error());
   }
   auto description = describe(**driver, settings, stop);
   if (!description) {
-    return tl::unexpected(description.error());
+    return fail(description.error());
   }
   if (auto renamed = rename_channels(settings, *description); !renamed) {
-    return tl::unexpected(renamed.error());
+    return fail(renamed.error());
   }
   return PlayedSource(settings, std::move(*driver), std::move(*description));
 }
@@ -166,7 +163,7 @@ Expected<void> PlayedSource::play(SourcePublisher& publisher, const std::stop_to
   PublishingSink sink(settings_, publisher, stop);
   const std::stop_callback stop_driver(stop, [this] { driver_->stop(); });
   if (auto played = driver_->run(sink); !played) {
-    return tl::unexpected(named(settings_, played.error()));
+    return fail(named(settings_, played.error()));
   }
   publisher.end();
   return {};
@@ -181,12 +178,12 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
     // A fresh reader and session for the next run, so that what is said before it belongs to it.
     auto driver = make_driver(settings_);
     if (!driver) {
-      return tl::unexpected(driver.error());
+      return fail(driver.error());
     }
     driver_ = std::move(*driver);
     if (auto described = describe(*driver_, settings_, stop); !described) {
       return stop.stop_requested() ? Expected<void>()
-                                   : tl::unexpected(described.error()); // a stop is no failure
+                                   : fail(described.error()); // a stop is no failure
     }
     publisher.start_session();
   }

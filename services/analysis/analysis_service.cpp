@@ -23,7 +23,7 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
   std::unique_ptr<AnalysisService> service(
       new AnalysisService(std::move(participant), std::move(identity)));
   if (auto opened = service->open_readers(); !opened) {
-    return tl::unexpected(opened.error());
+    return fail(opened.error());
   }
   return service;
 }
@@ -41,7 +41,7 @@ Expected<void> AnalysisService::open_readers() {
        {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
         description ? nullptr : &description.error(), status ? nullptr : &status.error()}) {
     if (error != nullptr) {
-      return tl::unexpected(*error);
+      return fail(*error);
     }
   }
   readers_ = std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation),

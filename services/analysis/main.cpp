@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   const std::stop_token stop = services::stop_on_signals();
   auto participant = services::join_network(network, "dyncal-analysis");
   if (!participant) {
-    return services::fail(participant.error());
+    return services::report_error(participant.error());
   }
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   identity.dds = network.dds;
   auto service = services::AnalysisService::create(std::move(*participant), std::move(identity));
   if (!service) {
-    return services::fail(service.error());
+    return services::report_error(service.error());
   }
   (*service)->serve(stop);
   return 0;

@@ -46,7 +46,7 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& parti
   std::unique_ptr<RunSession> session(
       new RunSession(participant, std::move(wake_up), identity, measurement, now));
   if (auto opened = session->open_writers(); !opened) {
-    return tl::unexpected(opened.error());
+    return fail(opened.error());
   }
   auto recipe = parse_recipe(measurement);
   if (!recipe) {
@@ -76,7 +76,7 @@ Expected<void> RunSession::open_writers() {
     using Message = typename std::remove_reference_t<decltype(*place)>::Message;
     auto writer = participant_.writer<Message>(topic, profile, bench_);
     if (!writer) {
-      return tl::unexpected(writer.error());
+      return fail(writer.error());
     }
     place.emplace(std::move(*writer));
     return {};

@@ -17,8 +17,8 @@ using Json = nlohmann::json;
 using Points = std::vector<analysis::AdcCalibrationPoint>;
 
 tl::unexpected<Error> bad_file(const AdcCorrectionSettings& settings, const std::string& what) {
-  return tl::unexpected(Error{ErrorCode::bad_file,
-                              fmt::format("{}: ADC calibration {}", settings.file.string(), what)});
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: ADC calibration {}", settings.file.string(), what));
 }
 
 const Json* member(const Json& object, const std::string& key) {
@@ -119,7 +119,7 @@ Expected<Points> read_measurements(const Json& frequencies, const AdcCorrectionS
     for (const Json& measurement : list) {
       const auto point = read_measurement(measurement, settings, item.key());
       if (!point) {
-        return tl::unexpected(point.error());
+        return fail(point.error());
       }
       measurements.push_back(*point);
     }
@@ -168,11 +168,11 @@ Expected<Points> read_adc_file(const AdcCorrectionSettings& settings) {
   }
   const auto frequencies = frequencies_of_channel(file, settings);
   if (!frequencies) {
-    return tl::unexpected(frequencies.error());
+    return fail(frequencies.error());
   }
   const auto measurements = read_measurements(**frequencies, settings);
   if (!measurements) {
-    return tl::unexpected(measurements.error());
+    return fail(measurements.error());
   }
   if (measurements->empty()) {
     return bad_file(settings, fmt::format("has no measurement for channel '{}'", settings.channel));

@@ -28,8 +28,7 @@ Expected<void> write_adc_file(const std::filesystem::path& path, const AdcFileHe
   std::ofstream stream(path);
   stream << file.dump(1) << '\n';
   if (!stream.flush()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be written", path.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", path.string()));
   }
   return {};
 }

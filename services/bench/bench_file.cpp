@@ -369,7 +369,7 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
                           error.description());
   }
   if (!problem.empty()) {
-    return tl::unexpected(Error{ErrorCode::bad_file, problem});
+    return fail(ErrorCode::bad_file, problem);
   }
   file.path = path;
   file.text = text;
@@ -380,10 +380,9 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
 Expected<BenchFile> read_bench_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: cannot read this bench file; does it exist, and may you read it?",
-                          path.string())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: cannot read this bench file; does it exist, and may you read it?",
+                            path.string()));
   }
   std::ostringstream text;
   text << stream.rdbuf();

@@ -10,7 +10,7 @@ namespace dyncal::services {
 
 Expected<DsoDelay> read_dso_delay_file(const std::filesystem::path& path) {
   const auto refused = [&](const std::string& why) {
-    return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why)});
+    return fail(ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why));
   };
   std::ifstream stream(path);
   if (!stream || std::filesystem::is_directory(path)) {

@@ -40,11 +40,11 @@ bool WakeUp::wait_until(std::chrono::steady_clock::time_point deadline) {
 
 services::Expected<Participant> Participant::create(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > max_domain) {
-    return tl::unexpected(network_error("DDS domain " + std::to_string(options.domain) +
-                                        " does not exist: choose one from 0 to " +
-                                        std::to_string(max_domain)));
+    return fail(network_error("DDS domain " + std::to_string(options.domain) +
+                              " does not exist: choose one from 0 to " +
+                              std::to_string(max_domain)));
   }
-  services::Expected<std::unique_ptr<UntypedParticipant>> untyped = tl::unexpected(network_error(
+  services::Expected<std::unique_ptr<UntypedParticipant>> untyped = fail(network_error(
       vendor_word(options.vendor) + " is not in this build, which has " + words_of_this_build()));
 #ifdef DYNCAL_HAVE_FAST_DDS
   if (options.vendor == Vendor::fast_dds) {
@@ -66,9 +66,8 @@ services::Expected<Vendor> parse_vendor(const std::string& word) {
       return vendor;
     }
   }
-  return tl::unexpected(
-      services::Error{services::ErrorCode::bad_argument,
-                      "\"" + word + "\" is no DDS of this build: say " + words_of_this_build()});
+  return fail(services::ErrorCode::bad_argument,
+              "\"" + word + "\" is no DDS of this build: say " + words_of_this_build());
 }
 
 std::string vendor_word(Vendor vendor) {

@@ -147,7 +147,7 @@ public:
   [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
                                                      const std::string& partition) {
     if (const auto name = check_bench_name(partition); !name) {
-      return tl::unexpected(name.error());
+      return fail(name.error());
     }
     return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) {
       return Writer<T>(std::move(w));

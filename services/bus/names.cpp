@@ -12,13 +12,12 @@ services::Error bad_name(const std::string& what, const std::string& name, const
 services::Expected<void> check_name(const std::string& what, const std::string& name,
                                     std::size_t longest) {
   if (name.empty()) {
-    return tl::unexpected(
-        services::Error{services::ErrorCode::bad_argument, what + " has no name: give it one"});
+    return fail(services::ErrorCode::bad_argument, what + " has no name: give it one");
   }
   if (name.size() > longest) {
-    return tl::unexpected(bad_name(what, name,
-                                   "is too long: " + std::to_string(name.size()) +
-                                       " bytes, shorten it to " + std::to_string(longest)));
+    return fail(bad_name(what, name,
+                         "is too long: " + std::to_string(name.size()) + " bytes, shorten it to " +
+                             std::to_string(longest)));
   }
   return {};
 }
@@ -28,7 +27,7 @@ services::Expected<void> check_bench_name(const std::string& name) {
     return fits;
   }
   if (name.find_first_of("*?[]") != std::string::npos) {
-    return tl::unexpected(
+    return fail(
         bad_name("bench", name,
                  "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
   }

@@ -90,7 +90,7 @@ Expected<CanSource> CanSource::prepare(const SourceSettings& settings,
     sensor.u_utc_s = drivers::can::u_undisciplined_clock_s();
   }
   if (auto opened = source.open(); !opened) {
-    return tl::unexpected(opened.error());
+    return fail(opened.error());
   }
   return source;
 }
@@ -100,18 +100,18 @@ Expected<void> CanSource::open() {
   const CanSourceSettings& can = *settings_.can;
   auto dbc = drivers::can::read_dbc_file(can.dbc);
   if (!dbc) {
-    return tl::unexpected(named(settings_.name, dbc.error()));
+    return fail(named(settings_.name, dbc.error()));
   }
   warnings_ = dbc->warnings;
   auto stream = drivers::can::SensorStream::create(can.sensor, std::move(*dbc));
   if (!stream) {
-    return tl::unexpected(named(settings_.name, stream.error()));
+    return fail(named(settings_.name, stream.error()));
   }
   stream_ = std::move(*stream);
   frames_ = make_frames_(settings_);
   auto link = frames_->open(stream_->filters());
   if (!link) {
-    return tl::unexpected(named(settings_.name, link.error()));
+    return fail(named(settings_.name, link.error()));
   }
   link_ = std::move(*link);
   return {};
@@ -163,7 +163,7 @@ Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_to
     events.clear();
     const auto read = frames_->read(events, wait_limit);
     if (!read) {
-      return tl::unexpected(named(settings_.name, read.error()));
+      return fail(named(settings_.name, read.error()));
     }
     ended = *read == ReadState::ended;
     for (const BusEvent& event : events) {
@@ -172,7 +172,7 @@ Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_to
         spdlog::warn("source {}: {}", settings_.name, change->what);
       }
       if (auto taken = stream_->take(event, sink); !taken) {
-        return tl::unexpected(named(settings_.name, taken.error()));
+        return fail(named(settings_.name, taken.error()));
       }
     }
     if (events.empty()) {

@@ -23,7 +23,7 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
   for (const std::string& file : files) {
     const auto bench = read_bench_file(file);
     if (!bench) {
-      return tl::unexpected(bench.error());
+      return fail(bench.error());
     }
     add_network_settings(bench->network, network);
     for (const SourceSettings& settings : bench->sources) {
@@ -32,8 +32,8 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
       }
       auto source = can::CanSource::prepare(settings);
       if (!source) {
-        return tl::unexpected(Error{source.error().code,
-                                    fmt::format("{}: {}", settings.where, source.error().message)});
+        return fail(source.error().code,
+                    fmt::format("{}: {}", settings.where, source.error().message));
       }
       for (const std::string& warning : source->warnings()) {
         spdlog::warn("{}", warning);
@@ -46,8 +46,7 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
     }
   }
   if (sources.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given"});
+    return fail(ErrorCode::bad_argument, "no source with driver \"can\" in the bench files given");
   }
   return sources;
 }
@@ -56,7 +55,7 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
                    const std::stop_token& stop) {
   auto sources = prepare(files, network);
   if (!sources) {
-    return tl::unexpected(sources.error());
+    return fail(sources.error());
   }
   return run_sources("dyncal-can", *sources, network, stop);
 }

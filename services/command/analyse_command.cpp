@@ -32,16 +32,15 @@ public:
   static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings,
                                                    const BenchFile& bench) {
     if (settings.driver != SourceDriver::file) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_file, fmt::format("{}: source '{}' is no file; analyse evaluates "
-                                                 "files, use 'dyncal run' for live sources",
-                                                 settings.where, settings.name)});
+      return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' is no file; analyse evaluates "
+                                                   "files, use 'dyncal run' for live sources",
+                                                   settings.where, settings.name));
     }
     SourceSettings at_once = settings;
     at_once.play_speed = 0.0;
     auto driver = acs::make_driver(at_once);
     if (!driver) {
-      return tl::unexpected(driver.error());
+      return fail(driver.error());
     }
     std::unique_ptr<FileInput> input(new FileInput(std::move(*driver)));
     input->options_.bench = bench.bench;
@@ -49,8 +48,8 @@ public:
     input->options_.kind = acs::kind_of(bench.method, settings.name);
     const auto described = input->driver_->describe();
     if (!described) {
-      return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("source '{}': {}", settings.name,
-                                                                   described.error().message)});
+      return fail(ErrorCode::bad_file,
+                  fmt::format("source '{}': {}", settings.name, described.error().message));
     }
     input->description_ = to_message(input->options_, session, software_version(), *described);
     input->thread_ = std::jthread([raw = input.get()] { raw->read(); });
@@ -75,7 +74,7 @@ public:
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !blocks_.empty() || done_; });
     if (blocks_.empty() && failure_) {
-      return tl::unexpected(*failure_);
+      return fail(*failure_);
     }
     drivers::SampleBlock block;
     const bool end = blocks_.empty();
@@ -151,7 +150,7 @@ Expected<void> take_shots(const BenchFile& bench, const std::string& source,
                           RunEvaluator& evaluator) {
   const auto files = read_shot_files(bench, source, evaluator.recipe().run);
   if (!files) {
-    return tl::unexpected(files.error());
+    return fail(files.error());
   }
   if (auto described = evaluator.describe(files->description); !described) {
     return described;
@@ -168,16 +167,16 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
     const SourceDriver driver = bench.source(name)->driver;
     if (driver == SourceDriver::oscilloscope || driver == SourceDriver::series) {
       if (const auto read = take_shots(bench, name, evaluator); !read) {
-        return tl::unexpected(read.error());
+        return fail(read.error());
       }
       continue;
     }
     auto input = FileInput::open(*bench.source(name), bench);
     if (!input) {
-      return tl::unexpected(input.error());
+      return fail(input.error());
     }
     if (const auto described = evaluator.describe((*input)->description()); !described) {
-      return tl::unexpected(described.error());
+      return fail(described.error());
     }
     inputs.push_back(std::move(*input));
   }
@@ -203,7 +202,7 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
         });
     const auto block = (*behind)->next();
     if (!block) {
-      return tl::unexpected(block.error());
+      return fail(block.error());
     }
     evaluator.add(*block);
     collect(evaluator.take_output(), outcome);
@@ -223,27 +222,27 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
-    return tl::unexpected(bench.error());
+    return fail(bench.error());
   }
   const auto adc = read_adc_calibration(*bench);
   if (!adc) {
-    return tl::unexpected(adc.error());
+    return fail(adc.error());
   }
   RunOutcome outcome;
   outcome.measurement = plan_measurement(*bench, "files", utc_now_ns(), *adc);
   auto recipe = parse_recipe(outcome.measurement);
   if (!recipe) {
-    return tl::unexpected(recipe.error());
+    return fail(recipe.error());
   }
   RunEvaluator evaluator(
       std::move(*recipe),
       std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, max_evaluations));
   auto inputs = open_inputs(*bench, evaluator);
   if (!inputs) {
-    return tl::unexpected(inputs.error());
+    return fail(inputs.error());
   }
   if (const auto evaluated = evaluate(std::move(*inputs), evaluator, stop, outcome); !evaluated) {
-    return tl::unexpected(evaluated.error());
+    return fail(evaluated.error());
   }
   outcome.analysis_dds = "none";
   return outcome;

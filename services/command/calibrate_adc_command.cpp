@@ -49,7 +49,7 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   auto descriptions = participant.reader<SourceDescription>(
       bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
-    return tl::unexpected(descriptions.error());
+    return fail(descriptions.error());
   }
   std::map<std::string, TimeBase> time_bases;
   const std::array<std::string, 2> sources{bench.method.sync_acs.source,
@@ -69,19 +69,18 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
     });
   }
   if (stop.stop_requested()) {
-    return tl::unexpected(
-        Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
+    return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
   }
   if (const auto source = missing(); source != sources.end()) {
-    return tl::unexpected(Error{
+    return fail(
         ErrorCode::no_source,
         fmt::format(
             "source '{}' has not described itself; does its service run in the same DDS domain?",
-            *source)});
+            *source));
   }
   for (const auto& source : sources) {
     if (time_bases[source] != TIME_BASE_UTC) {
-      return tl::unexpected(no_time_scale(source));
+      return fail(no_time_scale(source));
     }
   }
   return {};
@@ -116,9 +115,9 @@ Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const
                                     .acs_delay_s = bench.uncertainty.acs_delay_s,
                                     .acs_gain_rel = command.u_acs_gain_rel});
     if (!compared) {
-      return tl::unexpected(Error{
-          ErrorCode::no_result, fmt::format("step {}, {} Hz: {}", result.step(),
-                                            result.frequency_text_hz(), compared.error().message)});
+      return fail(ErrorCode::no_result,
+                  fmt::format("step {}, {} Hz: {}", result.step(), result.frequency_text_hz(),
+                              compared.error().message));
     }
     measurements.push_back(compared->point);
     measurements.back().frequency_hz =
@@ -136,17 +135,16 @@ Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& mea
   const double highest_vpp = high->test_amplitude_vpp;
   if (asked_vpp && (lowest_vpp < *asked_vpp * (1.0 - amplitude_tolerance) ||
                     highest_vpp > *asked_vpp * (1.0 + amplitude_tolerance))) {
-    return tl::unexpected(
-        refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
-                            "generator was set to {:.4g} V: "
-                            "--amplitudes needs the generator's output itself as sync",
-                            lowest_vpp, highest_vpp, *asked_vpp)));
+    return fail(refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
+                                    "generator was set to {:.4g} V: "
+                                    "--amplitudes needs the generator's output itself as sync",
+                                    lowest_vpp, highest_vpp, *asked_vpp)));
   }
   if (!asked_vpp && highest_vpp > lowest_vpp * (1.0 + amplitude_spread)) {
-    return tl::unexpected(refused(fmt::format("sync goes from {:.4g} to {:.4g} V peak to peak with "
-                                              "the bench's levels, but an ADC is calibrated at "
-                                              "one amplitude after the other: give --amplitudes",
-                                              lowest_vpp, highest_vpp)));
+    return fail(refused(fmt::format("sync goes from {:.4g} to {:.4g} V peak to peak with "
+                                    "the bench's levels, but an ADC is calibrated at "
+                                    "one amplitude after the other: give --amplitudes",
+                                    lowest_vpp, highest_vpp)));
   }
   const double step = std::pow(10.0, std::floor(std::log10(highest_vpp)) - 2.0);
   const double name_vpp =
@@ -167,27 +165,26 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   auto outcome = controller.conduct({}, stop);
   progress.end();
   if (!outcome) {
-    return tl::unexpected(outcome.error());
+    return fail(outcome.error());
   }
   if (outcome->interrupted || !outcome->problem.empty()) {
-    return tl::unexpected(
-        Error{outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,
-              outcome->interrupted ? "interrupted: the excitation is off; no file was written"
-                                   : outcome->problem});
+    return fail(outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,
+                outcome->interrupted ? "interrupted: the excitation is off; no file was written"
+                                     : outcome->problem);
   }
   auto measurements = measurements_of(command, pass, *outcome);
   if (!measurements) {
     return measurements;
   }
   if (measurements->size() < outcome->measurement.steps().size()) {
-    return tl::unexpected(Error{
+    return fail(
         ErrorCode::no_result,
         fmt::format("{} of {} steps have no result; the analysis service says why (dyncal watch)",
                     outcome->measurement.steps().size() - measurements->size(),
-                    outcome->measurement.steps().size())});
+                    outcome->measurement.steps().size()));
   }
   if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
-    return tl::unexpected(named.error());
+    return fail(named.error());
   }
   return measurements;
 }
@@ -239,10 +236,10 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
   add_network_settings(bench.network, network);
   auto participant = join_network(network, "dyncal-calibrate");
   if (!participant) {
-    return tl::unexpected(participant.error());
+    return fail(participant.error());
   }
   if (const auto common = require_common_time_scale(*participant, bench, stop); !common) {
-    return tl::unexpected(common.error());
+    return fail(common.error());
   }
   std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(),
                                             command.amplitudes_vpp.end());
@@ -269,15 +266,15 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
 
 Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) {
   if (bench.method.kind != EvaluationMethod::sample_timestamping) {
-    return tl::unexpected(refused(fmt::format("{}: the sync ADC is calibrated on a bench of "
-                                              "method.kind = \"sample-timestamping\", whose DAU "
-                                              "records sync in the data-ready path",
-                                              bench.path.string())));
+    return fail(refused(fmt::format("{}: the sync ADC is calibrated on a bench of "
+                                    "method.kind = \"sample-timestamping\", whose DAU "
+                                    "records sync in the data-ready path",
+                                    bench.path.string())));
   }
   for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
     const SourceSettings* source = bench.source(role.source);
     if (source != nullptr && source->driver == SourceDriver::oscilloscope) {
-      return tl::unexpected(refused(
+      return fail(refused(
           fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its "
                       "trigger, and the DAU does "
                       "not stamp that; calibrate the ADC against a system that stamps in UTC",
@@ -287,17 +284,17 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
         source != nullptr && source->driver == SourceDriver::socket;
     if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
         !may_be_told_by_instrument) {
-      return tl::unexpected(no_time_scale(role.source));
+      return fail(no_time_scale(role.source));
     }
   }
   if (bench.excitation.repetitions < 2) {
-    return tl::unexpected(refused(fmt::format("{}: excitation.repetitions must be 2 at least: the "
-                                              "scatter of the calibration is seen from them",
-                                              bench.path.string())));
+    return fail(refused(fmt::format("{}: excitation.repetitions must be 2 at least: the "
+                                    "scatter of the calibration is seen from them",
+                                    bench.path.string())));
   }
   if (sets_amplitude && bench.generator.driver == "none") {
-    return tl::unexpected(refused(fmt::format(
-        "{}: --amplitudes sets the generator, but the bench has none", bench.path.string())));
+    return fail(refused(fmt::format("{}: --amplitudes sets the generator, but the bench has none",
+                                    bench.path.string())));
   }
   return {};
 }

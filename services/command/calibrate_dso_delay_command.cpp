@@ -52,7 +52,7 @@ Expected<std::unique_ptr<ScpiGenerator>> start_generator(const CalibrateDsoDelay
   }
   auto generator = ScpiGenerator::connect(command.generator);
   if (!generator) {
-    return tl::unexpected(device_error(generator.error()));
+    return fail(device_error(generator.error()));
   }
   const auto set = (*generator)
                        ->set_rectangle(command.by == "rectangle")
@@ -60,7 +60,7 @@ Expected<std::unique_ptr<ScpiGenerator>> start_generator(const CalibrateDsoDelay
                        .and_then([&] { return (*generator)->set_amplitude_v(command.amplitude_v); })
                        .and_then([&] { return (*generator)->set_output(true); });
   if (!set) {
-    return tl::unexpected(device_error(set.error()));
+    return fail(device_error(set.error()));
   }
   return std::move(*generator);
 }
@@ -88,7 +88,7 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
       problem = shot.error().message;
       if (shots.empty() && (shot.error().code == drivers::ErrorCode::refused ||
                             shot.error().code == drivers::ErrorCode::not_found)) {
-        return tl::unexpected(
+        return fail(
             device_error(shot.error())); // a wrong address or instrument does not get better
       }
     } else {
@@ -104,13 +104,12 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
       }
     }
     if (stop.stop_requested()) {
-      return tl::unexpected(
-          Error{ErrorCode::interrupted,
-                fmt::format("interrupted after {} of {} shots", shots.size(), command.shots)});
+      return fail(ErrorCode::interrupted,
+                  fmt::format("interrupted after {} of {} shots", shots.size(), command.shots));
     }
     if (problem && ++delays.failures > command.shots) {
-      return tl::unexpected(
-          Error{ErrorCode::device, fmt::format("too many shots fail, the last one: {}", *problem)});
+      return fail(ErrorCode::device,
+                  fmt::format("too many shots fail, the last one: {}", *problem));
     }
     if (problem) {
       static_cast<void>(device_stop.wait_for(pause_after_failure));
@@ -118,7 +117,7 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
   }
   const auto mean = analysis::mean_trigger_delay(shots, interval_s);
   if (!mean) {
-    return tl::unexpected(Error{ErrorCode::no_result, mean.error().message});
+    return fail(ErrorCode::no_result, mean.error().message);
   }
   delays.mean = *mean;
   delays.instrument = oscilloscope.identity();
@@ -169,8 +168,7 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
   std::ofstream file(command.output);
   file << json.dump(1) << '\n';
   if (!file.flush()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string()));
   }
   return {};
 }
@@ -193,7 +191,7 @@ int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::
   }
   print(command, *delays);
   const auto written = write(command, *delays);
-  return written ? 0 : fail(written.error());
+  return written ? 0 : report_error(written.error());
 }
 
 } // namespace dyncal::services

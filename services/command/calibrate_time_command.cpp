@@ -64,16 +64,15 @@ bool has_reference(const PulseRecord& record) {
 Expected<Judged> judge(const CalibrateTimeCommand& command) {
   auto record = read_pulse_files(command.files);
   if (!record) {
-    return tl::unexpected(record.error());
+    return fail(record.error());
   }
   const auto failure = [&](const analysis::Error& error) {
-    return tl::unexpected(
-        Error{ErrorCode::no_result,
-              fmt::format("{}: {}", command.files.front().string(), error.message)});
+    return fail(ErrorCode::no_result,
+                fmt::format("{}: {}", command.files.front().string(), error.message));
   };
   auto pulses = analysis::sort_pulse_edges(record->edges);
   if (!pulses) {
-    return failure(pulses.error());
+    return fail(pulses.error());
   }
   Judged judged{std::move(*record), std::move(*pulses), {}, {}};
   judged.prediction = analysis::predict_gps_pulses(judged.pulses);
@@ -82,15 +81,14 @@ Expected<Judged> judge(const CalibrateTimeCommand& command) {
         analysis::stamp_deviations(judged.pulses, {.reference_offset_s = command.reference_offset_s,
                                                    .u_reference_s = command.u_reference_s});
     if (!deviation) {
-      return failure(deviation.error());
+      return fail(deviation.error());
     }
     judged.deviation = std::move(*deviation);
   }
   if (!judged.deviation && !judged.prediction) {
-    return tl::unexpected(
-        Error{ErrorCode::no_result,
-              fmt::format("{}: too few pulses follow each other to say anything about them",
-                          command.files.front().string())});
+    return fail(ErrorCode::no_result,
+                fmt::format("{}: too few pulses follow each other to say anything about them",
+                            command.files.front().string()));
   }
   return judged;
 }
@@ -266,8 +264,7 @@ Expected<void> write(const CalibrateTimeCommand& command, const Judged& judged) 
   std::ofstream file(command.output);
   file << result_json(command, judged).dump(1) << '\n';
   if (!file.flush()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string()));
   }
   fmt::print("wrote {}\n", command.output.string());
   if (!judged.deviation) {
@@ -277,7 +274,7 @@ Expected<void> write(const CalibrateTimeCommand& command, const Judged& judged) 
       command.output.has_parent_path() ? command.output.parent_path() : ".";
   const auto written = figures::write(figure_of(command, judged), folder);
   if (!written) {
-    return tl::unexpected(written.error());
+    return fail(written.error());
   }
   for (const std::filesystem::path& path : *written) {
     fmt::print("wrote {}\n", path.string());
@@ -303,7 +300,7 @@ int run_calibrate_time(const CalibrateTimeCommand& command) {
                "be known from this record\n");
   }
   const auto written = write(command, *judged);
-  return written ? 0 : fail(written.error());
+  return written ? 0 : report_error(written.error());
 }
 
 } // namespace dyncal::services

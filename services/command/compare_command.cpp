@@ -41,28 +41,26 @@ compare(const CompareCommand& command, const ResultPoints& first, const ResultPo
       continue;
     }
     if (match->second.unit != point.unit) {
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::bad_file,
           fmt::format(
               "{} is in \"{}\" but {} in \"{}\"; results in different units cannot be compared",
-              channel, point.unit, other, match->second.unit)});
+              channel, point.unit, other, match->second.unit));
     }
     const auto comparison = analysis::compare_transfer(
         point.value, match->second.value, {command.common_magnitude_rel, command.common_phase_rad});
     if (!comparison) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("{} at {} Hz: {}", channel, frequency_hz, comparison.error().message)});
+      return fail(ErrorCode::bad_argument, fmt::format("{} at {} Hz: {}", channel, frequency_hz,
+                                                       comparison.error().message));
     }
     compared.push_back(
         {channel, other, frequency_hz, point.value, match->second.value, *comparison});
   }
   if (compared.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{} and {} have no channel and frequency in common; --channel and "
-                          "--other-channel compare channels of different names",
-                          command.first.string(), command.second.string())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{} and {} have no channel and frequency in common; --channel and "
+                            "--other-channel compare channels of different names",
+                            command.first.string(), command.second.string()));
   }
   return compared;
 }

@@ -57,8 +57,7 @@ Expected<std::uint16_t> free_udp_port() {
                      getsockname(probe, static_cast<sockaddr*>(raw), &size) == 0;
   close(probe);
   if (!found) {
-    return tl::unexpected(
-        Error{ErrorCode::network, "this machine has no free UDP port on 127.0.0.1"});
+    return fail(ErrorCode::network, "this machine has no free UDP port on 127.0.0.1");
   }
   return ntohs(address.sin_port);
 }
@@ -75,10 +74,10 @@ Expected<Demo> prepare(const DemoCommand& command) {
     return one.name == command.preset;
   });
   if (preset == presets.end()) {
-    return tl::unexpected(Error{ErrorCode::bad_argument,
-                                fmt::format("--preset {} is not known; there are mpu9250-paper, "
-                                            "mpu9250-ptb, bma280, tss, can, can-sync",
-                                            command.preset)});
+    return fail(ErrorCode::bad_argument,
+                fmt::format("--preset {} is not known; there are mpu9250-paper, "
+                            "mpu9250-ptb, bma280, tss, can, can-sync",
+                            command.preset));
   }
   demo.preset = *preset;
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
@@ -86,7 +85,7 @@ Expected<Demo> prepare(const DemoCommand& command) {
   demo.preset.trigger_phase_correction = command.trigger_phase_correction;
   const auto dds = parse_vendor_assignment(command.dds);
   if (!dds) {
-    return tl::unexpected(dds.error());
+    return fail(dds.error());
   }
   demo.dds = *dds;
   demo.domain =
@@ -96,7 +95,7 @@ Expected<Demo> prepare(const DemoCommand& command) {
   std::filesystem::create_directories(command.folder, failed);
   demo.folder = std::filesystem::absolute(command.folder);
   if (failed) {
-    return tl::unexpected(cannot_write(demo.folder));
+    return fail(cannot_write(demo.folder));
   }
   return demo;
 }
@@ -106,7 +105,7 @@ Expected<void> start(Demo& demo, const std::string& program,
   auto process =
       ChildProcess::start(program_folder() / program, arguments, demo.folder / (program + ".log"));
   if (!process) {
-    return tl::unexpected(process.error());
+    return fail(process.error());
   }
   demo.processes.push_back(std::move(*process));
   return {};
@@ -123,8 +122,8 @@ Expected<nlohmann::json> wait_for_json(const std::filesystem::path& path, ChildP
     }
     std::this_thread::sleep_for(20ms); // until the file is there or the deadline is over
   }
-  return tl::unexpected(Error{
-      ErrorCode::device, fmt::format("{} did not start: {}", process.name(), process.last_line())});
+  return fail(ErrorCode::device,
+              fmt::format("{} did not start: {}", process.name(), process.last_line()));
 }
 
 // How long the run will take in the bench's own time, about: the sensor shall warm up through it.
@@ -170,7 +169,7 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
 Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
   const auto port = free_udp_port();
   if (!port) {
-    return tl::unexpected(port.error());
+    return fail(port.error());
   }
   std::filesystem::remove(demo.folder / "ports.json");
   if (const auto started =
@@ -180,7 +179,7 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
   }
   const auto ports = wait_for_json(demo.folder / "ports.json", demo.processes.back());
   if (!ports) {
-    return tl::unexpected(ports.error());
+    return fail(ports.error());
   }
   const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
                                 .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
@@ -195,7 +194,7 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
   std::ofstream bench_file(demo.folder / "bench.toml");
   bench_file << demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty);
   if (!bench_file.flush()) {
-    return tl::unexpected(cannot_write(demo.folder / "bench.toml"));
+    return fail(cannot_write(demo.folder / "bench.toml"));
   }
   return {};
 }

@@ -39,10 +39,9 @@ Expected<std::vector<std::span<const double>>> chosen_columns(const FitCommand& 
   for (const std::string& name : names) {
     const auto column = series.column(name);
     if (!column) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("{}: there is no column '{}'; the columns are: {}",
-                            command.file.string(), name, fmt::join(series.names, ", "))});
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: there is no column '{}'; the columns are: {}",
+                              command.file.string(), name, fmt::join(series.names, ", ")));
     }
     columns.emplace_back(series.columns[*column]);
   }
@@ -63,7 +62,7 @@ analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) 
   for (const std::string& text : command.hum) {
     const auto line = analysis::Frequency::parse(text);
     if (!line) {
-      return tl::unexpected(line.error());
+      return fail(line.error());
     }
     basis.lines.push_back(*line);
   }
@@ -79,7 +78,7 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
   }
   const auto start = analysis::estimate_frequency(series.stamps_ns, columns);
   if (!start) {
-    return tl::unexpected(start.error());
+    return fail(start.error());
   }
   const double duration_s =
       static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
@@ -98,7 +97,7 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
                                      Fit& fit) {
   const auto basis = basis_of(command);
   if (!basis) {
-    return tl::unexpected(basis.error());
+    return fail(basis.error());
   }
   if (basis->drift_order == 0 && basis->max_harmonic <= 1 && basis->lines.empty()) {
     if (!fit.fits.empty()) {

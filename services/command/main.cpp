@@ -229,7 +229,7 @@ int execute(const CLI::App& app, const Commands& commands) {
     return run_watch(commands.watch, stop);
   }
   const auto outcome = conduct_run(commands.run, stop);
-  return outcome ? conclude(*outcome) : fail(outcome.error());
+  return outcome ? conclude(*outcome) : report_error(outcome.error());
 }
 
 } // namespace

@@ -50,8 +50,7 @@ Expected<void> read_file(const std::filesystem::path& path, PulseRecord& record,
                          std::optional<bool>& with_input) {
   std::ifstream stream(path);
   if (!stream) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be opened", path.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be opened", path.string()));
   }
   record.files.push_back(path);
   std::string line;
@@ -67,18 +66,16 @@ Expected<void> read_file(const std::filesystem::path& path, PulseRecord& record,
     }
     const auto edge = edge_of(line, *with_input);
     if (!edge) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_file,
-                fmt::format("{}: line {}: '{}' is no edge: {} is expected", path.string(), number,
-                            line.substr(0, max_shown),
-                            *with_input ? "GPST;n;ticks or REFT;n;ticks" : "n;ticks")});
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: line {}: '{}' is no edge: {} is expected", path.string(), number,
+                              line.substr(0, max_shown),
+                              *with_input ? "GPST;n;ticks or REFT;n;ticks" : "n;ticks"));
     }
     record.edges.push_back(*edge);
     record.places.push_back({record.files.size() - 1, number});
   }
   if (stream.bad()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be read to its end", path.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be read to its end", path.string()));
   }
   return {};
 }
@@ -95,13 +92,12 @@ Expected<PulseRecord> read_pulse_files(std::span<const std::filesystem::path> fi
   std::optional<bool> with_input;
   for (const std::filesystem::path& file : files) {
     if (const auto read = read_file(file, record, with_input); !read) {
-      return tl::unexpected(read.error());
+      return fail(read.error());
     }
   }
   if (record.edges.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: holds no edges", files.empty() ? "no file" : files[0].string())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: holds no edges", files.empty() ? "no file" : files[0].string()));
   }
   return record;
 }

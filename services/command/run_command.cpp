@@ -53,13 +53,13 @@ Expected<void> show_outcome(const RunOutcome& outcome,
              outcome.measurement.run().c_str(), result_table(outcome));
   if (json) {
     if (const auto written = write_json(*json, result_json(outcome)); !written) {
-      return tl::unexpected(written.error());
+      return fail(written.error());
     }
   }
   if (figures) {
     const auto written = write_figures(outcome, *figures);
     if (!written) {
-      return tl::unexpected(written.error());
+      return fail(written.error());
     }
     for (const std::filesystem::path& path : *written) {
       fmt::print("wrote {}\n", path.string());
@@ -71,17 +71,17 @@ Expected<void> show_outcome(const RunOutcome& outcome,
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
-    return tl::unexpected(bench.error());
+    return fail(bench.error());
   }
   const auto adc = read_adc_calibration(*bench);
   if (!adc) {
-    return tl::unexpected(adc.error());
+    return fail(adc.error());
   }
   NetworkOptions network = command.network;
   add_network_settings(bench->network, network);
   auto participant = join_network(network, "dyncal-run");
   if (!participant) {
-    return tl::unexpected(participant.error());
+    return fail(participant.error());
   }
   ProgressLine progress(stderr);
   RunController controller(*participant, *bench,
@@ -93,7 +93,7 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     return outcome;
   }
   if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
-    return tl::unexpected(shown.error());
+    return fail(shown.error());
   }
   return outcome;
 }

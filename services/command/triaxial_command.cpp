@@ -43,7 +43,7 @@ struct ResponsePoint {
 };
 
 tl::unexpected<Error> bad(std::string message) {
-  return tl::unexpected(Error{ErrorCode::bad_argument, std::move(message)});
+  return fail(ErrorCode::bad_argument, std::move(message));
 }
 
 // The names that end with "_x", "_y", "_z" after the same beginning, when there is one such
@@ -98,13 +98,13 @@ Expected<Measured> read(const TriaxialCommand& command) {
     }
     auto sensor = read_result_file(command.results[axis]);
     if (!sensor) {
-      return tl::unexpected(sensor.error());
+      return fail(sensor.error());
     }
     measured.directions.push_back({axis, std::move(*sensor), {}});
     if (motion_known) {
       auto motion = read_result_file(command.motions[axis]);
       if (!motion) {
-        return tl::unexpected(motion.error());
+        return fail(motion.error());
       }
       measured.directions.back().motion = std::move(*motion);
     }
@@ -115,14 +115,14 @@ Expected<Measured> read(const TriaxialCommand& command) {
   auto channels =
       channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
   if (!channels) {
-    return tl::unexpected(channels.error());
+    return fail(channels.error());
   }
   measured.channels = std::move(*channels);
   if (motion_known) {
     channels = channels_of(command.motion_channels, measured.directions, &Direction::motion,
                            "--motion-channels");
     if (!channels) {
-      return tl::unexpected(channels.error());
+      return fail(channels.error());
     }
     measured.motion_channels = std::move(*channels);
   }
@@ -222,14 +222,14 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
     }
     auto point = response_at(measured, place.second);
     if (!point) {
-      return tl::unexpected(point.error());
+      return fail(point.error());
     }
     if (!*point) {
       continue;
     }
     const double bound = measured.triaxial_reference() ? 0.0 : command.transverse_motion_rel;
     if (const auto added = add_transverse(**point, bound); !added) {
-      return tl::unexpected(added.error());
+      return fail(added.error());
     }
     points.push_back(**point);
   }

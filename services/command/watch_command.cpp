@@ -168,7 +168,7 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
        {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
         excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
     if (error != nullptr) {
-      return tl::unexpected(*error);
+      return fail(*error);
     }
   }
   return Readers{std::move(*sources), std::move(*services), std::move(*excitation),

@@ -43,12 +43,12 @@ Expected<void> check_unused(const PlannedEndpoint& endpoint, const PlannedSource
       if (std::ranges::count(sensors_of(other.settings), sensor) == 0) {
         continue;
       }
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::bad_file,
           fmt::format("{}: sensor {} at {} already belongs to source '{}' of bench '{}': a sensor "
                       "has one bench",
                       where, drivers::smartup::sensor_text(sensor), endpoint.listen, other.source,
-                      other.bench)});
+                      other.bench));
     }
   }
   return {};
@@ -68,20 +68,19 @@ Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFil
       PlannedSource added = planned(bench, source);
       PlannedEndpoint& endpoint = endpoint_at(endpoints, source.listen);
       if (added.settings.sync_sensor == added.settings.sensor) {
-        return tl::unexpected(
-            Error{ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same"});
+        return fail(ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same");
       }
       if (auto unused = check_unused(endpoint, added, source.where); !unused) {
-        return tl::unexpected(unused.error());
+        return fail(unused.error());
       }
       endpoint.sources.push_back(std::move(added));
     }
     if (!any) {
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::bad_file,
           fmt::format("{}: no source has driver = \"smartup\", so there is nothing to receive "
                       "for bench '{}'",
-                      bench.path.string(), bench.bench)});
+                      bench.path.string(), bench.bench));
     }
   }
   return endpoints;

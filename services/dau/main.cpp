@@ -51,7 +51,7 @@ Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& pa
   for (const auto& path : paths) {
     auto bench = read_bench_file(path);
     if (!bench) {
-      return tl::unexpected(bench.error());
+      return fail(bench.error());
     }
     benches.push_back(std::move(*bench));
   }
@@ -78,7 +78,7 @@ Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceServ
       auto publisher =
           service.add({.bench = source.bench, .source = source.source, .kind = SourceKind::dau});
       if (!publisher) {
-        return tl::unexpected(publisher.error());
+        return fail(publisher.error());
       }
       endpoint.wanted.push_back(source.settings);
       sink->add(std::move(source), std::move(*publisher));
@@ -86,7 +86,7 @@ Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceServ
   }
   auto receiver = drivers::smartup::Receiver::create(std::move(endpoints));
   if (!receiver) {
-    return tl::unexpected(Error{ErrorCode::device, receiver.error().message});
+    return fail(ErrorCode::device, receiver.error().message);
   }
   reception.receiver = std::move(*receiver);
   return reception;
@@ -96,25 +96,25 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
                    const std::stop_token& stop) {
   const auto benches = read_benches(paths);
   if (!benches) {
-    return tl::unexpected(benches.error());
+    return fail(benches.error());
   }
   auto plan = plan_listening(*benches);
   if (!plan) {
-    return tl::unexpected(plan.error());
+    return fail(plan.error());
   }
   for (const BenchFile& bench : *benches) {
     add_network_settings(bench.network, options);
   }
   auto participant = join_network(options, "dyncal-dau");
   if (!participant) {
-    return tl::unexpected(participant.error());
+    return fail(participant.error());
   }
 
   EventLines lines;
   const auto service = SourceService::create(*participant, {.software = software_version()});
   auto reception = open_reception(*plan, *service, lines);
   if (!reception) {
-    return tl::unexpected(reception.error());
+    return fail(reception.error());
   }
   for (std::size_t i = 0; i < plan->size(); ++i) {
     const int bytes = reception->receiver->receive_buffer_bytes(i);
@@ -150,5 +150,5 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   set_up_log("dyncal-dau");
   const auto result = dau::run(benches, network, stop_on_signals());
-  return result ? 0 : fail(result.error());
+  return result ? 0 : report_error(result.error());
 }

@@ -41,7 +41,7 @@ Expected<Truth> read_truth(const std::filesystem::path& path) {
                                        : std::nan("");
     return Truth{std::move(points), mean_interval_s};
   } catch (const nlohmann::json::exception& error) {
-    return tl::unexpected(unreadable(path, error.what()));
+    return fail(unreadable(path, error.what()));
   }
 }
 
@@ -76,7 +76,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
                                  const std::filesystem::path& truth_file) {
   const auto truth = read_truth(truth_file);
   if (!truth) {
-    return tl::unexpected(truth.error());
+    return fail(truth.error());
   }
   TruthCheck check;
   for (const TruePoint& point : truth->points) {
@@ -86,9 +86,8 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
       if (outcome.interrupted) {
         continue; // not every frequency was reached
       }
-      return tl::unexpected(
-          Error{ErrorCode::no_result, fmt::format("the run has no result for {} at {} Hz",
-                                                  point.channel, point.frequency_text_hz)});
+      return fail(ErrorCode::no_result, fmt::format("the run has no result for {} at {} Hz",
+                                                    point.channel, point.frequency_text_hz));
     }
     const double phase_rad =
         std::remainder(measured->phase_rad() - point.phase_rad, 2.0 * std::numbers::pi);

@@ -20,7 +20,7 @@ Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::
     const std::string service = equals == std::string::npos ? "" : part.substr(0, equals);
     const std::string word = equals == std::string::npos ? part : part.substr(equals + 1);
     if (const auto vendor = bus::parse_vendor(word); !vendor) {
-      return tl::unexpected(vendor.error());
+      return fail(vendor.error());
     }
     if (service.empty()) {
       for (auto& entry : words) {
@@ -29,10 +29,10 @@ Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::
     } else if (words.contains(service)) {
       words[service] = word;
     } else {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                fmt::format("--dds names the service '{}', but a demo has: acs, analysis, dau, run",
-                            service)});
+      return fail(
+          ErrorCode::bad_argument,
+          fmt::format("--dds names the service '{}', but a demo has: acs, analysis, dau, run",
+                      service));
     }
   }
   return words;

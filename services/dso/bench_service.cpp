@@ -49,17 +49,16 @@ Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& p
   const SourceSettings* oscilloscope = source_with(bench, SourceDriver::oscilloscope);
   const SourceSettings* sensor = source_with(bench, SourceDriver::series);
   if (oscilloscope == nullptr || sensor == nullptr) {
-    return tl::unexpected(Error{
+    return fail(
         ErrorCode::bad_file,
         fmt::format("{}: dyncal-dso needs a source with driver = \"oscilloscope\" and one with "
                     "driver = \"series\"",
-                    bench.path.string())});
+                    bench.path.string()));
   }
   if (oscilloscope->address.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: source '{}' has no address; files of shots are for dyncal analyse",
-                          oscilloscope->where, oscilloscope->name)});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: source '{}' has no address; files of shots are for dyncal analyse",
+                            oscilloscope->where, oscilloscope->name));
   }
   const std::uint64_t session = random_session();
   auto wake_up = std::make_shared<bus::WakeUp>();
@@ -75,7 +74,7 @@ Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& p
        {excitation ? nullptr : &excitation.error(), command ? nullptr : &command.error(),
         traces ? nullptr : &traces.error(), series ? nullptr : &series.error()}) {
     if (error != nullptr) {
-      return tl::unexpected(*error);
+      return fail(*error);
     }
   }
   return std::unique_ptr<BenchService>(
@@ -202,12 +201,11 @@ void BenchService::take_shot() {
     auto selected =
         select_channels(std::move(pair->series), sensor_settings_.channels, sensor_channels_);
     pair = selected ? Expected<ShotPair>(ShotPair{std::move(pair->trace), std::move(*selected)})
-                    : tl::unexpected(selected.error());
+                    : fail(selected.error());
   }
   take_messages();
   if (pair && !in_step(step.run, step.step)) {
-    pair = tl::unexpected(
-        Error{ErrorCode::device, "the excitation ended during the shot, which is left out"});
+    pair = fail(ErrorCode::device, "the excitation ended during the shot, which is left out");
   }
   if (!pair) {
     shot_problem_ = pair.error().message;

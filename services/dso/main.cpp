@@ -22,20 +22,20 @@ Expected<void> run(const std::vector<std::string>& paths, NetworkOptions options
   for (const std::string& path : paths) {
     auto bench = read_bench_file(path);
     if (!bench) {
-      return tl::unexpected(bench.error());
+      return fail(bench.error());
     }
     add_network_settings(bench->network, options);
     benches.push_back(std::move(*bench));
   }
   auto participant = join_network(options, "dyncal-dso");
   if (!participant) {
-    return tl::unexpected(participant.error());
+    return fail(participant.error());
   }
   std::vector<std::unique_ptr<dso::BenchService>> services;
   for (const BenchFile& bench : benches) {
     auto service = dso::BenchService::create(*participant, bench);
     if (!service) {
-      return tl::unexpected(service.error());
+      return fail(service.error());
     }
     services.push_back(std::move(*service));
   }
@@ -62,5 +62,5 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   set_up_log("dyncal-dso");
   const auto result = run(benches, network, stop_on_signals());
-  return result ? 0 : fail(result.error());
+  return result ? 0 : report_error(result.error());
 }

@@ -19,16 +19,16 @@ Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const
   auto description = participant.writer<SourceDescription>(bus::topics::source_description,
                                                            bus::Profile::state, bench);
   if (!description) {
-    return tl::unexpected(description.error());
+    return fail(description.error());
   }
   auto status =
       participant.writer<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench);
   if (!status) {
-    return tl::unexpected(status.error());
+    return fail(status.error());
   }
   auto records = participant.writer<TriggeredRecord>(topic, bus::Profile::samples, bench);
   if (!records) {
-    return tl::unexpected(records.error());
+    return fail(records.error());
   }
   return RecordWriter(bench, source, kind, session, std::move(*description), std::move(*status),
                       std::move(*records));

@@ -22,9 +22,9 @@ Expected<drivers::tss::Series> select_channels(drivers::tss::Series series,
   for (const std::string& name : wanted) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      return tl::unexpected(Error{ErrorCode::device,
-                                  fmt::format("the sensor's series has no channel '{}'; it has: {}",
-                                              name, fmt::join(names, ", "))});
+      return fail(ErrorCode::device,
+                  fmt::format("the sensor's series has no channel '{}'; it has: {}", name,
+                              fmt::join(names, ", ")));
     }
     const auto place = found - names.begin();
     channels.push_back(series.channels[static_cast<std::size_t>(place)]);

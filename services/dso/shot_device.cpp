@@ -49,19 +49,19 @@ Expected<void> ShotDevice::connect(double frequency_hz) {
 
 Expected<ShotPair> ShotDevice::take(double frequency_hz) {
   if (auto ready = connect(frequency_hz); !ready) {
-    return tl::unexpected(ready.error());
+    return fail(ready.error());
   }
   const milliseconds trigger_limit =
       min_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
   auto trace = oscilloscope_.acquire(trigger_limit);
   if (!trace) {
     triggers_.trigger_may_have_come();
-    return tl::unexpected(device_error(trace.error()));
+    return fail(device_error(trace.error()));
   }
   triggers_.trigger_came();
   auto series = series_of_last_trigger();
   if (!series) {
-    return tl::unexpected(series.error());
+    return fail(series.error());
   }
   return ShotPair{std::move(*trace), std::move(*series)};
 }
@@ -73,7 +73,7 @@ Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
     const auto left = std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
     auto series = sensor_->next(std::max(left, milliseconds(0)));
     if (!series) {
-      return tl::unexpected(device_error(series.error()));
+      return fail(device_error(series.error()));
     }
     switch (triggers_.judge(series->shot)) {
     case SeriesVerdict::belongs:
@@ -81,11 +81,11 @@ Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
     case SeriesVerdict::late:
       break; // the right one is still to come
     case SeriesVerdict::open:
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::device,
           fmt::format("the sensor counts trigger {} after {}: which of them its series belongs "
                       "to is open; this shot is left out",
-                      series->shot, before.value_or(0))});
+                      series->shot, before.value_or(0)));
     }
   }
 }

@@ -62,7 +62,7 @@ Expected<ChannelName> role(const std::string& what, const std::string& text) {
   if (const auto name = parse_channel_name(text)) {
     return *name;
   }
-  return tl::unexpected(
+  return fail(
       refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
 }
 
@@ -78,21 +78,21 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     }
     const auto name = role(what, *places.first);
     if (!name) {
-      return tl::unexpected(name.error());
+      return fail(name.error());
     }
     *places.second = *name;
   }
   for (const std::string& text : measurement.dut()) {
     const auto name = role("dut", text);
     if (!name) {
-      return tl::unexpected(name.error());
+      return fail(name.error());
     }
     recipe.dut.push_back(*name);
   }
   if (!measurement.temperature().empty()) {
     const auto name = role("temperature", measurement.temperature());
     if (!name) {
-      return tl::unexpected(name.error());
+      return fail(name.error());
     }
     recipe.temperature = *name;
   }
@@ -103,29 +103,29 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     recipe.sync_dau = {};
   }
   if (without_sync && recipe.dut.empty()) {
-    return tl::unexpected(refused("the recipe names no channel under calibration, which a method "
-                                  "without sync needs: give \"dut\""));
+    return fail(refused("the recipe names no channel under calibration, which a method "
+                        "without sync needs: give \"dut\""));
   }
   if (recipe.reference.source != recipe.sync_acs.source) {
-    return tl::unexpected(refused("the recipe's reference and sync_acs are of different sources, "
-                                  "but they must share a clock"));
+    return fail(refused("the recipe's reference and sync_acs are of different sources, "
+                        "but they must share a clock"));
   }
   if (recipe.sync_dau.source == recipe.sync_acs.source) {
-    return tl::unexpected(refused("the recipe's sync_acs and sync_dau are of the same source; "
-                                  "sample time stamping links two clocks"));
+    return fail(refused("the recipe's sync_acs and sync_dau are of the same source; "
+                        "sample time stamping links two clocks"));
   }
   if (recipe.method == METHOD_ANALOGUE &&
       recipe.dut_sources() != std::vector{recipe.reference.source}) {
-    return tl::unexpected(refused("the recipe's channels under calibration must be of the source "
-                                  "of the reference: the analogue method "
-                                  "compares channels of one system"));
+    return fail(refused("the recipe's channels under calibration must be of the source "
+                        "of the reference: the analogue method "
+                        "compares channels of one system"));
   }
   const bool beside = recipe.stamped_apart();
   for (const ChannelName& name : recipe.dut) {
     const bool of_dau = name.source == recipe.sync_dau.source;
     if (recipe.method == METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
-      return tl::unexpected(refused("the recipe's channels under calibration must be either all of "
-                                    "the source of sync_dau or none of them"));
+      return fail(refused("the recipe's channels under calibration must be either all of "
+                          "the source of sync_dau or none of them"));
     }
   }
   return {};
@@ -135,7 +135,7 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
   for (const PlannedStep& planned : measurement.steps()) {
     const auto frequency = analysis::Frequency::parse(planned.frequency_hz());
     if (!frequency || !(planned.duration_s() > 0.0) || !(planned.settling_s() >= 0.0)) {
-      return tl::unexpected(refused(fmt::format(
+      return fail(refused(fmt::format(
           "step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
           planned.step(), planned.frequency_hz(), planned.settling_s(), planned.duration_s())));
     }
@@ -144,7 +144,7 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
                             planned.duration_s()});
   }
   if (recipe.steps.empty()) {
-    return tl::unexpected(refused("the recipe has no excitation steps"));
+    return fail(refused("the recipe has no excitation steps"));
   }
   return {};
 }
@@ -235,14 +235,13 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   recipe.bench = measurement.bench().to_string();
   recipe.run = measurement.run().to_string();
   if (const auto roles = parse_roles(measurement, recipe); !roles) {
-    return tl::unexpected(roles.error());
+    return fail(roles.error());
   }
   if (recipe.method == METHOD_SERIES_TIMESTAMPING && recipe.dut.empty()) {
-    return tl::unexpected(
-        refused("the recipe of a series time stamping names no channel under calibration"));
+    return fail(refused("the recipe of a series time stamping names no channel under calibration"));
   }
   if (const auto steps = parse_steps(measurement, recipe); !steps) {
-    return tl::unexpected(steps.error());
+    return fail(steps.error());
   }
   for (const AdcCalibrationPoint& point : measurement.adc_calibration()) {
     recipe.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
@@ -253,7 +252,7 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   recipe.settling_from_data = measurement.settling_from_data();
   recipe.monte_carlo_trials = measurement.monte_carlo_trials();
   if (recipe.whole_record && recipe.steps.size() != 1) {
-    return tl::unexpected(refused(
+    return fail(refused(
         fmt::format("the recipe evaluates whole records but has {} steps; only one is possible",
                     recipe.steps.size())));
   }
@@ -269,14 +268,14 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   recipe.sha256 = measurement.recipe_sha256();
   if (recipe.method == METHOD_SERIES_TIMESTAMPING &&
       (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
-    return tl::unexpected(
+    return fail(
         refused("series time stamping has neither settling = \"from-data\" nor monte_carlo_trials; "
                 "leave them out of the bench file"));
   }
   if (recipe.stamped_apart() && recipe.settling_from_data) {
-    return tl::unexpected(refused("sensors with stamps of their own are evaluated without settling "
-                                  "= \"from-data\"; leave it out of the "
-                                  "bench file and give the longest settling as settling_s"));
+    return fail(refused("sensors with stamps of their own are evaluated without settling "
+                        "= \"from-data\"; leave it out of the "
+                        "bench file and give the longest settling as settling_s"));
   }
   return recipe;
 }

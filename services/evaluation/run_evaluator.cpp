@@ -75,10 +75,9 @@ Expected<void> RunEvaluator::describe(const SourceDescription& description) {
   for (const ChannelName& channel : channels_needed()) {
     if (channel.source == source->source() &&
         std::find(names.begin(), names.end(), channel.channel) == names.end()) {
-      return tl::unexpected(
-          Error{ErrorCode::no_source,
-                fmt::format("source '{}' has no channel '{}'; it has: {}", channel.source,
-                            channel.channel, fmt::join(names, ", "))});
+      return fail(ErrorCode::no_source,
+                  fmt::format("source '{}' has no channel '{}'; it has: {}", channel.source,
+                              channel.channel, fmt::join(names, ", ")));
     }
   }
   source->describe(description);

@@ -41,16 +41,15 @@ Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program,
                                            const std::vector<std::string>& arguments,
                                            const std::filesystem::path& log) {
   if (access(program.c_str(), X_OK) != 0) {
-    return tl::unexpected(Error{
+    return fail(
         ErrorCode::bad_file,
         fmt::format("{}: this program is missing or may not be run; build or install all of dyncal",
-                    program.string())});
+                    program.string()));
   }
   const int log_file = open(log.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
   if (log_file < 0) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot write this log file: {}", log.string(),
-                                               std::strerror(errno))});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot write this log file: {}", log.string(),
+                                                 std::strerror(errno)));
   }
   std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -66,9 +65,8 @@ Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program,
   }
   close(log_file);
   if (child < 0) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno))});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno)));
   }
   return ChildProcess(child, program.filename().string(), log);
 }

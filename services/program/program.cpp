@@ -56,7 +56,7 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program) {
   const auto vendor = bus::parse_vendor(options.dds);
   if (!vendor) {
-    return tl::unexpected(vendor.error());
+    return fail(vendor.error());
   }
   bus::ParticipantOptions participant;
   participant.vendor = *vendor;
@@ -95,7 +95,7 @@ std::stop_token stop_on_signals() {
   return stop.get_token();
 }
 
-int fail(const Error& error) {
+int report_error(const Error& error) {
   fmt::print(stderr, "{}: {}\n", program_name, error.message);
   return error.code == ErrorCode::interrupted    ? interrupted_status
          : error.code == ErrorCode::bad_argument ? 2

@@ -45,6 +45,6 @@ void set_up_log(const std::string& program);
 
 // Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the
 // error.
-[[nodiscard]] int fail(const Error& error);
+[[nodiscard]] int report_error(const Error& error);
 
 } // namespace dyncal::services

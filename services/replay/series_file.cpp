@@ -51,7 +51,7 @@ Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
   const auto read = source.describe().and_then(
       [&](const drivers::SourceDescription&) { return source.run(collector); });
   if (!read) {
-    return tl::unexpected(Error{ErrorCode::bad_file, read.error().message});
+    return fail(ErrorCode::bad_file, read.error().message);
   }
   return collector.series();
 }

@@ -23,7 +23,7 @@ constexpr std::uint64_t session = 1; // files are one session; nothing depends o
 using StepAndShot = std::pair<std::uint32_t, std::uint64_t>;
 
 tl::unexpected<Error> bad_file(const std::filesystem::path& path, const std::string& why) {
-  return tl::unexpected(Error{ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why)});
+  return fail(ErrorCode::bad_file, fmt::format("{}: {}", path.string(), why));
 }
 
 // "step-1-shot-1.csv", numbers of at most six digits.
@@ -114,14 +114,13 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
   const SourceSettings& source = *bench.source(name); // a role names it: it was checked
   const bool trace = name == bench.method.sync_dau.source;
   if (source.path.empty()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates "
-                                               "files, use 'dyncal run' for live sources",
-                                               source.where, source.name)});
+    return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates "
+                                                 "files, use 'dyncal run' for live sources",
+                                                 source.where, source.name));
   }
   const auto files = find_files(source.path);
   if (!files) {
-    return tl::unexpected(files.error());
+    return fail(files.error());
   }
   std::vector<std::string> wanted;
   for (const ChannelName& channel : trace ? std::vector{bench.method.sync_dau} : bench.method.dut) {
@@ -131,7 +130,7 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
   for (const auto& [number, path] : *files) {
     auto series = read_file(path, source, wanted);
     if (!series) {
-      return tl::unexpected(series.error());
+      return fail(series.error());
     }
     if (result.records.empty()) {
       result.description = describe(bench, source, trace ? SOURCE_DSO : SOURCE_TSS, *series);

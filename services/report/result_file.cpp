@@ -10,8 +10,7 @@ namespace dyncal::services {
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{} cannot be read", path.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{} cannot be read", path.string()));
   }
   const auto json = nlohmann::json::parse(stream, nullptr, false);
   ResultPoints points;
@@ -26,11 +25,11 @@ Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
            point.at("u_phase_rad")}};
     }
   } catch (const nlohmann::json::exception&) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{} is no result of dyncal: it has no "
-                                               "'transfer_function' with magnitude and phase, each "
-                                               "with its uncertainty",
-                                               path.string())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{} is no result of dyncal: it has no "
+                            "'transfer_function' with magnitude and phase, each "
+                            "with its uncertainty",
+                            path.string()));
   }
   return points;
 }

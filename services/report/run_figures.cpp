@@ -118,7 +118,7 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
   for (const figures::Figure& figure : drawn) {
     const auto written = figures::write(figure, folder);
     if (!written) {
-      return tl::unexpected(written.error());
+      return fail(written.error());
     }
     paths.insert(paths.end(), written->begin(), written->end());
   }

@@ -256,8 +256,7 @@ Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ord
   std::ofstream stream(path);
   stream << json.dump(1) << '\n';
   if (!stream.flush()) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot write this file", path.string())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot write this file", path.string()));
   }
   return {};
 }

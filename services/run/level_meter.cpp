@@ -43,12 +43,12 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
   auto descriptions = participant.reader<SourceDescription>(
       bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
-    return tl::unexpected(descriptions.error());
+    return fail(descriptions.error());
   }
   auto samples = participant.reader<SampleBlock>(bus::topics::acs_samples, bus::Profile::samples,
                                                  bench.bench, wake_up);
   if (!samples) {
-    return tl::unexpected(samples.error());
+    return fail(samples.error());
   }
   return LevelMeter(bench.method.reference, std::move(*descriptions), std::move(*samples));
 }

@@ -33,7 +33,7 @@ Error cannot_start(const std::string& why) {
 Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return tl::unexpected(cannot_start(std::strerror(errno)));
+    return fail(cannot_start(std::strerror(errno)));
   }
   const drivers::Descriptor reading(ends[0]);
   drivers::Descriptor writing(ends[1]);
@@ -56,8 +56,7 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) {
-    return tl::unexpected(
-        cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
+    return fail(cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
   }
   return OutputGuard(std::move(writing), process);
 }

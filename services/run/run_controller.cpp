@@ -44,12 +44,12 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   outcome_ = {};
   outcome_.measurement = plan_measurement(bench_, run_, utc_now_ns(), adc_calibration);
   if (const auto ready = open_endpoints().and_then([&] { return open_excitation(); }); !ready) {
-    return tl::unexpected(ready.error());
+    return fail(ready.error());
   }
   set_state(MEASUREMENT_PLANNED);
   if (const auto armed = wait_until_armed(stop); !armed) {
     set_state(MEASUREMENT_ABORTED);
-    return tl::unexpected(armed.error());
+    return fail(armed.error());
   }
   set_state(MEASUREMENT_RUNNING);
   Expected<void> excited = excite(stop);
@@ -104,7 +104,7 @@ Expected<void> RunController::open_endpoints() {
           status ? nullptr : &status.error(), results ? nullptr : &results.error(),
           transfer ? nullptr : &transfer.error(), clocks ? nullptr : &clocks.error()}) {
       if (error != nullptr) {
-        return tl::unexpected(*error);
+        return fail(*error);
       }
     }
   }
@@ -126,7 +126,7 @@ Expected<void> RunController::open_excitation() {
                             .ask = [this](const std::string& request) { show("asking", request); },
                             .attend = [this] { return attend(); }});
   if (!excitation) {
-    return tl::unexpected(excitation.error());
+    return fail(excitation.error());
   }
   excitation_ = std::move(*excitation);
   return {};
@@ -143,24 +143,22 @@ Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
       return {};
     }
     if (analysis_ && analysis_->arm() == ARM_REFUSED) {
-      return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
+      return fail(ErrorCode::no_source, analysis_->message());
     }
     const auto waited = Clock::now() - began;
     if (!analysis_ && waited > answer_limit) {
-      return tl::unexpected(Error{ErrorCode::no_analysis,
-                                  fmt::format("no analysis service answers for bench '{}'; is "
-                                              "dyncal-analysis running in the same DDS domain?",
-                                              bench_.bench)});
+      return fail(ErrorCode::no_analysis,
+                  fmt::format("no analysis service answers for bench '{}'; is "
+                              "dyncal-analysis running in the same DDS domain?",
+                              bench_.bench));
     }
     if (waited > armed_limit) {
-      return tl::unexpected(
-          Error{ErrorCode::no_analysis,
-                fmt::format("the analysis service {} has not armed for bench '{}'",
-                            analysis_->service().c_str(), bench_.bench)});
+      return fail(ErrorCode::no_analysis,
+                  fmt::format("the analysis service {} has not armed for bench '{}'",
+                              analysis_->service().c_str(), bench_.bench));
     }
   }
-  return tl::unexpected(
-      Error{ErrorCode::interrupted, "interrupted before the first step; nothing was excited"});
+  return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
 }
 
 Expected<void> RunController::excite(const std::stop_token& stop) {
@@ -184,12 +182,11 @@ Expected<void> RunController::attend() {
   keep_alive();
   take_messages();
   if (analysis_->health() == HEALTH_FAILED) {
-    return tl::unexpected(Error{ErrorCode::no_source, analysis_->message()});
+    return fail(ErrorCode::no_source, analysis_->message());
   }
   if (Clock::now() - analysis_heard_ > analysis_limit) {
-    return tl::unexpected(
-        Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
-                                                  analysis_->service().c_str())});
+    return fail(ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
+                                                    analysis_->service().c_str()));
   }
   return {};
 }
@@ -224,9 +221,8 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
       deadline = Clock::now() + results_limit;
     }
     if (Clock::now() - analysis_heard_ > analysis_limit) {
-      return tl::unexpected(
-          Error{ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
-                                                    analysis_->service().c_str())});
+      return fail(ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
+                                                      analysis_->service().c_str()));
     }
     if (analysis_->health() == HEALTH_FAILED && from_files &&
         outcome_.measurement.state() == MEASUREMENT_RUNNING) {
@@ -234,8 +230,7 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
       set_state(MEASUREMENT_ABORTED);
     }
     if (Clock::now() > deadline) {
-      return tl::unexpected(
-          Error{ErrorCode::no_result, "the last results have not come from the analysis service"});
+      return fail(ErrorCode::no_result, "the last results have not come from the analysis service");
     }
   }
   return {};

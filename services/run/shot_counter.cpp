@@ -11,12 +11,12 @@ Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const s
   auto traces = participant.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples,
                                                     bench, wake_up);
   if (!traces) {
-    return tl::unexpected(traces.error());
+    return fail(traces.error());
   }
   auto series = participant.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples,
                                                     bench, wake_up);
   if (!series) {
-    return tl::unexpected(series.error());
+    return fail(series.error());
   }
   return ShotCounter(std::move(*traces), std::move(*series));
 }

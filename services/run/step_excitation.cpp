@@ -56,12 +56,12 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant&
         return excitation->connect_generator();
       });
       !ready) {
-    return tl::unexpected(ready.error());
+    return fail(ready.error());
   }
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
     auto counter = ShotCounter::create(participant, bench.bench, wake_up);
     if (!counter) {
-      return tl::unexpected(counter.error());
+      return fail(counter.error());
     }
     excitation->shots_.emplace(std::move(*counter));
   }
@@ -76,12 +76,12 @@ Expected<void> StepExcitation::connect_generator() {
   }
   auto guard = OutputGuard::start(bench_.generator.address);
   if (!guard) {
-    return tl::unexpected(guard.error());
+    return fail(guard.error());
   }
   guard_.emplace(std::move(*guard));
   auto generator = drivers::generator::ScpiGenerator::connect(bench_.generator.address);
   if (!generator) {
-    return tl::unexpected(device_error(generator.error()));
+    return fail(device_error(generator.error()));
   }
   generator_ = std::move(*generator);
   return {};
@@ -92,7 +92,7 @@ Expected<void> StepExcitation::check_levels(const Measurement& measurement) cons
     const auto voltage = drivers::generator::voltage_for_level(
         step.level_m_s2(), bench_.generator.level_per_volt, limits());
     if (!voltage) {
-      return tl::unexpected(of_step(step, ErrorCode::bad_argument, voltage.error().message));
+      return fail(of_step(step, ErrorCode::bad_argument, voltage.error().message));
     }
   }
   return {};
@@ -121,7 +121,7 @@ Expected<void> StepExcitation::begin() {
   if (bench_.generator.level_tolerance_rel) {
     auto meter = LevelMeter::create(participant_, bench_, wake_up_);
     if (!meter) {
-      return tl::unexpected(meter.error());
+      return fail(meter.error());
     }
     meter_.emplace(std::move(*meter));
   }
@@ -140,7 +140,7 @@ Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_t
     return excited;
   }
   if (!off) {
-    return tl::unexpected(device_error(off.error()));
+    return fail(device_error(off.error()));
   }
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return confirmed;
@@ -148,7 +148,7 @@ Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_t
   attendance_.announce(step, EXCITATION_DONE);
   const auto now = generator_->clock_now_s();
   if (!now) {
-    return tl::unexpected(device_error(now.error()));
+    return fail(device_error(now.error()));
   }
   return hold_until(*now + off_s, stop).map([](bool) {});
 }
@@ -185,14 +185,14 @@ Expected<double> StepExcitation::switch_on(const PlannedStep& step, double volta
                        .and_then([&] { return generator_->set_amplitude_v(voltage_v); })
                        .and_then([&] { return generator_->set_output(true); });
   if (!set) {
-    return tl::unexpected(device_error(set.error()));
+    return fail(device_error(set.error()));
   }
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
-    return tl::unexpected(confirmed.error());
+    return fail(confirmed.error());
   }
   const auto began = generator_->clock_now_s();
   if (!began) {
-    return tl::unexpected(device_error(began.error()));
+    return fail(device_error(began.error()));
   }
   attendance_.announce(step, EXCITATION_SETTLING);
   return *began;
@@ -203,7 +203,7 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
                                                     const std::stop_token& stop) {
   auto loop = LevelControl::start(target_of(step), limits());
   if (!loop) {
-    return tl::unexpected(of_step(step, ErrorCode::bad_argument, loop.error().message));
+    return fail(of_step(step, ErrorCode::bad_argument, loop.error().message));
   }
   const auto began = switch_on(step, loop->voltage_v(), stop);
   if (!began || stop.stop_requested()) {
@@ -217,7 +217,7 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
     }
     const auto reached = loop->take(**level);
     if (!reached) {
-      return tl::unexpected(of_step(step, ErrorCode::device, reached.error().message));
+      return fail(of_step(step, ErrorCode::device, reached.error().message));
     }
     known_responses_[step.frequency_hz()] = loop->level_per_volt();
     if (*reached) {
@@ -227,7 +227,7 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
       return generator_->clock_now_s();
     });
     if (!changed) {
-      return tl::unexpected(device_error(changed.error()));
+      return fail(device_error(changed.error()));
     }
     changed_s = *changed;
   }
@@ -239,12 +239,12 @@ Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep&
                                                               const std::stop_token& stop) {
   attendance_.show("setting the level");
   if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
-    return tl::unexpected(settled.error());
+    return fail(settled.error());
   }
   while (!stop.stop_requested()) {
     const auto now = generator_->clock_now_s();
     if (!now) {
-      return tl::unexpected(device_error(now.error()));
+      return fail(device_error(now.error()));
     }
     meter_->take(*now);
     const auto level =
@@ -254,7 +254,7 @@ Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep&
       return level;
     }
     if (*now > deadline_s) {
-      return tl::unexpected(of_step(
+      return fail(of_step(
           step, ErrorCode::device,
           fmt::format(
               "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
@@ -262,7 +262,7 @@ Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep&
     }
     wake_up_->wait_until(Clock::now() + look_interval);
     if (const auto attended = attendance_.attend(); !attended) {
-      return tl::unexpected(attended.error());
+      return fail(attended.error());
     }
   }
   return std::nullopt;
@@ -276,10 +276,10 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
     attendance_.show("shots");
     const auto now = generator_->clock_now_s();
     if (!now) {
-      return tl::unexpected(device_error(now.error()));
+      return fail(device_error(now.error()));
     }
     if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
-      return tl::unexpected(held.error());
+      return fail(held.error());
     }
   }
   return {};
@@ -289,7 +289,7 @@ Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const auto in_effect = generator_->wait_for_effect(confirmation_slice);
     if (!in_effect) {
-      return tl::unexpected(device_error(in_effect.error()));
+      return fail(device_error(in_effect.error()));
     }
     if (*in_effect) {
       return {};
@@ -306,14 +306,14 @@ Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_t
   while (now && *now < bench_time_s && !stop.stop_requested()) {
     now = generator_->wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
     if (const auto attended = attendance_.attend(); !attended) {
-      return tl::unexpected(attended.error());
+      return fail(attended.error());
     }
     if (now && meter_) {
       meter_->take(*now);
     }
   }
   if (!now) {
-    return tl::unexpected(device_error(now.error()));
+    return fail(device_error(now.error()));
   }
   return !stop.stop_requested();
 }

@@ -35,14 +35,14 @@ run_sources(const std::string& program, std::vector<RunnableSource<Source>>& sou
             const NetworkOptions& network, const std::stop_token& stop) {
   auto participant = join_network(network, program);
   if (!participant) {
-    return tl::unexpected(participant.error());
+    return fail(participant.error());
   }
   const auto service = SourceService::create(*participant, {.software = software_version()});
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (const RunnableSource<Source>& one : sources) {
     auto publisher = service->add(one.options);
     if (!publisher) {
-      return tl::unexpected(publisher.error());
+      return fail(publisher.error());
     }
     publishers.push_back(std::move(*publisher));
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);

@@ -23,17 +23,17 @@ SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePubli
   auto description = participant.writer<dyncal::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, options.bench);
   if (!description) {
-    return tl::unexpected(description.error());
+    return fail(description.error());
   }
   auto status = participant.writer<dyncal::SourceStatus>(bus::topics::source_status,
                                                          bus::Profile::state, options.bench);
   if (!status) {
-    return tl::unexpected(status.error());
+    return fail(status.error());
   }
   auto samples = participant.writer<dyncal::SampleBlock>(sample_topic(options.kind),
                                                          bus::Profile::samples, options.bench);
   if (!samples) {
-    return tl::unexpected(samples.error());
+    return fail(samples.error());
   }
   return std::make_unique<SourceChannel>(
       std::move(publisher), std::move(software),

@@ -69,12 +69,12 @@ Expected<void> SourceService::Implementation::join_bench(const std::string& benc
   auto command = participant_.reader<dyncal::Command>(bus::topics::command, bus::Profile::command,
                                                       bench, wake_up_);
   if (!command) {
-    return tl::unexpected(command.error());
+    return fail(command.error());
   }
   auto measurement = participant_.reader<dyncal::Measurement>(bus::topics::measurement,
                                                               bus::Profile::state, bench, wake_up_);
   if (!measurement) {
-    return tl::unexpected(measurement.error());
+    return fail(measurement.error());
   }
   benches_.emplace(bench, BenchReaders{std::move(*command), std::move(*measurement)});
   return {};
@@ -84,9 +84,8 @@ Expected<std::shared_ptr<SourcePublisher>>
 SourceService::Implementation::add(SourceOptions source) {
   for (const auto* name : {&source.bench, &source.source}) {
     if (name->empty() || name->size() > max_name) {
-      return tl::unexpected(
-          Error{ErrorCode::bad_argument,
-                "the name '" + *name + "' of a bench or source must have 1 to 64 characters"});
+      return fail(ErrorCode::bad_argument,
+                  "the name '" + *name + "' of a bench or source must have 1 to 64 characters");
     }
   }
   const auto taken = [&](const auto& channel) {
@@ -94,17 +93,17 @@ SourceService::Implementation::add(SourceOptions source) {
     return other.bench == source.bench && other.source == source.source;
   };
   if (std::ranges::any_of(channels_, taken)) {
-    return tl::unexpected(Error{ErrorCode::bad_argument,
-                                "bench '" + source.bench + "' has the source '" + source.source +
-                                    "' twice: give each bench file its own bench name"});
+    return fail(ErrorCode::bad_argument, "bench '" + source.bench + "' has the source '" +
+                                             source.source +
+                                             "' twice: give each bench file its own bench name");
   }
   if (auto joined = join_bench(source.bench); !joined) {
-    return tl::unexpected(joined.error());
+    return fail(joined.error());
   }
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
   auto channel = SourceChannel::create(participant_, publisher, options_.software);
   if (!channel) {
-    return tl::unexpected(channel.error());
+    return fail(channel.error());
   }
   channels_.push_back(std::move(*channel));
   return publisher;

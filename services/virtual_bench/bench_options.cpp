@@ -32,7 +32,7 @@ struct Words {
 };
 
 tl::unexpected<Error> refuse(std::string message) {
-  return tl::unexpected(Error{ErrorCode::bad_argument, std::move(message)});
+  return fail(ErrorCode::bad_argument, std::move(message));
 }
 
 void add_options(CLI::App& app, Words& words, BenchOptions& options) {
@@ -287,7 +287,7 @@ Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) 
     return refuse(error.what());
   }
   if (auto read = read_words(words, options); !read) {
-    return tl::unexpected(read.error());
+    return fail(read.error());
   }
   return options;
 }

@@ -50,9 +50,8 @@ Expected<void> write_file(const std::filesystem::path& path, const std::string& 
   std::error_code problem;
   std::filesystem::rename(unfinished, path, problem);
   if (problem) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file,
-              fmt::format("{}: cannot be written ({})", path.string(), problem.message())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: cannot be written ({})", path.string(), problem.message()));
   }
   return {};
 }
@@ -91,11 +90,11 @@ Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
   }
   auto sender = dyncal::drivers::can::FrameSender::open(options.can_interface);
   if (!sender) {
-    return tl::unexpected(Error{ErrorCode::device, sender.error().message});
+    return fail(ErrorCode::device, sender.error().message);
   }
   auto part = std::make_unique<CanPart>(options, std::move(*sender));
   if (auto written = write_file(options.dbc_file, part->sensor.dbc()); !written) {
-    return tl::unexpected(written.error());
+    return fail(written.error());
   }
   return part;
 }
@@ -109,7 +108,7 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   }
   auto can = open_can(options);
   if (!can) {
-    return tl::unexpected(can.error());
+    return fail(can.error());
   }
   if (*can) {
     dyncal::services::virtual_bench::go_before_programs(5); // below the line
@@ -117,7 +116,7 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   }
   device::BenchServer server(bench, settings);
   if (auto opened = server.open(); !opened) {
-    return tl::unexpected(Error{ErrorCode::device, opened.error().message});
+    return fail(ErrorCode::device, opened.error().message);
   }
   nlohmann::json ports = {
       {"acs", server.acs_port()}, {"generator", server.generator_port()}, {"process_id", getpid()}};
@@ -170,7 +169,7 @@ int main(int argc, char** argv) {
   if (options && !options->has_value()) {
     return EXIT_SUCCESS;
   }
-  const Expected<void> done = options ? run(**options) : tl::unexpected(options.error());
+  const Expected<void> done = options ? run(**options) : fail(options.error());
   if (!done) {
     fmt::print(stderr, "dyncal-virtual-bench: {}\n", done.error().message);
     return EXIT_FAILURE;

@@ -26,7 +26,7 @@ public:
   Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds) override {
     const std::size_t end = bytes_.find('\n');
     if (end == std::string_view::npos || end > longest) {
-      return tl::unexpected(Error{ErrorCode::timeout, "recording: nothing more"});
+      return fail(ErrorCode::timeout, "recording: nothing more");
     }
     std::string line(bytes_.substr(0, end));
     bytes_.remove_prefix(end + 1);
@@ -34,7 +34,7 @@ public:
   }
   Expected<void> read_exactly(std::span<char> wanted, std::chrono::milliseconds) override {
     if (bytes_.size() < wanted.size()) {
-      return tl::unexpected(Error{ErrorCode::timeout, "recording: nothing more"});
+      return fail(ErrorCode::timeout, "recording: nothing more");
     }
     std::copy_n(bytes_.begin(), wanted.size(), wanted.begin());
     bytes_.remove_prefix(wanted.size());

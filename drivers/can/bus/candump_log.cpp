@@ -77,8 +77,7 @@ Expected<std::vector<BusEvent>> read_candump_log(const std::filesystem::path& pa
                                                  const std::string& interface_name) {
   std::ifstream file(path);
   if (!file) {
-    return tl::make_unexpected(
-        Error{ErrorCode::not_found, path.string() + ": the log cannot be read"});
+    return fail(ErrorCode::not_found, path.string() + ": the log cannot be read");
   }
   std::vector<BusEvent> events;
   std::string line;
@@ -98,9 +97,9 @@ Expected<std::vector<BusEvent>> read_candump_log(const std::filesystem::path& pa
                      ? read_frame(rest.substr(second + 1, rest.find(' ', second + 1) - second - 1))
                      : std::nullopt;
     if (!frame) {
-      return tl::make_unexpected(Error{
-          ErrorCode::malformed, path.string() + ":" + std::to_string(number) +
-                                    ": not a line of candump -l ('(seconds) interface id#data')"});
+      return fail(ErrorCode::malformed,
+                  path.string() + ":" + std::to_string(number) +
+                      ": not a line of candump -l ('(seconds) interface id#data')");
     }
     if (!interface_name.empty() && rest.substr(first + 1, second - first - 1) != interface_name) {
       continue;

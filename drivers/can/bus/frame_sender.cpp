@@ -14,7 +14,7 @@ namespace dyncal::drivers::can {
 namespace {
 
 tl::unexpected<Error> failed(ErrorCode code, std::string message) {
-  return tl::make_unexpected(Error{code, std::move(message)});
+  return fail(code, std::move(message));
 }
 
 } // namespace

@@ -136,13 +136,12 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
   address.nl_groups = RTMGRP_LINK;
   if (!socket.open() ||
       ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return tl::make_unexpected(
-        Error{ErrorCode::refused, "the kernel gives no access to the state of interfaces (" +
-                                      system_text(errno) + ")"});
+    return fail(ErrorCode::refused, "the kernel gives no access to the state of interfaces (" +
+                                        system_text(errno) + ")");
   }
   LinkMonitor monitor(interface_name, std::move(socket));
   if (auto asked = monitor.ask(); !asked) {
-    return tl::make_unexpected(asked.error());
+    return fail(asked.error());
   }
   monitor.changes_.clear();
   return monitor;
@@ -151,9 +150,8 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
 Expected<void> LinkMonitor::request_links() {
   LinkRequest request(RTM_GETLINK, NLM_F_DUMP);
   if (::send(socket_.get(), &request, request.header.nlmsg_len, 0) < 0) {
-    return tl::make_unexpected(
-        Error{ErrorCode::refused,
-              "the kernel does not answer about its interfaces (" + system_text(errno) + ")"});
+    return fail(ErrorCode::refused,
+                "the kernel does not answer about its interfaces (" + system_text(errno) + ")");
   }
   return {};
 }
@@ -181,7 +179,7 @@ Expected<void> LinkMonitor::ask() {
 
 Expected<std::vector<LinkMonitor::Change>> LinkMonitor::update() {
   if (auto read = read_messages(false); !read) {
-    return tl::make_unexpected(read.error());
+    return fail(read.error());
   }
   return std::exchange(changes_, {});
 }
@@ -210,9 +208,8 @@ Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
       return ask();
     }
     if (got <= 0) {
-      return tl::make_unexpected(
-          Error{ErrorCode::disconnected,
-                "the kernel says no more about its interfaces (" + system_text(errno) + ")"});
+      return fail(ErrorCode::disconnected,
+                  "the kernel says no more about its interfaces (" + system_text(errno) + ")");
     }
     std::size_t left = static_cast<std::size_t>(got);
     for (std::size_t at = 0; left >= sizeof(nlmsghdr);) {
@@ -308,9 +305,8 @@ Expected<void> LinkMonitor::change(const void* request, const std::string& what)
     return {};
   }
   const std::string advice = error == EPERM ? "; it needs CAP_NET_ADMIN" : "";
-  return tl::make_unexpected(Error{ErrorCode::refused, state_.name + ": the kernel does not " +
-                                                           what + " (" + system_text(error) + ")" +
-                                                           advice});
+  return fail(ErrorCode::refused, state_.name + ": the kernel does not " + what + " (" +
+                                      system_text(error) + ")" + advice);
 }
 
 Expected<void> LinkMonitor::restart_controller() {

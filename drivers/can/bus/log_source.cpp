@@ -16,7 +16,7 @@ constexpr std::size_t batch = 256; // frames given at a time
 Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
   auto events = read_candump_log(path_, interface_name_);
   if (!events) {
-    return tl::make_unexpected(events.error());
+    return fail(events.error());
   }
   for (const BusEvent& event : *events) {
     const auto* frame = std::get_if<CanFrame>(&event);
@@ -28,11 +28,10 @@ Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
     }
   }
   if (frames_.empty()) {
-    return tl::make_unexpected(
-        Error{ErrorCode::not_found,
-              path_.string() + " has none of the sensor's messages" +
-                  (interface_name_.empty() ? "" : " on interface '" + interface_name_ + "'") +
-                  "; check 'messages', 'dbc' and 'interface'"});
+    return fail(ErrorCode::not_found,
+                path_.string() + " has none of the sensor's messages" +
+                    (interface_name_.empty() ? "" : " on interface '" + interface_name_ + "'") +
+                    "; check 'messages', 'dbc' and 'interface'");
   }
   LinkState link;
   link.name = path_.filename().string();

@@ -30,7 +30,7 @@ std::string system_text(int error) {
 }
 
 tl::unexpected<Error> failed(ErrorCode code, std::string message) {
-  return tl::make_unexpected(Error{code, std::move(message)});
+  return fail(code, std::move(message));
 }
 
 std::int64_t to_ns(const timespec& time) {
@@ -117,15 +117,15 @@ Expected<LinkState> SocketCanSource::open(const std::vector<FrameFilter>& filter
   }
   auto monitor = LinkMonitor::open(settings_.interface_name);
   if (!monitor) {
-    return tl::make_unexpected(monitor.error());
+    return fail(monitor.error());
   }
   monitor_.emplace(std::move(*monitor));
   if (auto good = check_link(monitor_->state()); !good) {
-    return tl::make_unexpected(good.error());
+    return fail(good.error());
   }
   link_ = monitor_->state();
   if (auto opened = open_socket(); !opened) {
-    return tl::make_unexpected(opened.error());
+    return fail(opened.error());
   }
   return link_;
 }
@@ -205,7 +205,7 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
   if (went_down || (some && waited[1].revents != 0)) {
     const auto changes = monitor_->update();
     if (!changes) {
-      return tl::make_unexpected(changes.error());
+      return fail(changes.error());
     }
     // Down and up again since the last read: which of the frames came before it nobody can tell,
     // and an adapter's clock has jumped.

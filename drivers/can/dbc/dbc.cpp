@@ -33,20 +33,17 @@ Expected<DbcFile> read_dbc_file(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) {
-    return tl::make_unexpected(
-        Error{ErrorCode::not_found,
-              path.string() + ": the DBC file cannot be read (" + error.message() + ")"});
+    return fail(ErrorCode::not_found,
+                path.string() + ": the DBC file cannot be read (" + error.message() + ")");
   }
   if (size > max_file) {
-    return tl::make_unexpected(
-        Error{ErrorCode::malformed, path.string() + ": larger than 64 MiB, which no DBC file is"});
+    return fail(ErrorCode::malformed, path.string() + ": larger than 64 MiB, which no DBC file is");
   }
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad() || !stream.is_open()) {
-    return tl::make_unexpected(
-        Error{ErrorCode::refused,
-              path.string() + ": the DBC file cannot be read; may this user read it?"});
+    return fail(ErrorCode::refused,
+                path.string() + ": the DBC file cannot be read; may this user read it?");
   }
   return parse_dbc(text, path);
 }

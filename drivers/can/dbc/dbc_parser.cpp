@@ -91,7 +91,7 @@ Expected<DbcFile> DbcParser::parse() {
     file_.messages.push_back(std::move(draft.message));
   }
   if (problem_) {
-    return tl::make_unexpected(Error{ErrorCode::malformed, *problem_});
+    return fail(ErrorCode::malformed, *problem_);
   }
   return std::move(file_);
 }

@@ -99,8 +99,8 @@ Expected<void> record_csv(VirtualBench& bench, const Programme& programme,
   }
   run_for(bench, pause_s, files);
   if (!files.complete()) {
-    return tl::unexpected(Error{ErrorCode::refused,
-                                folder.string() + ": acs.csv and dau.csv cannot be written there"});
+    return fail(ErrorCode::refused,
+                folder.string() + ": acs.csv and dau.csv cannot be written there");
   }
   return {};
 }

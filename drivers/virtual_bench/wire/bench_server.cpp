@@ -44,7 +44,7 @@ Expected<void> BenchServer::open() {
   auto unit = connect_udp(settings_.dau);
   for (const auto* opened : {&acs, &generator, &unit}) {
     if (!*opened) {
-      return tl::unexpected(opened->error());
+      return fail(opened->error());
     }
   }
   if (triggered_) {

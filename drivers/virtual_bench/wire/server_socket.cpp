@@ -22,8 +22,8 @@ Expected<Descriptor> open_socket(const Address& address, int type, int flags, Us
   const int status =
       getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
   if (status != 0) {
-    return tl::unexpected(Error{ErrorCode::not_found, address.text() + ": no host of this name (" +
-                                                          gai_strerror(status) + ")"});
+    return fail(ErrorCode::not_found,
+                address.text() + ": no host of this name (" + gai_strerror(status) + ")");
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> results(found, &freeaddrinfo);
   int problem = EADDRNOTAVAIL;
@@ -34,7 +34,7 @@ Expected<Descriptor> open_socket(const Address& address, int type, int flags, Us
     }
     problem = errno;
   }
-  return tl::unexpected(Error{ErrorCode::refused, address.text() + ": " + std::strerror(problem)});
+  return fail(ErrorCode::refused, address.text() + ": " + std::strerror(problem));
 }
 
 } // namespace

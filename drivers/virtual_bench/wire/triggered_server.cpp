@@ -28,11 +28,11 @@ TriggeredServer::TriggeredServer(const TriggeredSettings& settings)
 Expected<void> TriggeredServer::open() {
   auto scope = listen_tcp(settings_.scope_listen);
   if (!scope) {
-    return tl::unexpected(scope.error());
+    return fail(scope.error());
   }
   auto sensor = listen_tcp(settings_.sensor_listen);
   if (!sensor) {
-    return tl::unexpected(sensor.error());
+    return fail(sensor.error());
   }
   scope_listener_ = std::move(*scope);
   sensor_listener_ = std::move(*sensor);

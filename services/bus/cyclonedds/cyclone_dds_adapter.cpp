@@ -48,17 +48,16 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
     if (domain->config == config) {
       return domain;
     }
-    return tl::unexpected(services::Error{
-        services::ErrorCode::network, "Cyclone DDS domain " + std::to_string(number) +
-                                          " is open in this process with other network settings"});
+    return fail(services::ErrorCode::network,
+                "Cyclone DDS domain " + std::to_string(number) +
+                    " is open in this process with other network settings");
   }
   const dds_entity_t handle =
       dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
   if (handle < 0) {
-    return tl::unexpected(
-        network_error("Cyclone DDS cannot open domain " + std::to_string(number) +
-                          " (its messages above say more; CYCLONEDDS_URI may be the cause)",
-                      handle));
+    return fail(network_error("Cyclone DDS cannot open domain " + std::to_string(number) +
+                                  " (its messages above say more; CYCLONEDDS_URI may be the cause)",
+                              handle));
   }
   auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
   open[number] = domain;
@@ -210,15 +209,14 @@ public:
                                                             const std::string& partition) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
-      return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+      return fail(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
     const Qos qos = writer_qos(qos_profile(profile), partition);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
     if (cyclone_writer < 0) {
-      return tl::unexpected(
-          network_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
+      return fail(network_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
     }
     return writer;
   }
@@ -228,7 +226,7 @@ public:
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
-      return tl::unexpected(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+      return fail(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
     const Qos qos = reader_qos(qos_profile(profile), partition);
     dds_listener_t* listener = dds_create_listener(wake_up.get());
@@ -241,8 +239,7 @@ public:
     auto reader =
         std::make_unique<CycloneReader>(participant_, cyclone_topic, cyclone_reader, type, wake_up);
     if (cyclone_reader < 0) {
-      return tl::unexpected(
-          network_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
+      return fail(network_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
     }
     if (wake_up) {
       wake_up->ring();
@@ -274,7 +271,7 @@ services::Expected<std::unique_ptr<UntypedParticipant>>
 create_cyclone_dds_participant(const ParticipantOptions& options) {
   const auto config = cyclone_dds_config(options);
   if (!config) {
-    return tl::unexpected(config.error());
+    return fail(config.error());
   }
   if (const auto warning = receive_buffer_warning(
           wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
@@ -284,15 +281,15 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
 
   auto domain = open_domain(options.domain, *config);
   if (!domain) {
-    return tl::unexpected(domain.error());
+    return fail(domain.error());
   }
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
   if (participant < 0) {
-    return tl::unexpected(network_error(
-        "Cyclone DDS cannot join domain " + std::to_string(options.domain), participant));
+    return fail(network_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
+                              participant));
   }
   return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
       new CycloneParticipantHandle{std::move(*domain), Entity(participant),

@@ -63,13 +63,13 @@ services::Expected<std::string> cyclone_dds_config(const ParticipantOptions& opt
   if (!options.interface_name.empty()) {
     auto found = interface_address(options.interface_name);
     if (!found) {
-      return tl::unexpected(found.error());
+      return fail(found.error());
     }
     address = *found;
   }
   const auto peers = resolve_peers(options.peers);
   if (!peers) {
-    return tl::unexpected(peers.error());
+    return fail(peers.error());
   }
 
   std::string config = "<CycloneDDS><Domain Id=\"any\">" + general(options, address) +

@@ -298,20 +298,19 @@ public:
                                                             const std::string& partition) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return tl::unexpected(
-          network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+      return fail(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
     }
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(partition.c_str());
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);
     if (publisher == nullptr) {
-      return tl::unexpected(network_error("Fast DDS refuses to publish in partition " + partition));
+      return fail(network_error("Fast DDS refuses to publish in partition " + partition));
     }
     dds::DataWriter* fast_writer =
         publisher->create_datawriter(fast_topic, writer_qos(qos_profile(profile)));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
-      return tl::unexpected(network_error("Fast DDS refuses a writer of topic " + topic));
+      return fail(network_error("Fast DDS refuses a writer of topic " + topic));
     }
     return std::make_unique<FastDdsWriter>(participant_, publisher, fast_writer);
   }
@@ -321,21 +320,19 @@ public:
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return tl::unexpected(
-          network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+      return fail(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
     }
     dds::SubscriberQos subscriber_qos;
     subscriber_qos.partition().push_back(partition.c_str());
     dds::Subscriber* subscriber = participant_->get()->create_subscriber(subscriber_qos);
     if (subscriber == nullptr) {
-      return tl::unexpected(
-          network_error("Fast DDS refuses to subscribe in partition " + partition));
+      return fail(network_error("Fast DDS refuses to subscribe in partition " + partition));
     }
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
     if (!fast_reader->open(fast_topic, reader_qos(qos_profile(profile)))) {
-      return tl::unexpected(network_error("Fast DDS refuses a reader of topic " + topic));
+      return fail(network_error("Fast DDS refuses a reader of topic " + topic));
     }
     if (wake_up) {
       wake_up->ring();
@@ -357,7 +354,7 @@ services::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options) {
   auto qos = fast_dds_participant_qos(options);
   if (!qos) {
-    return tl::unexpected(qos.error());
+    return fail(qos.error());
   }
   auto number = std::make_unique<ParticipantNumber>();
   qos->wire_protocol().participant_id = number->value();
@@ -365,7 +362,7 @@ create_fast_dds_participant(const ParticipantOptions& options) {
       dds::DomainParticipantFactory::get_instance()->create_participant(
           static_cast<std::uint32_t>(options.domain), *qos);
   if (participant == nullptr) {
-    return tl::unexpected(
+    return fail(
         network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
                       ": see its messages above, and check the profiles file if you set one"));
   }

@@ -135,13 +135,13 @@ fast_dds_participant_qos(const ParticipantOptions& options) {
   if (!options.interface_name.empty()) {
     auto found = interface_address(options.interface_name);
     if (!found) {
-      return tl::unexpected(found.error());
+      return fail(found.error());
     }
     address = *found;
   }
   const auto peers = resolve_peers(options.peers);
   if (!peers) {
-    return tl::unexpected(peers.error());
+    return fail(peers.error());
   }
 
   set_transport(address, qos);

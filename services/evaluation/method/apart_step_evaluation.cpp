@@ -76,7 +76,7 @@ analysis::Expected<Evaluated> by_sync_beside(const Recipe& recipe, const RecipeS
                                              const std::vector<ChannelName>& names) {
   const auto adc = adc_response(recipe, step);
   if (!adc) {
-    return tl::unexpected(adc.error());
+    return fail(adc.error());
   }
   analysis::SampleStampingInput input{
       .frequency = step.frequency,
@@ -130,9 +130,8 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
   flag_unknown_clock(sensor, stretch, flags);
   const bool anything = !dut.stamps_ns.empty();
   const auto evaluated =
-      !anything  ? tl::unexpected(analysis::Error{
-                      analysis::ErrorCode::too_few_samples,
-                      sensor.source() + ": no sample with a trusted stamp lies in the step"})
+      !anything  ? fail(analysis::ErrorCode::too_few_samples,
+                        sensor.source() + ": no sample with a trusted stamp lies in the step")
       : absolute ? by_absolute_time(recipe, step, samples, acs, sensor, dut, names)
                  : by_sync_beside(recipe, step, samples, acs, sync, sensor, dut, names);
   const std::string data_sha256 = digest_of({&acs, &sync, &dut});

@@ -147,7 +147,7 @@ analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& inp
                                               analysis::StartKind start_so_far) {
   auto evaluated = analysis::evaluate_series_stamping(input);
   if (!evaluated) {
-    return tl::unexpected(evaluated.error());
+    return fail(evaluated.error());
   }
   analysis::StartLatency start = start_latency(*evaluated, input.frequency.angular());
   if (start.kind == analysis::StartKind::undecided) {

@@ -24,8 +24,7 @@ std::vector<analysis::Expected<double>> settling_times_s(const RecipeStep& step,
     const auto fit = analysis::fit_sine_and_frequency(
         step.frequency, frequency_search_rel, samples.stamps_ns.front(), samples.stamps_ns, sync);
     if (!fit) {
-      return std::vector<analysis::Expected<double>>(source.settling.size(),
-                                                     tl::unexpected(fit.error()));
+      return std::vector<analysis::Expected<double>>(source.settling.size(), fail(fit.error()));
     }
     frequency = fit->frequency;
   }

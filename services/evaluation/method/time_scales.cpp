@@ -20,18 +20,18 @@ check_time_scales(const Recipe& recipe,
     const auto clock = time_base_of(name);
     const auto clock_of_link = time_base_of(link);
     if (by_absolute_time && clock == TIME_BASE_LOCAL) {
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::no_source,
           fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
                       "UTC; set it to UTC and say time_base = \"utc\", or use a sync signal",
-                      name)});
+                      name));
     }
     if (clock && clock_of_link && *clock != *clock_of_link) {
-      return tl::unexpected(Error{
+      return fail(
           ErrorCode::no_source,
           fmt::format("sources '{}' and '{}' must be stamped on one time scale, but one is in UTC "
                       "and the other has a clock of its own",
-                      name, link)});
+                      name, link));
     }
   }
   return {};

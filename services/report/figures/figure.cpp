@@ -19,10 +19,9 @@ Expected<void> write_text(const std::filesystem::path& path, const std::string& 
   if (file) {
     return {};
   }
-  return tl::unexpected(
-      Error{ErrorCode::bad_file,
-            fmt::format("{}: cannot be written ({}); choose another folder", path.string(),
-                        errno != 0 ? std::strerror(errno) : "unknown cause")});
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: cannot be written ({}); choose another folder", path.string(),
+                          errno != 0 ? std::strerror(errno) : "unknown cause"));
 }
 
 } // namespace
@@ -32,15 +31,14 @@ Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) {
-    return tl::unexpected(
-        Error{ErrorCode::bad_file, fmt::format("{}: cannot be made a folder ({}); choose another",
-                                               folder.string(), failure.message())});
+    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be made a folder ({}); choose another",
+                                                 folder.string(), failure.message()));
   }
   const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"),
                                                     folder / (figure.name + ".csv")};
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (auto written = write_text(paths[i], i == 0 ? figure.svg : figure.csv); !written) {
-      return tl::unexpected(written.error());
+      return fail(written.error());
     }
   }
   return paths;

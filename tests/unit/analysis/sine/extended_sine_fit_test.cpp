@@ -22,7 +22,7 @@ Expected<ExtendedFit> fit_one(const ExtendedBasis& basis, Weighting weighting,
   auto fits = fit_sine_extended(*Frequency::parse(frequency_hz), basis, weighting, epoch_ns, stamps,
                                 channels);
   if (!fits) {
-    return tl::unexpected(fits.error());
+    return fail(fits.error());
   }
   return fits->front();
 }

@@ -100,7 +100,7 @@ protected:
     if (auto ready = oscilloscope_->prepare(
             {.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000});
         !ready) {
-      return tl::unexpected(ready.error());
+      return fail(ready.error());
     }
     return oscilloscope_->acquire(milliseconds(200));
   }

@@ -23,7 +23,7 @@ Outcome control(const LevelTarget& target, const LevelLimits& limits, Exciter ex
   Outcome outcome;
   auto loop = LevelControl::start(target, limits);
   if (!loop) {
-    outcome.done = tl::unexpected(loop.error());
+    outcome.done = fail(loop.error());
     return outcome;
   }
   do {

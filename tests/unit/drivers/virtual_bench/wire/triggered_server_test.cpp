@@ -55,7 +55,7 @@ protected:
     if (auto ready =
             scope_->prepare({.before_trigger_s = 0.01, .after_trigger_s = 0.01, .points = 10'000});
         !ready) {
-      return tl::unexpected(ready.error());
+      return fail(ready.error());
     }
     return scope_->acquire(milliseconds(2000));
   }
