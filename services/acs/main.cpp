@@ -16,6 +16,7 @@
 namespace {
 
 using namespace dyncal::services;
+using dyncal::fail;
 using dyncal::services::acs::PlayedSource;
 
 constexpr std::chrono::seconds silent_after{2};
@@ -79,7 +80,7 @@ int main(int argc, char** argv) {
   set_up_log("dyncal-acs");
   const std::stop_token stop = stop_on_signals();
   if (const auto done = run(files, network, stop); !done) {
-    return fail(done.error());
+    return report_error(done.error());
   }
   return EXIT_SUCCESS;
 }

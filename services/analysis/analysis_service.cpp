@@ -29,14 +29,14 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
 }
 
 Expected<void> AnalysisService::open_readers() {
-  auto measurement = participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state,
-                                                      all_benches, wake_up_);
-  auto excitation = participant_.reader<Excitation>(bus::topics::excitation, bus::Profile::state,
-                                                    all_benches, wake_up_);
-  auto description = participant_.reader<SourceDescription>(
+  auto measurement = participant_.reader<wire::Measurement>(
+      bus::topics::measurement, bus::Profile::state, all_benches, wake_up_);
+  auto excitation = participant_.reader<wire::Excitation>(
+      bus::topics::excitation, bus::Profile::state, all_benches, wake_up_);
+  auto description = participant_.reader<wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, all_benches, wake_up_);
-  auto status = participant_.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
-                                                  all_benches, wake_up_);
+  auto status = participant_.reader<wire::SourceStatus>(bus::topics::source_status,
+                                                        bus::Profile::state, all_benches, wake_up_);
   for (const Error* error :
        {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
         description ? nullptr : &description.error(), status ? nullptr : &status.error()}) {
@@ -62,25 +62,26 @@ void AnalysisService::serve(const std::stop_token& stop) {
 
 void AnalysisService::take_messages() {
   readers_->description.take(
-      [&](const SourceDescription& description, const bus::SampleInfo& info) {
+      [&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
         if (info.valid) {
           benches_[description.bench().to_string()][description.source().to_string()].description =
               description;
         }
       });
-  readers_->status.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
+  readers_->status.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
     if (info.valid) {
       benches_[status.bench().to_string()][status.source().to_string()].status = status;
     } else {
       benches_[status.bench().to_string()].erase(status.source().to_string());
     }
   });
-  readers_->measurement.take([&](const Measurement& measurement, const bus::SampleInfo& info) {
-    if (info.valid) {
-      take_measurement(measurement);
-    }
-  });
-  readers_->excitation.take([&](const Excitation& excitation, const bus::SampleInfo& info) {
+  readers_->measurement.take(
+      [&](const wire::Measurement& measurement, const bus::SampleInfo& info) {
+        if (info.valid) {
+          take_measurement(measurement);
+        }
+      });
+  readers_->excitation.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
     const auto session = runs_.find({excitation.bench().to_string(), excitation.run().to_string()});
     if (info.valid && session != runs_.end()) {
       session->second->announce(excitation);
@@ -88,18 +89,18 @@ void AnalysisService::take_messages() {
   });
 }
 
-void AnalysisService::take_measurement(const Measurement& measurement) {
+void AnalysisService::take_measurement(const wire::Measurement& measurement) {
   const RunKey key{measurement.bench().to_string(), measurement.run().to_string()};
   const auto now = RunSession::Clock::now();
   if (const auto known = runs_.find(key); known != runs_.end()) {
     known->second->update(measurement, now);
     return;
   }
-  if (measurement.state() != MEASUREMENT_PLANNED) {
+  if (measurement.state() != wire::MEASUREMENT_PLANNED) {
     // Its first samples are gone, and so are the results of another instance that may have died:
     // what came of it would look complete and not be. The run ends by itself when nobody else
     // evaluates it.
-    if (ignored_.insert(key).second && measurement.state() == MEASUREMENT_RUNNING) {
+    if (ignored_.insert(key).second && measurement.state() == wire::MEASUREMENT_RUNNING) {
       spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first,
                    key.second);
     }

@@ -28,17 +28,17 @@ public:
 
 private:
   struct Readers {
-    bus::Reader<Measurement> measurement;
-    bus::Reader<Excitation> excitation;
-    bus::Reader<SourceDescription> description;
-    bus::Reader<SourceStatus> status;
+    bus::Reader<wire::Measurement> measurement;
+    bus::Reader<wire::Excitation> excitation;
+    bus::Reader<wire::SourceDescription> description;
+    bus::Reader<wire::SourceStatus> status;
   };
   using RunKey = std::pair<std::string, std::string>; // bench, run
 
   AnalysisService(bus::Participant participant, AnalysisIdentity identity);
   Expected<void> open_readers();
   void take_messages();
-  void take_measurement(const Measurement& measurement);
+  void take_measurement(const wire::Measurement& measurement);
   void drop_old_runs(const std::string& bench);
 
   bus::Participant participant_;

@@ -18,11 +18,11 @@ using namespace std::chrono_literals;
 constexpr auto command_interval = 250ms;
 constexpr auto status_interval = 1s;
 
-const char* samples_topic(SourceKind kind) {
+const char* samples_topic(wire::SourceKind kind) {
   switch (kind) {
-  case SOURCE_DAU:
+  case wire::SOURCE_DAU:
     return bus::topics::dau_samples;
-  case SOURCE_CAN:
+  case wire::SOURCE_CAN:
     return bus::topics::can_samples;
   default:
     return bus::topics::acs_samples;
@@ -41,7 +41,7 @@ std::string why(const KnownSource* source) {
 Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& participant,
                                                          std::shared_ptr<bus::WakeUp> wake_up,
                                                          const AnalysisIdentity& identity,
-                                                         const Measurement& measurement,
+                                                         const wire::Measurement& measurement,
                                                          Clock::time_point now) {
   std::unique_ptr<RunSession> session(
       new RunSession(participant, std::move(wake_up), identity, measurement, now));
@@ -64,7 +64,7 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(bus::Participant& parti
 }
 
 RunSession::RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                       const AnalysisIdentity& identity, const Measurement& measurement,
+                       const AnalysisIdentity& identity, const wire::Measurement& measurement,
                        Clock::time_point now)
     : participant_(participant), wake_up_(std::move(wake_up)), identity_(identity),
       bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
@@ -94,24 +94,24 @@ Expected<void> RunSession::open_writers() {
       });
 }
 
-void RunSession::update(const Measurement& measurement, Clock::time_point now) {
+void RunSession::update(const wire::Measurement& measurement, Clock::time_point now) {
   last_heard_of_run_ = now;
   if (measurement.state() == state_) {
     return;
   }
   state_ = measurement.state();
-  if (evaluator_ && (state_ == MEASUREMENT_DONE || state_ == MEASUREMENT_ABORTED)) {
+  if (evaluator_ && (state_ == wire::MEASUREMENT_DONE || state_ == wire::MEASUREMENT_ABORTED)) {
     spdlog::info("bench {}, run {}: {}", bench_, run_,
-                 state_ == MEASUREMENT_DONE ? "excitation done" : "broken off");
-    evaluator_->end_of_excitation(state_ == MEASUREMENT_ABORTED);
-    if (health_ == HEALTH_FAILED) {
+                 state_ == wire::MEASUREMENT_DONE ? "excitation done" : "broken off");
+    evaluator_->end_of_excitation(state_ == wire::MEASUREMENT_ABORTED);
+    if (health_ == wire::HEALTH_FAILED) {
       evaluator_->finish_now(); // a source is gone: nothing more will come
     }
     last_progress_ = now;
   }
 }
 
-void RunSession::announce(const Excitation& excitation) {
+void RunSession::announce(const wire::Excitation& excitation) {
   excited_by_steps_ = true;
   if (evaluator_) {
     evaluator_->announce(excitation);
@@ -124,10 +124,10 @@ void RunSession::work(const KnownSources& sources, Clock::time_point now) {
   }
   take_descriptions(sources);
   take_samples(now);
-  if (!finished() && arm_ == ARM_WAITING) {
+  if (!finished() && arm_ == wire::ARM_WAITING) {
     arm(sources, now);
   }
-  if (!finished() && arm_ == ARM_ARMED) {
+  if (!finished() && arm_ == wire::ARM_ARMED) {
     watch_sources(now);
     evaluate(now);
   }
@@ -144,7 +144,7 @@ void RunSession::take_descriptions(const KnownSources& sources) {
         known->second.description == link.description) {
       continue;
     }
-    const SourceDescription& description = *known->second.description;
+    const wire::SourceDescription& description = *known->second.description;
     const bool only_told_more =
         link.description && link.description->session() == description.session() && !link.triggered;
     link.description = description;
@@ -156,7 +156,8 @@ void RunSession::take_descriptions(const KnownSources& sources) {
       return;
     }
     link.described = true;
-    link.triggered = description.kind() == SOURCE_DSO || description.kind() == SOURCE_TSS;
+    link.triggered =
+        description.kind() == wire::SOURCE_DSO || description.kind() == wire::SOURCE_TSS;
     if (link.triggered) {
       open_record_reader(description.kind());
     } else {
@@ -165,12 +166,12 @@ void RunSession::take_descriptions(const KnownSources& sources) {
   }
 }
 
-void RunSession::open_reader(SourceKind kind) {
+void RunSession::open_reader(wire::SourceKind kind) {
   if (readers_.contains(kind)) {
     return;
   }
-  auto reader = participant_.reader<SampleBlock>(samples_topic(kind), bus::Profile::samples, bench_,
-                                                 wake_up_);
+  auto reader = participant_.reader<wire::SampleBlock>(samples_topic(kind), bus::Profile::samples,
+                                                       bench_, wake_up_);
   if (!reader) {
     refuse(reader.error().message);
     return;
@@ -178,13 +179,13 @@ void RunSession::open_reader(SourceKind kind) {
   readers_.emplace(kind, std::move(*reader));
 }
 
-void RunSession::open_record_reader(SourceKind kind) {
+void RunSession::open_record_reader(wire::SourceKind kind) {
   if (record_readers_.contains(kind)) {
     return;
   }
-  const char* topic = kind == SOURCE_DSO ? bus::topics::dso_record : bus::topics::tss_record;
+  const char* topic = kind == wire::SOURCE_DSO ? bus::topics::dso_record : bus::topics::tss_record;
   auto reader =
-      participant_.reader<TriggeredRecord>(topic, bus::Profile::samples, bench_, wake_up_);
+      participant_.reader<wire::TriggeredRecord>(topic, bus::Profile::samples, bench_, wake_up_);
   if (!reader) {
     refuse(reader.error().message);
     return;
@@ -194,14 +195,14 @@ void RunSession::open_record_reader(SourceKind kind) {
 
 void RunSession::take_samples(Clock::time_point now) {
   for (auto& entry : readers_) {
-    entry.second.take([&](const SampleBlock& block, const bus::SampleInfo& info) {
+    entry.second.take([&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
       if (info.valid) {
         take_block(block, now);
       }
     });
   }
   for (auto& entry : record_readers_) {
-    entry.second.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+    entry.second.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
       SourceLink* link =
           info.valid ? link_of(record.source().to_string(), record.answers_run()) : nullptr;
       if (link != nullptr) {
@@ -224,7 +225,7 @@ RunSession::SourceLink* RunSession::link_of(const std::string& source,
   return link->second.answered ? &link->second : nullptr;
 }
 
-void RunSession::take_block(const SampleBlock& block, Clock::time_point now) {
+void RunSession::take_block(const wire::SampleBlock& block, Clock::time_point now) {
   SourceLink* link = link_of(block.source().to_string(), block.answers_run());
   if (link != nullptr) {
     link->last_block = now;
@@ -238,9 +239,9 @@ void RunSession::arm(const KnownSources& sources, Clock::time_point now) {
     next_command_ = now + command_interval;
     for (const auto& [name, link] : links_) {
       if (link.described && !link.answered) {
-        Command command;
+        wire::Command command;
         command.target(name);
-        command.kind(COMMAND_ARM);
+        command.kind(wire::COMMAND_ARM);
         command.bench(bench_);
         command.run(run_);
         command.sender(identity_.service);
@@ -250,7 +251,7 @@ void RunSession::arm(const KnownSources& sources, Clock::time_point now) {
   }
   const std::string missing = what_is_missing(sources);
   if (missing.empty()) {
-    arm_ = ARM_ARMED;
+    arm_ = wire::ARM_ARMED;
     last_progress_ = now;
     spdlog::info("bench {}, run {}: armed", bench_, run_);
     publish_status();
@@ -268,8 +269,8 @@ std::string RunSession::what_is_missing(const KnownSources& sources) const {
                          "with this bench file, in the same DDS domain?",
                          name, bench_);
     }
-    const bool silent = source->status && (source->status->state() == SOURCE_SILENT ||
-                                           source->status->state() == SOURCE_FAILED);
+    const bool silent = source->status && (source->status->state() == wire::SOURCE_SILENT ||
+                                           source->status->state() == wire::SOURCE_FAILED);
     if (silent) {
       return fmt::format("source '{}' of bench '{}' is silent{}", name, bench_, why(source));
     }
@@ -287,7 +288,7 @@ std::string RunSession::what_is_missing(const KnownSources& sources) const {
 }
 
 void RunSession::watch_sources(Clock::time_point now) {
-  if (state_ != MEASUREMENT_RUNNING || health_ != HEALTH_OK ||
+  if (state_ != wire::MEASUREMENT_RUNNING || health_ != wire::HEALTH_OK ||
       now - last_heard_of_run_ > runner_limit) {
     return;
   }
@@ -304,10 +305,10 @@ void RunSession::watch_sources(Clock::time_point now) {
 }
 
 void RunSession::report_failure(std::string message) {
-  if (health_ == HEALTH_FAILED) {
+  if (health_ == wire::HEALTH_FAILED) {
     return; // the first cause explains the others
   }
-  health_ = HEALTH_FAILED;
+  health_ = wire::HEALTH_FAILED;
   message_ = std::move(message);
   spdlog::warn("bench {}, run {}: {}", bench_, run_, message_);
   publish_status();
@@ -315,7 +316,7 @@ void RunSession::report_failure(std::string message) {
 
 void RunSession::evaluate(Clock::time_point now) {
   EvaluationOutput output = evaluator_->take_output();
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     last_progress_ = now;
     if (!result.valid()) {
       spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step(),
@@ -324,16 +325,16 @@ void RunSession::evaluate(Clock::time_point now) {
     write(result_writer_, result);
     ++results_published_;
   }
-  for (const TransferFunction& function : output.transfer_functions) {
+  for (const wire::TransferFunction& function : output.transfer_functions) {
     write(transfer_writer_, function);
     ++transfer_functions_published_;
   }
-  for (const SampleClockReport& report : output.clock_reports) {
+  for (const wire::SampleClockReport& report : output.clock_reports) {
     write(clock_writer_, report);
     ++clock_reports_published_;
   }
   if (evaluator_->finished()) {
-    arm_ = ARM_FINISHED;
+    arm_ = wire::ARM_FINISHED;
     readers_.clear();
     record_readers_.clear();
     evaluator_.reset();
@@ -341,7 +342,7 @@ void RunSession::evaluate(Clock::time_point now) {
     publish_status();
     return;
   }
-  const bool over = state_ == MEASUREMENT_DONE || state_ == MEASUREMENT_ABORTED;
+  const bool over = state_ == wire::MEASUREMENT_DONE || state_ == wire::MEASUREMENT_ABORTED;
   const bool runner_gone = now - last_heard_of_run_ > runner_limit;
   if ((over && now - last_progress_ > quiet_limit) || runner_gone) {
     if (runner_gone) {
@@ -356,8 +357,8 @@ void RunSession::evaluate(Clock::time_point now) {
 }
 
 void RunSession::refuse(std::string message) {
-  arm_ = ARM_REFUSED;
-  health_ = HEALTH_FAILED;
+  arm_ = wire::ARM_REFUSED;
+  health_ = wire::HEALTH_FAILED;
   message_ = std::move(message);
   spdlog::warn("bench {}, run {}: refused: {}", bench_, run_, message_);
   readers_.clear();
@@ -366,7 +367,7 @@ void RunSession::refuse(std::string message) {
 }
 
 void RunSession::publish_status() {
-  ServiceStatus status;
+  wire::ServiceStatus status;
   status.service(identity_.service);
   status.run(run_);
   status.bench(bench_);

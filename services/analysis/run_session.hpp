@@ -34,8 +34,8 @@ struct AnalysisIdentity {
 
 // What the service knows of the sources of a bench.
 struct KnownSource {
-  std::optional<SourceDescription> description;
-  std::optional<SourceStatus> status;
+  std::optional<wire::SourceDescription> description;
+  std::optional<wire::SourceStatus> status;
 };
 using KnownSources = std::map<std::string, KnownSource>;
 
@@ -49,14 +49,17 @@ public:
 
   [[nodiscard]] static Expected<std::unique_ptr<RunSession>>
   create(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-         const AnalysisIdentity& identity, const Measurement& measurement, Clock::time_point now);
+         const AnalysisIdentity& identity, const wire::Measurement& measurement,
+         Clock::time_point now);
 
   [[nodiscard]] const std::string& bench() const { return bench_; }
   [[nodiscard]] const std::string& run() const { return run_; }
-  [[nodiscard]] bool finished() const { return arm_ == ARM_FINISHED || arm_ == ARM_REFUSED; }
+  [[nodiscard]] bool finished() const {
+    return arm_ == wire::ARM_FINISHED || arm_ == wire::ARM_REFUSED;
+  }
 
-  void update(const Measurement& measurement, Clock::time_point now);
-  void announce(const Excitation& excitation);
+  void update(const wire::Measurement& measurement, Clock::time_point now);
+  void announce(const wire::Excitation& excitation);
   // Does what is due: takes samples, asks sources to answer, evaluates, publishes.
   void work(const KnownSources& sources, Clock::time_point now);
 
@@ -66,20 +69,20 @@ private:
     bool answered = false;
     bool ended = false;
     bool triggered = false; // sends records when there is a shot, and may be silent else
-    std::optional<SourceDescription> description; // as the evaluation knows it
+    std::optional<wire::SourceDescription> description; // as the evaluation knows it
     Clock::time_point last_block;
   };
 
   RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-             const AnalysisIdentity& identity, const Measurement& measurement,
+             const AnalysisIdentity& identity, const wire::Measurement& measurement,
              Clock::time_point now);
   Expected<void> open_writers();
   void take_descriptions(const KnownSources& sources);
-  void open_reader(SourceKind kind);
-  void open_record_reader(SourceKind kind);
+  void open_reader(wire::SourceKind kind);
+  void open_record_reader(wire::SourceKind kind);
   [[nodiscard]] SourceLink* link_of(const std::string& source, const std::string& answers_run);
   void take_samples(Clock::time_point now);
-  void take_block(const SampleBlock& block, Clock::time_point now);
+  void take_block(const wire::SampleBlock& block, Clock::time_point now);
   void arm(const KnownSources& sources, Clock::time_point now);
   [[nodiscard]] std::string what_is_missing(const KnownSources& sources) const;
   void evaluate(Clock::time_point now);
@@ -95,9 +98,9 @@ private:
   AnalysisIdentity identity_;
   std::string bench_;
   std::string run_;
-  MeasurementState state_;
-  ArmState arm_ = ARM_WAITING;
-  HealthState health_ = HEALTH_OK;
+  wire::MeasurementState state_;
+  wire::ArmState arm_ = wire::ARM_WAITING;
+  wire::HealthState health_ = wire::HEALTH_OK;
   std::string message_;
   std::uint64_t results_published_ = 0;
   std::uint64_t transfer_functions_published_ = 0;
@@ -106,13 +109,13 @@ private:
       false; // a generator is announced; files and hand-made excitation are not
   std::unique_ptr<RunEvaluator> evaluator_;
   std::map<std::string, SourceLink> links_;
-  std::map<SourceKind, bus::Reader<SampleBlock>> readers_;
-  std::map<SourceKind, bus::Reader<TriggeredRecord>> record_readers_;
-  std::optional<bus::Writer<Command>> command_writer_;
-  std::optional<bus::Writer<ServiceStatus>> status_writer_;
-  std::optional<bus::Writer<CalibrationResult>> result_writer_;
-  std::optional<bus::Writer<TransferFunction>> transfer_writer_;
-  std::optional<bus::Writer<SampleClockReport>> clock_writer_;
+  std::map<wire::SourceKind, bus::Reader<wire::SampleBlock>> readers_;
+  std::map<wire::SourceKind, bus::Reader<wire::TriggeredRecord>> record_readers_;
+  std::optional<bus::Writer<wire::Command>> command_writer_;
+  std::optional<bus::Writer<wire::ServiceStatus>> status_writer_;
+  std::optional<bus::Writer<wire::CalibrationResult>> result_writer_;
+  std::optional<bus::Writer<wire::TransferFunction>> transfer_writer_;
+  std::optional<bus::Writer<wire::SampleClockReport>> clock_writer_;
   Clock::time_point created_;
   Clock::time_point last_heard_of_run_;
   Clock::time_point last_progress_;

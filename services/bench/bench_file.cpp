@@ -342,15 +342,6 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
 
 } // namespace
 
-std::optional<ChannelName> parse_channel_name(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos || slash == 0 || slash + 1 == text.size() ||
-      text.find('/', slash + 1) != std::string::npos) {
-    return std::nullopt;
-  }
-  return ChannelName{text.substr(0, slash), text.substr(slash + 1)};
-}
-
 const SourceSettings* BenchFile::source(const std::string& name) const {
   const auto found =
       std::find_if(sources.begin(), sources.end(),

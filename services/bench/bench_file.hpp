@@ -17,21 +17,10 @@
 
 #include "drivers/can/sensor_settings.hpp"
 #include "drivers/sample_block.hpp"
+#include "services/contract/channel_name.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
-
-// "source/channel", as the roles of [method] name a channel.
-struct ChannelName {
-  std::string source;
-  std::string channel;
-
-  [[nodiscard]] std::string text() const { return source + "/" + channel; }
-  friend bool operator==(const ChannelName&, const ChannelName&) = default;
-};
-
-// Splits "source/channel"; nothing when it is not of that form.
-[[nodiscard]] std::optional<ChannelName> parse_channel_name(const std::string& text);
 
 struct NetworkSettings {
   std::vector<std::string> peers;

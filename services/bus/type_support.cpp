@@ -18,83 +18,86 @@ const KeyLayout names_channel_and_step{{name_bound, name_bound, channel_bound}, 
 } // namespace
 
 template <>
-const TypeSupport& type_support<SourceDescription>() {
+const TypeSupport& type_support<wire::SourceDescription>() {
   static const TypeSupport support =
-      make_type_support<SourceDescription>("dyncal::SourceDescription", two_names);
+      make_type_support<wire::SourceDescription>("dyncal::wire::SourceDescription", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<SourceStatus>() {
+const TypeSupport& type_support<wire::SourceStatus>() {
   static const TypeSupport support =
-      make_type_support<SourceStatus>("dyncal::SourceStatus", two_names);
+      make_type_support<wire::SourceStatus>("dyncal::wire::SourceStatus", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<SampleBlock>() {
+const TypeSupport& type_support<wire::SampleBlock>() {
   static const TypeSupport support =
-      make_type_support<SampleBlock>("dyncal::SampleBlock", two_names);
+      make_type_support<wire::SampleBlock>("dyncal::wire::SampleBlock", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<TriggeredRecord>() {
+const TypeSupport& type_support<wire::TriggeredRecord>() {
   static const TypeSupport support =
-      make_type_support<TriggeredRecord>("dyncal::TriggeredRecord", two_names);
+      make_type_support<wire::TriggeredRecord>("dyncal::wire::TriggeredRecord", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<AcsPhasor>() {
-  static const TypeSupport support = make_type_support<AcsPhasor>("dyncal::AcsPhasor", two_names);
-  return support;
-}
-
-template <>
-const TypeSupport& type_support<Measurement>() {
+const TypeSupport& type_support<wire::AcsPhasor>() {
   static const TypeSupport support =
-      make_type_support<Measurement>("dyncal::Measurement", two_names);
+      make_type_support<wire::AcsPhasor>("dyncal::wire::AcsPhasor", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<Excitation>() {
-  static const TypeSupport support = make_type_support<Excitation>("dyncal::Excitation", two_names);
-  return support;
-}
-
-template <>
-const TypeSupport& type_support<CalibrationResult>() {
+const TypeSupport& type_support<wire::Measurement>() {
   static const TypeSupport support =
-      make_type_support<CalibrationResult>("dyncal::CalibrationResult", names_channel_and_step);
+      make_type_support<wire::Measurement>("dyncal::wire::Measurement", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<TransferFunction>() {
+const TypeSupport& type_support<wire::Excitation>() {
   static const TypeSupport support =
-      make_type_support<TransferFunction>("dyncal::TransferFunction", names_and_channel);
+      make_type_support<wire::Excitation>("dyncal::wire::Excitation", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<SampleClockReport>() {
+const TypeSupport& type_support<wire::CalibrationResult>() {
+  static const TypeSupport support = make_type_support<wire::CalibrationResult>(
+      "dyncal::wire::CalibrationResult", names_channel_and_step);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::TransferFunction>() {
+  static const TypeSupport support = make_type_support<wire::TransferFunction>(
+      "dyncal::wire::TransferFunction", names_and_channel);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::SampleClockReport>() {
   static const TypeSupport support =
-      make_type_support<SampleClockReport>("dyncal::SampleClockReport", three_names);
+      make_type_support<wire::SampleClockReport>("dyncal::wire::SampleClockReport", three_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<ServiceStatus>() {
+const TypeSupport& type_support<wire::ServiceStatus>() {
   static const TypeSupport support =
-      make_type_support<ServiceStatus>("dyncal::ServiceStatus", two_names);
+      make_type_support<wire::ServiceStatus>("dyncal::wire::ServiceStatus", two_names);
   return support;
 }
 
 template <>
-const TypeSupport& type_support<Command>() {
-  static const TypeSupport support = make_type_support<Command>("dyncal::Command", one_name);
+const TypeSupport& type_support<wire::Command>() {
+  static const TypeSupport support =
+      make_type_support<wire::Command>("dyncal::wire::Command", one_name);
   return support;
 }
 

@@ -28,7 +28,7 @@ struct KeyLayout {
 };
 
 struct TypeSupport {
-  std::string name; // as DDS announces it, e.g. "dyncal::SampleBlock"
+  std::string name; // as DDS announces it, e.g. "dyncal::wire::SampleBlock"
   KeyLayout key;
   void* (*create)();
   void (*destroy)(void* sample);
@@ -46,28 +46,28 @@ template <class T>
 [[nodiscard]] const TypeSupport& type_support();
 
 template <>
-const TypeSupport& type_support<SourceDescription>();
+const TypeSupport& type_support<wire::SourceDescription>();
 template <>
-const TypeSupport& type_support<SourceStatus>();
+const TypeSupport& type_support<wire::SourceStatus>();
 template <>
-const TypeSupport& type_support<SampleBlock>();
+const TypeSupport& type_support<wire::SampleBlock>();
 template <>
-const TypeSupport& type_support<TriggeredRecord>();
+const TypeSupport& type_support<wire::TriggeredRecord>();
 template <>
-const TypeSupport& type_support<AcsPhasor>();
+const TypeSupport& type_support<wire::AcsPhasor>();
 template <>
-const TypeSupport& type_support<Measurement>();
+const TypeSupport& type_support<wire::Measurement>();
 template <>
-const TypeSupport& type_support<Excitation>();
+const TypeSupport& type_support<wire::Excitation>();
 template <>
-const TypeSupport& type_support<CalibrationResult>();
+const TypeSupport& type_support<wire::CalibrationResult>();
 template <>
-const TypeSupport& type_support<TransferFunction>();
+const TypeSupport& type_support<wire::TransferFunction>();
 template <>
-const TypeSupport& type_support<SampleClockReport>();
+const TypeSupport& type_support<wire::SampleClockReport>();
 template <>
-const TypeSupport& type_support<ServiceStatus>();
+const TypeSupport& type_support<wire::ServiceStatus>();
 template <>
-const TypeSupport& type_support<Command>();
+const TypeSupport& type_support<wire::Command>();
 
 } // namespace dyncal::bus

@@ -15,6 +15,7 @@
 namespace {
 
 using namespace dyncal::services;
+using dyncal::fail;
 
 using Sources = std::vector<RunnableSource<can::CanSource>>;
 
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
   set_up_log("dyncal-can");
   const std::stop_token stop = stop_on_signals();
   if (const auto done = run(files, network, stop); !done) {
-    return fail(done.error());
+    return report_error(done.error());
   }
   return EXIT_SUCCESS;
 }

@@ -14,6 +14,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/replay/sample_memory.hpp"
 #include "services/replay/shot_files.hpp"
+#include "services/run/run_plan.hpp"
 #include "services/source/messages.hpp"
 #include "services/version.hpp"
 
@@ -65,12 +66,12 @@ public:
   FileInput(const FileInput&) = delete;
   FileInput& operator=(const FileInput&) = delete;
 
-  [[nodiscard]] const SourceDescription& description() const { return description_; }
+  [[nodiscard]] const wire::SourceDescription& description() const { return description_; }
   // How far the samples taken reach, from the first one on, in the file's own time.
   [[nodiscard]] std::int64_t reached_ns() const { return reached_ns_; }
 
   // The next block, or the end of the stream; waits for the reading thread.
-  Expected<SampleBlock> next() {
+  Expected<wire::SampleBlock> next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !blocks_.empty() || done_; });
     if (blocks_.empty() && failure_) {
@@ -85,7 +86,7 @@ public:
     }
     lock.unlock();
     note_time(block);
-    SampleBlock message = to_message(options_, session, number_++, std::move(block));
+    wire::SampleBlock message = to_message(options_, session, number_++, std::move(block));
     message.channel_count(static_cast<std::uint32_t>(description_.channels().size()));
     message.end_of_stream(end);
     return message;
@@ -130,7 +131,7 @@ private:
 
   std::unique_ptr<drivers::acs::AcsDriver> driver_;
   SourceOptions options_;
-  SourceDescription description_;
+  wire::SourceDescription description_;
   std::uint64_t number_ = 0;
   std::optional<std::int64_t> first_ns_;
   std::int64_t reached_ns_ = 0;
@@ -155,7 +156,7 @@ Expected<void> take_shots(const BenchFile& bench, const std::string& source,
   if (auto described = evaluator.describe(files->description); !described) {
     return described;
   }
-  for (const TriggeredRecord& record : files->records) {
+  for (const wire::TriggeredRecord& record : files->records) {
     evaluator.add(record);
   }
   return {};
@@ -254,10 +255,10 @@ int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   keep_memory_for_samples();
   const auto outcome = analyse(command, stop);
   if (!outcome) {
-    return fail(outcome.error());
+    return report_error(outcome.error());
   }
   if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
-    return fail(shown.error());
+    return report_error(shown.error());
   }
   return conclude(*outcome);
 }

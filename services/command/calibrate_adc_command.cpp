@@ -46,12 +46,12 @@ Error no_time_scale(const std::string& source) {
 Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
                                          const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader<SourceDescription>(
+  auto descriptions = participant.reader<wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());
   }
-  std::map<std::string, TimeBase> time_bases;
+  std::map<std::string, wire::TimeBase> time_bases;
   const std::array<std::string, 2> sources{bench.method.sync_acs.source,
                                            bench.method.sync_dau.source};
   const auto deadline = std::chrono::steady_clock::now() + description_limit;
@@ -62,11 +62,12 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline &&
          !stop.stop_requested()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 100ms);
-    descriptions->take([&](const SourceDescription& description, const bus::SampleInfo& info) {
-      if (info.valid) {
-        time_bases[description.source().to_string()] = description.time_base();
-      }
-    });
+    descriptions->take(
+        [&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
+          if (info.valid) {
+            time_bases[description.source().to_string()] = description.time_base();
+          }
+        });
   }
   if (stop.stop_requested()) {
     return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
@@ -79,20 +80,20 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
             *source));
   }
   for (const auto& source : sources) {
-    if (time_bases[source] != TIME_BASE_UTC) {
+    if (time_bases[source] != wire::TIME_BASE_UTC) {
       return fail(no_time_scale(source));
     }
   }
   return {};
 }
 
-analysis::SyncPhasor phasor_of(const SineFit& fit) {
+analysis::SyncPhasor phasor_of(const wire::SineFit& fit) {
   return {fit.frequency_hz(), fit.u_frequency_hz(), fit.reference_ns(), fit.sine(),
           fit.cosine(),       fit.u_sine(),         fit.u_cosine()};
 }
 
-const SineFit* fit_of(const CalibrationResult& result, const ChannelName& channel) {
-  for (const SineFit& fit : result.fits()) {
+const wire::SineFit* fit_of(const wire::CalibrationResult& result, const ChannelName& channel) {
+  for (const wire::SineFit& fit : result.fits()) {
     if (fit.series() == channel.text()) {
       return &fit;
     }
@@ -103,9 +104,9 @@ const SineFit* fit_of(const CalibrationResult& result, const ChannelName& channe
 Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench,
                                        const RunOutcome& outcome) {
   Measurements measurements;
-  for (const CalibrationResult& result : outcome.results) {
-    const SineFit* acs = fit_of(result, bench.method.sync_acs);
-    const SineFit* dau = fit_of(result, bench.method.sync_dau);
+  for (const wire::CalibrationResult& result : outcome.results) {
+    const wire::SineFit* acs = fit_of(result, bench.method.sync_acs);
+    const wire::SineFit* dau = fit_of(result, bench.method.sync_dau);
     if (!result.valid() || acs == nullptr || dau == nullptr) {
       continue;
     }
@@ -320,20 +321,20 @@ BenchFile bench_of_adc_pass(const BenchFile& bench, std::optional<double> amplit
 int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
-    return fail(bench.error());
+    return report_error(bench.error());
   }
   if (const auto possible = check_bench_for_adc(*bench, !command.amplitudes_vpp.empty());
       !possible) {
-    return fail(possible.error());
+    return report_error(possible.error());
   }
   const std::string run = "adc-" + run_from_time();
   const auto measurements = measure(command, *bench, run, stop);
   if (!measurements) {
-    return fail(measurements.error());
+    return report_error(measurements.error());
   }
   print(*measurements);
   if (const auto written = write(command, *bench, run, *measurements); !written) {
-    return fail(written.error());
+    return report_error(written.error());
   }
   fmt::print("wrote {}\nfor the bench file, under [corrections]:\nadc = {{ file = \"{}\", channel "
              "= \"{}\", phase_sign = \"lag\"{} }}\n",

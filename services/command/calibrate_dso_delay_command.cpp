@@ -178,16 +178,17 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
 int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::stop_token& stop) {
   const auto frequency = analysis::Frequency::parse(command.frequency_hz);
   if (!frequency) {
-    return fail({ErrorCode::bad_argument,
-                 fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
+    return report_error(
+        {ErrorCode::bad_argument,
+         fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
   }
   const auto generator = start_generator(command); // its destruction switches the output off
   if (!generator) {
-    return fail(generator.error());
+    return report_error(generator.error());
   }
   const auto delays = measure(command, *frequency, stop);
   if (!delays) {
-    return fail(delays.error());
+    return report_error(delays.error());
   }
   print(command, *delays);
   const auto written = write(command, *delays);

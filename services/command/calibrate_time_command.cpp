@@ -72,7 +72,7 @@ Expected<Judged> judge(const CalibrateTimeCommand& command) {
   };
   auto pulses = analysis::sort_pulse_edges(record->edges);
   if (!pulses) {
-    return fail(pulses.error());
+    return failure(pulses.error());
   }
   Judged judged{std::move(*record), std::move(*pulses), {}, {}};
   judged.prediction = analysis::predict_gps_pulses(judged.pulses);
@@ -81,7 +81,7 @@ Expected<Judged> judge(const CalibrateTimeCommand& command) {
         analysis::stamp_deviations(judged.pulses, {.reference_offset_s = command.reference_offset_s,
                                                    .u_reference_s = command.u_reference_s});
     if (!deviation) {
-      return fail(deviation.error());
+      return failure(deviation.error());
     }
     judged.deviation = std::move(*deviation);
   }
@@ -287,7 +287,7 @@ Expected<void> write(const CalibrateTimeCommand& command, const Judged& judged) 
 int run_calibrate_time(const CalibrateTimeCommand& command) {
   const auto judged = judge(command);
   if (!judged) {
-    return fail(judged.error());
+    return report_error(judged.error());
   }
   print_edges(*judged);
   if (judged->prediction) {

@@ -116,15 +116,15 @@ void print_table(const std::vector<ComparedPoint>& points) {
 int run_compare(const CompareCommand& command) {
   const auto first = read_result_file(command.first);
   if (!first) {
-    return fail(first.error());
+    return report_error(first.error());
   }
   const auto second = read_result_file(command.second);
   if (!second) {
-    return fail(second.error());
+    return report_error(second.error());
   }
   const auto compared = compare(command, *first, *second);
   if (!compared) {
-    return fail(compared.error());
+    return report_error(compared.error());
   }
   command.json ? print_json(*compared) : print_table(*compared);
   return 0;

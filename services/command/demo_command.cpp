@@ -238,13 +238,13 @@ Error explain(Demo& demo, const Error& error) {
 int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
   const auto check = check_truth(outcome, demo.folder / "truth.json");
   if (!check) {
-    return fail(check.error());
+    return report_error(check.error());
   }
   fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} "
              "standard uncertainties ({})\n",
              check->points, check->worst, check->worst_where);
   if (check->points == 0 || !(check->worst <= agreement_limit)) {
-    return fail(
+    return report_error(
         {ErrorCode::no_result,
          fmt::format("the result does not agree with the truth within {} standard uncertainties",
                      agreement_limit)});
@@ -257,14 +257,14 @@ int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
 int run_demo(const DemoCommand& command, const std::stop_token& stop) {
   auto demo = prepare(command);
   if (!demo) {
-    return fail(demo.error());
+    return report_error(demo.error());
   }
   fmt::print("Virtual bench: {}\nFiles in {}\n", demo->preset.shows, demo->folder.string());
   std::fflush(stdout);
   if (const auto started =
           start_bench(command, *demo).and_then([&] { return start_services(*demo); });
       !started) {
-    return fail(explain(*demo, started.error()));
+    return report_error(explain(*demo, started.error()));
   }
   RunCommand run;
   run.bench_file = demo->folder / "bench.toml";
@@ -274,7 +274,7 @@ int run_demo(const DemoCommand& command, const std::stop_token& stop) {
   run.network.domain = demo->domain;
   const auto outcome = conduct_run(run, stop);
   if (!outcome) {
-    return fail(explain(*demo, outcome.error()));
+    return report_error(explain(*demo, outcome.error()));
   }
   const int status = conclude(*outcome);
   return status != 0 ? status : compare_with_truth(*outcome, *demo);

@@ -161,7 +161,7 @@ void print_table(const Fit& fit) {
 int run_fit(const FitCommand& command) {
   auto series = read_series_file(command.file);
   if (!series) {
-    return fail(series.error());
+    return report_error(series.error());
   }
   Fit fit;
   if (command.nominal_rate_hz) {
@@ -169,10 +169,10 @@ int run_fit(const FitCommand& command) {
   }
   const auto columns = chosen_columns(command, *series, fit.names);
   if (!columns) {
-    return fail(columns.error());
+    return report_error(columns.error());
   }
   if (series->stamps_ns.empty()) {
-    return fail(
+    return report_error(
         {ErrorCode::bad_file, fmt::format("{}: the file has no samples", command.file.string())});
   }
   fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
@@ -180,7 +180,7 @@ int run_fit(const FitCommand& command) {
     return fit_columns(command, *series, *columns, fit);
   });
   if (!fitted) {
-    return fail(at(command, fitted.error()));
+    return report_error(at(command, fitted.error()));
   }
   command.json ? print_json(fit) : print_table(fit);
   return 0;

@@ -100,13 +100,13 @@ void print_table(const analysis::SampleClockStatistics& clock) {
 int run_intervals(const IntervalsCommand& command) {
   const auto series = read_series_file(command.file);
   if (!series) {
-    return fail(series.error());
+    return report_error(series.error());
   }
   std::span<const double> temperature;
   if (!command.temperature.empty()) {
     const auto column = series->column(command.temperature);
     if (!column) {
-      return fail(
+      return report_error(
           {ErrorCode::bad_argument,
            fmt::format("{}: there is no column '{}'; the columns are: {}", command.file.string(),
                        command.temperature, fmt::join(series->names, ", "))});
@@ -120,9 +120,10 @@ int run_intervals(const IntervalsCommand& command) {
   clock.push(0, series->stamps_ns, {}, temperature);
   const auto statistics = clock.statistics();
   if (!statistics) {
-    return fail({ErrorCode::bad_file,
-                 fmt::format("{}: fewer than three samples: there are no intervals to speak of",
-                             command.file.string())});
+    return report_error(
+        {ErrorCode::bad_file,
+         fmt::format("{}: fewer than three samples: there are no intervals to speak of",
+                     command.file.string())});
   }
   command.json ? print_json(*statistics) : print_table(*statistics);
   return 0;

@@ -19,7 +19,7 @@ namespace {
 
 std::size_t steps_with_a_result(const RunOutcome& outcome) {
   std::set<std::uint32_t> steps;
-  for (const CalibrationResult& result : outcome.results) {
+  for (const wire::CalibrationResult& result : outcome.results) {
     if (result.valid()) {
       steps.insert(result.step());
     }
@@ -102,19 +102,20 @@ int conclude(const RunOutcome& outcome) {
   const std::size_t steps = outcome.measurement.steps().size();
   const std::size_t measured = steps_with_a_result(outcome);
   if (outcome.interrupted) {
-    return fail(
+    return report_error(
         {ErrorCode::interrupted,
          fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept",
                      measured, steps)});
   }
   if (!outcome.problem.empty()) {
-    return fail({ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
-                                                   outcome.problem, measured, steps)});
+    return report_error(
+        {ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
+                                           outcome.problem, measured, steps)});
   }
   if (measured < steps) {
-    return fail({ErrorCode::no_result,
-                 fmt::format("{} of {} steps have no result; the reasons are listed above",
-                             steps - measured, steps)});
+    return report_error({ErrorCode::no_result,
+                         fmt::format("{} of {} steps have no result; the reasons are listed above",
+                                     steps - measured, steps)});
   }
   return 0;
 }

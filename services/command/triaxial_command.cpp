@@ -308,11 +308,11 @@ void print_table(const TriaxialCommand& command, const Measured& measured,
 int run_triaxial(const TriaxialCommand& command) {
   const auto measured = read(command);
   if (!measured) {
-    return fail(measured.error());
+    return report_error(measured.error());
   }
   const auto points = evaluate(command, *measured);
   if (!points) {
-    return fail(points.error());
+    return report_error(points.error());
   }
   command.json ? print_json(*measured, *points) : print_table(command, *measured, *points);
   return 0;

@@ -18,53 +18,53 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t lines_kept = 12; // of the newest results on a terminal
 
-std::string state_word(SourceState state) {
+std::string state_word(wire::SourceState state) {
   switch (state) {
-  case SOURCE_STARTING:
+  case wire::SOURCE_STARTING:
     return "starting";
-  case SOURCE_RUNNING:
+  case wire::SOURCE_RUNNING:
     return "running";
-  case SOURCE_SILENT:
+  case wire::SOURCE_SILENT:
     return "SILENT";
-  case SOURCE_ENDED:
+  case wire::SOURCE_ENDED:
     return "ended";
-  case SOURCE_FAILED:
+  case wire::SOURCE_FAILED:
     break;
   }
   return "FAILED";
 }
 
-std::string arm_word(ArmState arm) {
+std::string arm_word(wire::ArmState arm) {
   switch (arm) {
-  case ARM_WAITING:
+  case wire::ARM_WAITING:
     return "waits for its sources";
-  case ARM_ARMED:
+  case wire::ARM_ARMED:
     return "armed";
-  case ARM_REFUSED:
+  case wire::ARM_REFUSED:
     return "REFUSED";
-  case ARM_FINISHED:
+  case wire::ARM_FINISHED:
     return "finished";
-  case ARM_NONE:
+  case wire::ARM_NONE:
     break;
   }
   return "idle";
 }
 
-std::string excitation_word(ExcitationState state) {
+std::string excitation_word(wire::ExcitationState state) {
   switch (state) {
-  case EXCITATION_SETTLING:
+  case wire::EXCITATION_SETTLING:
     return "settling";
-  case EXCITATION_STEADY:
+  case wire::EXCITATION_STEADY:
     return "measuring";
-  case EXCITATION_DONE:
+  case wire::EXCITATION_DONE:
     return "done";
-  case EXCITATION_ABORTED:
+  case wire::EXCITATION_ABORTED:
     break;
   }
   return "aborted";
 }
 
-std::string source_line(const SourceStatus& status) {
+std::string source_line(const wire::SourceStatus& status) {
   std::string line = fmt::format(
       "{}/{}: {}, {:.1f} S/s, {} received, {} lost in the device, {} lost on the way, {} "
       "duplicate, {} rejected, "
@@ -76,7 +76,7 @@ std::string source_line(const SourceStatus& status) {
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
-std::string result_line(const CalibrationResult& result) {
+std::string result_line(const wire::CalibrationResult& result) {
   const std::string head = fmt::format(
       "{} {}: step {}, {} Hz, #{}, {}", result.bench().c_str(), result.run().c_str(), result.step(),
       result.frequency_text_hz(), result.repetition(), result.channel().c_str());
@@ -87,14 +87,14 @@ std::string result_line(const CalibrationResult& result) {
              : fmt::format("{}: no result: {}", head, result.problem());
 }
 
-std::string run_line(const ServiceStatus& status) {
+std::string run_line(const wire::ServiceStatus& status) {
   const std::string line =
       fmt::format("{} {}: {} {}, {} results", status.bench(), status.run().c_str(),
                   status.service().c_str(), arm_word(status.arm()), status.results_published());
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
-std::string step_line(const Excitation& excitation) {
+std::string step_line(const wire::Excitation& excitation) {
   return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(),
                      excitation.run().c_str(), excitation.step(), excitation.frequency_hz(),
                      excitation.level_m_s2(), excitation_word(excitation.state()));
@@ -148,22 +148,22 @@ private:
 };
 
 struct Readers {
-  bus::Reader<SourceStatus> sources;
-  bus::Reader<ServiceStatus> services;
-  bus::Reader<Excitation> excitation;
-  bus::Reader<CalibrationResult> results;
+  bus::Reader<wire::SourceStatus> sources;
+  bus::Reader<wire::ServiceStatus> services;
+  bus::Reader<wire::Excitation> excitation;
+  bus::Reader<wire::CalibrationResult> results;
 };
 
 Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench,
                                const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto sources = participant.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
-                                                  bench, wake_up);
-  auto services = participant.reader<ServiceStatus>(bus::topics::service_status,
-                                                    bus::Profile::state, bench, wake_up);
-  auto excitation =
-      participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state, bench, wake_up);
-  auto results = participant.reader<CalibrationResult>(bus::topics::calibration_result,
-                                                       bus::Profile::results, bench, wake_up);
+  auto sources = participant.reader<wire::SourceStatus>(bus::topics::source_status,
+                                                        bus::Profile::state, bench, wake_up);
+  auto services = participant.reader<wire::ServiceStatus>(bus::topics::service_status,
+                                                          bus::Profile::state, bench, wake_up);
+  auto excitation = participant.reader<wire::Excitation>(bus::topics::excitation,
+                                                         bus::Profile::state, bench, wake_up);
+  auto results = participant.reader<wire::CalibrationResult>(bus::topics::calibration_result,
+                                                             bus::Profile::results, bench, wake_up);
   for (const Error* error :
        {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
         excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
@@ -176,25 +176,25 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
 }
 
 void take_all(Readers& readers, Screen& screen) {
-  readers.sources.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
+  readers.sources.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
     const std::string key = fmt::format("1 {}/{}", status.bench().c_str(), status.source().c_str());
     screen.replace(key, info.valid ? source_line(status)
                                    : fmt::format("{}/{}: gone", status.bench().c_str(),
                                                  status.source().c_str()));
   });
-  readers.services.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
+  readers.services.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
     if (info.valid) {
       screen.replace(fmt::format("2 {} {}", status.run().c_str(), status.service().c_str()),
                      run_line(status));
     }
   });
-  readers.excitation.take([&](const Excitation& excitation, const bus::SampleInfo& info) {
+  readers.excitation.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
     if (info.valid) {
       screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()),
                      step_line(excitation));
     }
   });
-  readers.results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
+  readers.results.take([&](const wire::CalibrationResult& result, const bus::SampleInfo& info) {
     if (info.valid) {
       screen.append(result_line(result));
     }
@@ -206,12 +206,12 @@ void take_all(Readers& readers, Screen& screen) {
 int run_watch(const WatchCommand& command, const std::stop_token& stop) {
   auto participant = join_network(command.network, "dyncal-watch");
   if (!participant) {
-    return fail(participant.error());
+    return report_error(participant.error());
   }
   const auto wake_up = std::make_shared<bus::WakeUp>();
   auto readers = open_readers(*participant, command.bench, wake_up);
   if (!readers) {
-    return fail(readers.error());
+    return report_error(readers.error());
   }
   Screen screen(isatty(STDOUT_FILENO) != 0);
   const auto began = std::chrono::steady_clock::now();

@@ -4,7 +4,7 @@
 
 namespace dyncal::bus {
 
-ContinuityFinding SampleContinuity::add(const SampleBlock& block) {
+ContinuityFinding SampleContinuity::add(const wire::SampleBlock& block) {
   const auto [position, inserted] =
       streams_.try_emplace({block.bench().to_string(), block.source().to_string()});
   Stream& stream = position->second;
@@ -36,7 +36,7 @@ ContinuityFinding SampleContinuity::add(const SampleBlock& block) {
   return finding;
 }
 
-void SampleContinuity::count_samples(Stream& stream, const SampleBlock& block,
+void SampleContinuity::count_samples(Stream& stream, const wire::SampleBlock& block,
                                      ContinuityFinding& finding) {
   const std::uint64_t begin = block.first_sample();
   const std::uint64_t end = begin + block.sample_count();

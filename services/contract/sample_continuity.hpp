@@ -52,7 +52,7 @@ struct ContinuityCounts {
 
 class SampleContinuity {
 public:
-  ContinuityFinding add(const SampleBlock& block);
+  ContinuityFinding add(const wire::SampleBlock& block);
 
   // Zeros for a source never heard.
   [[nodiscard]] ContinuityCounts counts(const std::string& bench, const std::string& source) const;
@@ -66,7 +66,8 @@ private:
     ContinuityCounts counts;
   };
 
-  static void count_samples(Stream& stream, const SampleBlock& block, ContinuityFinding& finding);
+  static void count_samples(Stream& stream, const wire::SampleBlock& block,
+                            ContinuityFinding& finding);
 
   std::map<std::pair<std::string, std::string>, Stream> streams_;
 };

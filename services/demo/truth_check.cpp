@@ -45,14 +45,14 @@ Expected<Truth> read_truth(const std::filesystem::path& path) {
   }
 }
 
-const TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth,
-                                    std::string& channel) {
-  for (const TransferFunction& function : outcome.transfer_functions) {
+const wire::TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth,
+                                          std::string& channel) {
+  for (const wire::TransferFunction& function : outcome.transfer_functions) {
     channel = function.channel().to_string();
     if (channel.substr(channel.find('/') + 1) != truth.channel) {
       continue;
     }
-    for (const TransferPoint& point : function.points()) {
+    for (const wire::TransferPoint& point : function.points()) {
       if (point.frequency_text_hz() == truth.frequency_text_hz) {
         return &point;
       }
@@ -81,7 +81,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
   TruthCheck check;
   for (const TruePoint& point : truth->points) {
     std::string channel;
-    const TransferPoint* measured = measured_point(outcome, point, channel);
+    const wire::TransferPoint* measured = measured_point(outcome, point, channel);
     if (measured == nullptr) {
       if (outcome.interrupted) {
         continue; // not every frequency was reached
@@ -96,7 +96,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
     compare(check, phase_rad, measured->u_phase_rad(),
             fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
   }
-  for (const SampleClockReport& report : outcome.clock_reports) {
+  for (const wire::SampleClockReport& report : outcome.clock_reports) {
     if (report.intervals() ==
         0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
       compare(check, report.mean_interval_s() - truth->mean_interval_s, report.u_mean_interval_s(),

@@ -32,9 +32,9 @@ const SourceSettings* source_with(const BenchFile& bench, SourceDriver driver) {
   return found == bench.sources.end() ? nullptr : &*found;
 }
 
-ChannelDescription channel_message(const std::string& name, const std::string& quantity,
-                                   const std::string& unit, double resolution) {
-  ChannelDescription channel;
+wire::ChannelDescription channel_message(const std::string& name, const std::string& quantity,
+                                         const std::string& unit, double resolution) {
+  wire::ChannelDescription channel;
   channel.name(name);
   channel.quantity(quantity);
   channel.unit(unit);
@@ -62,14 +62,14 @@ Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& p
   }
   const std::uint64_t session = random_session();
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto excitation = participant.reader<Excitation>(bus::topics::excitation, bus::Profile::state,
+  auto excitation = participant.reader<wire::Excitation>(bus::topics::excitation,
+                                                         bus::Profile::state, bench.bench, wake_up);
+  auto command = participant.reader<wire::Command>(bus::topics::command, bus::Profile::command,
                                                    bench.bench, wake_up);
-  auto command = participant.reader<Command>(bus::topics::command, bus::Profile::command,
-                                             bench.bench, wake_up);
   auto traces = RecordWriter::create(participant, bench.bench, oscilloscope->name,
-                                     bus::topics::dso_record, SOURCE_DSO, session);
+                                     bus::topics::dso_record, wire::SOURCE_DSO, session);
   auto series = RecordWriter::create(participant, bench.bench, sensor->name,
-                                     bus::topics::tss_record, SOURCE_TSS, session);
+                                     bus::topics::tss_record, wire::SOURCE_TSS, session);
   for (const Error* error :
        {excitation ? nullptr : &excitation.error(), command ? nullptr : &command.error(),
         traces ? nullptr : &traces.error(), series ? nullptr : &series.error()}) {
@@ -122,7 +122,7 @@ void BenchService::run(const std::stop_token& stop) {
 }
 
 void BenchService::report() {
-  const SourceState state = connected_ ? SOURCE_RUNNING : SOURCE_SILENT;
+  const wire::SourceState state = connected_ ? wire::SOURCE_RUNNING : wire::SOURCE_SILENT;
   const std::string& message = connection_problem_.empty() ? shot_problem_ : connection_problem_;
   const auto now = std::chrono::steady_clock::now();
   endpoints_.oscilloscope.status(state, message, now);
@@ -130,13 +130,13 @@ void BenchService::report() {
 }
 
 void BenchService::take_messages() {
-  endpoints_.excitation.take([&](const Excitation& excitation, const bus::SampleInfo& info) {
+  endpoints_.excitation.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
     if (info.valid) {
       follow(excitation);
     }
   });
-  endpoints_.command.take([&](const Command& command, const bus::SampleInfo& info) {
-    if (!info.valid || command.kind() != COMMAND_ARM || command.bench() != bench_) {
+  endpoints_.command.take([&](const wire::Command& command, const bus::SampleInfo& info) {
+    if (!info.valid || command.kind() != wire::COMMAND_ARM || command.bench() != bench_) {
       return;
     }
     if (command.target().to_string() == oscilloscope_settings_.name &&
@@ -149,9 +149,9 @@ void BenchService::take_messages() {
   });
 }
 
-void BenchService::follow(const Excitation& excitation) {
+void BenchService::follow(const wire::Excitation& excitation) {
   const std::string run = excitation.run().to_string();
-  if (excitation.state() != EXCITATION_STEADY) {
+  if (excitation.state() != wire::EXCITATION_STEADY) {
     // Only the newest state is kept on the way: whatever is not steady ends the step of its run, be
     // it that step's end or the next one.
     if (step_ && step_->run == run) {
@@ -184,7 +184,7 @@ void BenchService::try_to_connect() {
   }
   connected_ = true;
   connection_problem_.clear();
-  SourceDescription oscilloscope;
+  wire::SourceDescription oscilloscope;
   oscilloscope.device(device_.oscilloscope_identity());
   oscilloscope.driver("oscilloscope");
   oscilloscope.channels().push_back(channel_message("sync", "Voltage", R"(\volt)", 0.0));
@@ -223,7 +223,7 @@ void BenchService::take_shot() {
 
 // Before the first series only the names of the channels are known.
 void BenchService::describe_sensor(const drivers::tss::Series& series) {
-  SourceDescription description;
+  wire::SourceDescription description;
   description.device(series.device);
   description.serial(series.serial);
   description.driver("series");
@@ -244,7 +244,7 @@ void BenchService::publish(ShotPair& pair, const Step& step) {
   ++shot_;
   const auto record = [&](std::size_t samples, std::size_t channels, double interval_s,
                           std::vector<double>& values) {
-    TriggeredRecord message;
+    wire::TriggeredRecord message;
     message.shot(shot_);
     message.run(step.run);
     message.step(step.step);
@@ -258,10 +258,10 @@ void BenchService::publish(ShotPair& pair, const Step& step) {
   };
   std::vector<double>& volts = pair.trace.traces.front().volts;
   const std::size_t points = volts.size();
-  TriggeredRecord trace = record(points, 1, pair.trace.interval_s, volts);
+  wire::TriggeredRecord trace = record(points, 1, pair.trace.interval_s, volts);
   trace.first_sample_s(pair.trace.first_sample_s);
-  TriggeredRecord series = record(pair.series.samples, sensor_channels_.size(),
-                                  1.0 / pair.series.nominal_rate_hz, pair.series.values);
+  wire::TriggeredRecord series = record(pair.series.samples, sensor_channels_.size(),
+                                        1.0 / pair.series.nominal_rate_hz, pair.series.values);
   if (!endpoints_.oscilloscope.write(std::move(trace)) ||
       !endpoints_.sensor.write(std::move(series))) {
     spdlog::error("bench {}: shot {} could not be written to the network", bench_, shot_);

@@ -39,8 +39,8 @@ public:
 
 private:
   struct Endpoints {
-    bus::Reader<Excitation> excitation;
-    bus::Reader<Command> command;
+    bus::Reader<wire::Excitation> excitation;
+    bus::Reader<wire::Command> command;
     RecordWriter oscilloscope;
     RecordWriter sensor;
   };
@@ -55,7 +55,7 @@ private:
                const SourceSettings& sensor, std::shared_ptr<bus::WakeUp> wake_up,
                Endpoints endpoints);
   void take_messages();
-  void follow(const Excitation& excitation);
+  void follow(const wire::Excitation& excitation);
   void take_shot();
   void publish(ShotPair& pair, const Step& step);
   [[nodiscard]] bool in_step(const std::string& run, std::uint32_t step) const;

@@ -15,18 +15,18 @@ constexpr auto status_interval = std::chrono::milliseconds(500);
 
 Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const std::string& bench,
                                             const std::string& source, const std::string& topic,
-                                            SourceKind kind, std::uint64_t session) {
-  auto description = participant.writer<SourceDescription>(bus::topics::source_description,
-                                                           bus::Profile::state, bench);
+                                            wire::SourceKind kind, std::uint64_t session) {
+  auto description = participant.writer<wire::SourceDescription>(bus::topics::source_description,
+                                                                 bus::Profile::state, bench);
   if (!description) {
     return fail(description.error());
   }
-  auto status =
-      participant.writer<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench);
+  auto status = participant.writer<wire::SourceStatus>(bus::topics::source_status,
+                                                       bus::Profile::state, bench);
   if (!status) {
     return fail(status.error());
   }
-  auto records = participant.writer<TriggeredRecord>(topic, bus::Profile::samples, bench);
+  auto records = participant.writer<wire::TriggeredRecord>(topic, bus::Profile::samples, bench);
   if (!records) {
     return fail(records.error());
   }
@@ -34,14 +34,14 @@ Expected<RecordWriter> RecordWriter::create(bus::Participant& participant, const
                       std::move(*records));
 }
 
-void RecordWriter::describe(SourceDescription description) {
+void RecordWriter::describe(wire::SourceDescription description) {
   description.bench(bench_);
   description.source(source_);
   description.session(session_);
   description.kind(kind_);
   description.software(software_version());
-  description.time_base(TIME_BASE_LOCAL);
-  description.stamp_instant(STAMP_TRIGGER_EDGE);
+  description.time_base(wire::TIME_BASE_LOCAL);
+  description.stamp_instant(wire::STAMP_TRIGGER_EDGE);
   if (description_ && *description_ == description) {
     return;
   }
@@ -50,12 +50,12 @@ void RecordWriter::describe(SourceDescription description) {
 }
 
 void RecordWriter::answer(const std::string& run) {
-  TriggeredRecord record;
+  wire::TriggeredRecord record;
   record.answers_run(run);
   write(std::move(record));
 }
 
-bool RecordWriter::write(TriggeredRecord record) {
+bool RecordWriter::write(wire::TriggeredRecord record) {
   const bool holds_samples = record.sample_count() > 0;
   record.bench(bench_);
   record.source(source_);
@@ -68,7 +68,7 @@ bool RecordWriter::write(TriggeredRecord record) {
   return true;
 }
 
-void RecordWriter::status(SourceState state, const std::string& message,
+void RecordWriter::status(wire::SourceState state, const std::string& message,
                           std::chrono::steady_clock::time_point now) {
   if (state_ == state && message_ == message && now < next_status_) {
     return;
@@ -76,7 +76,7 @@ void RecordWriter::status(SourceState state, const std::string& message,
   state_ = state;
   message_ = message;
   next_status_ = now + status_interval;
-  SourceStatus status;
+  wire::SourceStatus status;
   status.bench(bench_);
   status.source(source_);
   status.session(session_);
@@ -91,10 +91,10 @@ void RecordWriter::status(SourceState state, const std::string& message,
 }
 
 void RecordWriter::end() {
-  TriggeredRecord record;
+  wire::TriggeredRecord record;
   record.end_of_stream(true);
   write(std::move(record));
-  status(SOURCE_ENDED, "", std::chrono::steady_clock::now());
+  status(wire::SOURCE_ENDED, "", std::chrono::steady_clock::now());
   record_writer_.wait_for_acknowledgments(std::chrono::seconds(2));
 }
 

@@ -23,42 +23,42 @@ public:
   // `topic` is DsoRecord or TssRecord.
   [[nodiscard]] static Expected<RecordWriter>
   create(bus::Participant& participant, const std::string& bench, const std::string& source,
-         const std::string& topic, SourceKind kind, std::uint64_t session);
+         const std::string& topic, wire::SourceKind kind, std::uint64_t session);
 
   // Publishes when it differs from the last one. Bench, source, session and software are filled in
   // here.
-  void describe(SourceDescription description);
+  void describe(wire::SourceDescription description);
   [[nodiscard]] bool described() const { return description_.has_value(); }
 
   void answer(const std::string& run);
   // Key members are filled in here. False when it could not be written.
-  bool write(TriggeredRecord record);
+  bool write(wire::TriggeredRecord record);
   // Published at once when state or message change, else every half second.
-  void status(SourceState state, const std::string& message,
+  void status(wire::SourceState state, const std::string& message,
               std::chrono::steady_clock::time_point now);
   void count_rejected() { ++rejected_; }
   void end();
 
 private:
-  RecordWriter(std::string bench, std::string source, SourceKind kind, std::uint64_t session,
-               bus::Writer<SourceDescription> description, bus::Writer<SourceStatus> status,
-               bus::Writer<TriggeredRecord> records)
+  RecordWriter(std::string bench, std::string source, wire::SourceKind kind, std::uint64_t session,
+               bus::Writer<wire::SourceDescription> description,
+               bus::Writer<wire::SourceStatus> status, bus::Writer<wire::TriggeredRecord> records)
       : bench_(std::move(bench)), source_(std::move(source)), kind_(kind), session_(session),
         description_writer_(std::move(description)), status_writer_(std::move(status)),
         record_writer_(std::move(records)) {}
 
   std::string bench_;
   std::string source_;
-  SourceKind kind_;
+  wire::SourceKind kind_;
   std::uint64_t session_;
-  bus::Writer<SourceDescription> description_writer_;
-  bus::Writer<SourceStatus> status_writer_;
-  bus::Writer<TriggeredRecord> record_writer_;
-  std::optional<SourceDescription> description_;
+  bus::Writer<wire::SourceDescription> description_writer_;
+  bus::Writer<wire::SourceStatus> status_writer_;
+  bus::Writer<wire::TriggeredRecord> record_writer_;
+  std::optional<wire::SourceDescription> description_;
   std::uint64_t written_ = 0;
   std::uint64_t rejected_ = 0;
   std::uint64_t not_written_ = 0;
-  std::optional<SourceState> state_;
+  std::optional<wire::SourceState> state_;
   std::string message_;
   std::chrono::steady_clock::time_point next_status_{};
 };

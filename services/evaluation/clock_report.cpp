@@ -7,7 +7,7 @@
 namespace dyncal::services {
 namespace {
 
-void fill_numbers(const analysis::SampleClockStatistics& clock, SampleClockReport& report) {
+void fill_numbers(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
   report.intervals(clock.intervals);
   report.mean_interval_s(clock.mean_interval_s);
   report.u_mean_interval_s(clock.u_mean_interval_s);
@@ -34,20 +34,20 @@ void fill_numbers(const analysis::SampleClockStatistics& clock, SampleClockRepor
   report.lost(clock.lost);
 }
 
-void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport& report) {
+void fill_lists(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
   report.modes_s() = clock.modes_s;
   report.close_up_ns() = clock.close_up_ns;
   report.scatter_temperature_degc() = clock.scatter_temperature_degc;
   report.scatter_interval_ns() = clock.scatter_interval_ns;
   for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
-    HistogramBin message;
+    wire::HistogramBin message;
     message.interval_ticks(bin.ticks);
     message.interval_ns(bin.interval_ns);
     message.count(bin.count);
     report.histogram().push_back(message);
   }
   for (const analysis::IntervalBucket& bucket : clock.over_time) {
-    IntervalBucket message;
+    wire::IntervalBucket message;
     message.time_s(bucket.time_s);
     message.minimum_ns(bucket.minimum_ns);
     message.maximum_ns(bucket.maximum_ns);
@@ -55,7 +55,7 @@ void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport&
     report.over_time().push_back(message);
   }
   for (const analysis::IntervalEvent& event : clock.events) {
-    IntervalEvent message;
+    wire::IntervalEvent message;
     message.kind(event.kind);
     message.sample(event.sample);
     message.time_s(event.time_s);
@@ -64,7 +64,7 @@ void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport&
     report.events().push_back(message);
   }
   for (const analysis::TemperatureBin& bin : clock.over_temperature) {
-    TemperatureBin message;
+    wire::TemperatureBin message;
     message.temperature_degc(bin.temperature_degc);
     message.mean_interval_ns(bin.mean_interval_ns);
     message.sd_interval_ns(bin.sd_interval_ns);
@@ -72,7 +72,7 @@ void fill_lists(const analysis::SampleClockStatistics& clock, SampleClockReport&
     report.over_temperature().push_back(message);
   }
   for (const analysis::AllanPoint& point : clock.allan) {
-    AllanPoint message;
+    wire::AllanPoint message;
     message.tau_s(point.tau_s);
     message.deviation(point.deviation);
     report.allan().push_back(message);
@@ -88,13 +88,13 @@ ClockReportBuilder::ClockReportBuilder(const Recipe& recipe)
   }
 }
 
-void ClockReportBuilder::describe(const SourceDescription& description) {
+void ClockReportBuilder::describe(const wire::SourceDescription& description) {
   if (description.source().to_string() != source_ || clock_) {
     return;
   }
   const auto& channels = description.channels();
   const auto found =
-      std::find_if(channels.begin(), channels.end(), [&](const ChannelDescription& channel) {
+      std::find_if(channels.begin(), channels.end(), [&](const wire::ChannelDescription& channel) {
         return temperature_channel_ && channel.name() == *temperature_channel_;
       });
   if (found != channels.end()) {
@@ -107,7 +107,7 @@ void ClockReportBuilder::describe(const SourceDescription& description) {
   clock_.emplace(settings);
 }
 
-void ClockReportBuilder::add(const SampleBlock& block) {
+void ClockReportBuilder::add(const wire::SampleBlock& block) {
   if (!clock_ || block.source().to_string() != source_ || block.stamps_ns().empty() ||
       continuity_.add(block).duplicate) {
     return;
@@ -120,12 +120,12 @@ void ClockReportBuilder::add(const SampleBlock& block) {
   clock_->push(block.first_sample(), block.stamps_ns(), block.flags(), temperature);
 }
 
-std::vector<SampleClockReport> ClockReportBuilder::reports() const {
+std::vector<wire::SampleClockReport> ClockReportBuilder::reports() const {
   const auto statistics = clock_ ? clock_->statistics() : std::nullopt;
   if (!statistics) {
     return {};
   }
-  SampleClockReport report;
+  wire::SampleClockReport report;
   report.bench(bench_);
   report.run(run_);
   report.source(source_);

@@ -21,11 +21,11 @@ class ClockReportBuilder {
 public:
   explicit ClockReportBuilder(const Recipe& recipe);
 
-  void describe(const SourceDescription& description);
-  void add(const SampleBlock& block);
+  void describe(const wire::SourceDescription& description);
+  void add(const wire::SampleBlock& block);
 
   // Empty when there were too few samples to say anything.
-  [[nodiscard]] std::vector<SampleClockReport> reports() const;
+  [[nodiscard]] std::vector<wire::SampleClockReport> reports() const;
 
 private:
   std::string bench_;

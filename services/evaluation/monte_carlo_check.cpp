@@ -5,7 +5,8 @@
 namespace dyncal::services {
 
 void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point,
-                           std::span<const analysis::SeriesFit> link, CalibrationResult& result) {
+                           std::span<const analysis::SeriesFit> link,
+                           wire::CalibrationResult& result) {
   if (recipe.monte_carlo_trials == 0) {
     return;
   }
@@ -15,7 +16,7 @@ void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& 
     result.flags().push_back("no Monte Carlo check: " + drawn.error().message);
     return;
   }
-  MonteCarloCheck check;
+  wire::MonteCarloCheck check;
   check.trials(drawn->magnitude.trials);
   check.stable(drawn->magnitude.stable && drawn->phase_rad.stable);
   check.u_magnitude(drawn->magnitude.u);

@@ -4,55 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "services/run/level_settling.hpp"
-
 namespace dyncal::services {
 namespace {
-
-Method method_message(EvaluationMethod method) {
-  switch (method) {
-  case EvaluationMethod::analogue:
-    return METHOD_ANALOGUE;
-  case EvaluationMethod::series_timestamping:
-    return METHOD_SERIES_TIMESTAMPING;
-  case EvaluationMethod::absolute_time:
-    return METHOD_ABSOLUTE_TIME;
-  case EvaluationMethod::sample_timestamping:
-    break;
-  }
-  return METHOD_SAMPLE_TIMESTAMPING;
-}
-
-void plan_steps(const BenchFile& file, Measurement& measurement) {
-  const ExcitationSettings& excitation = file.excitation;
-  std::uint32_t number = 0;
-  for (int repetition = 1; repetition <= excitation.repetitions; ++repetition) {
-    for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
-      PlannedStep step;
-      step.step(++number);
-      step.repetition(static_cast<std::uint32_t>(repetition));
-      step.frequency_hz(excitation.frequencies_hz[i]);
-      step.level_m_s2(excitation.levels_m_s2[i]);
-      step.settling_s(planned_settling_s(
-          file, analysis::Frequency::parse(excitation.frequencies_hz[i])->hz(), repetition));
-      step.duration_s(excitation.duration_s);
-      measurement.steps().push_back(step);
-    }
-  }
-}
-
-void plan_adc(const std::vector<analysis::AdcCalibrationPoint>& points, Measurement& measurement) {
-  for (const analysis::AdcCalibrationPoint& point : points) {
-    AdcCalibrationPoint message;
-    message.frequency_hz(point.frequency_hz);
-    message.test_amplitude_vpp(point.test_amplitude_vpp);
-    message.gain(point.gain);
-    message.phase_lag_rad(point.phase_lag_rad);
-    message.u_gain(point.u_gain);
-    message.u_phase_lag_rad(point.u_phase_lag_rad);
-    measurement.adc_calibration().push_back(message);
-  }
-}
 
 Error refused(std::string message) {
   return {ErrorCode::bad_argument, std::move(message)};
@@ -66,7 +19,7 @@ Expected<ChannelName> role(const std::string& what, const std::string& text) {
       refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
 }
 
-Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
+Expected<void> parse_roles(const wire::Measurement& measurement, Recipe& recipe) {
   const std::vector<std::pair<const char*, std::pair<const std::string*, ChannelName*>>> roles{
       {"reference", {&measurement.reference(), &recipe.reference}},
       {"sync_acs", {&measurement.sync_acs(), &recipe.sync_acs}},
@@ -114,7 +67,7 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
     return fail(refused("the recipe's sync_acs and sync_dau are of the same source; "
                         "sample time stamping links two clocks"));
   }
-  if (recipe.method == METHOD_ANALOGUE &&
+  if (recipe.method == wire::METHOD_ANALOGUE &&
       recipe.dut_sources() != std::vector{recipe.reference.source}) {
     return fail(refused("the recipe's channels under calibration must be of the source "
                         "of the reference: the analogue method "
@@ -123,7 +76,7 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
   const bool beside = recipe.stamped_apart();
   for (const ChannelName& name : recipe.dut) {
     const bool of_dau = name.source == recipe.sync_dau.source;
-    if (recipe.method == METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
+    if (recipe.method == wire::METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
       return fail(refused("the recipe's channels under calibration must be either all of "
                           "the source of sync_dau or none of them"));
     }
@@ -131,8 +84,8 @@ Expected<void> parse_roles(const Measurement& measurement, Recipe& recipe) {
   return {};
 }
 
-Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
-  for (const PlannedStep& planned : measurement.steps()) {
+Expected<void> parse_steps(const wire::Measurement& measurement, Recipe& recipe) {
+  for (const wire::PlannedStep& planned : measurement.steps()) {
     const auto frequency = analysis::Frequency::parse(planned.frequency_hz());
     if (!frequency || !(planned.duration_s() > 0.0) || !(planned.settling_s() >= 0.0)) {
       return fail(refused(fmt::format(
@@ -152,8 +105,9 @@ Expected<void> parse_steps(const Measurement& measurement, Recipe& recipe) {
 } // namespace
 
 bool Recipe::stamped_apart() const {
-  return method == METHOD_ABSOLUTE_TIME || (method == METHOD_SAMPLE_TIMESTAMPING && !dut.empty() &&
-                                            dut.front().source != sync_dau.source);
+  return method == wire::METHOD_ABSOLUTE_TIME ||
+         (method == wire::METHOD_SAMPLE_TIMESTAMPING && !dut.empty() &&
+          dut.front().source != sync_dau.source);
 }
 
 std::vector<std::string> Recipe::dut_sources() const {
@@ -183,48 +137,7 @@ std::vector<std::string> Recipe::sources() const {
   return names;
 }
 
-Measurement plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
-                             const std::vector<analysis::AdcCalibrationPoint>& adc_calibration) {
-  Measurement measurement;
-  measurement.bench(file.bench);
-  measurement.run(run);
-  measurement.state(MEASUREMENT_PLANNED);
-  measurement.method(method_message(file.method.kind));
-  measurement.planned_utc_ns(now_utc_ns);
-  measurement.reference(file.method.reference.text());
-  const auto text_of = [](const ChannelName& name) {
-    return name.source.empty() ? std::string() : name.text();
-  };
-  measurement.sync_acs(text_of(file.method.sync_acs));
-  measurement.sync_dau(text_of(file.method.sync_dau));
-  for (const ChannelName& name : file.method.dut) {
-    measurement.dut().push_back(name.text());
-  }
-  if (file.method.temperature) {
-    measurement.temperature(file.method.temperature->text());
-  }
-  plan_steps(file, measurement);
-  plan_adc(adc_calibration, measurement);
-  measurement.reference_magnitude_rel(file.uncertainty.reference_magnitude_rel);
-  measurement.reference_phase_rad(file.uncertainty.reference_phase_rad);
-  measurement.dso_delay_s(file.corrections.dso_delay_s);
-  measurement.u_dso_delay_s(file.corrections.u_dso_delay_s);
-  measurement.u_acs_delay_s(file.uncertainty.acs_delay_s);
-  measurement.frequency_search_rel(file.method.frequency_search_rel);
-  measurement.frequency_exact(file.method.frequency_search_rel == 0.0);
-  measurement.reference_delay_s(file.corrections.reference_delay_s);
-  measurement.whole_record(file.excitation.whole_record);
-  measurement.settling_from_data(file.excitation.settling_from_data);
-  measurement.monte_carlo_trials(file.uncertainty.monte_carlo_trials);
-  measurement.shots(static_cast<std::uint32_t>(file.method.shots));
-  measurement.trigger_phase_correction(file.method.trigger_phase_correction);
-  measurement.u_acs_rate_rel(file.uncertainty.acs_rate_rel);
-  measurement.recipe(file.text);
-  measurement.recipe_sha256(file.sha256);
-  return measurement;
-}
-
-Expected<Recipe> parse_recipe(const Measurement& measurement) {
+Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
   Recipe recipe;
   recipe.method = measurement.method();
   recipe.dso_delay_s = measurement.dso_delay_s();
@@ -237,13 +150,13 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   if (const auto roles = parse_roles(measurement, recipe); !roles) {
     return fail(roles.error());
   }
-  if (recipe.method == METHOD_SERIES_TIMESTAMPING && recipe.dut.empty()) {
+  if (recipe.method == wire::METHOD_SERIES_TIMESTAMPING && recipe.dut.empty()) {
     return fail(refused("the recipe of a series time stamping names no channel under calibration"));
   }
   if (const auto steps = parse_steps(measurement, recipe); !steps) {
     return fail(steps.error());
   }
-  for (const AdcCalibrationPoint& point : measurement.adc_calibration()) {
+  for (const wire::AdcCalibrationPoint& point : measurement.adc_calibration()) {
     recipe.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
                                       point.gain(), point.phase_lag_rad(), point.u_gain(),
                                       point.u_phase_lag_rad()});
@@ -266,7 +179,7 @@ Expected<Recipe> parse_recipe(const Measurement& measurement) {
   recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();
   recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
   recipe.sha256 = measurement.recipe_sha256();
-  if (recipe.method == METHOD_SERIES_TIMESTAMPING &&
+  if (recipe.method == wire::METHOD_SERIES_TIMESTAMPING &&
       (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
     return fail(
         refused("series time stamping has neither settling = \"from-data\" nor monte_carlo_trials; "

@@ -14,7 +14,7 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "idl/dyncal.h"
-#include "services/bench/bench_file.hpp"
+#include "services/contract/channel_name.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
@@ -34,7 +34,7 @@ struct Recipe {
   std::string run;
   ChannelName reference;
   ChannelName sync_acs;
-  Method method = METHOD_SAMPLE_TIMESTAMPING;
+  wire::Method method = wire::METHOD_SAMPLE_TIMESTAMPING;
   ChannelName sync_dau;         // series time stamping: the oscilloscope's sync
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
@@ -56,7 +56,7 @@ struct Recipe {
   // The steps are found in the reference itself, or in what the ACS has of sync; nothing else
   // records sync.
   [[nodiscard]] bool without_sync() const {
-    return method == METHOD_ABSOLUTE_TIME || method == METHOD_ANALOGUE;
+    return method == wire::METHOD_ABSOLUTE_TIME || method == wire::METHOD_ANALOGUE;
   }
   // The sensors have stamps of their own: everything is on UTC, or sync is recorded beside them.
   [[nodiscard]] bool stamped_apart() const;
@@ -70,14 +70,8 @@ struct Recipe {
   [[nodiscard]] std::vector<std::string> sources() const;
 };
 
-// The steps of a bench file in the order they are run: all frequencies, then all again for the next
-// repetition.
-[[nodiscard]] Measurement
-plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now_utc_ns,
-                 const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
-
 // Fails (bad_argument) with what this version cannot evaluate: another method, a role that is no
 // "source/channel", no steps.
-[[nodiscard]] Expected<Recipe> parse_recipe(const Measurement& measurement);
+[[nodiscard]] Expected<Recipe> parse_recipe(const wire::Measurement& measurement);
 
 } // namespace dyncal::services

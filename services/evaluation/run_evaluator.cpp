@@ -17,9 +17,9 @@ namespace {
 // less.
 constexpr std::int64_t grace_ns = 2'000'000'000;
 
-std::vector<std::string> channel_names(const SourceDescription& description) {
+std::vector<std::string> channel_names(const wire::SourceDescription& description) {
   std::vector<std::string> names;
-  for (const ChannelDescription& channel : description.channels()) {
+  for (const wire::ChannelDescription& channel : description.channels()) {
     names.push_back(channel.name());
   }
   return names;
@@ -66,7 +66,7 @@ SourceRecord* RunEvaluator::record(const std::string& source) {
   return found == records_.end() ? nullptr : found->second.get();
 }
 
-Expected<void> RunEvaluator::describe(const SourceDescription& description) {
+Expected<void> RunEvaluator::describe(const wire::SourceDescription& description) {
   SourceRecord* source = record(description.source().to_string());
   if (source == nullptr) {
     return {};
@@ -121,14 +121,14 @@ std::vector<std::string> RunEvaluator::undescribed() const {
   return names;
 }
 
-void RunEvaluator::add(const SampleBlock& block) {
+void RunEvaluator::add(const wire::SampleBlock& block) {
   SourceRecord* source = record(block.source().to_string());
   if (source != nullptr && !finished_ && source->add(block)) {
     clock_.add(block);
   }
 }
 
-void RunEvaluator::add(const TriggeredRecord& record) {
+void RunEvaluator::add(const wire::TriggeredRecord& record) {
   const bool evaluated = std::any_of(
       recipe_.steps.begin(), recipe_.steps.begin() + static_cast<std::ptrdiff_t>(next_step_),
       [&](const RecipeStep& step) { return step.step == record.step(); });
@@ -143,7 +143,7 @@ void RunEvaluator::add(const TriggeredRecord& record) {
   }
 }
 
-void RunEvaluator::announce(const Excitation& excitation) {
+void RunEvaluator::announce(const wire::Excitation& excitation) {
   const auto found =
       std::find_if(recipe_.steps.begin(), recipe_.steps.end(),
                    [&](const RecipeStep& step) { return step.step == excitation.step(); });
@@ -152,10 +152,11 @@ void RunEvaluator::announce(const Excitation& excitation) {
   }
   const auto step = static_cast<std::size_t>(found - recipe_.steps.begin());
   steps_announced_ = std::max(steps_announced_, step + 1);
-  if (excitation.state() == EXCITATION_DONE || excitation.state() == EXCITATION_ABORTED) {
+  if (excitation.state() == wire::EXCITATION_DONE ||
+      excitation.state() == wire::EXCITATION_ABORTED) {
     over_utc_ns_.emplace(step, excitation.window_end_utc_ns());
   }
-  if (excitation.state() == EXCITATION_ABORTED) {
+  if (excitation.state() == wire::EXCITATION_ABORTED) {
     broken_off_.insert(step);
   }
   // Only the newest state is kept on the way: a step that is announced says that the ones before it
@@ -223,8 +224,9 @@ bool RunEvaluator::ready_to_evaluate(std::size_t step) const {
   return !recipe_.stamped_apart() || sensors_are_there(step);
 }
 
-void RunEvaluator::take_results(std::vector<CalibrationResult> results, EvaluationOutput& output) {
-  for (CalibrationResult& result : results) {
+void RunEvaluator::take_results(std::vector<wire::CalibrationResult> results,
+                                EvaluationOutput& output) {
+  for (wire::CalibrationResult& result : results) {
     summary_.add(result);
     output.results.push_back(std::move(result));
   }
@@ -243,7 +245,7 @@ EvaluationQueue::Evaluation RunEvaluator::evaluation_by_method(const RecipeStep&
   if (by_series()) { // a step depends on the one before
     return [results = evaluate_triggered_step(step)] { return results; };
   }
-  if (recipe_.method == METHOD_ANALOGUE) {
+  if (recipe_.method == wire::METHOD_ANALOGUE) {
     return analogue_evaluation(step);
   }
   return recipe_.stamped_apart() ? apart_evaluation(step) : stamped_evaluation(step);
@@ -332,7 +334,7 @@ EvaluationQueue::Evaluation RunEvaluator::apart_evaluation(const RecipeStep& ste
   };
 }
 
-std::vector<CalibrationResult> RunEvaluator::evaluate_triggered_step(const RecipeStep& step) {
+std::vector<wire::CalibrationResult> RunEvaluator::evaluate_triggered_step(const RecipeStep& step) {
   const SourceRecord& acs = *records_.at(recipe_.sync_acs.source);
   const SourceRecord& sensor = *records_.at(recipe_.dut.front().source);
   const auto stretch = acs_search_->stretch(next_step_);

@@ -31,9 +31,9 @@
 namespace dyncal::services {
 
 struct EvaluationOutput {
-  std::vector<CalibrationResult> results;
-  std::vector<TransferFunction> transfer_functions; // at the end of the run
-  std::vector<SampleClockReport> clock_reports;     // at the end of the run
+  std::vector<wire::CalibrationResult> results;
+  std::vector<wire::TransferFunction> transfer_functions; // at the end of the run
+  std::vector<wire::SampleClockReport> clock_reports;     // at the end of the run
 };
 
 class RunEvaluator {
@@ -49,14 +49,14 @@ public:
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
 
   // Fails (no_source) with the channels there are when the source lacks one that the recipe needs.
-  Expected<void> describe(const SourceDescription& description);
+  Expected<void> describe(const wire::SourceDescription& description);
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const;
 
-  void add(const SampleBlock& block);
+  void add(const wire::SampleBlock& block);
   // Series time stamping: of the oscilloscope or of the sensor, by its source.
-  void add(const TriggeredRecord& record);
-  void announce(const Excitation& excitation);
+  void add(const wire::TriggeredRecord& record);
+  void announce(const wire::Excitation& excitation);
   // No excitation comes any more: the run is done, or was broken off after the steps announced so
   // far.
   void end_of_excitation(bool aborted);
@@ -74,8 +74,12 @@ private:
   [[nodiscard]] bool over_in(const SourceRecord& source, std::size_t step) const;
   void follow(StepSearch& search, const SourceRecord& source);
   void evaluate_next_steps(EvaluationOutput& output);
-  [[nodiscard]] bool by_series() const { return recipe_.method == METHOD_SERIES_TIMESTAMPING; }
-  [[nodiscard]] bool by_absolute_time() const { return recipe_.method == METHOD_ABSOLUTE_TIME; }
+  [[nodiscard]] bool by_series() const {
+    return recipe_.method == wire::METHOD_SERIES_TIMESTAMPING;
+  }
+  [[nodiscard]] bool by_absolute_time() const {
+    return recipe_.method == wire::METHOD_ABSOLUTE_TIME;
+  }
   [[nodiscard]] bool ready_to_evaluate(std::size_t step) const;
   [[nodiscard]] bool shots_are_there(std::size_t step) const;
   // Sensors with stamps of their own: whether the samples of the step's stretch have come.
@@ -86,13 +90,14 @@ private:
   }
   [[nodiscard]] std::vector<ChannelName> channels_needed() const;
   void keep_only_what_is_needed(SourceRecord& source) const;
-  void take_results(std::vector<CalibrationResult> results, EvaluationOutput& output);
+  void take_results(std::vector<wire::CalibrationResult> results, EvaluationOutput& output);
   // The next step by its method. What is evaluated in another thread looks at nothing that changes.
   [[nodiscard]] EvaluationQueue::Evaluation evaluation_by_method(const RecipeStep& step);
   [[nodiscard]] EvaluationQueue::Evaluation analogue_evaluation(const RecipeStep& step) const;
   [[nodiscard]] EvaluationQueue::Evaluation stamped_evaluation(const RecipeStep& step) const;
   [[nodiscard]] EvaluationQueue::Evaluation apart_evaluation(const RecipeStep& step) const;
-  [[nodiscard]] std::vector<CalibrationResult> evaluate_triggered_step(const RecipeStep& step);
+  [[nodiscard]] std::vector<wire::CalibrationResult>
+  evaluate_triggered_step(const RecipeStep& step);
   // The source's record, or a copy of that part of it when it is evaluated in another thread.
   [[nodiscard]] std::shared_ptr<const SourceRecord> samples_of(const std::string& source,
                                                                const StretchOfTime& stretch) const;

@@ -10,13 +10,13 @@ namespace {
 // Memory is given back once this many forgotten samples lead the buffers.
 constexpr std::size_t forgotten_worth_moving = std::size_t{1} << 16U;
 
-drivers::RegularClock regular_clock(const SampleBlock& block) {
+drivers::RegularClock regular_clock(const wire::SampleBlock& block) {
   return {block.origin_ns(), block.interval_numerator_ns(), block.interval_denominator()};
 }
 
 } // namespace
 
-void SourceRecord::describe(const SourceDescription& description) {
+void SourceRecord::describe(const wire::SourceDescription& description) {
   description_ = description;
 }
 
@@ -38,13 +38,13 @@ std::optional<std::size_t> SourceRecord::channel(const std::string& name) const 
   const auto& channels = description_->channels();
   const auto found =
       std::find_if(channels.begin(), channels.end(),
-                   [&](const ChannelDescription& channel) { return channel.name() == name; });
+                   [&](const wire::ChannelDescription& channel) { return channel.name() == name; });
   return found == channels.end()
              ? std::nullopt
              : std::optional(static_cast<std::size_t>(found - channels.begin()));
 }
 
-bool SourceRecord::usable(const SampleBlock& block) const {
+bool SourceRecord::usable(const wire::SampleBlock& block) const {
   const std::size_t samples = block.sample_count();
   const bool stamped = block.stamps_ns().empty()
                            ? block.interval_numerator_ns() > 0 && block.interval_denominator() > 0
@@ -55,7 +55,7 @@ bool SourceRecord::usable(const SampleBlock& block) const {
   return stamped && flagged && filled;
 }
 
-bool SourceRecord::add(const SampleBlock& block) {
+bool SourceRecord::add(const wire::SampleBlock& block) {
   const bus::ContinuityFinding step = continuity_.add(block);
   if (step.duplicate) {
     return true;
@@ -83,7 +83,7 @@ bool SourceRecord::add(const SampleBlock& block) {
   return true;
 }
 
-void SourceRecord::append(const SampleBlock& block) {
+void SourceRecord::append(const wire::SampleBlock& block) {
   const std::size_t samples = block.sample_count();
   columns_.resize(block.channel_count());
   if (block.stamps_ns().empty()) {

@@ -30,9 +30,9 @@ public:
 
   [[nodiscard]] const std::string& source() const { return source_; }
 
-  void describe(const SourceDescription& description);
+  void describe(const wire::SourceDescription& description);
   [[nodiscard]] bool described() const { return description_.has_value(); }
-  [[nodiscard]] const SourceDescription& description() const {
+  [[nodiscard]] const wire::SourceDescription& description() const {
     return *description_;
   } // REQUIRES: described()
   [[nodiscard]] std::optional<std::size_t> channel(const std::string& name) const;
@@ -43,7 +43,7 @@ public:
 
   // Appends the block's samples; false when it cannot be used (sizes contradict each other, other
   // number of channels): it is counted.
-  bool add(const SampleBlock& block);
+  bool add(const wire::SampleBlock& block);
 
   [[nodiscard]] std::span<const std::int64_t> stamps_ns() const {
     return std::span(stamps_ns_).subspan(first_);
@@ -89,14 +89,14 @@ private:
   [[nodiscard]] bool keeps(std::size_t channel) const {
     return !kept_channels_ || kept_channels_->contains(channel);
   }
-  [[nodiscard]] bool usable(const SampleBlock& block) const;
-  void append(const SampleBlock& block);
+  [[nodiscard]] bool usable(const wire::SampleBlock& block) const;
+  void append(const wire::SampleBlock& block);
   void restart();
   void forget(std::size_t samples);
 
   std::string source_;
   std::size_t capacity_;
-  std::optional<SourceDescription> description_;
+  std::optional<wire::SourceDescription> description_;
   std::optional<std::set<std::size_t>> kept_channels_; // all when there is no set
   bus::SampleContinuity continuity_;
   std::size_t first_ = 0;

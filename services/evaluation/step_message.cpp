@@ -17,9 +17,9 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
 
-SourceSamples samples_message(const SourceRecord& record, const StepSamples& series,
-                              const StretchOfTime& stretch) {
-  SourceSamples samples;
+wire::SourceSamples samples_message(const SourceRecord& record, const StepSamples& series,
+                                    const StretchOfTime& stretch) {
+  wire::SourceSamples samples;
   samples.source(record.source());
   samples.used(series.stamps_ns.size());
   samples.lost(record.lost_between(stretch.begin_ns, stretch.end_ns));
@@ -29,8 +29,8 @@ SourceSamples samples_message(const SourceRecord& record, const StepSamples& ser
   return samples;
 }
 
-SineFit fit_message(const analysis::SeriesFit& series) {
-  SineFit message;
+wire::SineFit fit_message(const analysis::SeriesFit& series) {
+  wire::SineFit message;
   message.series(series.series);
   message.frequency_hz(series.frequency.hz());
   message.u_frequency_hz(series.u_frequency_hz);
@@ -47,9 +47,9 @@ SineFit fit_message(const analysis::SeriesFit& series) {
   return message;
 }
 
-CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
-                              const std::string& channel) {
-  CalibrationResult result;
+wire::CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
+                                    const std::string& channel) {
+  wire::CalibrationResult result;
   result.bench(recipe.bench);
   result.run(recipe.run);
   result.channel(channel);
@@ -79,9 +79,9 @@ std::string ratio_unit(const SourceRecord& acs, const std::string& reference,
   return in.empty() || out.empty() ? "" : fmt::format("({})/({})", short_form(out), short_form(in));
 }
 
-void add_budget(std::span<const analysis::Contribution> budget, CalibrationResult& result) {
+void add_budget(std::span<const analysis::Contribution> budget, wire::CalibrationResult& result) {
   for (const analysis::Contribution& line : budget) {
-    BudgetContribution message;
+    wire::BudgetContribution message;
     message.name(line.name);
     message.distribution(line.distribution);
     message.degrees_of_freedom(line.degrees_of_freedom);
@@ -91,10 +91,10 @@ void add_budget(std::span<const analysis::Contribution> budget, CalibrationResul
   }
 }
 
-CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step,
-                               const ChannelName& name, const analysis::TransferPoint& point,
-                               std::span<const analysis::SeriesFit> common_fits) {
-  CalibrationResult result = result_head(recipe, step, name.text());
+wire::CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step,
+                                     const ChannelName& name, const analysis::TransferPoint& point,
+                                     std::span<const analysis::SeriesFit> common_fits) {
+  wire::CalibrationResult result = result_head(recipe, step, name.text());
   result.valid(true);
   result.magnitude(point.magnitude);
   result.u_magnitude(point.u_magnitude);

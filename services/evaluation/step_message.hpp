@@ -17,19 +17,20 @@
 namespace dyncal::services {
 
 // Everything but the numbers: not valid, magnitude and phase NaN.
-[[nodiscard]] CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
-                                            const std::string& channel);
-[[nodiscard]] SineFit fit_message(const analysis::SeriesFit& series);
-[[nodiscard]] SourceSamples samples_message(const SourceRecord& record, const StepSamples& series,
-                                            const StretchOfTime& stretch);
-void add_budget(std::span<const analysis::Contribution> budget, CalibrationResult& result);
+[[nodiscard]] wire::CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
+                                                  const std::string& channel);
+[[nodiscard]] wire::SineFit fit_message(const analysis::SeriesFit& series);
+[[nodiscard]] wire::SourceSamples samples_message(const SourceRecord& record,
+                                                  const StepSamples& series,
+                                                  const StretchOfTime& stretch);
+void add_budget(std::span<const analysis::Contribution> budget, wire::CalibrationResult& result);
 
 // The result of one channel: value, fits (those common to all channels first), budget. What it was
 // made of is the caller's to add.
-[[nodiscard]] CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step,
-                                             const ChannelName& name,
-                                             const analysis::TransferPoint& point,
-                                             std::span<const analysis::SeriesFit> common_fits);
+[[nodiscard]] wire::CalibrationResult
+point_result(const Recipe& recipe, const RecipeStep& step, const ChannelName& name,
+             const analysis::TransferPoint& point,
+             std::span<const analysis::SeriesFit> common_fits);
 
 // SHA-256 over stamps and values of all parts in their order.
 [[nodiscard]] std::string digest_of(std::initializer_list<const StepSamples*> parts);

@@ -13,9 +13,9 @@
 namespace dyncal::services {
 namespace {
 
-analysis::Repetition repetition_of(const CalibrationResult& result) {
+analysis::Repetition repetition_of(const wire::CalibrationResult& result) {
   std::vector<analysis::Contribution> budget;
-  for (const BudgetContribution& line : result.budget()) {
+  for (const wire::BudgetContribution& line : result.budget()) {
     budget.push_back({line.name(), line.distribution(), line.degrees_of_freedom(),
                       line.u_magnitude_rel(), line.u_phase_rad()});
   }
@@ -23,11 +23,11 @@ analysis::Repetition repetition_of(const CalibrationResult& result) {
 }
 
 struct PointOfMean {
-  TransferPoint message;
+  wire::TransferPoint message;
   analysis::PhasePoint phase;
 };
 
-PointOfMean point_of(const std::vector<const CalibrationResult*>& results,
+PointOfMean point_of(const std::vector<const wire::CalibrationResult*>& results,
                      const analysis::RepetitionMean& mean) {
   PointOfMean point;
   point.message.frequency_text_hz(results.front()->frequency_text_hz());
@@ -71,7 +71,7 @@ double u_adc_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoin
 
 // What shifts all frequencies alike: it adds in full to the group delay.
 double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhasePoint>& phases) {
-  const bool by_series = recipe.method == METHOD_SERIES_TIMESTAMPING;
+  const bool by_series = recipe.method == wire::METHOD_SERIES_TIMESTAMPING;
   return std::hypot(recipe.systematic.acs_delay_s,
                     by_series ? recipe.u_dso_delay_s : u_adc_delay_s(recipe, phases));
 }
@@ -79,10 +79,10 @@ double u_common_delay_s(const Recipe& recipe, const std::vector<analysis::PhaseP
 // One clock against the other, and the latency of stamps: the same error of time at every
 // frequency.
 double u_clock_offset_s(
-    const std::map<std::pair<std::uint32_t, std::uint32_t>, CalibrationResult>& results) {
+    const std::map<std::pair<std::uint32_t, std::uint32_t>, wire::CalibrationResult>& results) {
   double max_s = 0.0;
   for (const auto& [key, result] : results) {
-    for (const BudgetContribution& line : result.budget()) {
+    for (const wire::BudgetContribution& line : result.budget()) {
       if (line.name() == "offset between the clocks") {
         max_s =
             std::max(max_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
@@ -93,7 +93,7 @@ double u_clock_offset_s(
 }
 
 void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOfMean>& points,
-                     TransferFunction& function) {
+                     wire::TransferFunction& function) {
   const std::vector<std::size_t> chosen = first_of_each_frequency(points);
   std::vector<analysis::PhasePoint> phases;
   for (const std::size_t i : chosen) {
@@ -123,7 +123,7 @@ void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOf
 
 } // namespace
 
-void TransferSummary::add(const CalibrationResult& result) {
+void TransferSummary::add(const wire::CalibrationResult& result) {
   const std::string channel = result.channel().to_string();
   if (std::find(channels_.begin(), channels_.end(), channel) == channels_.end()) {
     channels_.push_back(channel);
@@ -131,12 +131,12 @@ void TransferSummary::add(const CalibrationResult& result) {
   results_[channel][{result.step(), result.repetition()}] = result;
 }
 
-std::vector<TransferFunction> TransferSummary::transfer_functions() const {
-  std::vector<TransferFunction> functions;
+std::vector<wire::TransferFunction> TransferSummary::transfer_functions() const {
+  std::vector<wire::TransferFunction> functions;
   for (const std::string& channel : channels_) {
-    std::map<std::pair<double, double>, std::vector<const CalibrationResult*>>
+    std::map<std::pair<double, double>, std::vector<const wire::CalibrationResult*>>
         by_frequency_and_level;
-    TransferFunction function;
+    wire::TransferFunction function;
     for (const auto& [key, result] : results_.at(channel)) {
       if (result.valid()) {
         by_frequency_and_level[{result.frequency_hz(), result.level_m_s2()}].push_back(&result);
@@ -148,7 +148,7 @@ std::vector<TransferFunction> TransferSummary::transfer_functions() const {
     for (const auto& [key, results] : by_frequency_and_level) {
       std::vector<analysis::Repetition> repetitions;
       std::transform(results.begin(), results.end(), std::back_inserter(repetitions),
-                     [](const CalibrationResult* result) { return repetition_of(*result); });
+                     [](const wire::CalibrationResult* result) { return repetition_of(*result); });
       if (const auto mean = analysis::mean_of_repetitions(repetitions)) {
         points.push_back(point_of(results, *mean));
       }

@@ -19,17 +19,17 @@ public:
   explicit TransferSummary(const Recipe& recipe) : recipe_(recipe) {}
 
   // A result with the key of an earlier one takes its place.
-  void add(const CalibrationResult& result);
+  void add(const wire::CalibrationResult& result);
 
   // One for every channel that has at least one valid result.
-  [[nodiscard]] std::vector<TransferFunction> transfer_functions() const;
+  [[nodiscard]] std::vector<wire::TransferFunction> transfer_functions() const;
 
 private:
   using StepKey = std::pair<std::uint32_t, std::uint32_t>; // step, repetition
 
   const Recipe& recipe_;
   std::vector<std::string> channels_; // in the order of their first result
-  std::map<std::string, std::map<StepKey, CalibrationResult>> results_;
+  std::map<std::string, std::map<StepKey, wire::CalibrationResult>> results_;
 };
 
 } // namespace dyncal::services

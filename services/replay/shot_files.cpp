@@ -85,9 +85,9 @@ Expected<drivers::tss::Series> read_file(const std::filesystem::path& path,
   return selected ? std::move(selected) : bad_file(path, selected.error().message);
 }
 
-SourceDescription describe(const BenchFile& bench, const SourceSettings& source, SourceKind kind,
-                           const drivers::tss::Series& series) {
-  SourceDescription description;
+wire::SourceDescription describe(const BenchFile& bench, const SourceSettings& source,
+                                 wire::SourceKind kind, const drivers::tss::Series& series) {
+  wire::SourceDescription description;
   description.bench(bench.bench);
   description.source(source.name);
   description.session(session);
@@ -98,7 +98,7 @@ SourceDescription describe(const BenchFile& bench, const SourceSettings& source,
   description.software(software_version());
   description.nominal_rate_hz(series.nominal_rate_hz);
   for (const drivers::ChannelDescription& one : series.channels) {
-    ChannelDescription channel;
+    wire::ChannelDescription channel;
     channel.name(one.name);
     const auto unit = source.units.find(one.name);
     channel.unit(unit == source.units.end() ? one.unit : unit->second);
@@ -133,9 +133,10 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
       return fail(series.error());
     }
     if (result.records.empty()) {
-      result.description = describe(bench, source, trace ? SOURCE_DSO : SOURCE_TSS, *series);
+      result.description =
+          describe(bench, source, trace ? wire::SOURCE_DSO : wire::SOURCE_TSS, *series);
     }
-    TriggeredRecord record;
+    wire::TriggeredRecord record;
     record.bench(bench.bench);
     record.source(name);
     record.session(session);

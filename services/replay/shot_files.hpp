@@ -17,8 +17,8 @@
 namespace dyncal::services {
 
 struct ShotFiles {
-  SourceDescription description;
-  std::vector<TriggeredRecord> records;
+  wire::SourceDescription description;
+  std::vector<wire::TriggeredRecord> records;
 };
 
 // Of the source `name`: the oscilloscope's, or the sensor's, by its role in [method].

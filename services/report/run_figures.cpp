@@ -23,19 +23,19 @@ std::string run_line(const RunOutcome& outcome) {
 }
 
 figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
-                                            const TransferFunction& function) {
+                                            const wire::TransferFunction& function) {
   figures::TransferFunctionData data;
   data.title = function.channel().to_string();
   data.subtitle = run_line(outcome);
   data.unit = short_form(function.unit());
-  for (const CalibrationResult& result : outcome.results) {
+  for (const wire::CalibrationResult& result : outcome.results) {
     if (result.valid() && result.channel() == function.channel()) {
       data.repetitions.push_back({result.repetition(),
                                   {result.frequency_hz(), result.magnitude(), result.u_magnitude(),
                                    result.phase_rad(), result.u_phase_rad()}});
     }
   }
-  for (const TransferPoint& point : function.points()) {
+  for (const wire::TransferPoint& point : function.points()) {
     data.mean.push_back({point.frequency_hz(), point.magnitude(), point.u_magnitude(),
                          point.unwrapped_phase_rad(), point.u_phase_rad()});
   }
@@ -46,7 +46,7 @@ figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
   return data;
 }
 
-figures::IntervalHistogramData histogram_data(const SampleClockReport& report) {
+figures::IntervalHistogramData histogram_data(const wire::SampleClockReport& report) {
   figures::IntervalHistogramData data;
   data.title = fmt::format("Sample intervals of {}", report.source().c_str());
   data.tick_s = report.tick_s();
@@ -54,20 +54,20 @@ figures::IntervalHistogramData histogram_data(const SampleClockReport& report) {
   data.sd_s = report.sd_s();
   data.minimum_s = report.minimum_s();
   data.maximum_s = report.maximum_s();
-  for (const HistogramBin& bin : report.histogram()) {
+  for (const wire::HistogramBin& bin : report.histogram()) {
     data.counts.push_back({bin.interval_ticks(), bin.interval_ns(), bin.count()});
   }
   return data;
 }
 
 figures::IntervalOverTemperatureData temperature_data(const RunOutcome& outcome,
-                                                      const SampleClockReport& report) {
+                                                      const wire::SampleClockReport& report) {
   figures::IntervalOverTemperatureData data;
   data.title = fmt::format("Sample interval of {} over its temperature", report.source().c_str());
   data.subtitle = run_line(outcome);
   data.temperature_degc = report.scatter_temperature_degc();
   data.interval_ns = report.scatter_interval_ns();
-  for (const TemperatureBin& bin : report.over_temperature()) {
+  for (const wire::TemperatureBin& bin : report.over_temperature()) {
     data.bins.push_back(
         {bin.temperature_degc(), bin.mean_interval_ns(), bin.sd_interval_ns(), bin.count()});
   }
@@ -75,11 +75,11 @@ figures::IntervalOverTemperatureData temperature_data(const RunOutcome& outcome,
 }
 
 figures::IntervalOverTimeData time_data(const RunOutcome& outcome,
-                                        const SampleClockReport& report) {
+                                        const wire::SampleClockReport& report) {
   figures::IntervalOverTimeData data;
   data.title = fmt::format("Sample interval of {} over time", report.source().c_str());
   data.subtitle = run_line(outcome);
-  for (const IntervalBucket& bucket : report.over_time()) {
+  for (const wire::IntervalBucket& bucket : report.over_time()) {
     data.overview.push_back(
         {bucket.time_s(), bucket.minimum_ns(), bucket.maximum_ns(), bucket.mean_ns()});
   }
@@ -93,14 +93,14 @@ figures::IntervalOverTimeData time_data(const RunOutcome& outcome,
 Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome,
                                                            const std::filesystem::path& folder) {
   std::vector<figures::Figure> drawn;
-  for (const TransferFunction& function : outcome.transfer_functions) {
+  for (const wire::TransferFunction& function : outcome.transfer_functions) {
     if (responds(function)) {
       drawn.push_back(figures::transfer_function_figure(
           transfer_data(outcome, function),
           file_name("transfer-function", function.channel().to_string())));
     }
   }
-  for (const SampleClockReport& report : outcome.clock_reports) {
+  for (const wire::SampleClockReport& report : outcome.clock_reports) {
     if (report.intervals() == 0) {
       continue; // series have no stamps
     }

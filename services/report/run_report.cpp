@@ -15,15 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string method_word(Method method) {
+std::string method_word(wire::Method method) {
   switch (method) {
-  case METHOD_ANALOGUE:
+  case wire::METHOD_ANALOGUE:
     return "analogue";
-  case METHOD_SERIES_TIMESTAMPING:
+  case wire::METHOD_SERIES_TIMESTAMPING:
     return "series-timestamping";
-  case METHOD_ABSOLUTE_TIME:
+  case wire::METHOD_ABSOLUTE_TIME:
     return "absolute-time";
-  case METHOD_SAMPLE_TIMESTAMPING:
+  case wire::METHOD_SAMPLE_TIMESTAMPING:
     break;
   }
   return "sample-timestamping";
@@ -34,9 +34,9 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json budget_json(const CalibrationResult& result) {
+Json budget_json(const wire::CalibrationResult& result) {
   Json lines = Json::array();
-  for (const BudgetContribution& line : result.budget()) {
+  for (const wire::BudgetContribution& line : result.budget()) {
     lines.push_back({{"name", line.name()},
                      {"distribution", line.distribution()},
                      {"degrees_of_freedom", line.degrees_of_freedom()},
@@ -46,7 +46,7 @@ Json budget_json(const CalibrationResult& result) {
   return lines;
 }
 
-Json monte_carlo_json(const MonteCarloCheck& check) {
+Json monte_carlo_json(const wire::MonteCarloCheck& check) {
   return {{"trials", check.trials()},
           {"stable", check.stable()},
           {"u_magnitude", number(check.u_magnitude())},
@@ -55,9 +55,9 @@ Json monte_carlo_json(const MonteCarloCheck& check) {
           {"phase_interval_rad", {number(check.phase_low_rad()), number(check.phase_high_rad())}}};
 }
 
-Json point_json(const CalibrationResult& result) {
+Json point_json(const wire::CalibrationResult& result) {
   Json samples = Json::object();
-  for (const SourceSamples& source : result.samples()) {
+  for (const wire::SourceSamples& source : result.samples()) {
     samples[source.source()] = source.used();
   }
   Json point{{"channel", result.channel().to_string()},
@@ -79,7 +79,7 @@ Json point_json(const CalibrationResult& result) {
   if (!result.valid()) {
     point["problem"] = result.problem();
   }
-  for (const MonteCarloCheck& check : result.monte_carlo()) {
+  for (const wire::MonteCarloCheck& check : result.monte_carlo()) {
     point["monte_carlo"] = monte_carlo_json(check);
   }
   if (!result.series_start().empty()) {
@@ -91,7 +91,7 @@ Json point_json(const CalibrationResult& result) {
   return point;
 }
 
-Json transfer_json(const TransferFunction& function, const TransferPoint& point) {
+Json transfer_json(const wire::TransferFunction& function, const wire::TransferPoint& point) {
   return {{"channel", function.channel().to_string()},
           {"frequency_hz", point.frequency_hz()},
           {"magnitude", number(point.magnitude())},
@@ -105,7 +105,7 @@ Json transfer_json(const TransferFunction& function, const TransferPoint& point)
           {"repetitions", point.repetitions()}};
 }
 
-Json delay_json(const TransferFunction& function) {
+Json delay_json(const wire::TransferFunction& function) {
   return {{"channel", function.channel().to_string()},
           {"value_s", number(function.group_delay_s())},
           {"u_s", number(function.u_group_delay_s())},
@@ -113,7 +113,7 @@ Json delay_json(const TransferFunction& function) {
           {"u_intercept_rad", number(function.u_intercept_rad())}};
 }
 
-Json clock_json(const SampleClockReport& report) {
+Json clock_json(const wire::SampleClockReport& report) {
   return {{"source", report.source().to_string()},
           {"mean_interval_s", report.mean_interval_s()},
           {"u_mean_interval_s", report.u_mean_interval_s()},
@@ -135,13 +135,13 @@ Json clock_json(const SampleClockReport& report) {
           {"lost", report.lost()}};
 }
 
-std::string channel_table(const TransferFunction& function) {
+std::string channel_table(const wire::TransferFunction& function) {
   std::string text = fmt::format(
       "\n{}{}\n", function.channel().c_str(),
       function.unit().empty() || function.unit() == R"(\one)" ? "" : ", in " + function.unit());
   text += fmt::format("{:>12}  {:>12} {:>10}  {:>12} {:>10}  {}\n", "f / Hz", "|H|", "u(|H|)",
                       "arg H / rad", "u / rad", "n");
-  for (const TransferPoint& point : function.points()) {
+  for (const wire::TransferPoint& point : function.points()) {
     text += fmt::format("{:>12}  {:>12.6f} {:>10.1e}  {:>12.6f} {:>10.1e}  {}\n",
                         point.frequency_text_hz(), point.magnitude(), point.u_magnitude(),
                         point.phase_rad(), point.u_phase_rad(), point.repetitions());
@@ -158,9 +158,9 @@ std::string channel_table(const TransferFunction& function) {
 }
 
 // A series has no stamps: its rate is known by eq. (6) alone.
-std::string series_clock_line(const RunOutcome& outcome, const SampleClockReport& report) {
+std::string series_clock_line(const RunOutcome& outcome, const wire::SampleClockReport& report) {
   std::set<std::string> starts;
-  for (const CalibrationResult& result : outcome.results) {
+  for (const wire::CalibrationResult& result : outcome.results) {
     if (!result.series_start().empty()) {
       starts.insert(result.series_start());
     }
@@ -175,17 +175,18 @@ std::string series_clock_line(const RunOutcome& outcome, const SampleClockReport
 
 } // namespace
 
-bool responds(const TransferFunction& function) {
-  const auto above = std::count_if(
-      function.points().begin(), function.points().end(),
-      [](const TransferPoint& point) { return point.magnitude() > 3.0 * point.u_magnitude(); });
+bool responds(const wire::TransferFunction& function) {
+  const auto above = std::count_if(function.points().begin(), function.points().end(),
+                                   [](const wire::TransferPoint& point) {
+                                     return point.magnitude() > 3.0 * point.u_magnitude();
+                                   });
   return 2 * static_cast<std::size_t>(above) > function.points().size();
 }
 
 std::string result_table(const RunOutcome& outcome) {
   std::string text;
   std::vector<std::string> quiet;
-  for (const TransferFunction& function : outcome.transfer_functions) {
+  for (const wire::TransferFunction& function : outcome.transfer_functions) {
     if (responds(function)) {
       text += channel_table(function);
     } else {
@@ -196,7 +197,7 @@ std::string result_table(const RunOutcome& outcome) {
     text += fmt::format("\nNo response above three times its uncertainty in: {}\n",
                         fmt::join(quiet, ", "));
   }
-  for (const SampleClockReport& report : outcome.clock_reports) {
+  for (const wire::SampleClockReport& report : outcome.clock_reports) {
     if (report.intervals() == 0) {
       text += series_clock_line(outcome, report);
       continue;
@@ -208,7 +209,7 @@ std::string result_table(const RunOutcome& outcome) {
                         report.intervals(), report.event_count(), report.lost());
   }
   std::vector<std::string> problems;
-  for (const CalibrationResult& result : outcome.results) {
+  for (const wire::CalibrationResult& result : outcome.results) {
     const std::string line = fmt::format("step {}, {} Hz: {}", result.step(),
                                          result.frequency_text_hz(), result.problem());
     if (!result.valid() && std::find(problems.begin(), problems.end(), line) == problems.end()) {
@@ -235,18 +236,18 @@ nlohmann::ordered_json result_json(const RunOutcome& outcome) {
             {"transfer_function", Json::array()},
             {"group_delay", Json::array()},
             {"sample_clock", Json::array()}};
-  for (const CalibrationResult& result : outcome.results) {
+  for (const wire::CalibrationResult& result : outcome.results) {
     json["points"].push_back(point_json(result));
   }
-  for (const TransferFunction& function : outcome.transfer_functions) {
-    for (const TransferPoint& point : function.points()) {
+  for (const wire::TransferFunction& function : outcome.transfer_functions) {
+    for (const wire::TransferPoint& point : function.points()) {
       json["transfer_function"].push_back(transfer_json(function, point));
     }
     if (function.group_delay_valid()) {
       json["group_delay"].push_back(delay_json(function));
     }
   }
-  for (const SampleClockReport& report : outcome.clock_reports) {
+  for (const wire::SampleClockReport& report : outcome.clock_reports) {
     json["sample_clock"].push_back(clock_json(report));
   }
   return json;

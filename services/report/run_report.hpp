@@ -16,7 +16,7 @@ namespace dyncal::services {
 
 // The channel's magnitude is above three times its uncertainty at more than half of the
 // frequencies: it is worth showing.
-[[nodiscard]] bool responds(const TransferFunction& function);
+[[nodiscard]] bool responds(const wire::TransferFunction& function);
 
 // One row per channel and frequency; channels that do not respond are only named.
 [[nodiscard]] std::string result_table(const RunOutcome& outcome);

@@ -33,20 +33,20 @@ std::optional<double> amplitude(const analysis::Frequency& frequency,
 
 } // namespace
 
-LevelMeter::LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions,
-                       bus::Reader<SampleBlock> samples)
+LevelMeter::LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescription> descriptions,
+                       bus::Reader<wire::SampleBlock> samples)
     : reference_(std::move(reference)), descriptions_(std::move(descriptions)),
       samples_(std::move(samples)), record_(reference_.source, max_samples) {}
 
 Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench,
                                         std::shared_ptr<bus::WakeUp> wake_up) {
-  auto descriptions = participant.reader<SourceDescription>(
+  auto descriptions = participant.reader<wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());
   }
-  auto samples = participant.reader<SampleBlock>(bus::topics::acs_samples, bus::Profile::samples,
-                                                 bench.bench, wake_up);
+  auto samples = participant.reader<wire::SampleBlock>(bus::topics::acs_samples,
+                                                       bus::Profile::samples, bench.bench, wake_up);
   if (!samples) {
     return fail(samples.error());
   }
@@ -54,12 +54,12 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
 }
 
 void LevelMeter::take(double bench_time_s) {
-  descriptions_.take([&](const SourceDescription& description, const bus::SampleInfo& info) {
+  descriptions_.take([&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
     if (info.valid && description.source() == reference_.source) {
       record_.describe(description);
     }
   });
-  samples_.take([&](const SampleBlock& block, const bus::SampleInfo& info) {
+  samples_.take([&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
     if (info.valid && block.source() == reference_.source) {
       record_.add(block);
     }

@@ -39,12 +39,12 @@ public:
                                                   double agreement_rel) const;
 
 private:
-  LevelMeter(ChannelName reference, bus::Reader<SourceDescription> descriptions,
-             bus::Reader<SampleBlock> samples);
+  LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescription> descriptions,
+             bus::Reader<wire::SampleBlock> samples);
 
   ChannelName reference_;
-  bus::Reader<SourceDescription> descriptions_;
-  bus::Reader<SampleBlock> samples_;
+  bus::Reader<wire::SourceDescription> descriptions_;
+  bus::Reader<wire::SampleBlock> samples_;
   SourceRecord record_;
   std::uint32_t restarts_ = 0;
   std::optional<std::int64_t> acs_minus_bench_ns_;

@@ -91,9 +91,9 @@ int guard_output(const std::string& generator_address, int input) {
       return 0;
     }
     if (attempt == attempts) {
-      return fail({ErrorCode::device,
-                   fmt::format("the run has died, and its generator's output may be on: {}",
-                               generator.error().message)});
+      return report_error({ErrorCode::device,
+                           fmt::format("the run has died, and its generator's output may be on: {}",
+                                       generator.error().message)});
     }
   }
 }

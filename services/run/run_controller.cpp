@@ -8,6 +8,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/recipe.hpp"
+#include "services/run/run_plan.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -46,12 +47,12 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   if (const auto ready = open_endpoints().and_then([&] { return open_excitation(); }); !ready) {
     return fail(ready.error());
   }
-  set_state(MEASUREMENT_PLANNED);
+  set_state(wire::MEASUREMENT_PLANNED);
   if (const auto armed = wait_until_armed(stop); !armed) {
-    set_state(MEASUREMENT_ABORTED);
+    set_state(wire::MEASUREMENT_ABORTED);
     return fail(armed.error());
   }
-  set_state(MEASUREMENT_RUNNING);
+  set_state(wire::MEASUREMENT_RUNNING);
   Expected<void> excited = excite(stop);
   if (excitation_) {
     excitation_->end();
@@ -63,22 +64,23 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   outcome_.measurement.message(outcome_.interrupted ? "interrupted by the user" : outcome_.problem);
   const bool from_files = excitation_ == nullptr;
   if (!from_files || outcome_.interrupted || !excited) {
-    set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);
+    set_state(outcome_.interrupted || !excited ? wire::MEASUREMENT_ABORTED
+                                               : wire::MEASUREMENT_DONE);
   }
   const Expected<void> collected = wait_for_results(stop);
   if (!collected && outcome_.problem.empty()) {
     outcome_.problem = collected.error().message;
   }
   outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
-  set_state(outcome_.interrupted || !excited ? MEASUREMENT_ABORTED : MEASUREMENT_DONE);
+  set_state(outcome_.interrupted || !excited ? wire::MEASUREMENT_ABORTED : wire::MEASUREMENT_DONE);
   endpoints_->measurement.wait_for_acknowledgments(2s);
-  const auto key = [](const CalibrationResult& result) {
+  const auto key = [](const wire::CalibrationResult& result) {
     return std::tuple(result.step(), result.repetition(), result.channel().to_string());
   };
   std::stable_sort(outcome_.results.begin(), outcome_.results.end(),
                    [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::sort(outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
-            [](const TransferFunction& a, const TransferFunction& b) {
+            [](const wire::TransferFunction& a, const wire::TransferFunction& b) {
               return a.channel().to_string() < b.channel().to_string();
             });
   return std::move(outcome_);
@@ -87,17 +89,17 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
 Expected<void> RunController::open_endpoints() {
   const std::string& bench = bench_.bench;
   auto measurement =
-      participant_.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench);
+      participant_.writer<wire::Measurement>(bus::topics::measurement, bus::Profile::state, bench);
   auto excitation =
-      participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench);
-  auto status = participant_.reader<ServiceStatus>(bus::topics::service_status, bus::Profile::state,
-                                                   bench, wake_up_);
-  auto results = participant_.reader<CalibrationResult>(bus::topics::calibration_result,
-                                                        bus::Profile::results, bench, wake_up_);
-  auto transfer = participant_.reader<TransferFunction>(bus::topics::transfer_function,
-                                                        bus::Profile::results, bench, wake_up_);
-  auto clocks = participant_.reader<SampleClockReport>(bus::topics::sample_clock_report,
-                                                       bus::Profile::results, bench, wake_up_);
+      participant_.writer<wire::Excitation>(bus::topics::excitation, bus::Profile::state, bench);
+  auto status = participant_.reader<wire::ServiceStatus>(bus::topics::service_status,
+                                                         bus::Profile::state, bench, wake_up_);
+  auto results = participant_.reader<wire::CalibrationResult>(
+      bus::topics::calibration_result, bus::Profile::results, bench, wake_up_);
+  auto transfer = participant_.reader<wire::TransferFunction>(
+      bus::topics::transfer_function, bus::Profile::results, bench, wake_up_);
+  auto clocks = participant_.reader<wire::SampleClockReport>(
+      bus::topics::sample_clock_report, bus::Profile::results, bench, wake_up_);
   if (!measurement || !excitation || !status || !results || !transfer || !clocks) {
     for (const Error* error :
          {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
@@ -118,13 +120,13 @@ Expected<void> RunController::open_excitation() {
   if (bench_.generator.driver == "none") {
     return {};
   }
-  auto excitation =
-      StepExcitation::open(participant_, bench_, outcome_.measurement, wake_up_,
-                           {.announce = [this](const PlannedStep& step,
-                                               ExcitationState state) { announce(step, state); },
-                            .show = [this](const std::string& phase) { show(phase); },
-                            .ask = [this](const std::string& request) { show("asking", request); },
-                            .attend = [this] { return attend(); }});
+  auto excitation = StepExcitation::open(
+      participant_, bench_, outcome_.measurement, wake_up_,
+      {.announce = [this](const wire::PlannedStep& step,
+                          wire::ExcitationState state) { announce(step, state); },
+       .show = [this](const std::string& phase) { show(phase); },
+       .ask = [this](const std::string& request) { show("asking", request); },
+       .attend = [this] { return attend(); }});
   if (!excitation) {
     return fail(excitation.error());
   }
@@ -139,10 +141,10 @@ Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
     wake_up_->wait_until(Clock::now() + 200ms);
     take_messages();
     keep_alive();
-    if (analysis_ && analysis_->arm() == ARM_ARMED) {
+    if (analysis_ && analysis_->arm() == wire::ARM_ARMED) {
       return {};
     }
-    if (analysis_ && analysis_->arm() == ARM_REFUSED) {
+    if (analysis_ && analysis_->arm() == wire::ARM_REFUSED) {
       return fail(ErrorCode::no_source, analysis_->message());
     }
     const auto waited = Clock::now() - began;
@@ -169,7 +171,7 @@ Expected<void> RunController::excite(const std::stop_token& stop) {
     return ready;
   }
   first_step_began_ = Clock::now();
-  for (const PlannedStep& step : outcome_.measurement.steps()) {
+  for (const wire::PlannedStep& step : outcome_.measurement.steps()) {
     ++step_;
     if (const auto excited = excitation_->excite(step, stop); !excited || stop.stop_requested()) {
       return excited;
@@ -181,7 +183,7 @@ Expected<void> RunController::excite(const std::stop_token& stop) {
 Expected<void> RunController::attend() {
   keep_alive();
   take_messages();
-  if (analysis_->health() == HEALTH_FAILED) {
+  if (analysis_->health() == wire::HEALTH_FAILED) {
     return fail(ErrorCode::no_source, analysis_->message());
   }
   if (Clock::now() - analysis_heard_ > analysis_limit) {
@@ -194,7 +196,7 @@ Expected<void> RunController::attend() {
 // Topics have no order among each other: FINISHED may come before the results that were written
 // before it.
 bool RunController::everything_has_come() const {
-  return analysis_ && analysis_->arm() == ARM_FINISHED &&
+  return analysis_ && analysis_->arm() == wire::ARM_FINISHED &&
          outcome_.results.size() >= analysis_->results_published() &&
          outcome_.transfer_functions.size() >= analysis_->transfer_functions_published() &&
          outcome_.clock_reports.size() >= analysis_->clock_reports_published();
@@ -211,12 +213,12 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
     take_messages();
     keep_alive();
     if (!already_stopped && stop.stop_requested() &&
-        outcome_.measurement.state() != MEASUREMENT_ABORTED) {
-      set_state(MEASUREMENT_ABORTED);
+        outcome_.measurement.state() != wire::MEASUREMENT_ABORTED) {
+      set_state(wire::MEASUREMENT_ABORTED);
     }
     if (outcome_.results.size() != results_before ||
-        (from_files && outcome_.measurement.state() == MEASUREMENT_RUNNING &&
-         analysis_->health() == HEALTH_OK)) {
+        (from_files && outcome_.measurement.state() == wire::MEASUREMENT_RUNNING &&
+         analysis_->health() == wire::HEALTH_OK)) {
       results_before = outcome_.results.size();
       deadline = Clock::now() + results_limit;
     }
@@ -224,10 +226,10 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
       return fail(ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
                                                       analysis_->service().c_str()));
     }
-    if (analysis_->health() == HEALTH_FAILED && from_files &&
-        outcome_.measurement.state() == MEASUREMENT_RUNNING) {
+    if (analysis_->health() == wire::HEALTH_FAILED && from_files &&
+        outcome_.measurement.state() == wire::MEASUREMENT_RUNNING) {
       outcome_.problem = analysis_->message();
-      set_state(MEASUREMENT_ABORTED);
+      set_state(wire::MEASUREMENT_ABORTED);
     }
     if (Clock::now() > deadline) {
       return fail(ErrorCode::no_result, "the last results have not come from the analysis service");
@@ -236,11 +238,11 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   return {};
 }
 
-void RunController::announce(const PlannedStep& step, ExcitationState state) {
-  if (state == EXCITATION_SETTLING) {
+void RunController::announce(const wire::PlannedStep& step, wire::ExcitationState state) {
+  if (state == wire::EXCITATION_SETTLING) {
     window_begin_utc_ns_ = utc_now_ns();
   }
-  Excitation excitation;
+  wire::Excitation excitation;
   excitation.bench(bench_.bench);
   excitation.run(run_);
   excitation.step(step.step());
@@ -250,11 +252,11 @@ void RunController::announce(const PlannedStep& step, ExcitationState state) {
   excitation.state(state);
   excitation.window_begin_utc_ns(window_begin_utc_ns_);
   excitation.window_end_utc_ns(
-      state == EXCITATION_DONE || state == EXCITATION_ABORTED ? utc_now_ns() : 0);
+      state == wire::EXCITATION_DONE || state == wire::EXCITATION_ABORTED ? utc_now_ns() : 0);
   endpoints_->excitation.write(excitation);
 }
 
-void RunController::set_state(MeasurementState state) {
+void RunController::set_state(wire::MeasurementState state) {
   outcome_.measurement.state(state);
   endpoints_->measurement.write(outcome_.measurement);
   last_alive_ = Clock::now();
@@ -270,30 +272,32 @@ void RunController::take_messages() {
   const auto of_this_run = [&](const auto& message, const bus::SampleInfo& info) {
     return info.valid && message.run().to_string() == run_;
   };
-  endpoints_->results.take([&](const CalibrationResult& result, const bus::SampleInfo& info) {
+  endpoints_->results.take([&](const wire::CalibrationResult& result, const bus::SampleInfo& info) {
     if (of_this_run(result, info)) {
-      keep_newest<CalibrationResult>(outcome_.results, result, [](const auto& a, const auto& b) {
-        return a.step() == b.step() && a.repetition() == b.repetition() &&
-               a.channel() == b.channel();
-      });
+      keep_newest<wire::CalibrationResult>(
+          outcome_.results, result, [](const auto& a, const auto& b) {
+            return a.step() == b.step() && a.repetition() == b.repetition() &&
+                   a.channel() == b.channel();
+          });
     }
   });
   endpoints_->transfer_functions.take(
-      [&](const TransferFunction& function, const bus::SampleInfo& info) {
+      [&](const wire::TransferFunction& function, const bus::SampleInfo& info) {
         if (of_this_run(function, info)) {
-          keep_newest<TransferFunction>(
+          keep_newest<wire::TransferFunction>(
               outcome_.transfer_functions, function,
               [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
         }
       });
-  endpoints_->clock_reports.take([&](const SampleClockReport& report, const bus::SampleInfo& info) {
-    if (of_this_run(report, info)) {
-      keep_newest<SampleClockReport>(
-          outcome_.clock_reports, report,
-          [](const auto& a, const auto& b) { return a.source() == b.source(); });
-    }
-  });
-  endpoints_->status.take([&](const ServiceStatus& status, const bus::SampleInfo& info) {
+  endpoints_->clock_reports.take(
+      [&](const wire::SampleClockReport& report, const bus::SampleInfo& info) {
+        if (of_this_run(report, info)) {
+          keep_newest<wire::SampleClockReport>(
+              outcome_.clock_reports, report,
+              [](const auto& a, const auto& b) { return a.source() == b.source(); });
+        }
+      });
+  endpoints_->status.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
     if (of_this_run(status, info)) {
       analysis_ = status;
       analysis_heard_ = Clock::now();

@@ -35,11 +35,11 @@ struct RunProgress {
 };
 
 struct RunOutcome {
-  Measurement measurement;
+  wire::Measurement measurement;
   std::string analysis_dds;
-  std::vector<CalibrationResult> results; // in the order of steps, then as published
-  std::vector<TransferFunction> transfer_functions;
-  std::vector<SampleClockReport> clock_reports;
+  std::vector<wire::CalibrationResult> results; // in the order of steps, then as published
+  std::vector<wire::TransferFunction> transfer_functions;
+  std::vector<wire::SampleClockReport> clock_reports;
   bool interrupted = false;
   std::string problem; // why the run ended early, "" when it did not
 };
@@ -59,12 +59,12 @@ private:
   using Clock = std::chrono::steady_clock;
 
   struct Endpoints {
-    bus::Writer<Measurement> measurement;
-    bus::Writer<Excitation> excitation;
-    bus::Reader<ServiceStatus> status;
-    bus::Reader<CalibrationResult> results;
-    bus::Reader<TransferFunction> transfer_functions;
-    bus::Reader<SampleClockReport> clock_reports;
+    bus::Writer<wire::Measurement> measurement;
+    bus::Writer<wire::Excitation> excitation;
+    bus::Reader<wire::ServiceStatus> status;
+    bus::Reader<wire::CalibrationResult> results;
+    bus::Reader<wire::TransferFunction> transfer_functions;
+    bus::Reader<wire::SampleClockReport> clock_reports;
   };
 
   Expected<void> open_endpoints();
@@ -75,8 +75,8 @@ private:
   // lost.
   Expected<void> attend();
   Expected<void> wait_for_results(const std::stop_token& stop);
-  void announce(const PlannedStep& step, ExcitationState state);
-  void set_state(MeasurementState state);
+  void announce(const wire::PlannedStep& step, wire::ExcitationState state);
+  void set_state(wire::MeasurementState state);
   void keep_alive();
   void take_messages();
   void show(const std::string& phase, const std::string& request = "");
@@ -89,7 +89,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::unique_ptr<Endpoints> endpoints_;
   RunOutcome outcome_;
-  std::optional<ServiceStatus> analysis_;
+  std::optional<wire::ServiceStatus> analysis_;
   Clock::time_point analysis_heard_;
   Clock::time_point last_alive_;
   std::size_t step_ = 0;

@@ -8,13 +8,13 @@ namespace dyncal::services {
 
 Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
                                           std::shared_ptr<bus::WakeUp> wake_up) {
-  auto traces = participant.reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples,
-                                                    bench, wake_up);
+  auto traces = participant.reader<wire::TriggeredRecord>(bus::topics::dso_record,
+                                                          bus::Profile::samples, bench, wake_up);
   if (!traces) {
     return fail(traces.error());
   }
-  auto series = participant.reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples,
-                                                    bench, wake_up);
+  auto series = participant.reader<wire::TriggeredRecord>(bus::topics::tss_record,
+                                                          bus::Profile::samples, bench, wake_up);
   if (!series) {
     return fail(series.error());
   }
@@ -28,8 +28,8 @@ void ShotCounter::begin(const std::string& run, std::uint32_t step) {
   series_numbers_.clear();
 }
 
-void ShotCounter::take(bus::Reader<TriggeredRecord>& reader, Numbers& numbers) const {
-  reader.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+void ShotCounter::take(bus::Reader<wire::TriggeredRecord>& reader, Numbers& numbers) const {
+  reader.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
     if (info.valid && record.sample_count() > 0 && record.step() == step_ && record.run() == run_) {
       numbers.insert({record.session(), record.shot()});
     }

@@ -27,12 +27,12 @@ public:
 
 private:
   using Numbers = std::set<std::pair<std::uint64_t, std::uint64_t>>; // session, shot
-  ShotCounter(bus::Reader<TriggeredRecord> traces, bus::Reader<TriggeredRecord> series)
+  ShotCounter(bus::Reader<wire::TriggeredRecord> traces, bus::Reader<wire::TriggeredRecord> series)
       : traces_(std::move(traces)), series_(std::move(series)) {}
-  void take(bus::Reader<TriggeredRecord>& reader, Numbers& numbers) const;
+  void take(bus::Reader<wire::TriggeredRecord>& reader, Numbers& numbers) const;
 
-  bus::Reader<TriggeredRecord> traces_;
-  bus::Reader<TriggeredRecord> series_;
+  bus::Reader<wire::TriggeredRecord> traces_;
+  bus::Reader<wire::TriggeredRecord> series_;
   std::string run_;
   std::uint32_t step_ = 0;
   Numbers trace_numbers_;

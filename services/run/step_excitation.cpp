@@ -35,11 +35,11 @@ Error device_error(const drivers::Error& error) {
   return {ErrorCode::device, error.message};
 }
 
-analysis::Frequency frequency_of(const PlannedStep& step) {
+analysis::Frequency frequency_of(const wire::PlannedStep& step) {
   return *analysis::Frequency::parse(step.frequency_hz()); // the bench file was checked
 }
 
-Error of_step(const PlannedStep& step, ErrorCode code, const std::string& what) {
+Error of_step(const wire::PlannedStep& step, ErrorCode code, const std::string& what) {
   return {code, fmt::format("step {}, {} Hz: {}", step.step(), step.frequency_hz(), what)};
 }
 
@@ -47,7 +47,7 @@ Error of_step(const PlannedStep& step, ErrorCode code, const std::string& what) 
 
 Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant& participant,
                                                                const BenchFile& bench,
-                                                               const Measurement& measurement,
+                                                               const wire::Measurement& measurement,
                                                                std::shared_ptr<bus::WakeUp> wake_up,
                                                                StepAttendance attendance) {
   std::unique_ptr<StepExcitation> excitation(new StepExcitation(
@@ -87,8 +87,8 @@ Expected<void> StepExcitation::connect_generator() {
   return {};
 }
 
-Expected<void> StepExcitation::check_levels(const Measurement& measurement) const {
-  for (const PlannedStep& step : measurement.steps()) {
+Expected<void> StepExcitation::check_levels(const wire::Measurement& measurement) const {
+  for (const wire::PlannedStep& step : measurement.steps()) {
     const auto voltage = drivers::generator::voltage_for_level(
         step.level_m_s2(), bench_.generator.level_per_volt, limits());
     if (!voltage) {
@@ -106,7 +106,7 @@ drivers::generator::LevelLimits StepExcitation::limits() const {
   return limits;
 }
 
-drivers::generator::LevelTarget StepExcitation::target_of(const PlannedStep& step) const {
+drivers::generator::LevelTarget StepExcitation::target_of(const wire::PlannedStep& step) const {
   const auto known = known_responses_.find(step.frequency_hz());
   const bool is_known = known != known_responses_.end();
   return {.level_m_s2 = step.level_m_s2(),
@@ -132,11 +132,11 @@ void StepExcitation::end() {
   meter_.reset();
 }
 
-Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_token& stop) {
+Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::stop_token& stop) {
   const auto excited = hold_step(step, stop);
   const auto off = generator_->set_output(false);
   if (!excited || stop.stop_requested()) {
-    attendance_.announce(step, EXCITATION_ABORTED);
+    attendance_.announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
   if (!off) {
@@ -145,7 +145,7 @@ Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_t
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return confirmed;
   }
-  attendance_.announce(step, EXCITATION_DONE);
+  attendance_.announce(step, wire::EXCITATION_DONE);
   const auto now = generator_->clock_now_s();
   if (!now) {
     return fail(device_error(now.error()));
@@ -153,7 +153,8 @@ Expected<void> StepExcitation::excite(const PlannedStep& step, const std::stop_t
   return hold_until(*now + off_s, stop).map([](bool) {});
 }
 
-Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::stop_token& stop) {
+Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
+                                         const std::stop_token& stop) {
   const auto began =
       meter_ ? switch_on_to_level(step, stop)
              : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
@@ -168,7 +169,7 @@ Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::sto
   if (shots_) {
     shots_->begin(run_, step.step());
   }
-  attendance_.announce(step, EXCITATION_STEADY);
+  attendance_.announce(step, wire::EXCITATION_STEADY);
   attendance_.show("measuring");
   const auto held =
       hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
@@ -179,7 +180,7 @@ Expected<void> StepExcitation::hold_step(const PlannedStep& step, const std::sto
 }
 
 // The bench time from which on the output is on.
-Expected<double> StepExcitation::switch_on(const PlannedStep& step, double voltage_v,
+Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
   const auto set = generator_->set_frequency(step.frequency_hz())
                        .and_then([&] { return generator_->set_amplitude_v(voltage_v); })
@@ -194,12 +195,12 @@ Expected<double> StepExcitation::switch_on(const PlannedStep& step, double volta
   if (!began) {
     return fail(device_error(began.error()));
   }
-  attendance_.announce(step, EXCITATION_SETTLING);
+  attendance_.announce(step, wire::EXCITATION_SETTLING);
   return *began;
 }
 
 // The same, and the level within its tolerance before the planned settling is over.
-Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
+Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& step,
                                                     const std::stop_token& stop) {
   auto loop = LevelControl::start(target_of(step), limits());
   if (!loop) {
@@ -234,7 +235,7 @@ Expected<double> StepExcitation::switch_on_to_level(const PlannedStep& step,
 }
 
 // Nothing when it shall stop.
-Expected<std::optional<double>> StepExcitation::measure_level(const PlannedStep& step,
+Expected<std::optional<double>> StepExcitation::measure_level(const wire::PlannedStep& step,
                                                               double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
   attendance_.show("setting the level");

@@ -32,7 +32,7 @@ namespace dyncal::services {
 
 // What the run does while a step is excited.
 struct StepAttendance {
-  std::function<void(const PlannedStep&, ExcitationState)> announce;
+  std::function<void(const wire::PlannedStep&, wire::ExcitationState)> announce;
   std::function<void(const std::string& phase)> show;
   std::function<void(const std::string& request)> ask; // the operator
   std::function<Expected<void>()> attend;              // often; fails when the run cannot go on
@@ -42,13 +42,13 @@ class StepExcitation {
 public:
   // Connects the generator and switches its output off.
   [[nodiscard]] static Expected<std::unique_ptr<StepExcitation>>
-  open(bus::Participant& participant, const BenchFile& bench, const Measurement& measurement,
+  open(bus::Participant& participant, const BenchFile& bench, const wire::Measurement& measurement,
        std::shared_ptr<bus::WakeUp> wake_up, StepAttendance attendance);
 
   // Before the first step and after the last.
   [[nodiscard]] Expected<void> begin();
   void end();
-  [[nodiscard]] Expected<void> excite(const PlannedStep& step, const std::stop_token& stop);
+  [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, const std::stop_token& stop);
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -59,19 +59,19 @@ private:
         wake_up_(std::move(wake_up)), attendance_(std::move(attendance)) {}
 
   Expected<void> connect_generator();
-  Expected<void> check_levels(const Measurement& measurement) const;
-  Expected<void> hold_step(const PlannedStep& step, const std::stop_token& stop);
-  Expected<double> switch_on(const PlannedStep& step, double voltage_v,
+  Expected<void> check_levels(const wire::Measurement& measurement) const;
+  Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
+  Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
                              const std::stop_token& stop);
-  Expected<double> switch_on_to_level(const PlannedStep& step, const std::stop_token& stop);
-  Expected<std::optional<double>> measure_level(const PlannedStep& step, double changed_s,
+  Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
+  Expected<std::optional<double>> measure_level(const wire::PlannedStep& step, double changed_s,
                                                 double deadline_s, const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
   Expected<void> wait_for_effect(const std::stop_token& stop);
   // False when it shall stop.
   Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
   [[nodiscard]] drivers::generator::LevelLimits limits() const;
-  [[nodiscard]] drivers::generator::LevelTarget target_of(const PlannedStep& step) const;
+  [[nodiscard]] drivers::generator::LevelTarget target_of(const wire::PlannedStep& step) const;
 
   bus::Participant& participant_;
   const BenchFile& bench_;

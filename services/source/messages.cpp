@@ -8,38 +8,38 @@ namespace dyncal::services {
 
 namespace {
 
-dyncal::SourceKind to_contract(SourceKind kind) {
+wire::SourceKind to_contract(SourceKind kind) {
   switch (kind) {
   case SourceKind::dau:
-    return SOURCE_DAU;
+    return wire::SOURCE_DAU;
   case SourceKind::acs:
-    return SOURCE_ACS;
+    return wire::SOURCE_ACS;
   case SourceKind::can:
-    return SOURCE_CAN;
+    return wire::SOURCE_CAN;
   }
-  return SOURCE_DAU;
+  return wire::SOURCE_DAU;
 }
 
-dyncal::StampInstant to_contract(drivers::StampInstant instant) {
+dyncal::wire::StampInstant to_contract(drivers::StampInstant instant) {
   switch (instant) {
   case drivers::StampInstant::unknown:
-    return STAMP_UNKNOWN;
+    return wire::STAMP_UNKNOWN;
   case drivers::StampInstant::data_ready_edge:
-    return STAMP_DATA_READY_EDGE;
+    return wire::STAMP_DATA_READY_EDGE;
   case drivers::StampInstant::conversion:
-    return STAMP_CONVERSION;
+    return wire::STAMP_CONVERSION;
   case drivers::StampInstant::trigger_edge:
-    return STAMP_TRIGGER_EDGE;
+    return wire::STAMP_TRIGGER_EDGE;
   case drivers::StampInstant::frame_start:
-    return STAMP_FRAME_START;
+    return wire::STAMP_FRAME_START;
   case drivers::StampInstant::frame_end:
-    return STAMP_FRAME_END;
+    return wire::STAMP_FRAME_END;
   }
-  return STAMP_UNKNOWN;
+  return wire::STAMP_UNKNOWN;
 }
 
-dyncal::ChannelDescription to_contract(const drivers::ChannelDescription& channel) {
-  dyncal::ChannelDescription message;
+dyncal::wire::ChannelDescription to_contract(const drivers::ChannelDescription& channel) {
+  dyncal::wire::ChannelDescription message;
   message.name(channel.name);
   message.quantity(channel.quantity);
   message.unit(channel.unit);
@@ -63,10 +63,10 @@ const char* sample_topic(SourceKind kind) {
   return bus::topics::dau_samples;
 }
 
-dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t session,
-                                     const std::string& software,
-                                     const drivers::SourceDescription& description) {
-  dyncal::SourceDescription message;
+dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uint64_t session,
+                                           const std::string& software,
+                                           const drivers::SourceDescription& description) {
+  dyncal::wire::SourceDescription message;
   message.bench(source.bench);
   message.source(source.source);
   message.session(session);
@@ -79,17 +79,17 @@ dyncal::SourceDescription to_message(const SourceOptions& source, std::uint64_t 
     message.channels().push_back(to_contract(channel));
   }
   message.nominal_rate_hz(description.nominal_rate_hz);
-  message.time_base(description.time_base == drivers::TimeBase::utc ? TIME_BASE_UTC
-                                                                    : TIME_BASE_LOCAL);
+  message.time_base(description.time_base == drivers::TimeBase::utc ? wire::TIME_BASE_UTC
+                                                                    : wire::TIME_BASE_LOCAL);
   message.stamp_instant(to_contract(description.stamp_instant));
   message.tick_s(description.tick_s);
   message.stamp_uncertainty_s(description.stamp_uncertainty_s);
   return message;
 }
 
-dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t session,
-                               std::uint64_t block_number, drivers::SampleBlock block) {
-  dyncal::SampleBlock message;
+dyncal::wire::SampleBlock to_message(const SourceOptions& source, std::uint64_t session,
+                                     std::uint64_t block_number, drivers::SampleBlock block) {
+  dyncal::wire::SampleBlock message;
   message.bench(source.bench);
   message.source(source.source);
   message.session(session);
@@ -111,10 +111,10 @@ dyncal::SampleBlock to_message(const SourceOptions& source, std::uint64_t sessio
   return message;
 }
 
-dyncal::SourceStatus to_message(const SourceOptions& source,
-                                const SourcePublisher::Snapshot& snapshot) {
+dyncal::wire::SourceStatus to_message(const SourceOptions& source,
+                                      const SourcePublisher::Snapshot& snapshot) {
   const SourceCounts& counts = snapshot.counts;
-  dyncal::SourceStatus message;
+  dyncal::wire::SourceStatus message;
   message.bench(source.bench);
   message.source(source.source);
   message.session(snapshot.session);
@@ -125,7 +125,7 @@ dyncal::SourceStatus to_message(const SourceOptions& source,
   message.rejected(counts.rejected);
   message.stamps_not_trusted(counts.stamps_not_trusted);
   for (const auto& [name, value] : counts.causes) {
-    dyncal::NamedCount count;
+    dyncal::wire::NamedCount count;
     count.name(name);
     count.value(value);
     message.causes().push_back(std::move(count));

@@ -20,18 +20,18 @@ Expected<std::unique_ptr<SourceChannel>>
 SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
                       std::string software) {
   const SourceOptions& options = publisher->options();
-  auto description = participant.writer<dyncal::SourceDescription>(
+  auto description = participant.writer<dyncal::wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, options.bench);
   if (!description) {
     return fail(description.error());
   }
-  auto status = participant.writer<dyncal::SourceStatus>(bus::topics::source_status,
-                                                         bus::Profile::state, options.bench);
+  auto status = participant.writer<dyncal::wire::SourceStatus>(bus::topics::source_status,
+                                                               bus::Profile::state, options.bench);
   if (!status) {
     return fail(status.error());
   }
-  auto samples = participant.writer<dyncal::SampleBlock>(sample_topic(options.kind),
-                                                         bus::Profile::samples, options.bench);
+  auto samples = participant.writer<dyncal::wire::SampleBlock>(
+      sample_topic(options.kind), bus::Profile::samples, options.bench);
   if (!samples) {
     return fail(samples.error());
   }
@@ -154,23 +154,23 @@ bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
   return true;
 }
 
-dyncal::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot,
-                                         Clock::time_point now) const {
+dyncal::wire::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot,
+                                               Clock::time_point now) const {
   if (snapshot.stage == SourceStage::failed) {
-    return SOURCE_FAILED;
+    return wire::SOURCE_FAILED;
   }
   if (ended_ && snapshot.stage == SourceStage::starting) {
-    return SOURCE_ENDED;
+    return wire::SOURCE_ENDED;
   }
   if (ended_ && snapshot.stage == SourceStage::ended) {
-    return SOURCE_ENDED;
+    return wire::SOURCE_ENDED;
   }
   const bool watched =
       snapshot.silent_after > std::chrono::nanoseconds(0) && snapshot.stage != SourceStage::ended;
   if (watched && now - snapshot.last_offer > snapshot.silent_after) {
-    return SOURCE_SILENT;
+    return wire::SOURCE_SILENT;
   }
-  return snapshot.stage == SourceStage::starting ? SOURCE_STARTING : SOURCE_RUNNING;
+  return snapshot.stage == SourceStage::starting ? wire::SOURCE_STARTING : wire::SOURCE_RUNNING;
 }
 
 void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
@@ -197,7 +197,7 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   message.matched_readers(
       static_cast<std::uint32_t>(std::max(0, writers_.samples.matched_readers())));
   if (failed_writes_ > 0) {
-    dyncal::NamedCount failed;
+    dyncal::wire::NamedCount failed;
     failed.name("writes refused by the bus");
     failed.value(failed_writes_);
     message.causes().push_back(failed);

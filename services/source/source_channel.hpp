@@ -21,9 +21,9 @@
 namespace dyncal::services {
 
 struct SourceWriters {
-  bus::Writer<dyncal::SourceDescription> description;
-  bus::Writer<dyncal::SourceStatus> status;
-  bus::Writer<dyncal::SampleBlock> samples;
+  bus::Writer<dyncal::wire::SourceDescription> description;
+  bus::Writer<dyncal::wire::SourceStatus> status;
+  bus::Writer<dyncal::wire::SampleBlock> samples;
 };
 
 class SourceChannel {
@@ -65,8 +65,8 @@ private:
   bool next_message();
   void begin_session(std::uint64_t session);
   void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
-  [[nodiscard]] dyncal::SourceState state(const SourcePublisher::Snapshot& snapshot,
-                                          Clock::time_point now) const;
+  [[nodiscard]] dyncal::wire::SourceState state(const SourcePublisher::Snapshot& snapshot,
+                                                Clock::time_point now) const;
   void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
 
   const std::shared_ptr<SourcePublisher> publisher_;
@@ -82,10 +82,10 @@ private:
   bool ended_ = false; // the end of the session's stream has been written
   std::uint64_t failed_writes_ = 0;
   std::uint64_t samples_not_written_ = 0;
-  std::optional<dyncal::SampleBlock> pending_;
+  std::optional<dyncal::wire::SampleBlock> pending_;
   std::deque<std::string> runs_to_answer_;
 
-  dyncal::SourceState published_state_ = SOURCE_STARTING;
+  dyncal::wire::SourceState published_state_ = wire::SOURCE_STARTING;
   std::optional<Clock::time_point> status_written_;
   struct RatePoint {
     Clock::time_point time;

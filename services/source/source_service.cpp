@@ -24,8 +24,8 @@ constexpr std::size_t max_name = 64; // bound of the keys of the contract
 
 // What the bench says to its sources.
 struct BenchReaders {
-  bus::Reader<dyncal::Command> command;
-  bus::Reader<dyncal::Measurement> measurement;
+  bus::Reader<dyncal::wire::Command> command;
+  bus::Reader<dyncal::wire::Measurement> measurement;
   std::vector<std::string> running{};
 };
 
@@ -66,13 +66,13 @@ Expected<void> SourceService::Implementation::join_bench(const std::string& benc
   if (benches_.contains(bench)) {
     return {};
   }
-  auto command = participant_.reader<dyncal::Command>(bus::topics::command, bus::Profile::command,
-                                                      bench, wake_up_);
+  auto command = participant_.reader<dyncal::wire::Command>(bus::topics::command,
+                                                            bus::Profile::command, bench, wake_up_);
   if (!command) {
     return fail(command.error());
   }
-  auto measurement = participant_.reader<dyncal::Measurement>(bus::topics::measurement,
-                                                              bus::Profile::state, bench, wake_up_);
+  auto measurement = participant_.reader<dyncal::wire::Measurement>(
+      bus::topics::measurement, bus::Profile::state, bench, wake_up_);
   if (!measurement) {
     return fail(measurement.error());
   }
@@ -110,8 +110,8 @@ SourceService::Implementation::add(SourceOptions source) {
 }
 
 void SourceService::Implementation::take_commands(const std::string& bench, BenchReaders& readers) {
-  readers.command.take([&](const dyncal::Command& command, const bus::SampleInfo& info) {
-    if (!info.valid || command.kind() != COMMAND_ARM || command.bench() != bench) {
+  readers.command.take([&](const dyncal::wire::Command& command, const bus::SampleInfo& info) {
+    if (!info.valid || command.kind() != wire::COMMAND_ARM || command.bench() != bench) {
       return;
     }
     for (auto& channel : channels_) {
@@ -127,10 +127,10 @@ void SourceService::Implementation::take_measurements(const std::string& bench,
                                                       BenchReaders& readers) {
   auto running = readers.running;
   readers.measurement.take(
-      [&](const dyncal::Measurement& measurement, const bus::SampleInfo& info) {
+      [&](const dyncal::wire::Measurement& measurement, const bus::SampleInfo& info) {
         const std::string run = measurement.run().c_str();
         std::erase(running, run);
-        if (info.valid && measurement.state() == MEASUREMENT_RUNNING) {
+        if (info.valid && measurement.state() == wire::MEASUREMENT_RUNNING) {
           running.push_back(run);
         }
       });

@@ -18,6 +18,7 @@
 namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
+using dyncal::fail;
 using dyncal::services::Error;
 using dyncal::services::ErrorCode;
 using dyncal::services::Expected;

@@ -134,16 +134,16 @@ std::uint32_t send_all(const Load& load, std::uint16_t port) {
 class Subscriber {
 public:
   Subscriber(const Load& load, bus::Participant& network)
-      : reader_(*network.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*",
-                                             wake_up_)),
-        status_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, "*",
-                                              wake_up_)),
+      : reader_(*network.reader<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples,
+                                                   "*", wake_up_)),
+        status_(*network.reader<wire::SourceStatus>(bus::topics::source_status, bus::Profile::state,
+                                                    "*", wake_up_)),
         sources_(load.units * load.sensors) {}
 
   void take() {
     wake_up_->wait_until(Clock::now() + std::chrono::milliseconds(100));
-    reader_.take([&](const SampleBlock& block, const bus::SampleInfo&) { add(block); });
-    status_.take([&](const SourceStatus& status, const bus::SampleInfo&) {
+    reader_.take([&](const wire::SampleBlock& block, const bus::SampleInfo&) { add(block); });
+    status_.take([&](const wire::SourceStatus& status, const bus::SampleInfo&) {
       const std::string name = std::string(status.bench().c_str()) + "/" + status.source().c_str();
       lost_by_account_[name] =
           status.lost_in_device() + status.lost_on_way() + status.dropped_in_service();
@@ -193,7 +193,7 @@ private:
     std::uint64_t gaps = 0;
   };
 
-  void add(const SampleBlock& block) {
+  void add(const wire::SampleBlock& block) {
     if (block.sample_count() == 0) {
       return;
     }
@@ -207,8 +207,8 @@ private:
   }
 
   std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
-  bus::Reader<SampleBlock> reader_;
-  bus::Reader<SourceStatus> status_;
+  bus::Reader<wire::SampleBlock> reader_;
+  bus::Reader<wire::SourceStatus> status_;
   std::size_t sources_;
   std::map<std::string, Account> accounts_;
   std::map<std::string, std::uint64_t> lost_by_account_;

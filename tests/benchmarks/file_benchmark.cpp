@@ -92,11 +92,11 @@ void play(benchmark::State& state, const char* extension, std::string (*make)())
 BENCHMARK_CAPTURE(play, csv, ".csv", csv)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
-    ->Unit(benchmark::millisecond);
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(play, npy, ".npy", npy)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
-    ->Unit(benchmark::millisecond);
+    ->Unit(benchmark::kMillisecond);
 
 } // namespace
 

@@ -17,6 +17,7 @@
 namespace {
 
 using namespace dyncal::drivers;
+using dyncal::fail;
 
 class Recording : public ScpiTransport {
 public:

@@ -117,8 +117,8 @@ protected:
   }
 };
 
-SineFit example_fit(const std::string& series) {
-  SineFit fit;
+wire::SineFit example_fit(const std::string& series) {
+  wire::SineFit fit;
   fit.series(series);
   fit.frequency_hz(10.0 + 1e-9);
   fit.reference_ns(1'500'000'000'123'456'789);
@@ -129,10 +129,10 @@ SineFit example_fit(const std::string& series) {
 }
 
 TEST_P(BusNative, ExchangesSampleBlocks) {
-  std::vector<SampleBlock> blocks;
+  std::vector<wire::SampleBlock> blocks;
   for (const std::string& source : {std::string("a"), std::string(64, 'z')}) {
     for (std::uint64_t number = 0; number < 50; ++number) {
-      SampleBlock block;
+      wire::SampleBlock block;
       block.bench("acc-1");
       block.source(source);
       block.session(0xfedcba9876543210U);
@@ -158,34 +158,34 @@ TEST_P(BusNative, ExchangesSampleBlocks) {
 }
 
 TEST_P(BusNative, ExchangesMeasurements) {
-  Measurement measurement;
+  wire::Measurement measurement;
   measurement.bench("acc-1");
   measurement.run(std::string(64, 'r'));
-  measurement.state(MEASUREMENT_RUNNING);
-  measurement.method(METHOD_SAMPLE_TIMESTAMPING);
+  measurement.state(wire::MEASUREMENT_RUNNING);
+  measurement.method(wire::METHOD_SAMPLE_TIMESTAMPING);
   measurement.reference("acs/reference");
   measurement.dut({"dau/acceleration_x", "dau/acceleration_z"});
   for (std::uint32_t step = 0; step < 51; ++step) {
-    PlannedStep planned;
+    wire::PlannedStep planned;
     planned.step(step);
     planned.frequency_hz("12.5");
     planned.level_m_s2(10.0);
     planned.repetition(step % 3 + 1);
     measurement.steps().push_back(planned);
   }
-  AdcCalibrationPoint point;
+  wire::AdcCalibrationPoint point;
   point.gain(0.998);
   measurement.adc_calibration({point});
   measurement.recipe(std::string(3000, '#'));
   measurement.message("a sentence");
-  EXPECT_EQ(echoes_of<Measurement>({measurement}, topics::measurement, Profile::state),
-            std::vector<Measurement>{measurement});
+  EXPECT_EQ(echoes_of<wire::Measurement>({measurement}, topics::measurement, Profile::state),
+            std::vector<wire::Measurement>{measurement});
 }
 
 TEST_P(BusNative, ExchangesCalibrationResults) {
-  std::vector<CalibrationResult> results;
+  std::vector<wire::CalibrationResult> results;
   for (std::uint32_t step = 0; step < 20; ++step) {
-    CalibrationResult result;
+    wire::CalibrationResult result;
     result.bench("acc-1");
     result.run("run-1");
     result.channel("dau/acceleration_z");
@@ -196,11 +196,11 @@ TEST_P(BusNative, ExchangesCalibrationResults) {
     result.magnitude(1.0);
     result.phase_rad(-0.5);
     result.fits({example_fit("acs/reference"), example_fit("dau/acceleration_z")});
-    BudgetContribution contribution;
+    wire::BudgetContribution contribution;
     contribution.name("reference");
     contribution.u_magnitude_rel(1e-3);
     result.budget({contribution});
-    SourceSamples samples;
+    wire::SourceSamples samples;
     samples.source("dau");
     samples.used(3010);
     result.samples({samples});

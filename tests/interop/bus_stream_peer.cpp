@@ -43,9 +43,9 @@ double value_of(std::uint64_t block, std::size_t index) {
   return static_cast<double>(block) + static_cast<double>(index) * 1e-4;
 }
 
-SampleBlock make_block(const std::string& source, std::uint64_t session, std::uint64_t number,
-                       bool last) {
-  SampleBlock block;
+wire::SampleBlock make_block(const std::string& source, std::uint64_t session, std::uint64_t number,
+                             bool last) {
+  wire::SampleBlock block;
   block.bench(bench);
   block.source(source);
   block.session(session);
@@ -75,10 +75,11 @@ void wait_until_ended() {
 }
 
 int write_stream(bus::Participant& participant, const Options& options) {
-  std::vector<bus::Writer<SampleBlock>> writers;
+  std::vector<bus::Writer<wire::SampleBlock>> writers;
   for (std::size_t i = 0; i < source_names().size(); ++i) {
     writers.push_back(
-        participant.writer<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, bench)
+        participant
+            .writer<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, bench)
             .value());
   }
   const auto give_up = Clock::now() + patience;
@@ -104,7 +105,8 @@ int write_stream(bus::Participant& participant, const Options& options) {
                     std::chrono::duration<double>(static_cast<double>(i) / options.rate_hz)));
     const std::size_t source = i % names.size();
     const std::uint64_t number = i / names.size();
-    const SampleBlock block = make_block(names[source], session, number, number + 1 == rounds);
+    const wire::SampleBlock block =
+        make_block(names[source], session, number, number + 1 == rounds);
     const auto before = Clock::now();
     if (writers[source].write(block, 60s) != bus::WriteOutcome::written) {
       ++figures.not_written;
@@ -124,13 +126,14 @@ int write_stream(bus::Participant& participant, const Options& options) {
 int read_stream(bus::Participant& participant) {
   auto bell = std::make_shared<bus::WakeUp>();
   auto reader =
-      participant.reader<SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", bell)
+      participant
+          .reader<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", bell)
           .value();
   bus::SampleContinuity continuity;
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
-  const auto consume = [&](const SampleBlock& block, const bus::SampleInfo& info) {
+  const auto consume = [&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
     if (!info.valid) {
       return;
     }

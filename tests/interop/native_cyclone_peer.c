@@ -76,9 +76,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   struct echo echoes[] = {
-      {"DauSamples", &dyncal_SampleBlock_desc, true, 0, 0},
-      {"Measurement", &dyncal_Measurement_desc, false, 0, 0},
-      {"CalibrationResult", &dyncal_CalibrationResult_desc, false, 0, 0},
+      {"DauSamples", &dyncal_wire_SampleBlock_desc, true, 0, 0},
+      {"Measurement", &dyncal_wire_Measurement_desc, false, 0, 0},
+      {"CalibrationResult", &dyncal_wire_CalibrationResult_desc, false, 0, 0},
   };
   const size_t count = sizeof echoes / sizeof echoes[0];
   const dds_entity_t participant =

@@ -115,11 +115,11 @@ int main(int argc, char** argv) {
   auto* participant =
       checked(factory->create_participant(static_cast<std::uint32_t>(std::atoi(argv[1])), qos),
               "participant");
-  Echo<dyncal::SampleBlock, dyncal::SampleBlockPubSubType> blocks(
+  Echo<dyncal::wire::SampleBlock, dyncal::wire::SampleBlockPubSubType> blocks(
       participant, "DauSamples", History::keep_all, argv[2], argv[3]);
-  Echo<dyncal::Measurement, dyncal::MeasurementPubSubType> measurements(
+  Echo<dyncal::wire::Measurement, dyncal::wire::MeasurementPubSubType> measurements(
       participant, "Measurement", History::keep_last, argv[2], argv[3]);
-  Echo<dyncal::CalibrationResult, dyncal::CalibrationResultPubSubType> results(
+  Echo<dyncal::wire::CalibrationResult, dyncal::wire::CalibrationResultPubSubType> results(
       participant, "CalibrationResult", History::keep_last, argv[2], argv[3]);
   while (true) {
     blocks.run();

@@ -35,10 +35,9 @@ StretchOfTime after_settling(const Recipe& recipe, const RecipeStep& step,
 
 } // namespace
 
-std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, const RecipeStep& step,
-                                                      const SourceRecord& acs,
-                                                      StretchOfTime stretch,
-                                                      std::vector<std::string> flags) {
+std::vector<wire::CalibrationResult>
+evaluate_analogue_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
+                       StretchOfTime stretch, std::vector<std::string> flags) {
   const std::vector<std::size_t> columns = columns_of(recipe, acs);
   StepSamples samples = cut(acs, stretch, columns);
   if (recipe.settling_from_data) {
@@ -65,9 +64,9 @@ std::vector<CalibrationResult> evaluate_analogue_step(const Recipe& recipe, cons
     return results_of_missing_step(recipe, step, acs, evaluated.error().message);
   }
   const std::string data_sha256 = digest_of({&samples});
-  std::vector<CalibrationResult> results;
+  std::vector<wire::CalibrationResult> results;
   for (std::size_t i = 0; i < recipe.dut.size(); ++i) {
-    CalibrationResult result =
+    wire::CalibrationResult result =
         point_result(recipe, step, recipe.dut[i], evaluated->points[i], {&evaluated->reference, 1});
     result.unit(ratio_unit(acs, recipe.reference.channel, acs, recipe.dut[i].channel));
     result.samples().push_back(samples_message(acs, samples, stretch));

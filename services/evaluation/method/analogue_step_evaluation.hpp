@@ -16,7 +16,7 @@
 
 namespace dyncal::services {
 
-[[nodiscard]] std::vector<CalibrationResult>
+[[nodiscard]] std::vector<wire::CalibrationResult>
 evaluate_analogue_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
                        StretchOfTime stretch, std::vector<std::string> flags);
 

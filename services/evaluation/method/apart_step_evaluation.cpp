@@ -107,9 +107,10 @@ void flag_unknown_clock(const SourceRecord& record, const StretchOfTime& stretch
   }
 }
 
-std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const RecipeStep& step,
-                                               const ApartStep& samples, const SourceRecord& sensor,
-                                               std::vector<std::string> flags) {
+std::vector<wire::CalibrationResult> evaluate_sensor(const Recipe& recipe, const RecipeStep& step,
+                                                     const ApartStep& samples,
+                                                     const SourceRecord& sensor,
+                                                     std::vector<std::string> flags) {
   std::vector<ChannelName> names;
   std::copy_if(recipe.dut.begin(), recipe.dut.end(), std::back_inserter(names),
                [&](const ChannelName& name) { return name.source == sensor.source(); });
@@ -135,14 +136,14 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
       : absolute ? by_absolute_time(recipe, step, samples, acs, sensor, dut, names)
                  : by_sync_beside(recipe, step, samples, acs, sync, sensor, dut, names);
   const std::string data_sha256 = digest_of({&acs, &sync, &dut});
-  std::vector<CalibrationResult> results;
+  std::vector<wire::CalibrationResult> results;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!evaluated) {
       results.push_back(result_head(recipe, step, names[i].text()));
       results.back().problem(evaluated.error().message);
       continue;
     }
-    CalibrationResult result =
+    wire::CalibrationResult result =
         point_result(recipe, step, names[i], evaluated->points[i], evaluated->common_fits);
     result.unit(ratio_unit(samples.acs, recipe.reference.channel, sensor, names[i].channel));
     result.samples().push_back(samples_message(samples.acs, acs, samples.acs_stretch));
@@ -150,7 +151,7 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
       result.samples().push_back(samples_message(*samples.sync, sync, stretch));
     }
     result.samples().push_back(samples_message(sensor, dut, stretch));
-    for (const SourceSamples& part : result.samples()) {
+    for (const wire::SourceSamples& part : result.samples()) {
       result.lost(result.lost() + part.lost());
     }
     result.flags() = flags;
@@ -163,11 +164,11 @@ std::vector<CalibrationResult> evaluate_sensor(const Recipe& recipe, const Recip
 
 } // namespace
 
-std::vector<CalibrationResult> evaluate_apart_step(const Recipe& recipe, const RecipeStep& step,
-                                                   const ApartStep& samples,
-                                                   const std::vector<const SourceRecord*>& sensors,
-                                                   const std::vector<std::string>& flags) {
-  std::vector<CalibrationResult> results;
+std::vector<wire::CalibrationResult>
+evaluate_apart_step(const Recipe& recipe, const RecipeStep& step, const ApartStep& samples,
+                    const std::vector<const SourceRecord*>& sensors,
+                    const std::vector<std::string>& flags) {
+  std::vector<wire::CalibrationResult> results;
   for (const SourceRecord* sensor : sensors) {
     auto of_sensor = evaluate_sensor(recipe, step, samples, *sensor, flags);
     results.insert(results.end(), std::make_move_iterator(of_sensor.begin()),

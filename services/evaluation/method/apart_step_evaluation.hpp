@@ -27,7 +27,7 @@ struct ApartStep {
   StretchOfTime sync_stretch;
 };
 
-[[nodiscard]] std::vector<CalibrationResult>
+[[nodiscard]] std::vector<wire::CalibrationResult>
 evaluate_apart_step(const Recipe& recipe, const RecipeStep& step, const ApartStep& samples,
                     const std::vector<const SourceRecord*>& sensors,
                     const std::vector<std::string>& flags);

@@ -59,7 +59,7 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
     return recipe.dut;
   }
   std::vector<ChannelName> names;
-  for (const ChannelDescription& channel : dau.description().channels()) {
+  for (const wire::ChannelDescription& channel : dau.description().channels()) {
     const ChannelName name{dau.source(), channel.name()};
     const bool thermometer =
         channel.unit() == R"(\degreecelsius)" || channel.unit() == R"(\kelvin)";
@@ -71,10 +71,11 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
   return names;
 }
 
-std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, const RecipeStep& step,
-                                                       const SourceRecord& dau,
-                                                       const std::string& problem) {
-  std::vector<CalibrationResult> results;
+std::vector<wire::CalibrationResult> results_of_missing_step(const Recipe& recipe,
+                                                             const RecipeStep& step,
+                                                             const SourceRecord& dau,
+                                                             const std::string& problem) {
+  std::vector<wire::CalibrationResult> results;
   for (const ChannelName& channel : channels_under_calibration(recipe, dau)) {
     results.push_back(result_head(recipe, step, channel.text()));
     results.back().problem(problem);
@@ -82,7 +83,7 @@ std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe, con
   return results;
 }
 
-std::vector<CalibrationResult>
+std::vector<wire::CalibrationResult>
 evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
               const StretchOfTime& acs_stretch, const SourceRecord& dau,
               const StretchOfTime& dau_stretch, const std::vector<std::string>& flags) {
@@ -128,9 +129,9 @@ evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& 
 
   const std::string data_sha256 = digest_of({&acs_part.samples, &dau_part.samples});
   const std::array common_fits{evaluated->reference, evaluated->sync_acs, evaluated->sync_dau};
-  std::vector<CalibrationResult> results;
+  std::vector<wire::CalibrationResult> results;
   for (std::size_t i = 0; i < dut.size(); ++i) {
-    CalibrationResult result =
+    wire::CalibrationResult result =
         point_result(recipe, step, dut[i], evaluated->points[i], common_fits);
     result.unit(ratio_unit(acs, recipe.reference.channel, dau, dut[i].channel));
     result.samples().push_back(samples_message(acs, acs_part.samples, acs_part.stretch));

@@ -23,7 +23,7 @@ namespace dyncal::services {
 [[nodiscard]] std::vector<ChannelName> channels_under_calibration(const Recipe& recipe,
                                                                   const SourceRecord& dau);
 
-[[nodiscard]] std::vector<CalibrationResult>
+[[nodiscard]] std::vector<wire::CalibrationResult>
 evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
               const StretchOfTime& acs_stretch, const SourceRecord& dau,
               const StretchOfTime& dau_stretch, const std::vector<std::string>& flags);
@@ -34,9 +34,8 @@ evaluate_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& 
                                                                      const RecipeStep& step);
 
 // What is published for a step that has no samples to evaluate.
-[[nodiscard]] std::vector<CalibrationResult> results_of_missing_step(const Recipe& recipe,
-                                                                     const RecipeStep& step,
-                                                                     const SourceRecord& dau,
-                                                                     const std::string& problem);
+[[nodiscard]] std::vector<wire::CalibrationResult>
+results_of_missing_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& dau,
+                        const std::string& problem);
 
 } // namespace dyncal::services

@@ -7,8 +7,8 @@
 
 namespace dyncal::services {
 
-SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor,
-                                      std::span<const analysis::NominalFrequency> rates) {
+wire::SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor,
+                                            std::span<const analysis::NominalFrequency> rates) {
   double weights = 0.0;
   double sum = 0.0;
   const auto weight_of = [](const analysis::NominalFrequency& rate) {
@@ -27,7 +27,7 @@ SampleClockReport series_clock_report(const Recipe& recipe, const std::string& s
       rates.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates.size() - 1)) : 1.0;
   const double u_rel =
       std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe.u_acs_rate_rel);
-  SampleClockReport report;
+  wire::SampleClockReport report;
   report.bench(recipe.bench);
   report.run(recipe.run);
   report.source(sensor);

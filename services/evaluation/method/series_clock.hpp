@@ -16,7 +16,7 @@
 namespace dyncal::services {
 
 // REQUIRES: at least one rate.
-[[nodiscard]] SampleClockReport
+[[nodiscard]] wire::SampleClockReport
 series_clock_report(const Recipe& recipe, const std::string& sensor,
                     std::span<const analysis::NominalFrequency> rates);
 

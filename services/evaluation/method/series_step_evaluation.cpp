@@ -60,7 +60,7 @@ std::string digest_of(const StepSamples& acs, const std::vector<ShotRecord::Shot
     digest.add(column.data(), column.size() * sizeof(double));
   }
   for (const ShotRecord::Shot& shot : shots) {
-    for (const TriggeredRecord* record : {shot.trace, shot.series}) {
+    for (const wire::TriggeredRecord* record : {shot.trace, shot.series}) {
       const std::array axis{record->first_sample_s(), record->interval_s()};
       digest.add(axis.data(), sizeof(axis));
       digest.add(record->values().data(), record->values().size() * sizeof(double));
@@ -69,9 +69,9 @@ std::string digest_of(const StepSamples& acs, const std::vector<ShotRecord::Shot
   return digest.hex();
 }
 
-SourceSamples shots_message(const SourceRecord& source, const std::vector<ShotRecord::Shot>& shots,
-                            bool series) {
-  SourceSamples samples;
+wire::SourceSamples shots_message(const SourceRecord& source,
+                                  const std::vector<ShotRecord::Shot>& shots, bool series) {
+  wire::SourceSamples samples;
   samples.source(source.source());
   std::uint64_t used = 0;
   for (const ShotRecord::Shot& shot : shots) {
@@ -165,7 +165,7 @@ analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& inp
 }
 
 void add_numbers(const Recipe& recipe, const Judged& judged,
-                 const analysis::SeriesChannelResult& channel, CalibrationResult& result) {
+                 const analysis::SeriesChannelResult& channel, wire::CalibrationResult& result) {
   result.valid(true);
   result.magnitude(channel.mean.magnitude);
   result.u_magnitude(channel.mean.u_magnitude);
@@ -240,7 +240,7 @@ SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& st
   SeriesStepOutput output{{}, judged->result.rate, judged->start.kind};
   const std::string data_sha256 = digest_of(acs_samples, shots);
   for (std::size_t i = 0; i < recipe.dut.size(); ++i) {
-    CalibrationResult result = result_head(recipe, step, recipe.dut[i].text());
+    wire::CalibrationResult result = result_head(recipe, step, recipe.dut[i].text());
     add_numbers(recipe, *judged, judged->result.channels[i], result);
     result.unit(ratio_unit(acs, recipe.reference.channel, sensor, recipe.dut[i].channel));
     result.samples().push_back(samples_message(acs, acs_samples, acs_stretch));

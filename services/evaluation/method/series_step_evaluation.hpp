@@ -23,7 +23,7 @@
 namespace dyncal::services {
 
 struct SeriesStepOutput {
-  std::vector<CalibrationResult> results;
+  std::vector<wire::CalibrationResult> results;
   std::optional<analysis::NominalFrequency> rate;             // of the sensor, by eq. (6)
   analysis::StartKind start = analysis::StartKind::undecided; // for the steps that follow
 };

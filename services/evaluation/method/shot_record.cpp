@@ -6,7 +6,7 @@
 namespace dyncal::services {
 namespace {
 
-bool usable(const TriggeredRecord& record) {
+bool usable(const wire::TriggeredRecord& record) {
   const std::uint64_t wanted = std::uint64_t{record.sample_count()} * record.channel_count();
   return wanted > 0 && record.values().size() == wanted && record.interval_s() > 0.0 &&
          std::isfinite(record.first_sample_s()) &&
@@ -16,7 +16,7 @@ bool usable(const TriggeredRecord& record) {
 
 } // namespace
 
-void ShotRecord::add(Records& records, const TriggeredRecord& record) {
+void ShotRecord::add(Records& records, const wire::TriggeredRecord& record) {
   if (record.sample_count() == 0 && record.values().empty()) {
     return; // an answer, or the end of the stream
   }
@@ -48,7 +48,7 @@ void ShotRecord::forget_step(std::uint32_t step) {
   std::erase_if(series_, of_that_step);
 }
 
-std::span<const double> channel_of(const TriggeredRecord& record, std::size_t channel) {
+std::span<const double> channel_of(const wire::TriggeredRecord& record, std::size_t channel) {
   return std::span<const double>(record.values())
       .subspan(channel * record.sample_count(), record.sample_count());
 }

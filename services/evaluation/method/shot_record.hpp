@@ -22,12 +22,12 @@ public:
   static constexpr std::size_t capacity = 1024;
 
   struct Shot {
-    const TriggeredRecord* trace;
-    const TriggeredRecord* series;
+    const wire::TriggeredRecord* trace;
+    const wire::TriggeredRecord* series;
   };
 
-  void add_trace(const TriggeredRecord& record) { add(traces_, record); }
-  void add_series(const TriggeredRecord& record) { add(series_, record); }
+  void add_trace(const wire::TriggeredRecord& record) { add(traces_, record); }
+  void add_series(const wire::TriggeredRecord& record) { add(series_, record); }
 
   // Those of which both records are there, in the order of their numbers. Valid until the next call
   // that changes something.
@@ -39,8 +39,8 @@ public:
 
 private:
   using Key = std::pair<std::uint64_t, std::uint64_t>; // session, shot
-  using Records = std::map<Key, TriggeredRecord>;
-  void add(Records& records, const TriggeredRecord& record);
+  using Records = std::map<Key, wire::TriggeredRecord>;
+  void add(Records& records, const wire::TriggeredRecord& record);
 
   Records traces_;
   Records series_;
@@ -49,7 +49,7 @@ private:
 };
 
 // Values of one channel.
-[[nodiscard]] std::span<const double> channel_of(const TriggeredRecord& record,
+[[nodiscard]] std::span<const double> channel_of(const wire::TriggeredRecord& record,
                                                  std::size_t channel);
 
 } // namespace dyncal::services

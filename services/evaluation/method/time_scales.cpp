@@ -6,20 +6,20 @@
 
 namespace dyncal::services {
 
-Expected<void>
-check_time_scales(const Recipe& recipe,
-                  const std::function<std::optional<TimeBase>(const std::string&)>& time_base_of) {
+Expected<void> check_time_scales(
+    const Recipe& recipe,
+    const std::function<std::optional<wire::TimeBase>(const std::string&)>& time_base_of) {
   if (!recipe.stamped_apart()) {
     return {};
   }
-  const bool by_absolute_time = recipe.method == METHOD_ABSOLUTE_TIME;
+  const bool by_absolute_time = recipe.method == wire::METHOD_ABSOLUTE_TIME;
   const std::string& link = by_absolute_time ? recipe.reference.source : recipe.sync_dau.source;
   std::vector<std::string> names = recipe.dut_sources();
   names.push_back(link);
   for (const std::string& name : names) {
     const auto clock = time_base_of(name);
     const auto clock_of_link = time_base_of(link);
-    if (by_absolute_time && clock == TIME_BASE_LOCAL) {
+    if (by_absolute_time && clock == wire::TIME_BASE_LOCAL) {
       return fail(
           ErrorCode::no_source,
           fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "

@@ -14,8 +14,8 @@ namespace dyncal::services {
 
 // `time_base_of` a source: empty as long as it has not described itself. Fails (no_source) with the
 // sources that disagree.
-[[nodiscard]] Expected<void>
-check_time_scales(const Recipe& recipe,
-                  const std::function<std::optional<TimeBase>(const std::string&)>& time_base_of);
+[[nodiscard]] Expected<void> check_time_scales(
+    const Recipe& recipe,
+    const std::function<std::optional<wire::TimeBase>(const std::string&)>& time_base_of);
 
 } // namespace dyncal::services

@@ -84,13 +84,13 @@ protected:
                             .silent_after = std::chrono::seconds(0)})
                      .value();
     reader_.emplace(participant_
-                        ->reader<dyncal::SampleBlock>(bus::topics::acs_samples,
-                                                      bus::Profile::samples, "bench", wake_up_)
+                        ->reader<dyncal::wire::SampleBlock>(
+                            bus::topics::acs_samples, bus::Profile::samples, "bench", wake_up_)
                         .value());
-    runs_.emplace(
-        participant_
-            ->writer<dyncal::Measurement>(bus::topics::measurement, bus::Profile::state, "bench")
-            .value());
+    runs_.emplace(participant_
+                      ->writer<dyncal::wire::Measurement>(bus::topics::measurement,
+                                                          bus::Profile::state, "bench")
+                      .value());
     service_->start();
     source_.emplace(PlayedSource::prepare(file_settings(file_->path()), {}).value());
     thread_ = std::jthread(
@@ -101,8 +101,8 @@ protected:
     service_->stop();
   }
 
-  void set_state(const std::string& run, dyncal::MeasurementState state) {
-    dyncal::Measurement measurement;
+  void set_state(const std::string& run, dyncal::wire::MeasurementState state) {
+    dyncal::wire::Measurement measurement;
     measurement.bench("bench");
     measurement.run(run);
     measurement.state(state);
@@ -110,12 +110,12 @@ protected:
   }
 
   // Blocks up to the end of the stream, or those that came within ten seconds.
-  std::vector<dyncal::SampleBlock> play() {
-    std::vector<dyncal::SampleBlock> blocks;
+  std::vector<dyncal::wire::SampleBlock> play() {
+    std::vector<dyncal::wire::SampleBlock> blocks;
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     bool ended = false;
     while (!ended && std::chrono::steady_clock::now() < deadline) {
-      reader_->take([&](const dyncal::SampleBlock& block, const bus::SampleInfo&) {
+      reader_->take([&](const dyncal::wire::SampleBlock& block, const bus::SampleInfo&) {
         blocks.push_back(block);
         ended = ended || block.end_of_stream();
       });
@@ -131,8 +131,8 @@ protected:
   std::unique_ptr<SourceService> service_;
   std::shared_ptr<SourcePublisher> publisher_;
   std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
-  std::optional<bus::Reader<dyncal::SampleBlock>> reader_;
-  std::optional<bus::Writer<dyncal::Measurement>> runs_;
+  std::optional<bus::Reader<dyncal::wire::SampleBlock>> reader_;
+  std::optional<bus::Writer<dyncal::wire::Measurement>> runs_;
   std::optional<PlayedSource> source_;
   std::jthread thread_;
 };
@@ -140,7 +140,7 @@ protected:
 TEST_F(PlayedFile, IsPlayedOnceForEveryRunInASessionOfItsOwn) {
   std::uint64_t first_session = 0;
   for (const char* run : {"run-1", "run-2"}) {
-    set_state(run, dyncal::MEASUREMENT_RUNNING);
+    set_state(run, dyncal::wire::MEASUREMENT_RUNNING);
     const auto blocks = play();
     ASSERT_FALSE(blocks.empty());
     EXPECT_TRUE(blocks.back().end_of_stream());
@@ -153,7 +153,7 @@ TEST_F(PlayedFile, IsPlayedOnceForEveryRunInASessionOfItsOwn) {
     EXPECT_EQ(next, 5000U);
     EXPECT_NE(blocks.front().session(), first_session);
     first_session = blocks.front().session();
-    set_state(run, dyncal::MEASUREMENT_DONE);
+    set_state(run, dyncal::wire::MEASUREMENT_DONE);
   }
 }
 

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "services/bench/bench_file.hpp"
-#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -62,16 +61,6 @@ TEST(GeneratorTable, RefusesWhatCannotBe) {
   const auto from_data = bench_with(loop, "settling = \"from-data\"\n");
   ASSERT_FALSE(from_data);
   EXPECT_THAT(from_data.error().message, HasSubstr("cannot go with excitation.settling"));
-}
-
-TEST(LevelSettling, IsPlannedOnlyWhereTheLevelIsControlled) {
-  BenchFile bench = *bench_with("driver = \"scpi\"\naddress = \"a:1\"\n");
-  EXPECT_EQ(planned_settling_s(bench, 10.0, 1), 0.5);
-  bench.generator.level_tolerance_rel = 0.01;
-  const double one_measurement_s = 0.5 + level_transport_s + level_window_s(10.0) + 0.5;
-  EXPECT_NEAR(planned_settling_s(bench, 10.0, 1), 0.5 + 4.0 * one_measurement_s, 1e-12);
-  EXPECT_NEAR(planned_settling_s(bench, 10.0, 2), 0.5 + 2.0 * one_measurement_s, 1e-12);
-  EXPECT_GT(level_window_s(1.0), level_window_s(100.0));
 }
 
 } // namespace

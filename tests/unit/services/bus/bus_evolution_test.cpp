@@ -10,7 +10,7 @@ namespace dyncal::bus {
 namespace {
 
 // Command as a later version could have it: two members more.
-struct NewerCommand : Command {
+struct NewerCommand : wire::Command {
   double at_utc_s = 0.0;
   std::string reason;
 
@@ -29,14 +29,14 @@ struct NewerCommand : Command {
 };
 
 // Its bytes end in the middle of a member.
-struct BrokenCommand : Command {
+struct BrokenCommand : wire::Command {
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
     cdr << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
   }
 };
 
 // Its key is longer than the contract allows.
-struct LongKeyCommand : Command {
+struct LongKeyCommand : wire::Command {
   static std::size_t getCdrSerializedSize(const LongKeyCommand& sample) {
     return Command::getCdrSerializedSize(sample) + 200;
   }
@@ -52,19 +52,19 @@ struct LongKeyCommand : Command {
 template <>
 const TypeSupport& type_support<NewerCommand>() {
   static const TypeSupport support =
-      make_type_support<NewerCommand>("dyncal::Command", KeyLayout{{64}, 0});
+      make_type_support<NewerCommand>("dyncal::wire::Command", KeyLayout{{64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<BrokenCommand>() {
   static const TypeSupport support =
-      make_type_support<BrokenCommand>("dyncal::Command", KeyLayout{{64}, 0});
+      make_type_support<BrokenCommand>("dyncal::wire::Command", KeyLayout{{64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<LongKeyCommand>() {
   static const TypeSupport support =
-      make_type_support<LongKeyCommand>("dyncal::Command", KeyLayout{{200}, 0});
+      make_type_support<LongKeyCommand>("dyncal::wire::Command", KeyLayout{{200}, 0});
   return support;
 }
 
@@ -101,9 +101,9 @@ protected:
   }
 
   // Two writers have no order between them: the malformed message may come after the good one.
-  [[nodiscard]] bool comes_to_be_counted(Reader<Command>& reader) {
+  [[nodiscard]] bool comes_to_be_counted(Reader<wire::Command>& reader) {
     return wait_for([&] {
-      reader.take([](const Command&, const SampleInfo&) {});
+      reader.take([](const wire::Command&, const SampleInfo&) {});
       return reading_.malformed_messages() >= 1;
     });
   }
@@ -113,20 +113,20 @@ INSTANTIATE_TEST_SUITE_P(AllVendors, BusEvolution, testing::ValuesIn(vendor_pair
 
 TEST_P(BusEvolution, LetsAnOlderProgramReadANewerOne) {
   auto writer = this->writer<NewerCommand>(topics::command, Profile::state);
-  auto reader = this->reader<Command>(topics::command, Profile::state);
+  auto reader = this->reader<wire::Command>(topics::command, Profile::state);
   auto command = filled<NewerCommand>();
   command.at_utc_s = 1.5;
   command.reason = "because";
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
-  EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
+  EXPECT_EQ(take_until_last(reader), std::vector<wire::Command>{filled<wire::Command>()});
 }
 
 TEST_P(BusEvolution, LetsANewerProgramReadAnOlderOneWithZerosForWhatItLacks) {
-  auto writer = this->writer<Command>(topics::command, Profile::state);
+  auto writer = this->writer<wire::Command>(topics::command, Profile::state);
   auto reader = this->reader<NewerCommand>(topics::command, Profile::state);
-  auto command = filled<Command>();
+  auto command = filled<wire::Command>();
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
@@ -139,35 +139,35 @@ TEST_P(BusEvolution, LetsANewerProgramReadAnOlderOneWithZerosForWhatItLacks) {
 
 TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
   auto broken_writer = this->writer<BrokenCommand>(topics::command, Profile::state);
-  auto reader = this->reader<Command>(topics::command, Profile::state);
+  auto reader = this->reader<wire::Command>(topics::command, Profile::state);
   ASSERT_EQ(broken_writer.write(filled<BrokenCommand>()), WriteOutcome::written);
   Participant third = join(GetParam().writer);
-  auto writer = third.writer<Command>(topics::command, Profile::state, bench_).value();
+  auto writer = third.writer<wire::Command>(topics::command, Profile::state, bench_).value();
   ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 2; }));
   broken_writer.wait_for_acknowledgments(std::chrono::seconds(1));
-  auto command = filled<Command>();
+  auto command = filled<wire::Command>();
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
-  EXPECT_EQ(take_until_last(reader), std::vector<Command>{filled<Command>()});
+  EXPECT_EQ(take_until_last(reader), std::vector<wire::Command>{filled<wire::Command>()});
   EXPECT_TRUE(comes_to_be_counted(reader));
-  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::wire::Command")).Times(1));
 }
 
 TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {
   auto long_writer = this->writer<LongKeyCommand>(topics::command, Profile::state);
-  auto reader = this->reader<Command>(topics::command, Profile::state);
+  auto reader = this->reader<wire::Command>(topics::command, Profile::state);
   ASSERT_EQ(long_writer.write(filled<LongKeyCommand>()), WriteOutcome::written);
   Participant third = join(GetParam().writer);
-  auto writer = third.writer<Command>(topics::command, Profile::state, bench_).value();
+  auto writer = third.writer<wire::Command>(topics::command, Profile::state, bench_).value();
   ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 2; }));
   long_writer.wait_for_acknowledgments(std::chrono::seconds(1));
-  auto command = filled<Command>();
+  auto command = filled<wire::Command>();
   command.target("last");
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   EXPECT_TRUE(take_until_last(reader).empty());
   EXPECT_TRUE(comes_to_be_counted(reader));
-  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::Command")).Times(1));
+  EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::wire::Command")).Times(1));
 }
 
 } // namespace

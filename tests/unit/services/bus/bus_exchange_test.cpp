@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 
 class BusExchange : public BusPair {
 protected:
-  SampleBlock block(std::uint64_t number, const std::string& source = "dau",
-                    std::size_t values = 16) const {
-    SampleBlock block;
+  wire::SampleBlock block(std::uint64_t number, const std::string& source = "dau",
+                          std::size_t values = 16) const {
+    wire::SampleBlock block;
     block.bench(bench_);
     block.source(source);
     block.session(1);
@@ -24,8 +24,8 @@ protected:
     return block;
   }
 
-  static Command command(const std::string& target, std::uint32_t step) {
-    Command command;
+  static wire::Command command(const std::string& target, std::uint32_t step) {
+    wire::Command command;
     command.target(target);
     command.step(step);
     return command;
@@ -35,13 +35,13 @@ protected:
 INSTANTIATE_TEST_SUITE_P(AllVendors, BusExchange, testing::ValuesIn(vendor_pairs()), pair_name);
 
 TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
-  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
-  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   constexpr std::uint64_t blocks = 500;
   constexpr std::size_t values = 5000; // 40 kB
   std::vector<std::uint64_t> numbers;
   const auto take = [&] {
-    reader.take([&](const SampleBlock& block, const SampleInfo& info) {
+    reader.take([&](const wire::SampleBlock& block, const SampleInfo& info) {
       ASSERT_TRUE(info.valid);
       EXPECT_EQ(block, this->block(block.block(), "dau", values));
       EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000)
@@ -62,16 +62,17 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
 }
 
 TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
-  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   const std::uint64_t blocks = late_joiner_blocks + 200;
   for (std::uint64_t i = 0; i < blocks; ++i) {
     ASSERT_EQ(writer.write(block(i)), WriteOutcome::written);
   }
-  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   std::vector<std::uint64_t> numbers;
   ASSERT_TRUE(wait_for([&] {
-    reader.take(
-        [&](const SampleBlock& block, const SampleInfo&) { numbers.push_back(block.block()); });
+    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
+      numbers.push_back(block.block());
+    });
     return !numbers.empty() && numbers.back() == blocks - 1;
   })) << numbers.size();
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(late_joiner_blocks));
@@ -81,8 +82,8 @@ TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
 }
 
 TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
-  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
-  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   ASSERT_TRUE(wait_for_match(writer, reader));
   // 8 kB each, so that neither the depth at either end nor a buffer of bytes between them takes
   // them all.
@@ -98,7 +99,7 @@ TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
   EXPECT_LE(written, static_cast<std::uint64_t>(late_joiner_blocks + untaken_blocks + 200));
   std::uint64_t next = 0;
   const auto take = [&] {
-    reader.take([&](const SampleBlock& block, const SampleInfo&) {
+    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
       EXPECT_EQ(block.block(), next);
       next = block.block() + 1;
     });
@@ -111,8 +112,8 @@ TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
 }
 
 TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
-  auto writer = this->writer<SourceStatus>(topics::source_status, Profile::state);
-  SourceStatus status;
+  auto writer = this->writer<wire::SourceStatus>(topics::source_status, Profile::state);
+  wire::SourceStatus status;
   status.bench(bench_);
   for (std::uint64_t update = 1; update <= 10; ++update) {
     for (const char* source : {"dau", "acs", "can"}) {
@@ -121,10 +122,10 @@ TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
       ASSERT_EQ(writer.write(status), WriteOutcome::written);
     }
   }
-  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
+  auto reader = this->reader<wire::SourceStatus>(topics::source_status, Profile::state);
   std::map<std::string, std::vector<std::uint64_t>> seen;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SourceStatus& sample, const SampleInfo&) {
+    reader.take([&](const wire::SourceStatus& sample, const SampleInfo&) {
       seen[sample.source().to_string()].push_back(sample.received());
     });
     return seen.size() == 3;
@@ -135,9 +136,9 @@ TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
 }
 
 TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
-  auto writer = this->writer<CalibrationResult>(topics::calibration_result, Profile::results);
+  auto writer = this->writer<wire::CalibrationResult>(topics::calibration_result, Profile::results);
   constexpr std::uint32_t steps = 2000;
-  CalibrationResult result;
+  wire::CalibrationResult result;
   result.bench(bench_);
   result.run("run-1");
   result.channel("dau/acceleration_z");
@@ -146,10 +147,10 @@ TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
     result.frequency_hz(step * 0.5);
     ASSERT_EQ(writer.write(result), WriteOutcome::written);
   }
-  auto reader = this->reader<CalibrationResult>(topics::calibration_result, Profile::results);
+  auto reader = this->reader<wire::CalibrationResult>(topics::calibration_result, Profile::results);
   std::map<std::uint32_t, double> frequencies;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const CalibrationResult& sample, const SampleInfo&) {
+    reader.take([&](const wire::CalibrationResult& sample, const SampleInfo&) {
       frequencies[sample.step()] = sample.frequency_hz();
     });
     return frequencies.size() == steps;
@@ -158,13 +159,14 @@ TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
 }
 
 TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
-  auto writer = this->writer<Command>(topics::command, Profile::command);
+  auto writer = this->writer<wire::Command>(topics::command, Profile::command);
   ASSERT_EQ(writer.write(command("dau", 1)), WriteOutcome::written);
-  auto reader = this->reader<Command>(topics::command, Profile::command);
+  auto reader = this->reader<wire::Command>(topics::command, Profile::command);
   ASSERT_TRUE(wait_for_match(writer, reader));
   std::vector<std::uint32_t> steps;
   const auto take = [&] {
-    reader.take([&](const Command& sample, const SampleInfo&) { steps.push_back(sample.step()); });
+    reader.take(
+        [&](const wire::Command& sample, const SampleInfo&) { steps.push_back(sample.step()); });
     return !steps.empty();
   };
   // One side may match before the other: commands are repeated until they are answered.
@@ -179,8 +181,8 @@ TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
 }
 
 TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
-  auto writer = this->writer<SampleBlock>(topics::acs_samples, Profile::samples);
-  auto reader = this->reader<SampleBlock>(topics::acs_samples, Profile::samples);
+  auto writer = this->writer<wire::SampleBlock>(topics::acs_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::acs_samples, Profile::samples);
   const std::string shortest = "a";
   const std::string longest(64, 'z');
   for (std::uint64_t i = 0; i < 20; ++i) {
@@ -190,7 +192,7 @@ TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
   }
   std::map<std::string, std::uint64_t> next;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const SampleBlock& block, const SampleInfo&) {
+    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
       EXPECT_EQ(block.block(), next[block.source().to_string()]++);
     });
     return next[shortest] == 20 && next[longest] == 20;
@@ -199,9 +201,9 @@ TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
 }
 
 TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
-  auto writer = this->writer<SourceStatus>(topics::source_status, Profile::state);
-  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
-  SourceStatus status;
+  auto writer = this->writer<wire::SourceStatus>(topics::source_status, Profile::state);
+  auto reader = this->reader<wire::SourceStatus>(topics::source_status, Profile::state);
+  wire::SourceStatus status;
   status.bench(bench_);
   status.message("still here");
   for (const char* source : {"first", "second", "third"}) {
@@ -211,7 +213,7 @@ TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
   std::size_t alive = 0;
   std::vector<std::string> ended;
   const auto take = [&] {
-    reader.take([&](const SourceStatus& sample, const SampleInfo& info) {
+    reader.take([&](const wire::SourceStatus& sample, const SampleInfo& info) {
       if (info.valid) {
         ++alive;
         return;
@@ -239,17 +241,17 @@ TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
 }
 
 TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
-  auto reader = this->reader<SourceStatus>(topics::source_status, Profile::state);
-  auto writer = std::make_unique<Writer<SourceStatus>>(
-      this->writer<SourceStatus>(topics::source_status, Profile::state));
-  SourceStatus status;
+  auto reader = this->reader<wire::SourceStatus>(topics::source_status, Profile::state);
+  auto writer = std::make_unique<Writer<wire::SourceStatus>>(
+      this->writer<wire::SourceStatus>(topics::source_status, Profile::state));
+  wire::SourceStatus status;
   status.bench(bench_);
   status.source("dau");
   ASSERT_EQ(writer->write(status), WriteOutcome::written);
   std::size_t valid = 0;
   ASSERT_TRUE(wait_for([&] {
     reader.take(
-        [&](const SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
+        [&](const wire::SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
     return valid == 1;
   }));
   writer.reset();
@@ -257,9 +259,9 @@ TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
 }
 
 TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
-  auto writer = this->writer<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   ASSERT_EQ(writer.write(block(0)), WriteOutcome::written);
-  auto reader = this->reader<SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   for (std::uint64_t expected = 0; expected < 3; ++expected) {
     if (expected > 0) {
       ASSERT_EQ(writer.write(block(expected)), WriteOutcome::written);
@@ -268,27 +270,31 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
     const auto deadline = Clock::now() + patience;
     while (!got) {
       ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
-      reader.take(
-          [&](const SampleBlock& block, const SampleInfo&) { got = block.block() == expected; });
+      reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
+        got = block.block() == expected;
+      });
     }
   }
 }
 
 TEST_P(BusExchange, KeepsPartitionsApartAndReadsAllWithAStar) {
-  auto mine = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-a").value();
-  auto other = writing_.writer<Command>(topics::command, Profile::state, bench_ + "-b").value();
+  auto mine =
+      writing_.writer<wire::Command>(topics::command, Profile::state, bench_ + "-a").value();
+  auto other =
+      writing_.writer<wire::Command>(topics::command, Profile::state, bench_ + "-b").value();
   auto one =
-      reading_.reader<Command>(topics::command, Profile::state, bench_ + "-a", bell_).value();
-  auto all = reading_.reader<Command>(topics::command, Profile::state, bench_ + "*", bell_).value();
+      reading_.reader<wire::Command>(topics::command, Profile::state, bench_ + "-a", bell_).value();
+  auto all =
+      reading_.reader<wire::Command>(topics::command, Profile::state, bench_ + "*", bell_).value();
   ASSERT_EQ(mine.write(command("dau", 1)), WriteOutcome::written);
   ASSERT_EQ(other.write(command("acs", 2)), WriteOutcome::written);
   std::vector<std::string> of_one;
   std::vector<std::string> of_all;
   ASSERT_TRUE(wait_for([&] {
-    one.take([&](const Command& sample, const SampleInfo&) {
+    one.take([&](const wire::Command& sample, const SampleInfo&) {
       of_one.push_back(sample.target().to_string());
     });
-    all.take([&](const Command& sample, const SampleInfo&) {
+    all.take([&](const wire::Command& sample, const SampleInfo&) {
       of_all.push_back(sample.target().to_string());
     });
     return of_one.size() == 1 && of_all.size() == 2;
@@ -297,21 +303,22 @@ TEST_P(BusExchange, KeepsPartitionsApartAndReadsAllWithAStar) {
 }
 
 TEST_P(BusExchange, LetsParticipantsGoBeforeTheirWritersAndReaders) {
-  std::unique_ptr<Writer<SampleBlock>> writer;
-  std::unique_ptr<Reader<SampleBlock>> reader;
+  std::unique_ptr<Writer<wire::SampleBlock>> writer;
+  std::unique_ptr<Reader<wire::SampleBlock>> reader;
   {
     Participant participant = join(GetParam().writer);
-    writer = std::make_unique<Writer<SampleBlock>>(
-        participant.writer<SampleBlock>("DauSamples", Profile::samples, bench_).value());
+    writer = std::make_unique<Writer<wire::SampleBlock>>(
+        participant.writer<wire::SampleBlock>("DauSamples", Profile::samples, bench_).value());
   }
   {
     Participant participant = join(GetParam().reader);
-    reader = std::make_unique<Reader<SampleBlock>>(
-        participant.reader<SampleBlock>("DauSamples", Profile::samples, bench_, bell_).value());
+    reader = std::make_unique<Reader<wire::SampleBlock>>(
+        participant.reader<wire::SampleBlock>("DauSamples", Profile::samples, bench_, bell_)
+            .value());
   }
   ASSERT_EQ(writer->write(block(0)), WriteOutcome::written);
-  EXPECT_TRUE(
-      wait_for([&] { return reader->take([](const SampleBlock&, const SampleInfo&) {}) == 1; }));
+  EXPECT_TRUE(wait_for(
+      [&] { return reader->take([](const wire::SampleBlock&, const SampleInfo&) {}) == 1; }));
 }
 
 } // namespace

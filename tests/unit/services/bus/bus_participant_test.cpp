@@ -55,12 +55,12 @@ TEST_P(BusParticipant, RefusesAWriterForABenchWhoseNameIsTooLongOrAPattern) {
   ASSERT_TRUE(participant);
   for (const std::string& bench : {std::string(65, 'b'), std::string("*"), std::string()}) {
     const auto writer =
-        participant->writer<SampleBlock>(topics::dau_samples, Profile::samples, bench);
+        participant->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples, bench);
     ASSERT_FALSE(writer) << bench;
     EXPECT_EQ(writer.error().code, services::ErrorCode::bad_argument);
   }
-  EXPECT_TRUE(participant->writer<SampleBlock>(topics::dau_samples, Profile::samples,
-                                               std::string(64, 'b')));
+  EXPECT_TRUE(participant->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples,
+                                                     std::string(64, 'b')));
 }
 
 TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
@@ -74,16 +74,16 @@ TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
   ASSERT_TRUE(two) << two.error().message;
   const std::string bench = "participant-test-" + std::to_string(getpid());
   auto bell = std::make_shared<WakeUp>();
-  auto writer = one->writer<Command>(topics::command, Profile::state, bench);
-  auto reader = two->reader<Command>(topics::command, Profile::state, bench, bell);
+  auto writer = one->writer<wire::Command>(topics::command, Profile::state, bench);
+  auto reader = two->reader<wire::Command>(topics::command, Profile::state, bench, bell);
   ASSERT_TRUE(writer && reader);
-  Command command;
+  wire::Command command;
   command.target("dau");
   ASSERT_EQ(writer->write(command), WriteOutcome::written);
   std::size_t taken = 0;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (taken == 0 && bell->wait_until(deadline)) {
-    taken = reader->take([](const Command&, const SampleInfo&) {});
+    taken = reader->take([](const wire::Command&, const SampleInfo&) {});
   }
   EXPECT_EQ(taken, 1U);
 }

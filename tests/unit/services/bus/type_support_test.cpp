@@ -20,8 +20,8 @@ bool read(T& sample, const std::string& bytes) {
   return type_support<T>().deserialize(&sample, bytes.data(), bytes.size());
 }
 
-SampleBlock example_block() {
-  SampleBlock block;
+wire::SampleBlock example_block() {
+  wire::SampleBlock block;
   block.bench("acc-1");
   block.source("dau");
   block.session(0x0123456789abcdefU);
@@ -39,33 +39,33 @@ SampleBlock example_block() {
 }
 
 TEST(TypeSupport, ReadsWhatItWrites) {
-  const SampleBlock written = example_block();
-  SampleBlock read_back;
+  const wire::SampleBlock written = example_block();
+  wire::SampleBlock read_back;
   ASSERT_TRUE(read(read_back, bytes_of(written)));
   EXPECT_EQ(read_back, written);
 }
 
 TEST(TypeSupport, ReadsIntoASampleThatHeldAnother) {
-  SampleBlock sample = example_block();
-  SampleBlock empty;
+  wire::SampleBlock sample = example_block();
+  wire::SampleBlock empty;
   empty.bench("b");
   ASSERT_TRUE(read(sample, bytes_of(empty)));
   EXPECT_EQ(sample, empty);
 }
 
 TEST(TypeSupport, ReadsAMessageOfAnOlderTypeWithZerosForTheMissingMembers) {
-  const SampleBlock written = example_block();
+  const wire::SampleBlock written = example_block();
   const std::string bytes = bytes_of(written);
-  SampleBlock read_back;
+  wire::SampleBlock read_back;
   ASSERT_TRUE(read(
       read_back, bytes.substr(0, bytes.size() - sizeof(std::int64_t)))); // without received_utc_ns
-  SampleBlock expected = written;
+  wire::SampleBlock expected = written;
   expected.received_utc_ns(0);
   EXPECT_EQ(read_back, expected);
 }
 
 TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
-  SampleBlock read_back;
+  wire::SampleBlock read_back;
   ASSERT_TRUE(
       read(read_back, bytes_of(example_block()) + std::string("more of it, by a later version")));
   EXPECT_EQ(read_back, example_block());
@@ -74,7 +74,7 @@ TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
 // Cut inside a member, it is not an older type: samples must not be made up of zeros.
 TEST(TypeSupport, RefusesAMessageThatIsCutInsideAMember) {
   const std::string bytes = bytes_of(example_block());
-  SampleBlock sample;
+  wire::SampleBlock sample;
   EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 4))); // in received_utc_ns
   EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 8 - 3 * sizeof(double)))); // in values
   EXPECT_FALSE(read(sample, bytes.substr(0, cdr_header_bytes + 6)));                  // in bench
@@ -83,7 +83,7 @@ TEST(TypeSupport, RefusesAMessageThatIsCutInsideAMember) {
 
 TEST(TypeSupport, SurvivesAnyBytes) {
   std::string bytes = bytes_of(example_block());
-  SampleBlock sample;
+  wire::SampleBlock sample;
   for (std::size_t i = cdr_header_bytes; i < bytes.size(); ++i) {
     std::string damaged = bytes;
     damaged[i] = static_cast<char>(damaged[i] ^ 0xFF);
@@ -96,9 +96,10 @@ TEST(TypeSupport, SurvivesAnyBytes) {
 
 template <class T>
 class EveryType : public testing::Test {};
-using Types = testing::Types<SourceDescription, SourceStatus, SampleBlock, TriggeredRecord,
-                             AcsPhasor, Measurement, Excitation, CalibrationResult,
-                             TransferFunction, SampleClockReport, ServiceStatus, Command>;
+using Types = testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
+                             wire::TriggeredRecord, wire::AcsPhasor, wire::Measurement,
+                             wire::Excitation, wire::CalibrationResult, wire::TransferFunction,
+                             wire::SampleClockReport, wire::ServiceStatus, wire::Command>;
 TYPED_TEST_SUITE(EveryType, Types);
 
 TYPED_TEST(EveryType, IsNamedAsInTheContract) {

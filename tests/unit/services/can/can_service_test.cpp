@@ -82,7 +82,7 @@ protected:
     ASSERT_TRUE(source->run(**publisher, {}));
     ASSERT_TRUE(listener.until([&] {
       const auto status = listener.last_status("sensor");
-      const bool ended = status && status->state() == SOURCE_ENDED &&
+      const bool ended = status && status->state() == wire::SOURCE_ENDED &&
                          listener.samples_of("sensor") == status->received();
       // Topics come in no order among each other.
       return ended && !listener.descriptions.empty() && !listener.blocks.empty() &&
@@ -91,7 +91,7 @@ protected:
   }
   [[nodiscard]] std::uint64_t cause(const std::string& name) const {
     const auto status = listener.last_status("sensor");
-    for (const NamedCount& count : status->causes()) {
+    for (const wire::NamedCount& count : status->causes()) {
       if (count.name() == name) {
         return count.value();
       }
@@ -115,10 +115,10 @@ TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
     events.emplace_back(sample(k));
   }
   publish(std::move(events));
-  const SourceDescription& description = listener.descriptions.back();
-  EXPECT_EQ(description.kind(), SOURCE_CAN);
-  EXPECT_EQ(description.time_base(), TIME_BASE_UTC);
-  EXPECT_EQ(description.stamp_instant(), STAMP_FRAME_START);
+  const wire::SourceDescription& description = listener.descriptions.back();
+  EXPECT_EQ(description.kind(), wire::SOURCE_CAN);
+  EXPECT_EQ(description.time_base(), wire::TIME_BASE_UTC);
+  EXPECT_EQ(description.stamp_instant(), wire::STAMP_FRAME_START);
   EXPECT_EQ(description.driver(), "can can0, time by counter");
   EXPECT_DOUBLE_EQ(description.nominal_rate_hz(), 1000.0);
   EXPECT_GT(description.stamp_uncertainty_s(), 0.0);
@@ -129,7 +129,7 @@ TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
   EXPECT_DOUBLE_EQ(description.channels()[0].maximum(), 50.0);
   EXPECT_EQ(listener.samples_of("sensor"), 3000U);
   std::uint64_t next = 0;
-  for (const SampleBlock& block : listener.blocks) {
+  for (const wire::SampleBlock& block : listener.blocks) {
     EXPECT_EQ(block.session(), description.session());
     if (block.sample_count() == 0) {
       continue;
@@ -281,14 +281,14 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
       [&](const std::stop_token& stop) { EXPECT_TRUE(source->run(**publisher, stop)); });
   ASSERT_TRUE(listener.armed("sensor", "run-1"));
   EXPECT_EQ(listener.samples_of("sensor"), 0U);
-  listener.set_state("run-1", MEASUREMENT_RUNNING);
+  listener.set_state("run-1", wire::MEASUREMENT_RUNNING);
   ASSERT_TRUE(listener.until(
       [&] { return !listener.blocks.empty() && listener.blocks.back().end_of_stream(); }));
   EXPECT_EQ(listener.samples_of("sensor"), 1669U);
   double sum[3] = {};
   std::uint64_t missing = 0;
   std::uint64_t next = 0;
-  for (const SampleBlock& block : listener.blocks) {
+  for (const wire::SampleBlock& block : listener.blocks) {
     if (block.sample_count() == 0) {
       continue;
     }

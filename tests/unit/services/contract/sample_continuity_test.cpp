@@ -5,9 +5,9 @@
 namespace dyncal::bus {
 namespace {
 
-SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
-                     std::uint32_t samples, const char* source = "dau") {
-  SampleBlock block;
+wire::SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
+                           std::uint32_t samples, const char* source = "dau") {
+  wire::SampleBlock block;
   block.bench("acc-1");
   block.source(source);
   block.session(session);

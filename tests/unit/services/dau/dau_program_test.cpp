@@ -105,8 +105,8 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   EXPECT_EQ(description.channels()[3].unit(), "\\volt");
   EXPECT_EQ(description.device(), "MPU_9250");
   EXPECT_EQ(description.serial(), "0xbccb0100");
-  EXPECT_EQ(description.time_base(), TIME_BASE_UTC);
-  EXPECT_EQ(description.stamp_instant(), STAMP_DATA_READY_EDGE);
+  EXPECT_EQ(description.time_base(), wire::TIME_BASE_UTC);
+  EXPECT_EQ(description.stamp_instant(), wire::STAMP_DATA_READY_EDGE);
 
   std::uint64_t next = 0;
   for (const auto& block : listener.blocks) {
@@ -126,14 +126,14 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_on_way() == 24; }))
       << program->said();
   EXPECT_EQ(listener.last_status("dau")->lost_in_device(), 0U);
-  EXPECT_EQ(listener.last_status("dau")->state(), SOURCE_RUNNING);
+  EXPECT_EQ(listener.last_status("dau")->state(), wire::SOURCE_RUNNING);
 
   program->signal(SIGTERM);
   const auto exit = program->wait_for(std::chrono::seconds(10));
   ASSERT_TRUE(exit);
   EXPECT_EQ(exit->status, 0) << program->said();
   EXPECT_TRUE(listener.until([&] {
-    return listener.blocks.back().end_of_stream() && listener.saw_state("dau", SOURCE_ENDED);
+    return listener.blocks.back().end_of_stream() && listener.saw_state("dau", wire::SOURCE_ENDED);
   }));
   EXPECT_THAT(program->said(), HasSubstr("sensor 0xbccb0100 is there"));
   EXPECT_THAT(program->said(), HasSubstr("samples lost on the way"));
@@ -146,7 +146,7 @@ TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
   SimulatedUnit unit(port);
   ASSERT_TRUE(listener.until([&] {
     const auto status = listener.last_status("dau");
-    return status && status->state() == SOURCE_SILENT &&
+    return status && status->state() == wire::SOURCE_SILENT &&
            status->message().find("0xbccb0100 (MPU_9250)") != std::string::npos;
   })) << program->said();
   EXPECT_THAT(listener.last_status("dau")->message(),

@@ -94,8 +94,8 @@ shots = {}
     thread_ = std::jthread([this](const std::stop_token& stop) { service_->run(stop); });
   }
 
-  void announce(std::uint32_t step, ExcitationState state) {
-    Excitation excitation;
+  void announce(std::uint32_t step, wire::ExcitationState state) {
+    wire::Excitation excitation;
     excitation.bench(bench_);
     excitation.run("run-1");
     excitation.step(step);
@@ -105,13 +105,13 @@ shots = {}
   }
 
   void take() {
-    traces_.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+    traces_.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
       if (info.valid && record.sample_count() > 0) {
         EXPECT_EQ(record.values().size(), 10'000U);
         trace_shots_[record.step()].insert(record.shot());
       }
     });
-    series_.take([&](const TriggeredRecord& record, const bus::SampleInfo& info) {
+    series_.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
       if (info.valid && record.sample_count() > 0) {
         EXPECT_EQ(record.run(), "run-1");
         EXPECT_EQ(record.sample_count(), 200U);
@@ -119,7 +119,7 @@ shots = {}
         series_shots_[record.step()].insert(record.shot());
       }
     });
-    status_.take([&](const SourceStatus& status, const bus::SampleInfo& info) {
+    status_.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
       if (info.valid && status.source() == "dso") {
         status_seen_ = status;
         if (!status.message().empty()) {
@@ -143,7 +143,7 @@ shots = {}
   [[nodiscard]] bool has_shots(std::uint32_t step, std::size_t count) {
     return trace_shots_[step].size() == count && series_shots_[step] == trace_shots_[step];
   }
-  [[nodiscard]] bool is(SourceState state) const {
+  [[nodiscard]] bool is(wire::SourceState state) const {
     return status_seen_ && status_seen_->state() == state;
   }
 
@@ -161,34 +161,38 @@ shots = {}
   std::uint16_t sensor_port_ = 0;
   bus::Participant participant_ = join();
   std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
-  bus::Writer<Excitation> excitation_ =
-      participant_.writer<Excitation>(bus::topics::excitation, bus::Profile::state, bench_).value();
-  bus::Reader<TriggeredRecord> traces_ =
-      participant_
-          .reader<TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench_, bell_)
+  bus::Writer<wire::Excitation> excitation_ =
+      participant_.writer<wire::Excitation>(bus::topics::excitation, bus::Profile::state, bench_)
           .value();
-  bus::Reader<TriggeredRecord> series_ =
+  bus::Reader<wire::TriggeredRecord> traces_ =
       participant_
-          .reader<TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench_, bell_)
+          .reader<wire::TriggeredRecord>(bus::topics::dso_record, bus::Profile::samples, bench_,
+                                         bell_)
           .value();
-  bus::Reader<SourceStatus> status_ =
+  bus::Reader<wire::TriggeredRecord> series_ =
       participant_
-          .reader<SourceStatus>(bus::topics::source_status, bus::Profile::state, bench_, bell_)
+          .reader<wire::TriggeredRecord>(bus::topics::tss_record, bus::Profile::samples, bench_,
+                                         bell_)
+          .value();
+  bus::Reader<wire::SourceStatus> status_ =
+      participant_
+          .reader<wire::SourceStatus>(bus::topics::source_status, bus::Profile::state, bench_,
+                                      bell_)
           .value();
   std::unique_ptr<BenchService> service_;
   std::map<std::uint32_t, std::set<std::uint64_t>> trace_shots_;
   std::map<std::uint32_t, std::set<std::uint64_t>> series_shots_;
-  std::optional<SourceStatus> status_seen_;
+  std::optional<wire::SourceStatus> status_seen_;
   std::set<std::string> messages_;
   std::jthread thread_; // ends before what it uses
 };
 
 TEST_F(BenchServiceTest, AStepThatIsSteadyGetsItsShotsAndNoMore) {
   start();
-  announce(1, EXCITATION_STEADY);
+  announce(1, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return has_shots(1, 4); }));
-  announce(1, EXCITATION_DONE);
-  announce(2, EXCITATION_STEADY);
+  announce(1, wire::EXCITATION_DONE);
+  announce(2, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return has_shots(2, 4); }));
   EXPECT_TRUE(has_shots(1, 4));
   EXPECT_EQ(*trace_shots_[1].begin(), 1U);
@@ -197,24 +201,24 @@ TEST_F(BenchServiceTest, AStepThatIsSteadyGetsItsShotsAndNoMore) {
 
 TEST_F(BenchServiceTest, AnInstrumentThatIsSwitchedOffAndOnAgainGoesOnWithTheStep) {
   start({}, 1000);
-  announce(1, EXCITATION_STEADY);
+  announce(1, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return trace_shots_[1].size() >= 2; }));
   instruments_.reset();
-  ASSERT_TRUE(wait_for([&] { return is(SOURCE_SILENT); }));
+  ASSERT_TRUE(wait_for([&] { return is(wire::SOURCE_SILENT); }));
   EXPECT_THAT(status_seen_->message(), HasSubstr("127.0.0.1:" + std::to_string(scope_port_)));
   EXPECT_GT(status_seen_->rejected(), 0U);
   const std::size_t before = series_shots_[1].size();
   instruments_.emplace(device::ScopeFaults{}, scope_port_, sensor_port_);
   ASSERT_TRUE(wait_for([&] { return series_shots_[1].size() > before + 2; }));
-  EXPECT_TRUE(wait_for([&] { return is(SOURCE_RUNNING); }));
+  EXPECT_TRUE(wait_for([&] { return is(wire::SOURCE_RUNNING); }));
 }
 
 TEST_F(BenchServiceTest, AStepThatEndedWithoutItsShotsIsNotGoneOnWith) {
   start({}, 1000);
-  announce(1, EXCITATION_STEADY);
+  announce(1, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return trace_shots_[1].size() >= 2; }));
-  announce(2, EXCITATION_SETTLING); // the end of step 1 was never seen
-  announce(2, EXCITATION_STEADY);
+  announce(2, wire::EXCITATION_SETTLING); // the end of step 1 was never seen
+  announce(2, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return trace_shots_[2].size() >= 3; }));
   const std::uint64_t last_of_1 = *trace_shots_[1].rbegin();
   EXPECT_LT(last_of_1, *trace_shots_[2].begin());
@@ -224,7 +228,7 @@ class BadLine : public BenchServiceTest, public testing::WithParamInterface<cons
 
 TEST_P(BadLine, IsNamedAndItsShotsAreRepeated) {
   start({{GetParam(), std::string(GetParam()) == "wrong-length" ? 0.3 : 0.02}}, 10);
-  announce(1, EXCITATION_STEADY);
+  announce(1, wire::EXCITATION_STEADY);
   ASSERT_TRUE(wait_for([&] { return has_shots(1, 10); }));
   if (status_seen_ && status_seen_->rejected() > 0) {
     EXPECT_FALSE(messages_.empty());

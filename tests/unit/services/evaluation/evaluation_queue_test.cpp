@@ -9,8 +9,8 @@
 namespace dyncal::services {
 namespace {
 
-std::vector<CalibrationResult> result_of_step(std::uint32_t step) {
-  CalibrationResult result;
+std::vector<wire::CalibrationResult> result_of_step(std::uint32_t step) {
+  wire::CalibrationResult result;
   result.step(step);
   return {result};
 }

@@ -21,35 +21,21 @@ TEST(Recipe, ComesOutOfTheMessageAsItWentIn) {
 }
 
 TEST(Recipe, RefusesRolesThatAreNoChannels) {
-  Measurement measurement = tests::SyntheticRun{}.measurement();
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
   measurement.sync_dau("dau");
   EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dau is \"dau\""));
 }
 
 TEST(Recipe, RefusesReferenceAndSyncOfDifferentClocks) {
-  Measurement measurement = tests::SyntheticRun{}.measurement();
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
   measurement.sync_acs("other/sync");
   EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("must share a clock"));
 }
 
 TEST(Recipe, RefusesARunWithoutSteps) {
-  Measurement measurement = tests::SyntheticRun{}.measurement();
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
   measurement.steps().clear();
   EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("no excitation steps"));
-}
-
-TEST(Recipe, PlansAllFrequenciesOfARepetitionBeforeTheNext) {
-  BenchFile file;
-  file.bench = "acc-1";
-  file.excitation.frequencies_hz = {"10", "20"};
-  file.excitation.levels_m_s2 = {1.0, 2.0};
-  file.excitation.repetitions = 2;
-  const Measurement measurement = plan_measurement(file, "r", 5, {});
-  ASSERT_EQ(measurement.steps().size(), 4U);
-  EXPECT_EQ(measurement.steps()[2].frequency_hz(), "10");
-  EXPECT_EQ(measurement.steps()[2].repetition(), 2U);
-  EXPECT_EQ(measurement.steps()[3].step(), 4U);
-  EXPECT_DOUBLE_EQ(measurement.steps()[3].level_m_s2(), 2.0);
 }
 
 } // namespace

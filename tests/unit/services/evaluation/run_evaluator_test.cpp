@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-EvaluationOutput evaluate(const tests::SyntheticRun& run, const Measurement& measurement,
+EvaluationOutput evaluate(const tests::SyntheticRun& run, const wire::Measurement& measurement,
                           std::size_t evaluations_at_once = 0) {
   auto recipe = parse_recipe(measurement);
   EXPECT_TRUE(recipe) << recipe.error().message;
@@ -50,8 +50,8 @@ EvaluationOutput evaluate(const tests::SyntheticRun& run) {
 }
 
 // Sync as the sensor, against the reference beside it.
-Measurement analogue(Measurement measurement) {
-  measurement.method(METHOD_ANALOGUE);
+wire::Measurement analogue(wire::Measurement measurement) {
+  measurement.method(wire::METHOD_ANALOGUE);
   measurement.sync_acs("");
   measurement.sync_dau("");
   measurement.dut() = {"acs/sync"};
@@ -62,7 +62,7 @@ TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {
   const tests::SyntheticRun run;
   const EvaluationOutput output = evaluate(run);
   ASSERT_EQ(output.results.size(), 2U);
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_EQ(result.channel().to_string(), "dau/acceleration_z");
     EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
@@ -84,7 +84,7 @@ TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
   const tests::SyntheticRun run;
   const EvaluationOutput output = evaluate(run, analogue(run.measurement()));
   ASSERT_EQ(output.results.size(), 2U);
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_NEAR(result.magnitude(), 0.1,
                 4.0 * result.u_magnitude()); // sync is a tenth of the reference
@@ -100,15 +100,15 @@ TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
 TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
   tests::SyntheticRun run;
   run.settling_time_constant_s = 0.05;
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.settling_from_data(true);
-  for (PlannedStep& step : measurement.steps()) {
+  for (wire::PlannedStep& step : measurement.steps()) {
     step.settling_s(0.7);
     step.duration_s(0.6);
   }
   const EvaluationOutput output = evaluate(run, measurement);
   ASSERT_EQ(output.results.size(), 2U);
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_TRUE(result.flags().empty()) << result.flags().front();
     EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
@@ -125,15 +125,15 @@ TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
 TEST(RunEvaluator, SaysSoWhenSettlingTakesLongerThanPlanned) {
   tests::SyntheticRun run;
   run.settling_time_constant_s = 0.05;
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.settling_from_data(true);
-  for (PlannedStep& step : measurement.steps()) {
+  for (wire::PlannedStep& step : measurement.steps()) {
     step.settling_s(0.05);
     step.duration_s(1.2);
   }
   const EvaluationOutput output = evaluate(run, measurement);
   ASSERT_EQ(output.results.size(), 2U);
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     ASSERT_EQ(result.flags().size(), 1U);
     EXPECT_THAT(result.flags().front(), HasSubstr("settles for"));
   }
@@ -141,7 +141,7 @@ TEST(RunEvaluator, SaysSoWhenSettlingTakesLongerThanPlanned) {
 
 TEST(RunEvaluator, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   const tests::SyntheticRun run;
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.monte_carlo_trials(50'000);
   measurement.reference_delay_s(2e-6);
   tests::expect_drawing_agrees(evaluate(run, measurement).results, 2);
@@ -203,7 +203,7 @@ TEST(RunEvaluator, SaysWhichSyncIsMissingForAStepThatWasNotExcited) {
 
 TEST(RunEvaluator, RefusesASourceWithoutTheChannelAndListsThoseItHas) {
   const tests::SyntheticRun run;
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.sync_dau("dau/synch");
   RunEvaluator evaluator(*parse_recipe(measurement));
   const auto described = evaluator.describe(run.dau_description());
@@ -217,15 +217,15 @@ TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {
   RunEvaluator evaluator(*parse_recipe(run.measurement()));
   ASSERT_TRUE(evaluator.describe(run.acs_description()));
   ASSERT_TRUE(evaluator.describe(run.dau_description()));
-  for (const SampleBlock& block : run.acs_blocks()) {
+  for (const wire::SampleBlock& block : run.acs_blocks()) {
     evaluator.add(block);
   }
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     evaluator.add(block);
   }
-  Excitation excitation;
+  wire::Excitation excitation;
   excitation.step(1);
-  excitation.state(EXCITATION_ABORTED);
+  excitation.state(wire::EXCITATION_ABORTED);
   evaluator.announce(excitation);
   evaluator.end_of_excitation(true);
   const EvaluationOutput output = evaluator.take_output();

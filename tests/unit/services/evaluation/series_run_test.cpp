@@ -26,9 +26,9 @@ constexpr double beta_rad[] = {-0.021, -0.012, -0.017, -0.025,
 
 class SeriesRun : public testing::Test {
 protected:
-  static Measurement measurement() {
-    Measurement measurement = tests::SyntheticRun{}.measurement();
-    measurement.method(METHOD_SERIES_TIMESTAMPING);
+  static wire::Measurement measurement() {
+    wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+    measurement.method(wire::METHOD_SERIES_TIMESTAMPING);
     measurement.sync_dau("dso/sync");
     measurement.dut() = {"tss/acceleration_z"};
     measurement.shots(5);
@@ -39,20 +39,20 @@ protected:
     return measurement;
   }
 
-  void start(const Measurement& message = measurement()) {
+  void start(const wire::Measurement& message = measurement()) {
     const auto recipe = parse_recipe(message);
     ASSERT_TRUE(recipe) << recipe.error().message;
     evaluator_.emplace(*recipe);
     ASSERT_TRUE(evaluator_->describe(run_.acs_description()));
-    ASSERT_TRUE(evaluator_->describe(description("dso", SOURCE_DSO, "sync", R"(\volt)")));
+    ASSERT_TRUE(evaluator_->describe(description("dso", wire::SOURCE_DSO, "sync", R"(\volt)")));
     ASSERT_TRUE(evaluator_->describe(
-        description("tss", SOURCE_TSS, "acceleration_z", R"(\metre\second\tothe{-2})")));
+        description("tss", wire::SOURCE_TSS, "acceleration_z", R"(\metre\second\tothe{-2})")));
     EXPECT_TRUE(evaluator_->undescribed().empty());
   }
 
-  static SourceDescription description(const char* source, SourceKind kind, const char* channel,
-                                       const char* unit) {
-    SourceDescription message;
+  static wire::SourceDescription description(const char* source, wire::SourceKind kind,
+                                             const char* channel, const char* unit) {
+    wire::SourceDescription message;
     message.bench("synthetic");
     message.source(source);
     message.session(9);
@@ -64,13 +64,13 @@ protected:
   }
 
   // One shot as the oscilloscope and the sensor record it.
-  static std::pair<TriggeredRecord, TriggeredRecord>
+  static std::pair<wire::TriggeredRecord, wire::TriggeredRecord>
   shot(std::uint64_t number, std::uint32_t step, double frequency_hz, std::size_t samples = 1000) {
     std::mt19937_64 random(number);
     std::normal_distribution<double> noise(0.0, 1e-3);
     const double w = 2.0 * std::numbers::pi * frequency_hz;
     const double beta = beta_rad[number % 5];
-    TriggeredRecord trace = head("dso", number, step, 2000, 2.0 / frequency_hz / 2000.0);
+    wire::TriggeredRecord trace = head("dso", number, step, 2000, 2.0 / frequency_hz / 2000.0);
     trace.first_sample_s(-1.0 / frequency_hz);
     for (std::size_t i = 0; i < 2000; ++i) {
       trace.values()[i] =
@@ -78,7 +78,7 @@ protected:
                    beta) +
           noise(random);
     }
-    TriggeredRecord series = head("tss", number, step, samples, 1.0 / nominal_rate_hz);
+    wire::TriggeredRecord series = head("tss", number, step, samples, 1.0 / nominal_rate_hz);
     for (std::size_t n = 0; n < samples; ++n) {
       const double t = dso_delay_s + static_cast<double>(n) / real_rate_hz;
       series.values()[n] = 10.0 * (magnitude * std::sin(w * (t - delay_s) + beta) + noise(random));
@@ -86,9 +86,9 @@ protected:
     return {trace, series};
   }
 
-  static TriggeredRecord head(const char* source, std::uint64_t number, std::uint32_t step,
-                              std::size_t samples, double interval_s) {
-    TriggeredRecord record;
+  static wire::TriggeredRecord head(const char* source, std::uint64_t number, std::uint32_t step,
+                                    std::size_t samples, double interval_s) {
+    wire::TriggeredRecord record;
     record.bench("synthetic");
     record.source(source);
     record.session(9);
@@ -102,13 +102,13 @@ protected:
     return record;
   }
 
-  void add(const std::pair<TriggeredRecord, TriggeredRecord>& records) {
+  void add(const std::pair<wire::TriggeredRecord, wire::TriggeredRecord>& records) {
     evaluator_->add(records.first);
     evaluator_->add(records.second);
   }
 
   void excite() {
-    for (const SampleBlock& block : run_.acs_blocks()) {
+    for (const wire::SampleBlock& block : run_.acs_blocks()) {
       evaluator_->add(block);
     }
     evaluator_->end_of_excitation(false);
@@ -121,7 +121,7 @@ protected:
     return output;
   }
 
-  static double phase_error(const CalibrationResult& result) {
+  static double phase_error(const wire::CalibrationResult& result) {
     const double truth = -2.0 * std::numbers::pi * result.frequency_hz() * delay_s;
     return std::remainder(result.phase_rad() - truth, 2.0 * std::numbers::pi);
   }
@@ -138,7 +138,7 @@ TEST_F(SeriesRun, GivesMagnitudePhaseAndRateOfTheSensor) {
   }
   const EvaluationOutput output = finish();
   ASSERT_EQ(output.results.size(), 2U);
-  for (const CalibrationResult& result : output.results) {
+  for (const wire::CalibrationResult& result : output.results) {
     ASSERT_TRUE(result.valid()) << result.problem();
     EXPECT_NEAR(result.magnitude(), magnitude, 4.0 * result.u_magnitude());
     EXPECT_LE(std::abs(phase_error(result)), 4.0 * result.u_phase_rad());
@@ -169,13 +169,13 @@ TEST_F(SeriesRun, TheSameShotsInAnotherOrderGiveTheSameBits) {
 }
 
 TEST_F(SeriesRun, WithoutTheCorrectionThePhaseHoldsWhatNoiseDidToTheTrigger) {
-  Measurement without = measurement();
+  wire::Measurement without = measurement();
   without.trigger_phase_correction(false);
   start(without);
   for (std::uint64_t number = 1; number <= 5; ++number) {
     add(shot(number, 1, 40.0));
   }
-  const CalibrationResult result = finish().results.at(0);
+  const wire::CalibrationResult result = finish().results.at(0);
   EXPECT_NEAR(phase_error(result), -0.018, 0.001); // mean of the triggers
   EXPECT_THAT(result.flags(), testing::Contains(HasSubstr("is not corrected")));
 }
@@ -196,7 +196,7 @@ TEST_F(SeriesRun, AStepWithFewerShotsIsEvaluatedAndSaysSo) {
 TEST_F(SeriesRun, RecordsThatContradictThemselvesOrBelongElsewhereAreNotUsed) {
   start();
   auto [trace, series] = shot(1, 1, 40.0);
-  TriggeredRecord half = series;
+  wire::TriggeredRecord half = series;
   half.values().resize(500);
   add({trace, half});
   auto other_run = shot(2, 1, 40.0);
@@ -214,7 +214,7 @@ TEST_F(SeriesRun, ASeriesOfAnotherLengthIsLeftOutAndNamed) {
   for (std::uint64_t number = 1; number <= 5; ++number) {
     add(shot(number, 1, 40.0, number == 4 ? 500 : 1000));
   }
-  const CalibrationResult result = finish().results.at(0);
+  const wire::CalibrationResult result = finish().results.at(0);
   ASSERT_TRUE(result.valid()) << result.problem();
   EXPECT_THAT(result.flags(), testing::Contains(HasSubstr("1 shots of another length")));
   EXPECT_THAT(result.flags(), testing::Contains("4 of 5 shots"));
@@ -224,12 +224,12 @@ TEST_F(SeriesRun, AStepWaitsForShotsThatComeAfterTheEndOfItsExcitation) {
   start();
   auto blocks = run_.acs_blocks();
   blocks.back().end_of_stream(false);
-  for (const SampleBlock& block : blocks) {
+  for (const wire::SampleBlock& block : blocks) {
     evaluator_->add(block);
   }
-  Excitation done;
+  wire::Excitation done;
   done.step(1);
-  done.state(EXCITATION_DONE);
+  done.state(wire::EXCITATION_DONE);
   done.window_end_utc_ns(1'000'000'000);
   evaluator_->announce(done);
   for (std::uint64_t number = 1; number <= 5; ++number) {
@@ -242,7 +242,7 @@ TEST_F(SeriesRun, AStepWaitsForShotsThatComeAfterTheEndOfItsExcitation) {
 }
 
 TEST_F(SeriesRun, WhatTheMethodDoesNotHaveIsRefused) {
-  Measurement message = measurement();
+  wire::Measurement message = measurement();
   message.dut().clear();
   EXPECT_THAT(parse_recipe(message).error().message, HasSubstr("names no channel"));
   message = measurement();
@@ -254,7 +254,7 @@ TEST_F(SeriesRun, TheRecordOfShotsIsBounded) {
   ShotRecord record;
   const auto [trace, series] = shot(1, 1, 40.0, 1);
   for (std::uint64_t number = 0; number < ShotRecord::capacity + 5; ++number) {
-    TriggeredRecord numbered = series;
+    wire::TriggeredRecord numbered = series;
     numbered.shot(number);
     record.add_series(numbered);
   }

@@ -13,11 +13,11 @@ TEST(SourceRecord, HoldsTheSameSamplesHoweverTheyWereCut) {
   SourceRecord coarse("dau");
   SourceRecord fine("dau");
   tests::SyntheticRun run;
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     ASSERT_TRUE(coarse.add(block));
   }
   run.block_samples = 7;
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     ASSERT_TRUE(fine.add(block));
   }
   EXPECT_TRUE(std::equal(coarse.stamps_ns().begin(), coarse.stamps_ns().end(),
@@ -38,7 +38,7 @@ TEST(SourceRecord, CountsALostBlockBetweenItsNeighboursStamps) {
   SourceRecord record("dau");
   tests::SyntheticRun run;
   run.lost_block = 3;
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     record.add(block);
   }
   EXPECT_EQ(record.lost(), 50U);
@@ -49,7 +49,7 @@ TEST(SourceRecord, CountsALostBlockBetweenItsNeighboursStamps) {
 
 TEST(SourceRecord, ForgetsFromTheFrontOnly) {
   SourceRecord record("acs");
-  for (const SampleBlock& block : tests::SyntheticRun{}.acs_blocks()) {
+  for (const wire::SampleBlock& block : tests::SyntheticRun{}.acs_blocks()) {
     record.add(block);
   }
   const std::size_t all = record.stamps_ns().size();
@@ -65,7 +65,7 @@ TEST(SourceRecord, GivesAwayAPartThatSaysTheSameOfItsTime) {
   tests::SyntheticRun run;
   run.lost_block = 3;
   record.describe(run.dau_description());
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     record.add(block);
   }
   record.forget_before(record.stamps_ns()[20]);
@@ -91,7 +91,7 @@ TEST(SourceRecord, KeepsOnlyTheChannelsThatAreAskedFor) {
   SourceRecord all("dau");
   SourceRecord one("dau");
   one.keep_only({1});
-  for (const SampleBlock& block : run.dau_blocks()) {
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
     all.add(block);
     one.add(block);
   }
@@ -112,7 +112,7 @@ TEST(SourceRecord, DropsWhatWasBufferedWhenTheSourceStartsAnew) {
   SourceRecord record("acs");
   const auto blocks = tests::SyntheticRun{}.acs_blocks();
   record.add(blocks[0]);
-  SampleBlock restarted = blocks[0];
+  wire::SampleBlock restarted = blocks[0];
   restarted.session(8);
   record.add(restarted);
   EXPECT_EQ(record.restarts(), 1U);
@@ -121,7 +121,7 @@ TEST(SourceRecord, DropsWhatWasBufferedWhenTheSourceStartsAnew) {
 
 TEST(SourceRecord, RefusesBlocksWhoseSizesContradictEachOther) {
   SourceRecord record("acs");
-  SampleBlock block = tests::SyntheticRun{}.acs_blocks()[0];
+  wire::SampleBlock block = tests::SyntheticRun{}.acs_blocks()[0];
   block.values().pop_back();
   EXPECT_FALSE(record.add(block));
   EXPECT_EQ(record.unusable_blocks(), 1U);
@@ -130,7 +130,7 @@ TEST(SourceRecord, RefusesBlocksWhoseSizesContradictEachOther) {
 
 TEST(SourceRecord, KeepsItsBoundAndCountsWhatItDrops) {
   SourceRecord record("acs", 1000);
-  for (const SampleBlock& block : tests::SyntheticRun{}.acs_blocks()) {
+  for (const wire::SampleBlock& block : tests::SyntheticRun{}.acs_blocks()) {
     record.add(block);
   }
   EXPECT_EQ(record.stamps_ns().size(), 1000U);

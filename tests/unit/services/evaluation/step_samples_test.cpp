@@ -8,8 +8,8 @@
 namespace dyncal::services {
 namespace {
 
-SampleBlock block_of(std::size_t samples) {
-  SampleBlock block;
+wire::SampleBlock block_of(std::size_t samples) {
+  wire::SampleBlock block;
   block.source("dau");
   block.sample_count(static_cast<std::uint32_t>(samples));
   block.channel_count(2);
@@ -46,7 +46,7 @@ TEST(StepSamples, AreEmptyWhereTheRecordHasNone) {
 
 TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
   std::mt19937_64 random(1);
-  SampleBlock block = block_of(5000);
+  wire::SampleBlock block = block_of(5000);
   for (std::size_t i = 0; i < 5000; ++i) {
     switch (random() % 60) {
     case 0:

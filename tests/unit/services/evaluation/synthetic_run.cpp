@@ -13,16 +13,16 @@ constexpr double dau_interval_s = 997e-6;
 constexpr double acs_rate_hz = 10'000.0;
 constexpr double noise = 1e-3;
 
-ChannelDescription channel(const char* name, const char* unit) {
-  ChannelDescription description;
+wire::ChannelDescription channel(const char* name, const char* unit) {
+  wire::ChannelDescription description;
   description.name(name);
   description.unit(unit);
   return description;
 }
 
-SourceDescription description(const char* source, SourceKind kind,
-                              const std::vector<ChannelDescription>& channels) {
-  SourceDescription message;
+wire::SourceDescription description(const char* source, wire::SourceKind kind,
+                                    const std::vector<wire::ChannelDescription>& channels) {
+  wire::SourceDescription message;
   message.bench("synthetic");
   message.source(source);
   message.session(7);
@@ -31,9 +31,9 @@ SourceDescription description(const char* source, SourceKind kind,
   return message;
 }
 
-SampleBlock block_head(const char* source, std::uint64_t number, std::uint64_t first_sample,
-                       std::size_t samples, std::uint32_t channels) {
-  SampleBlock block;
+wire::SampleBlock block_head(const char* source, std::uint64_t number, std::uint64_t first_sample,
+                             std::size_t samples, std::uint32_t channels) {
+  wire::SampleBlock block;
   block.bench("synthetic");
   block.source(source);
   block.session(7);
@@ -49,17 +49,17 @@ SampleBlock block_head(const char* source, std::uint64_t number, std::uint64_t f
 
 } // namespace
 
-Measurement SyntheticRun::measurement() const {
-  Measurement measurement;
+wire::Measurement SyntheticRun::measurement() const {
+  wire::Measurement measurement;
   measurement.bench("synthetic");
   measurement.run("r1");
-  measurement.method(METHOD_SAMPLE_TIMESTAMPING);
+  measurement.method(wire::METHOD_SAMPLE_TIMESTAMPING);
   measurement.reference("acs/reference");
   measurement.sync_acs("acs/sync");
   measurement.sync_dau("dau/sync");
   std::uint32_t number = 0;
   for (const SyntheticStep& step : steps) {
-    PlannedStep planned;
+    wire::PlannedStep planned;
     planned.step(++number);
     planned.repetition(1);
     planned.frequency_hz(step.frequency_hz);
@@ -71,14 +71,14 @@ Measurement SyntheticRun::measurement() const {
   return measurement;
 }
 
-SourceDescription SyntheticRun::acs_description() const {
+wire::SourceDescription SyntheticRun::acs_description() const {
   return description(
-      "acs", SOURCE_ACS,
+      "acs", wire::SOURCE_ACS,
       {channel("reference", R"(\metre\second\tothe{-2})"), channel("sync", R"(\volt)")});
 }
 
-SourceDescription SyntheticRun::dau_description() const {
-  return description("dau", SOURCE_DAU,
+wire::SourceDescription SyntheticRun::dau_description() const {
+  return description("dau", wire::SOURCE_DAU,
                      {channel("acceleration_z", R"(\metre\second\tothe{-2})"),
                       channel("temperature", R"(\degreecelsius)"), channel("sync", R"(\volt)")});
 }
@@ -112,15 +112,15 @@ double SyntheticRun::signal(double t_s, double gain, double delay) const {
   return amplitude * gain * std::sin(2.0 * std::numbers::pi * turns);
 }
 
-std::vector<SampleBlock> SyntheticRun::acs_blocks() const {
+std::vector<wire::SampleBlock> SyntheticRun::acs_blocks() const {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(0.0, noise);
   const std::size_t samples = block_samples * 10;
   const auto total = static_cast<std::uint64_t>(duration_s() * acs_rate_hz);
-  std::vector<SampleBlock> blocks;
+  std::vector<wire::SampleBlock> blocks;
   for (std::uint64_t first = 0; first < total; first += samples) {
     const std::size_t count = std::min<std::size_t>(samples, total - first);
-    SampleBlock block = block_head("acs", blocks.size(), first, count, 2);
+    wire::SampleBlock block = block_head("acs", blocks.size(), first, count, 2);
     block.interval_numerator_ns(100'000);
     for (std::size_t i = 0; i < count; ++i) {
       const double t = static_cast<double>(first + i) / acs_rate_hz;
@@ -133,15 +133,15 @@ std::vector<SampleBlock> SyntheticRun::acs_blocks() const {
   return blocks;
 }
 
-std::vector<SampleBlock> SyntheticRun::dau_blocks() const {
+std::vector<wire::SampleBlock> SyntheticRun::dau_blocks() const {
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal(0.0, noise);
   const auto total = static_cast<std::uint64_t>(duration_s() / dau_interval_s);
-  std::vector<SampleBlock> blocks;
+  std::vector<wire::SampleBlock> blocks;
   std::uint64_t number = 0;
   for (std::uint64_t first = 0; first < total; first += block_samples, ++number) {
     const std::size_t count = std::min<std::size_t>(block_samples, total - first);
-    SampleBlock block = block_head("dau", number, first + 1, count, 3);
+    wire::SampleBlock block = block_head("dau", number, first + 1, count, 3);
     for (std::size_t i = 0; i < count; ++i) {
       const auto t_ns = static_cast<std::int64_t>(
           std::llround(static_cast<double>(first + i) * dau_interval_s * 1e9));

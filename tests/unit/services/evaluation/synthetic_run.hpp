@@ -25,11 +25,11 @@ struct SyntheticRun {
   std::size_t block_samples = 50;        // of the DAU; ten times as many of the ACS
   std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
 
-  [[nodiscard]] Measurement measurement() const;
-  [[nodiscard]] SourceDescription acs_description() const;
-  [[nodiscard]] SourceDescription dau_description() const;
-  [[nodiscard]] std::vector<SampleBlock> acs_blocks() const;
-  [[nodiscard]] std::vector<SampleBlock> dau_blocks() const;
+  [[nodiscard]] wire::Measurement measurement() const;
+  [[nodiscard]] wire::SourceDescription acs_description() const;
+  [[nodiscard]] wire::SourceDescription dau_description() const;
+  [[nodiscard]] std::vector<wire::SampleBlock> acs_blocks() const;
+  [[nodiscard]] std::vector<wire::SampleBlock> dau_blocks() const;
 
 private:
   [[nodiscard]] double excitation(double t_s, double& phase_turns) const;

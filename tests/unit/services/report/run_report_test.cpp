@@ -10,12 +10,12 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TransferFunction function(const std::string& channel, double magnitude) {
-  TransferFunction one;
+wire::TransferFunction function(const std::string& channel, double magnitude) {
+  wire::TransferFunction one;
   one.channel(channel);
   one.unit(R"(\one)");
   for (const char* text : {"10", "20"}) {
-    TransferPoint point;
+    wire::TransferPoint point;
     point.frequency_text_hz(text);
     point.frequency_hz(std::stod(text));
     point.magnitude(magnitude);
@@ -35,9 +35,9 @@ RunOutcome outcome() {
   RunOutcome one;
   one.measurement.bench("acc-1");
   one.measurement.run("r1");
-  one.measurement.method(METHOD_SAMPLE_TIMESTAMPING);
+  one.measurement.method(wire::METHOD_SAMPLE_TIMESTAMPING);
   one.analysis_dds = "fastdds";
-  CalibrationResult result;
+  wire::CalibrationResult result;
   result.channel("dau/acceleration_z");
   result.step(1);
   result.frequency_hz(10.0);
@@ -46,7 +46,7 @@ RunOutcome outcome() {
   result.repetition(1);
   result.valid(true);
   result.magnitude(1.0);
-  SourceSamples samples;
+  wire::SourceSamples samples;
   samples.source("dau");
   samples.used(3010);
   result.samples().push_back(samples);
@@ -58,7 +58,7 @@ RunOutcome outcome() {
   one.results.push_back(result);
   one.transfer_functions = {function("dau/acceleration_z", 1.0),
                             function("dau/angular_velocity_x", 1e-4)};
-  SampleClockReport clock;
+  wire::SampleClockReport clock;
   clock.source("dau");
   clock.mean_interval_s(996.96e-6);
   clock.intervals(1000);

@@ -46,11 +46,11 @@ public:
   explicit PlayedAnalysis(const std::string& bench) : bench_(bench) {}
 
   // False when the run does not come to that state in time.
-  bool wait_for(MeasurementState state) {
+  bool wait_for(wire::MeasurementState state) {
     const auto deadline = Clock::now() + patience;
     bool reached = false;
     while (!reached && Clock::now() < deadline) {
-      measurement_.take([&](const Measurement& message, const bus::SampleInfo& info) {
+      measurement_.take([&](const wire::Measurement& message, const bus::SampleInfo& info) {
         reached = reached || (info.valid && message.run() == run_name && message.state() == state);
       });
       if (!reached) {
@@ -60,12 +60,12 @@ public:
     return reached;
   }
 
-  void say(ArmState arm, std::uint64_t transfer_functions) {
-    ServiceStatus status;
+  void say(wire::ArmState arm, std::uint64_t transfer_functions) {
+    wire::ServiceStatus status;
     status.service("played");
     status.run(run_name);
     status.bench(bench_);
-    status.health(HEALTH_OK);
+    status.health(wire::HEALTH_OK);
     status.arm(arm);
     status.transfer_functions_published(transfer_functions);
     status_.write(status);
@@ -73,7 +73,7 @@ public:
   }
 
   void publish_transfer_function(const std::string& channel) {
-    TransferFunction function;
+    wire::TransferFunction function;
     function.bench(bench_);
     function.run(run_name);
     function.channel(channel);
@@ -85,15 +85,18 @@ private:
   std::string bench_;
   bus::Participant participant_ = join();
   std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
-  bus::Reader<Measurement> measurement_ =
-      participant_.reader<Measurement>(bus::topics::measurement, bus::Profile::state, bench_, bell_)
-          .value();
-  bus::Writer<ServiceStatus> status_ =
-      participant_.writer<ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench_)
-          .value();
-  bus::Writer<TransferFunction> transfer_functions_ =
+  bus::Reader<wire::Measurement> measurement_ =
       participant_
-          .writer<TransferFunction>(bus::topics::transfer_function, bus::Profile::results, bench_)
+          .reader<wire::Measurement>(bus::topics::measurement, bus::Profile::state, bench_, bell_)
+          .value();
+  bus::Writer<wire::ServiceStatus> status_ =
+      participant_
+          .writer<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench_)
+          .value();
+  bus::Writer<wire::TransferFunction> transfer_functions_ =
+      participant_
+          .writer<wire::TransferFunction>(bus::topics::transfer_function, bus::Profile::results,
+                                          bench_)
           .value();
 };
 
@@ -103,11 +106,11 @@ TEST(RunController, WaitsForAllTransferFunctionsWhenTheLastComesAfterTheEndWasAn
   std::atomic<int> looks{0}; // of the conductor at its messages
   std::atomic<bool> over{false};
   std::jthread play([&] {
-    ASSERT_TRUE(analysis.wait_for(MEASUREMENT_PLANNED));
-    analysis.say(ARM_ARMED, 0);
-    ASSERT_TRUE(analysis.wait_for(MEASUREMENT_RUNNING));
+    ASSERT_TRUE(analysis.wait_for(wire::MEASUREMENT_PLANNED));
+    analysis.say(wire::ARM_ARMED, 0);
+    ASSERT_TRUE(analysis.wait_for(wire::MEASUREMENT_RUNNING));
     analysis.publish_transfer_function("dau/acceleration_x");
-    analysis.say(ARM_FINISHED, 2);
+    analysis.say(wire::ARM_FINISHED, 2);
     const int before = looks;
     const auto deadline = Clock::now() + patience;
     while (looks < before + 2 && !over && Clock::now() < deadline) {

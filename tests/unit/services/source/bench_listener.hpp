@@ -29,15 +29,16 @@ class BenchListener {
 public:
   BenchListener(bus::Participant& network, std::string bench, const char* sample_topic)
       : bench_(std::move(bench)),
-        descriptions_(*network.reader<SourceDescription>(bus::topics::source_description,
-                                                         bus::Profile::state, bench_, wake_up_)),
-        statuses_(*network.reader<SourceStatus>(bus::topics::source_status, bus::Profile::state,
-                                                bench_, wake_up_)),
-        samples_(
-            *network.reader<SampleBlock>(sample_topic, bus::Profile::samples, bench_, wake_up_)),
-        commands_(*network.writer<Command>(bus::topics::command, bus::Profile::command, bench_)),
-        measurements_(
-            *network.writer<Measurement>(bus::topics::measurement, bus::Profile::state, bench_)) {}
+        descriptions_(*network.reader<wire::SourceDescription>(
+            bus::topics::source_description, bus::Profile::state, bench_, wake_up_)),
+        statuses_(*network.reader<wire::SourceStatus>(bus::topics::source_status,
+                                                      bus::Profile::state, bench_, wake_up_)),
+        samples_(*network.reader<wire::SampleBlock>(sample_topic, bus::Profile::samples, bench_,
+                                                    wake_up_)),
+        commands_(
+            *network.writer<wire::Command>(bus::topics::command, bus::Profile::command, bench_)),
+        measurements_(*network.writer<wire::Measurement>(bus::topics::measurement,
+                                                         bus::Profile::state, bench_)) {}
 
   // Reads until the condition holds. False when it does not within the time.
   bool until(const std::function<bool()>& condition,
@@ -56,9 +57,9 @@ public:
   }
 
   void arm(const std::string& source, const std::string& run) {
-    Command command;
+    wire::Command command;
     command.target(source);
-    command.kind(COMMAND_ARM);
+    command.kind(wire::COMMAND_ARM);
     command.bench(bench_);
     command.run(run);
     commands_.write(command);
@@ -81,8 +82,8 @@ public:
     });
   }
 
-  void set_state(const std::string& run, MeasurementState state) {
-    Measurement measurement;
+  void set_state(const std::string& run, wire::MeasurementState state) {
+    wire::Measurement measurement;
     measurement.bench(bench_);
     measurement.run(run);
     measurement.state(state);
@@ -99,8 +100,8 @@ public:
     return count;
   }
 
-  [[nodiscard]] std::optional<SourceStatus> last_status(const std::string& source) const {
-    std::optional<SourceStatus> last;
+  [[nodiscard]] std::optional<wire::SourceStatus> last_status(const std::string& source) const {
+    std::optional<wire::SourceStatus> last;
     for (const auto& status : statuses) {
       if (source == status.source().c_str()) {
         last = status;
@@ -109,7 +110,7 @@ public:
     return last;
   }
 
-  [[nodiscard]] bool saw_state(const std::string& source, SourceState state) const {
+  [[nodiscard]] bool saw_state(const std::string& source, wire::SourceState state) const {
     for (const auto& status : statuses) {
       if (source == status.source().c_str() && status.state() == state) {
         return true;
@@ -118,23 +119,23 @@ public:
     return false;
   }
 
-  std::vector<SourceDescription> descriptions;
-  std::vector<SourceStatus> statuses;
-  std::vector<SampleBlock> blocks;
+  std::vector<wire::SourceDescription> descriptions;
+  std::vector<wire::SourceStatus> statuses;
+  std::vector<wire::SampleBlock> blocks;
 
 private:
   void take() {
-    descriptions_.take([&](const SourceDescription& message, const bus::SampleInfo& info) {
+    descriptions_.take([&](const wire::SourceDescription& message, const bus::SampleInfo& info) {
       if (info.valid) {
         descriptions.push_back(message);
       }
     });
-    statuses_.take([&](const SourceStatus& message, const bus::SampleInfo& info) {
+    statuses_.take([&](const wire::SourceStatus& message, const bus::SampleInfo& info) {
       if (info.valid) {
         statuses.push_back(message);
       }
     });
-    samples_.take([&](const SampleBlock& message, const bus::SampleInfo& info) {
+    samples_.take([&](const wire::SampleBlock& message, const bus::SampleInfo& info) {
       if (info.valid) {
         blocks.push_back(message);
       }
@@ -143,11 +144,11 @@ private:
 
   std::string bench_;
   std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
-  bus::Reader<SourceDescription> descriptions_;
-  bus::Reader<SourceStatus> statuses_;
-  bus::Reader<SampleBlock> samples_;
-  bus::Writer<Command> commands_;
-  bus::Writer<Measurement> measurements_;
+  bus::Reader<wire::SourceDescription> descriptions_;
+  bus::Reader<wire::SourceStatus> statuses_;
+  bus::Reader<wire::SampleBlock> samples_;
+  bus::Writer<wire::Command> commands_;
+  bus::Writer<wire::Measurement> measurements_;
 };
 
 } // namespace dyncal::tests

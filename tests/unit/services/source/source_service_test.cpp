@@ -88,9 +88,9 @@ TEST_P(SourceServiceTest, PublishesDescriptionStatusAndBlocksInOrder) {
   ASSERT_FALSE(listener.descriptions.empty());
   EXPECT_EQ(listener.descriptions.back().session(), last.session());
   EXPECT_EQ(listener.descriptions.back().channels().size(), 2U);
-  EXPECT_EQ(listener.descriptions.back().kind(), SOURCE_ACS);
+  EXPECT_EQ(listener.descriptions.back().kind(), wire::SOURCE_ACS);
   EXPECT_EQ(listener.descriptions.back().software(), "test 1.0");
-  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_RUNNING); }));
+  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_RUNNING); }));
 }
 
 TEST_P(SourceServiceTest, AnswersArmWithAnEmptyBlockBehindWhatWasWritten) {
@@ -150,12 +150,12 @@ TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
   auto source = add(bench_name, "acs", std::chrono::milliseconds(300));
   source->describe(two_channels());
   service->start();
-  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_SILENT); }));
+  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_SILENT); }));
   source->offer(block_from(0));
   EXPECT_TRUE(
-      listener.until([&] { return listener.last_status("acs")->state() == SOURCE_RUNNING; }));
+      listener.until([&] { return listener.last_status("acs")->state() == wire::SOURCE_RUNNING; }));
   EXPECT_TRUE(
-      listener.until([&] { return listener.last_status("acs")->state() == SOURCE_SILENT; }));
+      listener.until([&] { return listener.last_status("acs")->state() == wire::SOURCE_SILENT; }));
 }
 
 TEST_P(SourceServiceTest, AFileIsNeverSilent) {
@@ -163,7 +163,7 @@ TEST_P(SourceServiceTest, AFileIsNeverSilent) {
   source->describe(two_channels());
   service->start();
   EXPECT_TRUE(listener.until([&] { return listener.statuses.size() >= 6; }));
-  EXPECT_EQ(listener.last_status("acs")->state(), SOURCE_STARTING);
+  EXPECT_EQ(listener.last_status("acs")->state(), wire::SOURCE_STARTING);
 }
 
 TEST_P(SourceServiceTest, EndsTheStreamInBand) {
@@ -173,7 +173,7 @@ TEST_P(SourceServiceTest, EndsTheStreamInBand) {
   ASSERT_TRUE(listener.armed("acs", "run-1"));
   source->offer(block_from(0));
   source->end();
-  ASSERT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_ENDED); }));
+  ASSERT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_ENDED); }));
   ASSERT_TRUE(listener.until([&] { return listener.blocks.back().end_of_stream(); }));
   EXPECT_EQ(listener.blocks.back().sample_count(), 0U);
   EXPECT_EQ(listener.blocks.back().first_sample(), 50U);
@@ -185,7 +185,7 @@ TEST_P(SourceServiceTest, AFailedSourceSaysWhy) {
   source->describe(two_channels());
   service->start();
   source->fail("127.0.0.1:5026 closed the connection");
-  ASSERT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_FAILED); }));
+  ASSERT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_FAILED); }));
   EXPECT_EQ(listener.last_status("acs")->message(), "127.0.0.1:5026 closed the connection");
 }
 
@@ -201,7 +201,7 @@ TEST_P(SourceServiceTest, StopPublishesWhatIsHeldAndSaysEnded) {
   EXPECT_TRUE(listener.until([&] {
     return listener.samples_of("acs") == 10000 && listener.blocks.back().end_of_stream();
   }));
-  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", SOURCE_ENDED); }));
+  EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_ENDED); }));
 }
 
 TEST_P(SourceServiceTest, PublishesTheCountsOfTheDriver) {
@@ -265,13 +265,13 @@ TEST_P(SourceServiceTest, AFileWaitsForItsRunAndPlaysEachRunOnce) {
     const std::lock_guard lock(mutex);
     return runs;
   };
-  listener.set_state("run-1", MEASUREMENT_PLANNED);
+  listener.set_state("run-1", wire::MEASUREMENT_PLANNED);
   ASSERT_TRUE(listener.armed("acs", "run-1"));
   EXPECT_TRUE(played().empty());
-  listener.set_state("run-1", MEASUREMENT_RUNNING);
+  listener.set_state("run-1", wire::MEASUREMENT_RUNNING);
   ASSERT_TRUE(listener.until([&] { return played() == std::vector<std::string>{"run-1"}; }));
-  listener.set_state("run-1", MEASUREMENT_DONE);
-  listener.set_state("run-2", MEASUREMENT_RUNNING);
+  listener.set_state("run-1", wire::MEASUREMENT_DONE);
+  listener.set_state("run-2", wire::MEASUREMENT_RUNNING);
   EXPECT_TRUE(listener.until([&] {
     return played() == std::vector<std::string>{"run-1", "run-2"};
   }));

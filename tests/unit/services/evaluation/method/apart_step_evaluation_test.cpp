@@ -21,11 +21,11 @@ constexpr double u_stamp_s = 5e-6;
 
 // The acceleration of the synthetic DAU as a sensor on CAN would send it: every second sample,
 // under its own name and numbers.
-std::vector<SampleBlock> on_can(const tests::SyntheticRun& run, const std::string& source) {
-  std::vector<SampleBlock> blocks;
+std::vector<wire::SampleBlock> on_can(const tests::SyntheticRun& run, const std::string& source) {
+  std::vector<wire::SampleBlock> blocks;
   std::uint64_t number = 0;
-  for (const SampleBlock& of_dau : run.dau_blocks()) {
-    SampleBlock block;
+  for (const wire::SampleBlock& of_dau : run.dau_blocks()) {
+    wire::SampleBlock block;
     block.bench("synthetic");
     block.source(source);
     block.session(9);
@@ -45,43 +45,43 @@ std::vector<SampleBlock> on_can(const tests::SyntheticRun& run, const std::strin
   return blocks;
 }
 
-SourceDescription can_description(const std::string& source) {
-  SourceDescription description = tests::SyntheticRun{}.dau_description();
+wire::SourceDescription can_description(const std::string& source) {
+  wire::SourceDescription description = tests::SyntheticRun{}.dau_description();
   description.source(source);
   description.session(9);
-  description.kind(SOURCE_CAN);
-  description.time_base(TIME_BASE_UTC);
+  description.kind(wire::SOURCE_CAN);
+  description.time_base(wire::TIME_BASE_UTC);
   description.stamp_uncertainty_s(u_stamp_s);
   description.channels().resize(1);
   return description;
 }
 
 // The synthetic ACS on the time scale of the synthetic DAU.
-std::vector<SampleBlock> acs_in_utc(const tests::SyntheticRun& run) {
-  std::vector<SampleBlock> blocks = run.acs_blocks();
-  for (SampleBlock& block : blocks) {
+std::vector<wire::SampleBlock> acs_in_utc(const tests::SyntheticRun& run) {
+  std::vector<wire::SampleBlock> blocks = run.acs_blocks();
+  for (wire::SampleBlock& block : blocks) {
     block.origin_ns(run.dau_blocks().front().stamps_ns().front());
   }
   return blocks;
 }
 
-SourceDescription in_utc(SourceDescription description) {
-  description.time_base(TIME_BASE_UTC);
+wire::SourceDescription in_utc(wire::SourceDescription description) {
+  description.time_base(wire::TIME_BASE_UTC);
   return description;
 }
 
-Measurement absolute(const tests::SyntheticRun& run) {
-  Measurement measurement = run.measurement();
-  measurement.method(METHOD_ABSOLUTE_TIME);
+wire::Measurement absolute(const tests::SyntheticRun& run) {
+  wire::Measurement measurement = run.measurement();
+  measurement.method(wire::METHOD_ABSOLUTE_TIME);
   measurement.sync_acs("");
   measurement.sync_dau("");
   measurement.dut() = {"can/acceleration_z", "other/acceleration_z"};
   return measurement;
 }
 
-std::vector<CalibrationResult> evaluate(RunEvaluator& evaluator,
-                                        const std::vector<std::vector<SampleBlock>>& sources) {
-  std::vector<CalibrationResult> results;
+std::vector<wire::CalibrationResult>
+evaluate(RunEvaluator& evaluator, const std::vector<std::vector<wire::SampleBlock>>& sources) {
+  std::vector<wire::CalibrationResult> results;
   std::size_t longest = 0;
   for (const auto& blocks : sources) {
     longest = std::max(longest, blocks.size());
@@ -99,8 +99,8 @@ std::vector<CalibrationResult> evaluate(RunEvaluator& evaluator,
   return results;
 }
 
-double u_of(const CalibrationResult& result, const std::string& row) {
-  for (const BudgetContribution& line : result.budget()) {
+double u_of(const wire::CalibrationResult& result, const std::string& row) {
+  for (const wire::BudgetContribution& line : result.budget()) {
     if (line.name() == row) {
       return line.u_phase_rad();
     }
@@ -108,7 +108,7 @@ double u_of(const CalibrationResult& result, const std::string& row) {
   return -1.0;
 }
 
-void expect_truth(const CalibrationResult& result, const tests::SyntheticRun& run) {
+void expect_truth(const wire::CalibrationResult& result, const tests::SyntheticRun& run) {
   ASSERT_TRUE(result.valid()) << result.problem();
   EXPECT_NEAR(result.magnitude(), run.magnitude, 4.0 * result.u_magnitude());
   EXPECT_NEAR(result.phase_rad(), -2.0 * std::numbers::pi * result.frequency_hz() * run.delay_s,
@@ -128,7 +128,7 @@ TEST(ApartStep, LinksSensorsByAbsoluteTimeWithoutAnySync) {
   const auto results =
       evaluate(evaluator, {acs_in_utc(run), on_can(run, "can"), on_can(run, "other")});
   ASSERT_EQ(results.size(), 4U); // two steps, two sensors
-  for (const CalibrationResult& result : results) {
+  for (const wire::CalibrationResult& result : results) {
     expect_truth(result, run);
     EXPECT_EQ(result.fits().size(), 2U);
     EXPECT_EQ(result.samples().size(), 2U);
@@ -142,7 +142,7 @@ TEST(ApartStep, LinksSensorsByAbsoluteTimeWithoutAnySync) {
 
 TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
   const tests::SyntheticRun run;
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.dut() = {"can/acceleration_z"};
   RunEvaluator evaluator(*parse_recipe(measurement));
   ASSERT_TRUE(evaluator.describe(run.acs_description())); // a clock of its own
@@ -151,7 +151,7 @@ TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
   const auto results =
       evaluate(evaluator, {run.acs_blocks(), run.dau_blocks(), on_can(run, "can")});
   ASSERT_EQ(results.size(), 2U);
-  for (const CalibrationResult& result : results) {
+  for (const wire::CalibrationResult& result : results) {
     expect_truth(result, run);
     EXPECT_EQ(result.fits().size(), 4U);
     ASSERT_EQ(result.samples().size(), 3U);
@@ -161,7 +161,7 @@ TEST(ApartStep, LinksSensorsByASyncThatIsRecordedBesideThem) {
 
 TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
   const tests::SyntheticRun run;
-  Measurement measurement = absolute(run);
+  wire::Measurement measurement = absolute(run);
   measurement.dut() = {"can/acceleration_z"};
   measurement.monte_carlo_trials(50'000);
   RunEvaluator by_time(*parse_recipe(measurement));
@@ -181,7 +181,7 @@ TEST(ApartStep, ChecksTheBudgetByDrawingWhenTheRecipeAsksForIt) {
 }
 
 TEST(ApartStep, RefusesSettlingFromTheDataWithASentence) {
-  Measurement measurement = absolute({});
+  wire::Measurement measurement = absolute({});
   measurement.settling_from_data(true);
   EXPECT_THAT(parse_recipe(measurement).error().message,
               HasSubstr("give the longest settling as settling_s"));
@@ -192,7 +192,7 @@ TEST(ApartStep, RefusesClocksThatCannotBeCompared) {
   RunEvaluator by_time(*parse_recipe(absolute(run)));
   EXPECT_THAT(by_time.describe(run.acs_description()).error().message,
               HasSubstr("'acs' has a clock of its own, but absolute time"));
-  Measurement measurement = run.measurement();
+  wire::Measurement measurement = run.measurement();
   measurement.dut() = {"can/acceleration_z"};
   RunEvaluator by_sync(*parse_recipe(measurement));
   ASSERT_TRUE(by_sync.describe(run.dau_description()));
@@ -202,7 +202,7 @@ TEST(ApartStep, RefusesClocksThatCannotBeCompared) {
 
 TEST(ApartStep, GivesNoNumberForAStepWhoseSamplesAreNotThere) {
   const tests::SyntheticRun run;
-  Measurement measurement = absolute(run);
+  wire::Measurement measurement = absolute(run);
   measurement.dut() = {"can/acceleration_z"};
   RunEvaluator evaluator(*parse_recipe(measurement));
   ASSERT_TRUE(evaluator.describe(in_utc(run.acs_description())));
@@ -219,11 +219,11 @@ TEST(ApartStep, GivesNoNumberForAStepWhoseSamplesAreNotThere) {
 }
 
 TEST(ApartStep, NeedsToKnowItsSensors) {
-  Measurement measurement = absolute({});
+  wire::Measurement measurement = absolute({});
   measurement.dut().clear();
   EXPECT_THAT(parse_recipe(measurement).error().message,
               HasSubstr("names no channel under calibration"));
-  Measurement mixed = tests::SyntheticRun{}.measurement();
+  wire::Measurement mixed = tests::SyntheticRun{}.measurement();
   mixed.dut() = {"can/acceleration_z", "dau/acceleration_z"};
   EXPECT_THAT(parse_recipe(mixed).error().message,
               HasSubstr("either all of the source of sync_dau or none"));
