@@ -76,7 +76,7 @@ TEST_P(ExtendedModels, MeetTheExactAnswer) {
   ExtendedBasis basis;
   const Json& wanted = recipe_["basis"];
   basis.drift_order = wanted.value("drift_order", 0);
-  basis.max_harmonic = wanted.value("max_harmonic", 1);
+  basis.max_harmonic = wanted.value("highest_harmonic", 1);
   if (wanted.contains("lines_hz")) {
     for (const Json& line : wanted["lines_hz"]) {
       basis.lines.push_back(*Frequency::parse(line.get<std::string>()));
