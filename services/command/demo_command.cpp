@@ -102,8 +102,8 @@ Expected<Demo> prepare(const DemoCommand& command) {
 
 Expected<void> start(Demo& demo, const std::string& program,
                      const std::vector<std::string>& arguments) {
-  auto process =
-      ChildProcess::start(program_folder() / program, arguments, demo.folder / (program + ".log"));
+  const std::filesystem::path log = demo.folder / (program + ".log");
+  auto process = ChildProcess::start(program_folder() / program, arguments, {log, log});
   if (!process) {
     return fail(process.error());
   }

@@ -1,6 +1,6 @@
 # The full form is run by hand (analyse_speed); the short one asserts that every result is there.
 add_executable(analyse_speed analyse_speed.cpp)
-target_link_libraries(analyse_speed PRIVATE dyncal_options dyncal_acs dyncal_files CLI11::CLI11 fmt::fmt)
+target_link_libraries(analyse_speed PRIVATE dyncal_options dyncal_program_run dyncal_acs dyncal_files CLI11::CLI11 fmt::fmt)
 target_compile_options(analyse_speed PRIVATE -O3) # for what only reads
 target_compile_definitions(analyse_speed PRIVATE DYNCAL="$<TARGET_FILE:dyncal>")
 add_dependencies(analyse_speed dyncal)

@@ -23,7 +23,7 @@
 #include <fmt/core.h>
 
 #include "drivers/files/mapped_file.hpp"
-#include "tests/unit/services/dau/child_process.hpp"
+#include "tests/system/program_run.hpp"
 
 namespace {
 
@@ -162,6 +162,7 @@ public:
   Bench& operator=(const Bench&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path bench_file() const { return folder_ / "bench.toml"; }
   [[nodiscard]] std::filesystem::path result_file() const { return folder_ / "result.json"; }
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -238,15 +239,15 @@ Cost analysing(const Options& options, const Bench& bench) {
   Cost quickest{1e9, 1e9};
   for (int run = 0; run < options.runs; ++run) {
     const auto begin = Clock::now();
-    tests::ChildProcess process({"/bin/sh", "-c",
-                                 R"(exec "$0" analyse "$1" --json "$2" > /dev/null)",
-                                 options.program, bench.bench_file(), bench.result_file()});
-    const auto exit = process.wait_for(std::chrono::seconds(600));
+    tests::ProgramRun process(options.program,
+                              {"analyse", bench.bench_file(), "--json", bench.result_file()},
+                              bench.folder());
+    const auto status = process.wait(std::chrono::seconds(600));
     const double wall_s = seconds_since(begin);
-    if (!exit || exit->status != 0) {
-      throw std::runtime_error(bench.name() + ": " + process.said());
+    if (status != 0) {
+      throw std::runtime_error(bench.name() + ": " + process.errors());
     }
-    quickest = {std::min(quickest.wall_s, wall_s), std::min(quickest.cpu_s, exit->cpu_s)};
+    quickest = {std::min(quickest.wall_s, wall_s), std::min(quickest.cpu_s, process.cpu_s())};
   }
   return quickest;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -18,10 +19,11 @@
 #include "drivers/smartup/sensor_id.hpp"
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/system/program_run.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
-#include "tests/unit/services/dau/child_process.hpp"
 
 namespace {
 
@@ -244,18 +246,17 @@ int run(const Load& load) {
   Subscriber subscriber(load, *network);
   const tests::TemporaryFolder folder;
   const std::uint16_t port = tests::free_udp_port();
-  std::vector<std::string> command{load.program, "--dds", load.dds, "--domain",
-                                   std::to_string(load.domain)};
+  std::vector<std::string> arguments{"--dds", load.dds, "--domain", std::to_string(load.domain)};
   for (auto& file : write_benches(load, folder, port)) {
-    command.push_back(std::move(file));
+    arguments.push_back(std::move(file));
   }
-  tests::ChildProcess program(command);
+  tests::ProgramRun program(load.program, arguments, folder.path());
   const auto ready_by = Clock::now() + std::chrono::seconds(30);
   while (!subscriber.all_ready() && Clock::now() < ready_by) {
     subscriber.take();
   }
   if (!subscriber.all_ready()) {
-    fmt::print(stderr, "dyncal-dau is not there:\n{}", program.said());
+    fmt::print(stderr, "dyncal-dau is not there:\n{}", program.errors());
     return 2;
   }
 
@@ -276,21 +277,21 @@ int run(const Load& load) {
   while (Clock::now() < settled_by) {
     subscriber.take();
   }
-  program.signal(SIGTERM);
-  const auto exit = program.wait_for(std::chrono::seconds(20));
+  program.send(SIGTERM);
+  const auto exit = program.wait(std::chrono::seconds(20));
 
   fmt::print("{}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds, load.units,
              load.sensors, load.rate_hz, load.channels, load.seconds);
   subscriber.report(sent);
   if (exit) {
     fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n",
-               exit->cpu_s / elapsed_s);
+               program.cpu_s() / elapsed_s);
   }
   const bool whole = subscriber.received() == expected;
   if (!whole) {
-    fmt::print("LOST {} samples\n{}", expected - subscriber.received(), program.said());
+    fmt::print("LOST {} samples\n{}", expected - subscriber.received(), program.errors());
   }
-  return whole && exit && exit->status == 0 ? 0 : 1;
+  return whole && exit == 0 ? 0 : 1;
 }
 
 } // namespace

@@ -1,13 +1,9 @@
 #include "tests/system/program_run.hpp"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 namespace dyncal::tests {
@@ -22,49 +18,37 @@ std::string read(const std::filesystem::path& path) {
   return text.str();
 }
 
+services::ChildProcess started(const std::filesystem::path& program,
+                               const std::vector<std::string>& arguments,
+                               services::ChildOutput output) {
+  auto process = services::ChildProcess::start(program, arguments, std::move(output));
+  if (!process) {
+    throw std::runtime_error(process.error().message);
+  }
+  return std::move(*process);
+}
+
 } // namespace
 
 ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder)
-    : output_(folder / (program + ".out")), errors_(folder / (program + ".err")),
-      began_(std::chrono::steady_clock::now()) {
-  const std::string path = std::string(DYNCAL_PROGRAMS) + "/" + program;
-  std::vector<char*> words{const_cast<char*>(path.c_str())};
-  for (const std::string& argument : arguments) {
-    words.push_back(const_cast<char*>(argument.c_str()));
-  }
-  words.push_back(nullptr);
-  const int out = open(output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
-  const int err = open(errors_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
-  process_ = fork();
-  if (process_ == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    dup2(out, STDOUT_FILENO);
-    dup2(err, STDERR_FILENO);
-    execv(path.c_str(), words.data());
-    _exit(127);
-  }
-  close(out);
-  close(err);
-}
+    : output_(folder / (std::filesystem::path(program).filename().string() + ".out")),
+      errors_(folder / (std::filesystem::path(program).filename().string() + ".err")),
+      began_(std::chrono::steady_clock::now()),
+      process_(started(std::filesystem::path(DYNCAL_PROGRAMS) / program, arguments,
+                       {output_, errors_})) {}
 
 ProgramRun::~ProgramRun() {
-  if (!status_) {
-    kill(process_, SIGTERM); // a demo ends its services
-    if (!wait(std::chrono::seconds(5))) {
-      kill(process_, SIGKILL);
-      waitpid(process_, nullptr, 0);
-    }
-  }
+  process_.stop(std::chrono::seconds(5));
 }
 
 void ProgramRun::send(int signal) {
-  kill(process_, signal);
+  process_.signal(signal);
 }
 
 bool ProgramRun::send_to_child(const std::string& program, int signal) {
-  std::istringstream children(read("/proc/" + std::to_string(process_) + "/task/" +
-                                   std::to_string(process_) + "/children"));
+  const std::string id = std::to_string(process_.id());
+  std::istringstream children(read("/proc/" + id + "/task/" + id + "/children"));
   for (pid_t child = 0; children >> child;) {
     const std::string command = read("/proc/" + std::to_string(child) + "/cmdline");
     if (std::filesystem::path(command.substr(0, command.find('\0'))).filename() == program) {
@@ -74,20 +58,18 @@ bool ProgramRun::send_to_child(const std::string& program, int signal) {
   return false;
 }
 
-std::optional<int> ProgramRun::wait(std::chrono::seconds limit) {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  while (!status_) {
-    int raw = 0;
-    if (waitpid(process_, &raw, WNOHANG) == process_) {
-      status_ = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
-      ended_ = std::chrono::steady_clock::now();
-    } else if (std::chrono::steady_clock::now() > deadline) {
-      return std::nullopt;
-    } else {
-      std::this_thread::sleep_for(poll_interval); // between two looks at the condition
-    }
+std::optional<int> ProgramRun::wait(std::chrono::nanoseconds limit) {
+  const auto exit = process_.wait_for(limit);
+  if (!exit) {
+    return std::nullopt;
   }
-  return status_;
+  ended_ = ended_.value_or(std::chrono::steady_clock::now());
+  return exit->status;
+}
+
+double ProgramRun::cpu_s() {
+  const auto exit = process_.wait_for(std::chrono::nanoseconds(0));
+  return exit ? exit->cpu_s : 0.0;
 }
 
 bool ProgramRun::wait_for_error_text(const std::string& text, std::chrono::seconds limit) {

@@ -1,8 +1,6 @@
 // A program of the build as a test runs it: with arguments, a deadline, its outputs in files, and
-// signals. It is killed when the object goes. One thread.
+// signals. It is ended when the object is destroyed. One thread.
 #pragma once
-
-#include <sys/types.h>
 
 #include <chrono>
 #include <filesystem>
@@ -10,14 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "services/program/child_process.hpp"
+
 namespace dyncal::tests {
 
 class ProgramRun {
 public:
-  // Starts `program` of the build's folder of programs; its outputs go to files in `folder`.
+  // Starts `program` of the build's folder of programs, or one given by an absolute path; its
+  // outputs go to files in `folder`. Throws what kept it from starting.
   ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
              const std::filesystem::path& folder);
-  ~ProgramRun();
+  ~ProgramRun(); // a demo gets five seconds to end its services
   ProgramRun(const ProgramRun&) = delete;
   ProgramRun& operator=(const ProgramRun&) = delete;
 
@@ -26,21 +27,21 @@ public:
   bool send_to_child(const std::string& program, int signal);
   // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as
   // 128 + N.
-  std::optional<int> wait(std::chrono::seconds limit);
+  std::optional<int> wait(std::chrono::nanoseconds limit);
   // True as soon as standard error contains the text.
   bool wait_for_error_text(const std::string& text, std::chrono::seconds limit);
 
   [[nodiscard]] std::string output() const;
   [[nodiscard]] std::string errors() const;
+  [[nodiscard]] double cpu_s();         // user and system; 0 while it runs
   [[nodiscard]] double seconds() const; // since it was started, until it was seen to end
 
 private:
-  pid_t process_;
   std::filesystem::path output_;
   std::filesystem::path errors_;
   std::chrono::steady_clock::time_point began_;
   std::optional<std::chrono::steady_clock::time_point> ended_;
-  std::optional<int> status_;
+  services::ChildProcess process_;
 };
 
 // A fresh folder of this test below the build tree.

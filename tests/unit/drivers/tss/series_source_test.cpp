@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.hpp"
+
 namespace dyncal::drivers::tss {
 namespace {
 
@@ -110,18 +112,14 @@ TEST_F(SeriesSocketTest, ACablePulledInTheMiddleIsADisconnection) {
 
 class SeriesFolderTest : public testing::Test {
 protected:
-  SeriesFolderTest() {
-    std::string name = testing::TempDir() + "series-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
-  ~SeriesFolderTest() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, int shot) const {
     std::ofstream(folder_ / "part")
         << "# nominal_rate_hz = 1000\n# shot = " << shot << "\nx\n1\n2\n";
     std::filesystem::rename(folder_ / "part", folder_ / name);
   }
 
-  std::filesystem::path folder_;
+  tests::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path();
   StopSignal stop_;
 };
 

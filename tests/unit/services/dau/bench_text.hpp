@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 namespace dyncal::tests {
@@ -30,25 +28,5 @@ inline std::string smartup_source(const std::string& name, const std::string& li
   return "[sources." + name + "]\ndriver = \"smartup\"\nlisten = \"" + listen + "\"\nsensor = \"" +
          sensor + "\"\nchannels = { Data_11 = \"sync\" }\n";
 }
-
-// A folder that is removed with this object.
-class TemporaryFolder {
-public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "dyncal-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-
-private:
-  std::filesystem::path path_;
-};
 
 } // namespace dyncal::tests

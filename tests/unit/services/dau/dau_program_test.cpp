@@ -3,21 +3,24 @@
 
 #include <atomic>
 
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/system/program_run.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
-#include "tests/unit/services/dau/child_process.hpp"
 #include "tests/unit/services/source/bench_listener.hpp"
 
 namespace dyncal {
 namespace {
 
 using testing::HasSubstr;
-using tests::ChildProcess;
 using tests::DatagramWriter;
+using tests::ProgramRun;
 using tests::UdpSender;
 
 constexpr int dds_domain = 61;
@@ -70,11 +73,11 @@ private:
 
 class DauProgram : public testing::TestWithParam<bus::Vendor> {
 protected:
-  std::unique_ptr<ChildProcess> start(const std::vector<std::string>& benches) {
-    std::vector<std::string> command{DYNCAL_DAU, "--dds", bus::vendor_word(GetParam()), "--domain",
-                                     std::to_string(dds_domain)};
-    command.insert(command.end(), benches.begin(), benches.end());
-    return std::make_unique<ChildProcess>(command);
+  std::unique_ptr<ProgramRun> start(const std::vector<std::string>& benches) {
+    std::vector<std::string> arguments{"--dds", bus::vendor_word(GetParam()), "--domain",
+                                       std::to_string(dds_domain)};
+    arguments.insert(arguments.end(), benches.begin(), benches.end());
+    return std::make_unique<ProgramRun>("dyncal-dau", arguments, folder.path());
   }
   std::string bench_file(const std::string& sensor = "0xbccb0100") {
     return folder.write(
@@ -92,10 +95,10 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   auto program = start({bench_file()});
   SimulatedUnit unit(port);
 
-  ASSERT_TRUE(listener.armed("dau", "run-1")) << program->said();
+  ASSERT_TRUE(listener.armed("dau", "run-1")) << program->errors();
   const auto before = listener.samples_of("dau");
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("dau") > before + 1000; }))
-      << program->said();
+      << program->errors();
 
   ASSERT_FALSE(listener.descriptions.empty());
   const auto& description = listener.descriptions.back();
@@ -124,19 +127,19 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
 
   unit.lose_datagrams(2);
   ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_on_way() == 24; }))
-      << program->said();
+      << program->errors();
   EXPECT_EQ(listener.last_status("dau")->lost_in_device(), 0U);
   EXPECT_EQ(listener.last_status("dau")->state(), wire::SOURCE_RUNNING);
 
-  program->signal(SIGTERM);
-  const auto exit = program->wait_for(std::chrono::seconds(10));
+  program->send(SIGTERM);
+  const auto exit = program->wait(std::chrono::seconds(10));
   ASSERT_TRUE(exit);
-  EXPECT_EQ(exit->status, 0) << program->said();
+  EXPECT_EQ(*exit, 0) << program->errors();
   EXPECT_TRUE(listener.until([&] {
     return listener.blocks.back().end_of_stream() && listener.saw_state("dau", wire::SOURCE_ENDED);
   }));
-  EXPECT_THAT(program->said(), HasSubstr("sensor 0xbccb0100 is there"));
-  EXPECT_THAT(program->said(), HasSubstr("samples lost on the way"));
+  EXPECT_THAT(program->errors(), HasSubstr("sensor 0xbccb0100 is there"));
+  EXPECT_THAT(program->errors(), HasSubstr("samples lost on the way"));
 }
 
 TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
@@ -148,10 +151,10 @@ TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
     const auto status = listener.last_status("dau");
     return status && status->state() == wire::SOURCE_SILENT &&
            status->message().find("0xbccb0100 (MPU_9250)") != std::string::npos;
-  })) << program->said();
+  })) << program->errors();
   EXPECT_THAT(listener.last_status("dau")->message(),
               HasSubstr("sensor 0x1fe40100 does not send to " + listen));
-  EXPECT_THAT(program->said(), HasSubstr("sensor 0xbccb0100 (MPU_9250) sends to " + listen));
+  EXPECT_THAT(program->errors(), HasSubstr("sensor 0xbccb0100 (MPU_9250) sends to " + listen));
 }
 
 TEST_P(DauProgram, OneProcessServesSeveralBenches) {
@@ -166,8 +169,8 @@ TEST_P(DauProgram, OneProcessServesSeveralBenches) {
   auto program = start({first_file, second_file});
   SimulatedUnit unit(port);
   SimulatedUnit other(port, 0x1fe40100);
-  EXPECT_TRUE(here.until([&] { return here.samples_of("dau") > 500; })) << program->said();
-  EXPECT_TRUE(there.until([&] { return there.samples_of("dau") > 500; })) << program->said();
+  EXPECT_TRUE(here.until([&] { return here.samples_of("dau") > 500; })) << program->errors();
+  EXPECT_TRUE(there.until([&] { return there.samples_of("dau") > 500; })) << program->errors();
 }
 
 class DauProgramErrors : public DauProgram {
@@ -175,11 +178,11 @@ protected:
   // Exit status and the only line.
   std::pair<int, std::string> failure_of(const std::vector<std::string>& benches) {
     auto program = start(benches);
-    const auto exit = program->wait_for(std::chrono::seconds(10));
-    EXPECT_TRUE(exit) << "it runs: " << program->said();
-    const std::string said = program->said();
+    const auto exit = program->wait(std::chrono::seconds(10));
+    EXPECT_TRUE(exit) << "it runs: " << program->errors();
+    const std::string said = program->errors();
     EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
-    return {exit ? exit->status : 0, said};
+    return {exit.value_or(0), said};
   }
 };
 

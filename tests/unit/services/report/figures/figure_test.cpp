@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.hpp"
+
 namespace dyncal::services::figures {
 namespace {
 
@@ -14,14 +16,8 @@ using testing::HasSubstr;
 
 class FigureFiles : public testing::Test {
 protected:
-  FigureFiles() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "dyncal-figures-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~FigureFiles() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  tests::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path();
 };
 
 std::string content(const std::filesystem::path& path) {
