@@ -14,9 +14,12 @@ Budget systematic_rows(const RecordedSeries& reference, double w,
                        const ComparisonUncertainty& systematic) {
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
-  budget.add("delay between the channels", "normal", 0.0, 0.0, w * systematic.channel_delay_s);
-  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel,
-             systematic.reference_phase_rad);
+  budget.add({.kind = ContributionKind::channel_delay,
+              .subject = "the channels",
+              .u_phase_rad = w * systematic.channel_delay_s});
+  budget.add({.kind = ContributionKind::reference,
+              .u_magnitude_rel = systematic.reference_magnitude_rel,
+              .u_phase_rad = systematic.reference_phase_rad});
   return budget;
 }
 
@@ -37,7 +40,7 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
     Budget budget;
     add_sensor_rows(budget, dut, 0.0);
     budget.append(common);
-    budget.add_excess("structure in the signals",
+    budget.add_excess("the signals",
                       ratio_scatter(reference.result.frequency, input.stamps_ns, dut.values(),
                                     reference.values()),
                       budget.u_magnitude_rel(), budget.u_phase_rad());

@@ -12,9 +12,12 @@ namespace {
 // shares.
 void add_jitter(Budget& budget, double w, double jitter_s, double samples) {
   const double angle = w * jitter_s;
-  budget.add("jitter of the stamps", "normal", 0.0,
-             std::hypot(std::sqrt(0.5 / samples) * angle, 0.5 * angle * angle),
-             std::sqrt(1.5 / samples) * angle);
+  const double shortening = 0.5 * angle * angle;
+  budget.add({.kind = ContributionKind::stamp_jitter,
+              .subject = "the stamps",
+              .u_magnitude_rel = std::hypot(std::sqrt(0.5 / samples) * angle, shortening),
+              .u_phase_rad = std::sqrt(1.5 / samples) * angle,
+              .u_lasting_magnitude_rel = shortening});
 }
 
 } // namespace
@@ -38,10 +41,11 @@ Expected<TransferPoint> evaluate_stamped_apart(const SeriesFit& pilot, std::comp
   // other.
   const double apart_s =
       static_cast<double>(sensor->result.reference_ns - pilot.reference_ns) * 1e-9;
-  budget.add("frequency between the records", "normal", pilot.fit.degrees_of_freedom, 0.0,
-             2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(apart_s));
-  budget.add("offset between the clocks", "normal", 0.0, 0.0,
-             pilot.frequency.angular() * stamps.clock_offset_s);
+  budget.add({.kind = ContributionKind::record_frequency,
+              .degrees_of_freedom = pilot.fit.degrees_of_freedom,
+              .u_phase_rad = 2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(apart_s)});
+  budget.add({.kind = ContributionKind::clock_offset,
+              .u_phase_rad = pilot.frequency.angular() * stamps.clock_offset_s});
   budget.append(common);
   return transfer_point(*sensor, link * std::polar(1.0, -2.0 * std::numbers::pi * turns), budget);
 }

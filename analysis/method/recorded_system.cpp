@@ -159,24 +159,36 @@ void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeri
   const FitNoise noise = fit_noise(series.result, jitter_s);
   const QuantisationUncertainty steps = quantisation(series);
   const double relative = counts_in == CountsIn::phase ? 0.0 : 1.0 / series.amplitude();
-  budget.add("noise of " + what, "normal", series.result.fit.degrees_of_freedom,
-             noise.u_amplitude * relative, noise.u_phase_rad);
-  budget.add("quantisation of " + what, "rectangular", 0.0, steps.u_amplitude * relative,
-             steps.u_phase_rad);
+  budget.add({.kind = ContributionKind::fit_noise,
+              .subject = what,
+              .degrees_of_freedom = series.result.fit.degrees_of_freedom,
+              .u_magnitude_rel = noise.u_amplitude * relative,
+              .u_phase_rad = noise.u_phase_rad});
+  budget.add({.kind = ContributionKind::quantisation,
+              .subject = what,
+              .distribution = Distribution::rectangular,
+              .u_magnitude_rel = steps.u_amplitude * relative,
+              .u_phase_rad = steps.u_phase_rad});
 }
 
 void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter_s) {
   const SensorNoise sensor(series, jitter_s);
   const bool weak = sensor.snr() < weak_phasor;
   const double relative = sensor.amplitude > 0.0 ? 1.0 / sensor.amplitude : 0.0;
-  budget.add("noise of the sensor", "normal", series.result.fit.degrees_of_freedom,
-             sensor.noise.u_amplitude * relative,
-             weak ? phase_standard_uncertainty(sensor.snr()) : sensor.noise.u_phase_rad);
-  budget.add("quantisation of the sensor", "rectangular", 0.0, sensor.steps.u_amplitude * relative,
-             weak ? 0.0 : sensor.steps.u_phase_rad);
+  budget.add(
+      {.kind = ContributionKind::fit_noise,
+       .subject = "the sensor",
+       .degrees_of_freedom = series.result.fit.degrees_of_freedom,
+       .u_magnitude_rel = sensor.noise.u_amplitude * relative,
+       .u_phase_rad = weak ? phase_standard_uncertainty(sensor.snr()) : sensor.noise.u_phase_rad});
+  budget.add({.kind = ContributionKind::quantisation,
+              .subject = "the sensor",
+              .distribution = Distribution::rectangular,
+              .u_magnitude_rel = sensor.steps.u_amplitude * relative,
+              .u_phase_rad = weak ? 0.0 : sensor.steps.u_phase_rad});
   if (weak) {
-    budget.add("magnitude of noise (Rice)", "normal", 0.0,
-               0.5 * std::pow(sensor.u_amplitude * relative, 2), 0.0);
+    budget.add({.kind = ContributionKind::rice,
+                .u_magnitude_rel = 0.5 * std::pow(sensor.u_amplitude * relative, 2)});
   }
 }
 

@@ -59,8 +59,8 @@ struct RecordedSystem {
 
 enum class CountsIn { magnitude_and_phase, phase };
 
-// Noise and quantisation of a channel that is well above the noise; `what` completes "noise of
-// ...".
+// Noise and quantisation of a channel that is well above the noise; `what` is the subject of
+// the rows.
 void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series,
                      double jitter_s, CountsIn counts_in);
 

@@ -25,8 +25,7 @@ struct Scatter {               // of one quantity over the repetitions
 };
 
 CombinedUncertainty combine(double u_random_mean, double random_freedom, double u_common) {
-  const std::array parts{UncertaintyPart{u_random_mean, random_freedom},
-                         UncertaintyPart{u_common, 0.0}};
+  const std::array parts{UncertaintyPart{u_random_mean, random_freedom}, UncertaintyPart{u_common}};
   CombinedUncertainty result;
   result.u = std::hypot(u_random_mean, u_common);
   if (!(result.u > 0.0)) {
@@ -34,9 +33,9 @@ CombinedUncertainty combine(double u_random_mean, double random_freedom, double 
   }
   result.degrees_of_freedom = effective_degrees_of_freedom(parts);
   const double by_effective_freedom = coverage_factor(result.degrees_of_freedom);
-  const double by_parts =
-      std::hypot(coverage_factor(random_freedom) * u_random_mean, coverage_factor(0.0) * u_common) /
-      result.u;
+  const double by_parts = std::hypot(coverage_factor(random_freedom) * u_random_mean,
+                                     coverage_factor(infinite_degrees_of_freedom) * u_common) /
+                          result.u;
   result.k = by_effective_freedom + (by_parts - by_effective_freedom) / 3.0;
   return result;
 }
@@ -44,13 +43,18 @@ CombinedUncertainty combine(double u_random_mean, double random_freedom, double 
 // Observed scatter against what the fits expect: the wider interval counts.
 CombinedUncertainty wider(const Scatter& scatter, double n, double u_common) {
   const CombinedUncertainty expected =
-      combine(std::sqrt(scatter.random_squares) / n, 0.0, u_common);
+      combine(std::sqrt(scatter.random_squares) / n, infinite_degrees_of_freedom, u_common);
   if (n < 2.0) {
     return expected;
   }
   const CombinedUncertainty observed =
       combine(std::sqrt(scatter.squares / (n - 1.0) / n), n - 1.0, u_common);
   return observed.u * observed.k > expected.u * expected.k ? observed : expected;
+}
+
+double drawn_magnitude(const Contribution& row) {
+  return std::sqrt(std::max(0.0, row.u_magnitude_rel * row.u_magnitude_rel -
+                                     row.u_lasting_magnitude_rel * row.u_lasting_magnitude_rel));
 }
 
 double half_interval(const CombinedUncertainty& uncertainty) {
@@ -63,11 +67,15 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
   Repetition result;
   result.h = h;
   for (const Contribution& row : budget) {
-    const bool random = row.degrees_of_freedom > 0.0;
+    const bool random = row.repeats == Repeats::anew;
     double& magnitude = random ? result.u_random_magnitude_rel : result.u_common_magnitude_rel;
     double& phase = random ? result.u_random_phase_rad : result.u_common_phase_rad;
-    magnitude = std::hypot(magnitude, row.u_magnitude_rel);
+    magnitude = std::hypot(magnitude, random ? drawn_magnitude(row) : row.u_magnitude_rel);
     phase = std::hypot(phase, row.u_phase_rad);
+    if (random) {
+      result.u_common_magnitude_rel =
+          std::hypot(result.u_common_magnitude_rel, row.u_lasting_magnitude_rel);
+    }
   }
   return result;
 }

@@ -19,7 +19,7 @@
 #include <span>
 
 #include "analysis/base/error.hpp"
-#include "analysis/method/sample_stamping.hpp"
+#include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
 
@@ -31,15 +31,15 @@ struct Repetition {
   double u_common_phase_rad = 0.0;
 };
 
-// Divides a budget: rows with finite degrees of freedom were estimated from this repetition's own
-// samples and are random; the others are taken as common to all repetitions.
+// Divides a budget: rows that are drawn anew in every repetition are random, but for the part of
+// the magnitude that lasts; the others are common to all repetitions (Contribution::repeats).
 [[nodiscard]] Repetition make_repetition(std::complex<double> h,
                                          std::span<const Contribution> budget);
 
 struct CombinedUncertainty {
-  double u = 0.0;                  // combined standard uncertainty u_c
-  double degrees_of_freedom = 0.0; // nu_eff, 0: infinite
-  double k = 2.0;                  // at 95.45 %, see above
+  double u = 0.0;                                          // combined standard uncertainty u_c
+  double degrees_of_freedom = infinite_degrees_of_freedom; // nu_eff
+  double k = 2.0;                                          // at 95.45 %, see above
 };
 
 struct RepetitionMean {

@@ -24,20 +24,23 @@ Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
-  budget.add_excess("structure in the reference",
+  budget.add_excess("the reference",
                     ratio_scatter(reference.result.frequency, input.acs_stamps_ns,
                                   reference.values(), acs.pilot.values()),
                     budget.u_magnitude_rel(), budget.u_phase_rad());
   add_signal_rows(budget, "the DAU sync", sync_dau,
                   std::hypot(systematic.sync_adc_jitter_s, common_jitter_s(systematic)),
                   CountsIn::phase);
-  budget.add("jitter of the DAU sync alone", "normal", 0.0, 0.0,
-             std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
-                 systematic.sync_adc_jitter_s);
-  budget.add("phase of the DAU sync ADC", "normal", 0.0, 0.0, input.adc.u_phase_lag_rad);
-  budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * systematic.acs_delay_s);
-  budget.add("reference", "normal", 0.0, systematic.reference_magnitude_rel,
-             systematic.reference_phase_rad);
+  budget.add({.kind = ContributionKind::sync_jitter,
+              .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
+                             systematic.sync_adc_jitter_s});
+  budget.add({.kind = ContributionKind::adc_phase, .u_phase_rad = input.adc.u_phase_lag_rad});
+  budget.add({.kind = ContributionKind::channel_delay,
+              .subject = "the ACS channels",
+              .u_phase_rad = w * systematic.acs_delay_s});
+  budget.add({.kind = ContributionKind::reference,
+              .u_magnitude_rel = systematic.reference_magnitude_rel,
+              .u_phase_rad = systematic.reference_phase_rad});
   return budget;
 }
 
@@ -51,13 +54,18 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Rec
   const double n = static_cast<double>(dut.result.fit.samples);
   const double across =
       std::abs(std::sin(dut.result.fit.phase_rad() - sync_dau.result.fit.phase_rad()));
-  const auto add = [&](const char* name, const char* distribution, double jitter_s) {
+  const auto add = [&](ContributionKind kind, Distribution distribution, double jitter_s) {
     const double angle = input.frequency.angular() * jitter_s;
-    budget.add(name, distribution, 0.0, std::hypot(std::sqrt(0.5 / n) * angle, 0.5 * angle * angle),
-               std::sqrt(2.0 / n) * across * angle);
+    const double shortening = 0.5 * angle * angle;
+    budget.add({.kind = kind,
+                .subject = "the DAU stamps",
+                .distribution = distribution,
+                .u_magnitude_rel = std::hypot(std::sqrt(0.5 / n) * angle, shortening),
+                .u_phase_rad = std::sqrt(2.0 / n) * across * angle,
+                .u_lasting_magnitude_rel = shortening});
   };
-  add("jitter of the DAU stamps", "normal", rest_s);
-  add("tick of the DAU stamps", "rectangular", tick_s);
+  add(ContributionKind::stamp_jitter, Distribution::normal, rest_s);
+  add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
 }
 
 TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedSeries& dut,
@@ -67,7 +75,7 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedS
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
   add_stamp_noise(budget, input, dut, sync_dau);
   budget.add_excess(
-      "structure in the sensor's signal",
+      "the sensor's signal",
       ratio_scatter(dut.result.frequency, input.dau_stamps_ns, dut.values(), sync_dau.values()),
       budget.u_magnitude_rel(),
       std::hypot(budget.u_phase_rad(), sync_dau.result.fit.u_phase_rad()));

@@ -11,10 +11,10 @@
 // are evaluated at that frequency and the same reference instant, which removes unknown epochs and
 // constant rate errors. Harmonics and hum that stand out of the residuals are fitted beside the
 // signal (disturbances.hpp); what else makes the residuals other than white is found by block-wise
-// scatter and has a row of its own (ratio_scatter.hpp). Rows with degrees of freedom were estimated
-// from this step's samples; 0 means infinite. Fails as sine_fit.hpp does; the message names the
-// series. no_excitation when reference or sync do not stand out of the noise; a channel under
-// calibration may be without excitation, its phase then has an uncertainty up to pi / sqrt(3).
+// scatter and has a row of its own (ratio_scatter.hpp). Fails as sine_fit.hpp does; the message
+// names the series. no_excitation when reference or sync do not stand out of the noise; a channel
+// under calibration may be without excitation, its phase then has an uncertainty up to pi /
+// sqrt(3).
 #pragma once
 
 #include <cstdint>

@@ -130,13 +130,15 @@ Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs
   Budget budget;
   add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
-  budget.add("apparent frequency, from the middle of the series to sample 0", "normal", 0.0, 0.0,
-             u_phase_apparent);
-  budget.add("trigger delay of the oscilloscope", "normal", 0.0, 0.0, w * input.u_dso_delay_s);
-  budget.add("start of the series after the trigger", "normal", 0.0, 0.0,
-             w * input.u_start_latency_s);
-  budget.add("delay between the ACS channels", "normal", 0.0, 0.0, w * input.acs_delay_s);
-  budget.add("reference", "normal", 0.0, input.reference_magnitude_rel, input.reference_phase_rad);
+  budget.add({.kind = ContributionKind::apparent_frequency, .u_phase_rad = u_phase_apparent});
+  budget.add({.kind = ContributionKind::trigger_delay, .u_phase_rad = w * input.u_dso_delay_s});
+  budget.add({.kind = ContributionKind::series_start, .u_phase_rad = w * input.u_start_latency_s});
+  budget.add({.kind = ContributionKind::channel_delay,
+              .subject = "the ACS channels",
+              .u_phase_rad = w * input.acs_delay_s});
+  budget.add({.kind = ContributionKind::reference,
+              .u_magnitude_rel = input.reference_magnitude_rel,
+              .u_phase_rad = input.reference_phase_rad});
   return budget;
 }
 

@@ -1,9 +1,8 @@
 // What goes into an evaluation and what comes out of it, the same for every method: recorded
 // channels, fitted series, one value of the transfer function with its uncertainty budget.
 //
-// H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties;
-// those of a budget row are already multiplied by their sensitivity, so that rows add in squares
-// (what is correlated was combined before it became a row).
+// H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties.
+// Plain data, any thread.
 #pragma once
 
 #include <complex>
@@ -14,6 +13,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
 
@@ -21,14 +21,6 @@ struct ChannelSamples {
   std::string name;
   std::span<const double> values;
   double resolution = 0.0; // one quantisation step; 0: none
-};
-
-struct Contribution { // one line of the uncertainty budget; standard uncertainties
-  std::string name;
-  std::string distribution;        // "normal", "rectangular", ...
-  double degrees_of_freedom = 0.0; // 0: infinite
-  double u_magnitude_rel = 0.0;
-  double u_phase_rad = 0.0;
 };
 
 struct SeriesFit { // what was fitted to one of the four series

@@ -1,6 +1,7 @@
 #include "analysis/uncertainty/budget.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace dyncal::analysis {
 namespace {
@@ -15,23 +16,24 @@ double root_of_squares(const std::vector<Contribution>& rows, double Contributio
 
 } // namespace
 
-void Budget::add(std::string name, std::string distribution, double degrees_of_freedom,
-                 double u_magnitude_rel, double u_phase_rad) {
-  if (u_magnitude_rel > 0.0 || u_phase_rad > 0.0) {
-    rows_.push_back({std::move(name), std::move(distribution), degrees_of_freedom, u_magnitude_rel,
-                     u_phase_rad});
+void Budget::add(Contribution row) {
+  if (row.u_magnitude_rel > 0.0 || row.u_phase_rad > 0.0) {
+    rows_.push_back(std::move(row));
   }
 }
 
-void Budget::add_excess(const std::string& name, const std::optional<RatioScatter>& scatter,
+void Budget::add_excess(std::string subject, const std::optional<RatioScatter>& scatter,
                         double expected_magnitude_rel, double expected_phase_rad) {
   if (!scatter) {
     return;
   }
   const double freedom = scatter->degrees_of_freedom;
-  add(name, "normal", freedom,
-      significant_excess(scatter->u_magnitude_rel, expected_magnitude_rel, freedom),
-      significant_excess(scatter->u_phase_rad, expected_phase_rad, freedom));
+  add({.kind = ContributionKind::structure,
+       .subject = std::move(subject),
+       .degrees_of_freedom = freedom,
+       .u_magnitude_rel =
+           significant_excess(scatter->u_magnitude_rel, expected_magnitude_rel, freedom),
+       .u_phase_rad = significant_excess(scatter->u_phase_rad, expected_phase_rad, freedom)});
 }
 
 void Budget::append(const Budget& other) {

@@ -1,24 +1,25 @@
-// An uncertainty budget as it grows: named rows, relative magnitude and phase side by side, added
-// in squares (GUM 5.1.2; rows are uncorrelated, what is correlated is combined into one row first).
-// One thread.
+// An uncertainty budget as it grows: rows of relative magnitude and phase side by side, added in
+// squares (GUM 5.1.2).
+//
+// Rows are uncorrelated; what is correlated is combined into one row first. One thread.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/method/transfer_point.hpp"
+#include "analysis/uncertainty/contribution.hpp"
 #include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 
 class Budget {
 public:
-  // Left out when both contributions are 0. `degrees_of_freedom` 0: infinite.
-  void add(std::string name, std::string distribution, double degrees_of_freedom,
-           double u_magnitude_rel, double u_phase_rad);
-  // What scatter along the record shows beyond the expected uncertainties (ratio_scatter.hpp).
-  void add_excess(const std::string& name, const std::optional<RatioScatter>& scatter,
+  // A row whose uncertainties are both 0 is left out.
+  void add(Contribution row);
+  // A row of kind `structure`: what scatter along the record shows beyond the expected
+  // uncertainties (ratio_scatter.hpp).
+  void add_excess(std::string subject, const std::optional<RatioScatter>& scatter,
                   double expected_magnitude_rel, double expected_phase_rad);
   void append(const Budget& other);
 

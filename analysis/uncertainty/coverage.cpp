@@ -1,6 +1,7 @@
 #include "analysis/uncertainty/coverage.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace dyncal::analysis {
 namespace {
@@ -53,7 +54,7 @@ double probability_outside(double t, double degrees_of_freedom) {
 } // namespace
 
 double student_probability(double t, double degrees_of_freedom) {
-  if (!(degrees_of_freedom > 0.0) || std::isinf(degrees_of_freedom)) {
+  if (std::isinf(degrees_of_freedom)) {
     return 0.5 * std::erfc(-t / std::sqrt(2.0));
   }
   const double tail = 0.5 * probability_outside(t, degrees_of_freedom);
@@ -61,9 +62,12 @@ double student_probability(double t, double degrees_of_freedom) {
 }
 
 double coverage_factor(double degrees_of_freedom, double probability) {
+  if (!(degrees_of_freedom > 0.0)) {
+    return std::numeric_limits<double>::infinity();
+  }
   // Beyond this the difference to the normal distribution is below the rounding of the incomplete
   // beta function.
-  const bool infinite = !(degrees_of_freedom > 0.0) || degrees_of_freedom > 1e7;
+  const bool infinite = degrees_of_freedom > 1e7;
   const auto outside = [&](double t) {
     return infinite ? std::erfc(t / std::sqrt(2.0)) : probability_outside(t, degrees_of_freedom);
   };
@@ -84,11 +88,9 @@ double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts) {
   double variance = 0.0, weighted = 0.0;
   for (const UncertaintyPart& part : parts) {
     variance += part.u * part.u;
-    if (part.degrees_of_freedom > 0.0) {
-      weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
-    }
+    weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
   }
-  return weighted > 0.0 ? variance * variance / weighted : 0.0;
+  return weighted > 0.0 ? variance * variance / weighted : infinite_degrees_of_freedom;
 }
 
 } // namespace dyncal::analysis

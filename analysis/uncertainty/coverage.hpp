@@ -1,9 +1,12 @@
 // From combined standard uncertainty to coverage interval: Student's t, Welch-Satterthwaite (GUM
-// G.4). Degrees of freedom are real numbers; 0 stands for infinite, as in a Contribution. Any
-// thread.
+// G.4).
+//
+// Degrees of freedom are positive real numbers; infinity is stated as such. Any thread.
 #pragma once
 
 #include <span>
+
+#include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
 
@@ -13,16 +16,17 @@ inline constexpr double two_sigma_probability = 0.95449973610364158;
 // Probability that Student's t with `degrees_of_freedom` is <= t.
 [[nodiscard]] double student_probability(double t, double degrees_of_freedom);
 
-// k so that |t| <= k with the given probability; 2 for infinite degrees of freedom.
+// k so that |t| <= k with the given probability; 2 for infinite degrees of freedom, infinite where
+// there are none.
 [[nodiscard]] double coverage_factor(double degrees_of_freedom,
                                      double probability = two_sigma_probability);
 
 struct UncertaintyPart {
   double u = 0.0;
-  double degrees_of_freedom = 0.0; // 0: infinite
+  double degrees_of_freedom = infinite_degrees_of_freedom;
 };
 
-// nu_eff = u_c^4 / sum(u_i^4 / nu_i); 0 when all are infinite.
+// nu_eff = u_c^4 / sum(u_i^4 / nu_i); infinite when all are.
 [[nodiscard]] double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts);
 
 } // namespace dyncal::analysis

@@ -13,20 +13,6 @@ tl::unexpected<Error> invalid(std::string message) {
 
 } // namespace
 
-double standard_uncertainty(Distribution distribution, double half_width) {
-  switch (distribution) {
-  case Distribution::normal:
-    return half_width / 2.0;
-  case Distribution::rectangular:
-    return half_width / std::sqrt(3.0);
-  case Distribution::triangular:
-    return half_width / std::sqrt(6.0);
-  case Distribution::arcsine:
-    return half_width / std::sqrt(2.0);
-  }
-  return half_width;
-}
-
 Expected<PropagatedUncertainty>
 propagate_uncertainty(std::span<const InputQuantity> inputs,
                       std::span<const InputCorrelation> correlations) {
@@ -37,6 +23,9 @@ propagate_uncertainty(std::span<const InputQuantity> inputs,
     if (!(input.u >= 0.0) || !std::isfinite(input.u) || !std::isfinite(input.sensitivity)) {
       return invalid(input.name +
                      ": uncertainty and sensitivity must be numbers, the uncertainty not negative");
+    }
+    if (!(input.degrees_of_freedom > 0.0)) {
+      return invalid(input.name + ": degrees of freedom must be positive");
     }
     const double contribution = input.sensitivity * input.u;
     result.contributions.push_back(contribution);
@@ -66,11 +55,10 @@ propagate_uncertainty(std::span<const InputQuantity> inputs,
   // Welch and Satterthwaite with the combined uncertainty, correlations included.
   double weighted = 0.0;
   for (const UncertaintyPart& part : parts) {
-    if (part.degrees_of_freedom > 0.0) {
-      weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
-    }
+    weighted += std::pow(part.u, 4) / part.degrees_of_freedom;
   }
-  result.degrees_of_freedom = weighted > 0.0 ? std::pow(result.u, 4) / weighted : 0.0;
+  result.degrees_of_freedom =
+      weighted > 0.0 ? std::pow(result.u, 4) / weighted : infinite_degrees_of_freedom;
   result.k = coverage_factor(result.degrees_of_freedom);
   result.expanded = result.k * result.u;
   return result;

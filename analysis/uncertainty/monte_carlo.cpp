@@ -67,7 +67,7 @@ private:
   double deviate(const InputQuantity& input, double normal) {
     switch (input.distribution) {
     case Distribution::normal:
-      if (!(input.degrees_of_freedom > 0.0)) {
+      if (std::isinf(input.degrees_of_freedom)) {
         return normal;
       }
       return normal /
@@ -211,17 +211,16 @@ struct DrawnChain {
     }
   }
   void add_row(const Contribution& row) {
-    const Distribution distribution =
-        row.distribution == "rectangular" ? Distribution::rectangular : Distribution::normal;
+    inputs.push_back({.name = row.name() + ", magnitude",
+                      .u = row.u_magnitude_rel,
+                      .distribution = row.distribution});
     inputs.push_back(
-        {.name = row.name + ", magnitude", .u = row.u_magnitude_rel, .distribution = distribution});
-    inputs.push_back(
-        {.name = row.name + ", phase", .u = row.u_phase_rad, .distribution = distribution});
+        {.name = row.name() + ", phase", .u = row.u_phase_rad, .distribution = row.distribution});
   }
 };
 
 bool is_drawn_as_phasor(const Contribution& row) {
-  return row.name.starts_with("noise of ") || row.name == "magnitude of noise (Rice)";
+  return row.kind == ContributionKind::fit_noise || row.kind == ContributionKind::rice;
 }
 
 // Of the sensor, the reference and, if there are, sync in the ACS and in the DAU.

@@ -8,6 +8,7 @@
 
 #include "services/contract/digest.hpp"
 #include "services/contract/unit.hpp"
+#include "services/evaluation/contribution_message.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -80,14 +81,8 @@ std::string ratio_unit(const SourceRecord& acs, const std::string& reference,
 }
 
 void add_budget(std::span<const analysis::Contribution> budget, wire::CalibrationResult& result) {
-  for (const analysis::Contribution& line : budget) {
-    wire::BudgetContribution message;
-    message.name(line.name);
-    message.distribution(line.distribution);
-    message.degrees_of_freedom(line.degrees_of_freedom);
-    message.u_magnitude_rel(line.u_magnitude_rel);
-    message.u_phase_rad(line.u_phase_rad);
-    result.budget().push_back(message);
+  for (const analysis::Contribution& row : budget) {
+    result.budget().push_back(contribution_message(row));
   }
 }
 

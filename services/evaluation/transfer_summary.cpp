@@ -8,6 +8,7 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/method/repetitions.hpp"
 #include "analysis/response/group_delay.hpp"
+#include "services/evaluation/contribution_message.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -15,9 +16,8 @@ namespace {
 
 analysis::Repetition repetition_of(const wire::CalibrationResult& result) {
   std::vector<analysis::Contribution> budget;
-  for (const wire::BudgetContribution& line : result.budget()) {
-    budget.push_back({line.name(), line.distribution(), line.degrees_of_freedom(),
-                      line.u_magnitude_rel(), line.u_phase_rad()});
+  for (const wire::BudgetContribution& row : result.budget()) {
+    budget.push_back(contribution_of(row));
   }
   return analysis::make_repetition(std::polar(result.magnitude(), result.phase_rad()), budget);
 }
@@ -82,10 +82,10 @@ double u_clock_offset_s(
     const std::map<std::pair<std::uint32_t, std::uint32_t>, wire::CalibrationResult>& results) {
   double max_s = 0.0;
   for (const auto& [key, result] : results) {
-    for (const wire::BudgetContribution& line : result.budget()) {
-      if (line.name() == "offset between the clocks") {
-        max_s =
-            std::max(max_s, line.u_phase_rad() / (2.0 * std::numbers::pi * result.frequency_hz()));
+    for (const wire::BudgetContribution& message : result.budget()) {
+      const analysis::Contribution row = contribution_of(message);
+      if (row.kind == analysis::ContributionKind::clock_offset) {
+        max_s = std::max(max_s, row.u_phase_rad / (2.0 * std::numbers::pi * result.frequency_hz()));
       }
     }
   }

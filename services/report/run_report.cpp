@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "services/evaluation/contribution_message.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -36,12 +38,13 @@ Json number(double value) {
 
 Json budget_json(const wire::CalibrationResult& result) {
   Json lines = Json::array();
-  for (const wire::BudgetContribution& line : result.budget()) {
-    lines.push_back({{"name", line.name()},
-                     {"distribution", line.distribution()},
-                     {"degrees_of_freedom", line.degrees_of_freedom()},
-                     {"u_magnitude_rel", number(line.u_magnitude_rel())},
-                     {"u_phase_rad", number(line.u_phase_rad())}});
+  for (const wire::BudgetContribution& message : result.budget()) {
+    const analysis::Contribution row = contribution_of(message);
+    lines.push_back({{"name", row.name()},
+                     {"distribution", to_string(row.distribution)},
+                     {"degrees_of_freedom", number(row.degrees_of_freedom)}, // null: infinite
+                     {"u_magnitude_rel", number(row.u_magnitude_rel)},
+                     {"u_phase_rad", number(row.u_phase_rad)}});
   }
   return lines;
 }

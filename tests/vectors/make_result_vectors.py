@@ -98,7 +98,7 @@ def budget(r):
     variance = sum(p * p for p in parts)
     for x in r["correlations"]:
         variance += 2 * mpf(x["coefficient"]) * parts[x["first"]] * parts[x["second"]]
-    nu = variance**2 / sum(p**4 / d for p, (_, _, d) in zip(parts, rows) if d > 0)
+    nu = variance**2 / sum(p**4 / d for p, (_, _, d) in zip(parts, rows))
     k = student_quantile(nu, mp.erf(sqrt(mpf(2))))
     u = sqrt(variance)
     return {"u": number(u), "degrees_of_freedom": number(nu), "k": number(k), "expanded": number(k * u)}
@@ -171,7 +171,7 @@ MATRIX = {
 
 BUDGET = {
     "inputs": [{"u": "0.0012", "sensitivity": "1", "degrees_of_freedom": "2"}, {"u": "0.0035", "sensitivity": "-0.5", "degrees_of_freedom": "17.5"},
-               {"u": "0.0009", "sensitivity": "2", "degrees_of_freedom": "0"}, {"u": "0.0004", "sensitivity": "1.5", "degrees_of_freedom": "0"}],
+               {"u": "0.0009", "sensitivity": "2", "degrees_of_freedom": "inf"}, {"u": "0.0004", "sensitivity": "1.5", "degrees_of_freedom": "inf"}],
     "correlations": [{"first": 2, "second": 3, "coefficient": "-0.4"}],
 }
 

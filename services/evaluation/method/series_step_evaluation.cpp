@@ -104,10 +104,13 @@ std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResu
     return std::sqrt(std::max(0.0, u * u - common * common));
   };
   std::vector<analysis::Contribution> rows{
-      {"shots: noise and scatter of series and trigger", "normal",
-       static_cast<double>(channel.shots.size() - 1),
-       rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
-       rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
+      {.kind = analysis::ContributionKind::shots,
+       .degrees_of_freedom = channel.shots.size() > 1
+                                 ? static_cast<double>(channel.shots.size() - 1)
+                                 : analysis::infinite_degrees_of_freedom,
+       .u_magnitude_rel =
+           rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
+       .u_phase_rad = rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
   rows.insert(rows.end(), result.common_budget.begin(), result.common_budget.end());
   return rows;
 }

@@ -56,15 +56,31 @@ TEST(Repetitions, CommonPartsDoNotAverageOut) {
   EXPECT_NEAR(mean->u_phase_rad, std::hypot(1e-5, 2e-3), 1e-12);
 }
 
-TEST(Repetitions, ABudgetIsDividedByItsDegreesOfFreedom) {
-  const std::array budget{Contribution{"noise", "normal", 100.0, 3e-4, 1e-4},
-                          Contribution{"structure", "normal", 15.0, 4e-4, 0.0},
-                          Contribution{"reference", "normal", 0.0, 1e-3, 2e-3}};
+TEST(Repetitions, ABudgetIsDividedByWhatRepeats) {
+  const std::array budget{
+      Contribution{
+          .kind = ContributionKind::fit_noise, .u_magnitude_rel = 3e-4, .u_phase_rad = 1e-4},
+      Contribution{.kind = ContributionKind::structure, .u_magnitude_rel = 4e-4},
+      Contribution{
+          .kind = ContributionKind::reference, .u_magnitude_rel = 1e-3, .u_phase_rad = 2e-3}};
   const Repetition repetition = make_repetition(h_of(1.0, 0.0), budget);
   EXPECT_DOUBLE_EQ(repetition.u_random_magnitude_rel, 5e-4);
   EXPECT_DOUBLE_EQ(repetition.u_random_phase_rad, 1e-4);
   EXPECT_DOUBLE_EQ(repetition.u_common_magnitude_rel, 1e-3);
   EXPECT_DOUBLE_EQ(repetition.u_common_phase_rad, 2e-3);
+}
+
+// Stamp noise scatters anew in every repetition, but shortens the amplitude in all of them alike.
+TEST(Repetitions, WhatLastsOfADrawnRowIsCommon) {
+  const std::array budget{Contribution{.kind = ContributionKind::stamp_jitter,
+                                       .u_magnitude_rel = 5e-4,
+                                       .u_phase_rad = 7e-4,
+                                       .u_lasting_magnitude_rel = 4e-4}};
+  const Repetition repetition = make_repetition(h_of(1.0, 0.0), budget);
+  EXPECT_DOUBLE_EQ(repetition.u_random_magnitude_rel, 3e-4);
+  EXPECT_DOUBLE_EQ(repetition.u_common_magnitude_rel, 4e-4);
+  EXPECT_DOUBLE_EQ(repetition.u_random_phase_rad, 7e-4);
+  EXPECT_EQ(repetition.u_common_phase_rad, 0.0);
 }
 
 TEST(Repetitions, NoiseHasNoPhase) {

@@ -39,10 +39,10 @@ TEST(Coverage, RealDegreesOfFreedomAreNotTruncated) {
 }
 
 TEST(Coverage, EffectiveDegreesOfFreedomFollowWelchAndSatterthwaite) {
-  const std::array parts{UncertaintyPart{3.0, 9.0}, UncertaintyPart{4.0, 0.0}};
+  const std::array parts{UncertaintyPart{3.0, 9.0}, UncertaintyPart{4.0}};
   EXPECT_DOUBLE_EQ(effective_degrees_of_freedom(parts), 625.0 / 9.0);
-  const std::array known{UncertaintyPart{3.0, 0.0}};
-  EXPECT_EQ(effective_degrees_of_freedom(known), 0.0);
+  const std::array known{UncertaintyPart{3.0}};
+  EXPECT_EQ(effective_degrees_of_freedom(known), infinite_degrees_of_freedom);
 }
 
 } // namespace

@@ -46,6 +46,8 @@ TEST(Uncertainty, FullCorrelationAddsOrCancels) {
 TEST(Uncertainty, RefusesWhatCannotBe) {
   const std::array negative{InputQuantity{.name = "a", .u = -1.0}};
   EXPECT_FALSE(propagate_uncertainty(negative).has_value());
+  const std::array without_freedom{InputQuantity{.name = "a", .u = 1.0, .degrees_of_freedom = 0.0}};
+  EXPECT_FALSE(propagate_uncertainty(without_freedom).has_value());
   const std::array three{InputQuantity{.name = "a", .u = 1.0}, InputQuantity{.name = "b", .u = 1.0},
                          InputQuantity{.name = "c", .u = 1.0}};
   const std::array contradiction{InputCorrelation{0, 1, -1.0}, InputCorrelation{1, 2, -1.0},

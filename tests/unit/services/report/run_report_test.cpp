@@ -82,6 +82,24 @@ TEST(RunReport, JsonHasTheFormOthersRead) {
   EXPECT_EQ(json["sample_clock"][0]["count"], 1000);
 }
 
+// JSON cannot represent infinity, and 0 would say the contrary.
+TEST(RunReport, InfiniteDegreesOfFreedomAreNull) {
+  RunOutcome one = outcome();
+  wire::BudgetContribution row;
+  row.name("reference");
+  row.distribution("normal");
+  row.u_phase_rad(1e-3);
+  one.results.front().budget().push_back(row);
+  row.name("noise of the sensor");
+  row.degrees_of_freedom(17.0);
+  one.results.front().budget().push_back(row);
+  const auto budget = result_json(one)["points"][0]["budget"];
+  ASSERT_EQ(budget.size(), 2u);
+  EXPECT_EQ(budget[0]["name"], "reference");
+  EXPECT_TRUE(budget[0]["degrees_of_freedom"].is_null());
+  EXPECT_EQ(budget[1]["degrees_of_freedom"], 17.0);
+}
+
 TEST(RunReport, TableShowsChannelsThatRespondAndNamesTheOthers) {
   const std::string table = result_table(outcome());
   EXPECT_THAT(table, HasSubstr("dau/acceleration_z\n"));
