@@ -239,7 +239,7 @@ void decode_description(Bytes bytes, Datagram& datagram) {
 
 } // namespace
 
-const char* rejection_name(Rejection rejection) {
+const char* to_string(Rejection rejection) {
   switch (rejection) {
   case Rejection::unknown_keyword:
     return "unknown keyword";

@@ -32,7 +32,7 @@ enum class Rejection {
 };
 inline constexpr std::size_t rejections = 6;
 
-[[nodiscard]] const char* rejection_name(Rejection rejection);
+[[nodiscard]] const char* to_string(Rejection rejection);
 
 struct DataMessage {
   std::uint32_t sensor = 0;

@@ -44,13 +44,26 @@ double median(Values& values) {
 
 } // namespace
 
-const char* stamp_flag_name(std::size_t bit) {
-  static constexpr const char* flag_names[stamp_flag_count] = {
-      "stamp: second slipped", "stamp: 2^32 ticks off",
-      "stamp: 2^16 ticks off", "stamp: offset below a second",
-      "stamp: repeated",       "stamp: no uncertainty",
-      "stamp: no fix",         "stamp: backwards"};
-  return bit < stamp_flag_count ? flag_names[bit] : "stamp";
+const char* to_string(StampFlag flag) {
+  switch (flag) {
+  case stamp_second_slip:
+    return "stamp: second slipped";
+  case stamp_counter_extension:
+    return "stamp: 2^32 ticks off";
+  case stamp_torn_counter:
+    return "stamp: 2^16 ticks off";
+  case stamp_offset_below_second:
+    return "stamp: offset below a second";
+  case stamp_repeated:
+    return "stamp: repeated";
+  case stamp_no_uncertainty:
+    return "stamp: no uncertainty";
+  case stamp_no_fix:
+    return "stamp: no fix";
+  case stamp_backwards:
+    return "stamp: backwards";
+  }
+  return "stamp";
 }
 
 double StampCheck::residual_ns(const Stamp& stamp) const {

@@ -25,6 +25,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "drivers/sample_block.hpp"
+
 namespace dyncal::drivers::smartup {
 
 struct Stamp {
@@ -35,8 +37,8 @@ struct Stamp {
 };
 
 inline constexpr std::size_t stamp_flag_count = 8;
-// Name of bit `bit` of StampFlag, for counts and messages.
-[[nodiscard]] const char* stamp_flag_name(std::size_t bit);
+// Of one flag, for counts and messages.
+[[nodiscard]] const char* to_string(StampFlag flag);
 
 class StampCheck {
 public:

@@ -43,10 +43,11 @@ SourceCounts source_counts(const smartup::SensorCounts& sensor,
   add_cause(counts, "same id from another sender", sensor.other_sender);
   add_cause(counts, "without sync", sensor.without_sync);
   for (std::size_t bit = 0; bit < smartup::stamp_flag_count; ++bit) {
-    add_cause(counts, smartup::stamp_flag_name(bit), sensor.stamp_flags[bit]);
+    add_cause(counts, smartup::to_string(static_cast<drivers::StampFlag>(1U << bit)),
+              sensor.stamp_flags[bit]);
   }
   for (std::size_t i = 0; i < smartup::rejections; ++i) {
-    const std::string name = smartup::rejection_name(static_cast<smartup::Rejection>(i));
+    const std::string name = smartup::to_string(static_cast<smartup::Rejection>(i));
     add_cause(counts, "rejected: " + name, sensor.rejected[i]);
     add_cause(counts, "datagrams: " + name, reception.rejected[i]);
   }
