@@ -1,10 +1,11 @@
-// The host's clock in the contract's form: int64 nanoseconds since 1970-01-01 UTC. Any thread.
+// The host's clock as every stamp of this project: int64 nanoseconds since 1970-01-01 UTC, leap
+// seconds as the system counts them. Any thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 
-namespace dyncal::services {
+namespace dyncal {
 
 [[nodiscard]] inline std::int64_t utc_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -12,4 +13,4 @@ namespace dyncal::services {
       .count();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "drivers/utc_clock.hpp"
+
 namespace dyncal::drivers::acs {
 namespace {
 
@@ -25,12 +27,6 @@ T load(const char* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return value;
-}
-
-std::int64_t host_utc_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 } // namespace
@@ -111,7 +107,7 @@ Expected<void> SocketAcs::read_session(BlockSink& sink) {
   const auto hand_over = [&] {
     if (pending.samples > 0) {
       pending.clock = stream_.clock;
-      pending.received_utc_ns = host_utc_ns();
+      pending.received_utc_ns = utc_now_ns();
       sink.take(std::exchange(pending, SampleBlock{}));
     }
   };

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/acs/acs_driver.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/link/tcp_connection.hpp"
 
 namespace dyncal::drivers::acs {

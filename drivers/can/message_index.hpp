@@ -12,22 +12,10 @@
 #include <vector>
 
 #include "drivers/can/bus/can_frame.hpp"
+#include "drivers/can/bus/frame_filter.hpp"
 #include "drivers/can/dbc/dbc.hpp"
 
 namespace dyncal::drivers::can {
-
-// Lets a frame through when (id ^ frame's id) & mask is 0; both without flag bits. Frames of the
-// other id length never match.
-struct FrameFilter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = 0;
-  bool extended = false;
-
-  [[nodiscard]] bool passes(const CanFrame& frame) const {
-    return frame.extended == extended && ((frame.id ^ id) & mask) == 0;
-  }
-  friend bool operator==(const FrameFilter&, const FrameFilter&) = default;
-};
 
 [[nodiscard]] FrameFilter filter_of(const DbcMessage& message);
 

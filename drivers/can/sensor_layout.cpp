@@ -203,22 +203,6 @@ Expected<void> check_time_source(const SensorSettings& settings, const SensorLay
 
 } // namespace
 
-const char* to_text(TimeSource source) {
-  switch (source) {
-  case TimeSource::canopen_sync:
-    return "canopen-sync";
-  case TimeSource::payload_time:
-    return "payload-time";
-  case TimeSource::counter:
-    return "counter";
-  case TimeSource::hardware_stamp:
-    return "hardware-stamp";
-  case TimeSource::kernel_stamp:
-    break;
-  }
-  return "kernel-stamp";
-}
-
 Expected<SensorLayout> lay_out(const SensorSettings& settings, const DbcFile& dbc) {
   SensorLayout layout;
   auto messages = choose_messages(settings, dbc);

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/time/frame_duration.hpp"
+#include "drivers/can/bus/bit_rates.hpp"
+#include "drivers/can/time/stamp_point.hpp"
 #include "drivers/sample_block.hpp"
 
 namespace dyncal::drivers::can {
@@ -23,11 +24,7 @@ enum class TimeSource {
   kernel_stamp    // start of frame from the kernel's stamp
 };
 
-[[nodiscard]] const char* to_text(TimeSource source);
-
-// Which instant of a frame a stamp means; the adapter's maker knows. Kernel stamps are always taken
-// after the end.
-enum class StampPoint { start_of_frame, end_of_frame, unknown };
+[[nodiscard]] const char* to_string(TimeSource source);
 
 struct SensorSettings {
   // Messages whose frames make up one sample, by name; the time of the sample is that of the first.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/can/dbc/signal_decoder.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "drivers/can/time/system_clock.hpp"
 
 namespace dyncal::drivers::can {
@@ -71,7 +72,15 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
             "' does not say its bit rate, which the duration of a frame follows from; give it with "
             "'bit_rate_per_s'");
   }
-  timer_.emplace(settings_, link);
+  timer_.emplace(
+      FrameTimerSettings{.bit_rates = settings_.bit_rates,
+                         .use_hardware_stamps = settings_.time_source != TimeSource::kernel_stamp,
+                         .hardware_stamp_point = settings_.hardware_stamp_point,
+                         .hardware_tick_s = settings_.hardware_tick_s,
+                         .correct_frame_duration = settings_.correct_frame_duration,
+                         .latency_s = settings_.latency_s,
+                         .u_latency_s = settings_.u_latency_s},
+      link);
   u_utc_s_ = settings_.time_base == TimeBase::local
                  ? 0.0
                  : settings_.u_utc_s.value_or(system_clock_quality().u_s);
@@ -110,7 +119,7 @@ SourceDescription SensorStream::description() const {
     description.device += (description.device.empty() ? "" : ", ") + message->name;
   }
   description.device += " of " + dbc_->path.filename().string();
-  description.driver = "can " + link_.name + ", time by " + to_text(time_source_);
+  description.driver = "can " + link_.name + ", time by " + to_string(time_source_);
   if (timer_->uses_hardware() && time_source_ != TimeSource::hardware_stamp) {
     description.driver += " over hardware-stamp";
   }

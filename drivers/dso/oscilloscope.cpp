@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drivers/link/scpi_answer.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::drivers::dso {
 namespace {
@@ -15,12 +16,6 @@ using std::chrono::milliseconds;
 constexpr double horizontal_divisions = 10.0;
 constexpr double vertical_divisions = 8.0;
 constexpr milliseconds poll_interval{2};
-
-std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 bool same(const Acquisition& a, const Acquisition& b) {
   return a.before_trigger_s == b.before_trigger_s && a.after_trigger_s == b.after_trigger_s &&

@@ -22,6 +22,7 @@
 #include "drivers/dso/waveform.hpp"
 #include "drivers/error.hpp"
 #include "drivers/link/scpi_connection.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers::dso {
 

@@ -6,18 +6,13 @@
 #include "drivers/files/csv_reader.hpp"
 #include "drivers/files/npy_reader.hpp"
 #include "drivers/files/wav_reader.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
 
 constexpr std::size_t max_block = 4096; // samples
 constexpr double paced_block_s = 0.05;
-
-std::int64_t host_utc_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 std::int64_t stamp_of(const SampleBlock& block, std::size_t i) {
   return block.clock ? block.clock->stamp_ns(block.first_sample + i) : block.stamps_ns[i];
@@ -91,7 +86,7 @@ Expected<void> FileSource::run(BlockSink& sink) {
   sink.begin_session(reader_->description());
   SampleBlock block = first_;
   while (block.samples > 0 && wait_for_due_time(block, started)) {
-    block.received_utc_ns = host_utc_ns();
+    block.received_utc_ns = utc_now_ns();
     sink.take(std::move(block));
     auto next = reader_->read(samples);
     if (!next) {

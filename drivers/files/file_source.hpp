@@ -16,7 +16,7 @@
 
 #include "drivers/acs/acs_driver.hpp"
 #include "drivers/files/sample_rate.hpp"
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers::acs {
 

@@ -16,6 +16,7 @@
 #include "drivers/generator/generator.hpp"
 #include "drivers/generator/host_clock.hpp"
 #include "drivers/link/scpi_connection.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers::generator {
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "drivers/link/scpi_transport.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers {
 

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "drivers/link/address.hpp"
+#include "drivers/link/tcp_connection.hpp"
+
 namespace dyncal::drivers {
 namespace {
 

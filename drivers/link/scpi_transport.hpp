@@ -17,7 +17,7 @@
 #include <string_view>
 
 #include "drivers/error.hpp"
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers {
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <memory>
 
@@ -10,9 +9,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace dyncal::drivers {
 namespace {
@@ -98,63 +95,6 @@ int connect_once(int socket, const addrinfo& target, int stop_descriptor,
 
 } // namespace
 
-Expected<Address> parse_address(std::string_view text) {
-  const std::size_t colon = text.rfind(':');
-  Address address;
-  bool whole = colon != std::string_view::npos && colon > 0;
-  if (whole) {
-    const char* end = text.data() + text.size();
-    const auto [rest, status] = std::from_chars(text.data() + colon + 1, end, address.port);
-    whole = status == std::errc() && rest == end;
-  }
-  if (!whole) {
-    return fail(ErrorCode::malformed,
-                "\"" + std::string(text) +
-                    "\" is not an address: write HOST:PORT, for example 127.0.0.1:5026");
-  }
-  std::string_view host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  }
-  address.host = host;
-  return address;
-}
-
-Descriptor::~Descriptor() {
-  if (number_ >= 0) {
-    close(number_);
-  }
-}
-
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  std::swap(number_, other.number_);
-  return *this;
-}
-
-StopSignal::StopSignal() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
-
-void StopSignal::raise() {
-  eventfd_write(event_.number(), 1);
-}
-
-bool StopSignal::raised() const {
-  return wait_for(std::chrono::nanoseconds(0));
-}
-
-bool StopSignal::wait_for(std::chrono::nanoseconds limit) const {
-  const auto deadline = Clock::now() + limit;
-  for (;;) {
-    pollfd watched{event_.number(), POLLIN, 0};
-    const int count = poll(&watched, 1, milliseconds_until(deadline));
-    if (count > 0) {
-      return true;
-    }
-    if (count == 0 && Clock::now() >= deadline) {
-      return false;
-    }
-  }
-}
-
 Expected<TcpConnection> TcpConnection::connect(const Address& address,
                                                std::chrono::milliseconds limit,
                                                const StopSignal& stop) {
@@ -165,8 +105,9 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address,
   }
   int status = ECONNREFUSED;
   for (const addrinfo* target = targets->get(); target != nullptr; target = target->ai_next) {
-    Descriptor socket(::socket(target->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    if (!socket.open()) {
+    FileDescriptor socket(
+        ::socket(target->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!socket.is_open()) {
       status = errno;
       continue;
     }

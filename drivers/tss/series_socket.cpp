@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "drivers/link/scpi_answer.hpp"
+#include "drivers/link/tcp_connection.hpp"
 #include "drivers/tss/series_source.hpp"
 
 namespace dyncal::drivers::tss {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "drivers/error.hpp"
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series.hpp"
 
 namespace dyncal::drivers::tss {

@@ -37,7 +37,7 @@ std::optional<TimeSource> read_time_source(TomlTable& table) {
   for (const TimeSource source :
        {TimeSource::canopen_sync, TimeSource::payload_time, TimeSource::counter,
         TimeSource::hardware_stamp, TimeSource::kernel_stamp}) {
-    if (word == drivers::can::to_text(source)) {
+    if (word == drivers::can::to_string(source)) {
       return source;
     }
   }

@@ -72,7 +72,7 @@ std::string to_message(const drivers::can::SensorStream& stream,
   }
   if (link.bus == BusState::error_warning || link.bus == BusState::error_passive) {
     return fmt::format("interface '{}' is {}: check bit rate, wiring and termination", link.name,
-                       to_text(link.bus));
+                       to_string(link.bus));
   }
   const drivers::can::SensorCounts counts = stream.counts();
   if (counts.frames == 0 && listened > max_silence) {

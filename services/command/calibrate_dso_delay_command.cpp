@@ -13,6 +13,7 @@
 #include "analysis/instrument/trigger_delay.hpp"
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/generator/scpi_generator.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

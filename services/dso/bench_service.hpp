@@ -24,6 +24,7 @@
 #include "services/dso/shot_device.hpp"
 #include "services/error.hpp"
 
+#include "drivers/link/stop_signal.hpp"
 #include "idl/dyncal.h"
 
 namespace dyncal::services::dso {

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "drivers/dso/oscilloscope.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series_source.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/dso/trigger_count.hpp"

@@ -35,8 +35,8 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     return fail(cannot_start(std::strerror(errno)));
   }
-  const drivers::Descriptor reading(ends[0]);
-  drivers::Descriptor writing(ends[1]);
+  const drivers::FileDescriptor reading(ends[0]);
+  drivers::FileDescriptor writing(ends[1]);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, reading.number(), STDIN_FILENO);
@@ -62,7 +62,7 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
 }
 
 OutputGuard::~OutputGuard() {
-  if (!pipe_.open()) {
+  if (!pipe_.is_open()) {
     return; // moved from
   }
   static_cast<void>(

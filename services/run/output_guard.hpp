@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/file_descriptor.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
@@ -27,9 +27,10 @@ public:
   OutputGuard& operator=(const OutputGuard&) = delete;
 
 private:
-  OutputGuard(drivers::Descriptor pipe, int process) : pipe_(std::move(pipe)), process_(process) {}
+  OutputGuard(drivers::FileDescriptor pipe, int process)
+      : pipe_(std::move(pipe)), process_(process) {}
 
-  drivers::Descriptor pipe_;
+  drivers::FileDescriptor pipe_;
   int process_;
 };
 

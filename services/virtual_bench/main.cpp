@@ -146,7 +146,7 @@ Expected<void> run(BenchOptions options) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
   }
   if (!options.can_interface.empty()) {
-    options.bench.utc_origin_ns = dyncal::services::utc_now_ns();
+    options.bench.utc_origin_ns = dyncal::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
   if (auto written = write_file(options.truth_file,

@@ -17,6 +17,7 @@
 #include <fmt/core.h>
 
 #include "drivers/smartup/sensor_id.hpp"
+#include "drivers/utc_clock.hpp"
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/system/program_run.hpp"
@@ -43,12 +44,6 @@ struct Load {
 
 std::uint32_t sensor_id(std::uint32_t unit, std::uint32_t sensor) {
   return (0xb000U + unit) << 16U | (sensor + 1) << 8U;
-}
-
-std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 // One unit: fills datagrams as the firmware does, up to 873 bytes and more, and sends them from its

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {

@@ -14,6 +14,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/kernel_can.hpp"
 
 #ifndef CAN_ERR_CNT
@@ -134,7 +135,7 @@ void GsUsbAdapter::set_up(std::size_t channel, const std::string& bit_timing) co
 void GsUsbAdapter::wake_up() const {
   const std::uint64_t one = 1;
   static_cast<void>(
-      ::write(wake_up_.get(), &one, sizeof one)); // fails only when it is signalled already
+      ::write(wake_up_.number(), &one, sizeof one)); // fails only when it is signalled already
 }
 
 std::uint32_t GsUsbAdapter::clock_us(std::int64_t at_ns) const {
@@ -217,7 +218,7 @@ void GsUsbAdapter::run(const std::stop_token& stop) {
     const std::int64_t wait_ns = std::max<std::int64_t>(0, due_ns - now_ns());
     const timespec limit{wait_ns / second_ns, wait_ns % second_ns};
     std::array<pollfd, 2> waited = {pollfd{device_->descriptor(), POLLIN, 0},
-                                    pollfd{wake_up_.get(), POLLIN, 0}};
+                                    pollfd{wake_up_.number(), POLLIN, 0}};
     if (::ppoll(waited.data(), waited.size(),
                 due_ns == std::numeric_limits<std::int64_t>::max() ? nullptr : &limit,
                 nullptr) < 0) {
@@ -229,7 +230,7 @@ void GsUsbAdapter::run(const std::stop_token& stop) {
     }
     std::uint64_t signalled = 0;
     if (waited[1].revents != 0) {
-      static_cast<void>(::read(wake_up_.get(), &signalled, sizeof signalled));
+      static_cast<void>(::read(wake_up_.number(), &signalled, sizeof signalled));
     }
   }
 }

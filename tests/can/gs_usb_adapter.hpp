@@ -21,9 +21,9 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/can/sensor_settings.hpp"
 #include "drivers/can/time/frame_duration.hpp"
+#include "drivers/link/file_descriptor.hpp"
 #include "tests/can/gs_usb_protocol.hpp"
 #include "tests/can/usbip_device.hpp"
 
@@ -111,7 +111,7 @@ private:
 
   GsUsbSettings settings_;
   std::vector<std::string> names_;
-  drivers::can::FileDescriptor wake_up_;
+  drivers::FileDescriptor wake_up_;
   mutable std::mutex mutex_;
   std::array<Channel, channels> channels_;
   std::deque<OnBus> to_bus_;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/can/bus/socketcan_source.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/can_calibration.hpp"
 #include "tests/can/gs_usb_adapter.hpp"
 

@@ -10,6 +10,7 @@
 #include <sys/timex.h>
 
 #include "drivers/can/time/clock_line.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/played_sensor.hpp"
 
 namespace dyncal::drivers::can {

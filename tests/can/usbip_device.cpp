@@ -60,13 +60,13 @@ bool read_all(int socket, std::span<std::uint8_t> bytes) {
 // Gives the kernel its end of the pair at the first free port.
 bool attach(int socket) {
   for (int port = 0; port < high_speed_ports; ++port) {
-    const drivers::can::FileDescriptor file(::open(attach_file, O_WRONLY | O_CLOEXEC));
-    if (!file.open()) {
+    const drivers::FileDescriptor file(::open(attach_file, O_WRONLY | O_CLOEXEC));
+    if (!file.is_open()) {
       return false;
     }
     const std::string line = std::to_string(port) + " " + std::to_string(socket) + " " +
                              std::to_string(device_id) + " " + std::to_string(usb_speed_high);
-    if (::write(file.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) {
+    if (::write(file.number(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) {
       return true;
     }
   }
@@ -96,16 +96,16 @@ UsbipDevice::UsbipDevice(UsbFirmware& firmware) : firmware_(firmware) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw std::runtime_error("no socket pair");
   }
-  socket_ = drivers::can::FileDescriptor(ends[0]);
-  const drivers::can::FileDescriptor of_the_kernel(ends[1]);
-  if (!attach(of_the_kernel.get())) {
+  socket_ = drivers::FileDescriptor(ends[0]);
+  const drivers::FileDescriptor of_the_kernel(ends[1]);
+  if (!attach(of_the_kernel.number())) {
     throw std::runtime_error("this kernel has no vhci_hcd with a free port");
   }
 }
 
 bool UsbipDevice::serve() {
   std::array<std::uint8_t, sizeof(Header)> bytes{};
-  if (!read_all(socket_.get(), bytes)) {
+  if (!read_all(socket_.number(), bytes)) {
     return false;
   }
   const auto header = std::bit_cast<Header>(bytes);
@@ -123,7 +123,7 @@ void UsbipDevice::submit(const Header& header) {
   const std::uint32_t length = ntohl(header.length);
   const bool in = ntohl(header.direction) == direction_in;
   std::vector<std::uint8_t> sent(in ? 0 : length);
-  if (!read_all(socket_.get(), sent)) {
+  if (!read_all(socket_.number(), sent)) {
     return; // the next serve() says so
   }
   if (ntohl(header.endpoint) != 0) {
@@ -160,7 +160,7 @@ void UsbipDevice::unlink(const Header& header) {
   said.sequence = header.sequence;
   said.flags_or_status = htonl(static_cast<std::uint32_t>(erased > 0 ? -ECONNRESET : 0));
   static_cast<void>(
-      write_all(socket_.get(), std::bit_cast<std::array<std::uint8_t, sizeof said>>(said)));
+      write_all(socket_.number(), std::bit_cast<std::array<std::uint8_t, sizeof said>>(said)));
 }
 
 void UsbipDevice::answer(std::uint32_t sequence, int status, std::span<const std::uint8_t> data,
@@ -175,7 +175,7 @@ void UsbipDevice::answer(std::uint32_t sequence, int status, std::span<const std
   std::vector<std::uint8_t> message(head.begin(), head.end());
   message.insert(message.end(), data.begin(), data.end());
   static_cast<void>(
-      write_all(socket_.get(), message)); // a host that has gone is seen by the next serve()
+      write_all(socket_.number(), message)); // a host that has gone is seen by the next serve()
 }
 
 void UsbipDevice::bulk_in(std::vector<std::uint8_t> transfer) {

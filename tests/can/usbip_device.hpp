@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/can/bus/file_descriptor.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::tests {
 
@@ -44,7 +44,7 @@ public:
   explicit UsbipDevice(UsbFirmware& firmware);
 
   // Readable when serve() has something to do.
-  [[nodiscard]] int descriptor() const { return socket_.get(); }
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
   // One message of the host. False: the host has let go of the device.
   bool serve();
   void bulk_in(std::vector<std::uint8_t> transfer);
@@ -63,7 +63,7 @@ private:
   void answer_reads();
 
   UsbFirmware& firmware_;
-  drivers::can::FileDescriptor socket_;
+  drivers::FileDescriptor socket_;
   std::deque<PendingRead> reads_;
   std::deque<std::vector<std::uint8_t>> transfers_; // as many as the host leaves unread
 };

@@ -21,7 +21,7 @@ tl::unexpected<Error> failed(ErrorCode code, std::string message) {
 
 Expected<FrameSender> FrameSender::open(const std::string& interface_name) {
   FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
-  if (!socket.open()) {
+  if (!socket.is_open()) {
     return failed(ErrorCode::refused,
                   interface_name + ": this kernel has no CAN sockets (" + std::strerror(errno) +
                       "); 'modprobe can-raw', or use a kernel with CONFIG_CAN_RAW");
@@ -34,12 +34,12 @@ Expected<FrameSender> FrameSender::open(const std::string& interface_name) {
                                             " mtu 72 up' make a virtual one");
   }
   const int on = 1;
-  ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
-  ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
+  ::setsockopt(socket.number(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
+  ::setsockopt(socket.number(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(index);
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failed(ErrorCode::refused, "interface '" + interface_name + "' is no CAN interface (" +
                                           std::strerror(errno) + ")");
   }
@@ -54,7 +54,7 @@ Expected<void> FrameSender::send(const CanFrame& frame) {
                                         (frame.error_state_indicator ? CANFD_ESI : 0));
   std::memcpy(raw.data, frame.data.data(), frame.length);
   const std::size_t size = frame.fd ? CANFD_MTU : CAN_MTU;
-  if (::write(socket_.get(), &raw, size) == static_cast<ssize_t>(size)) {
+  if (::write(socket_.number(), &raw, size) == static_cast<ssize_t>(size)) {
     return {};
   }
   const bool too_long = errno == EINVAL && frame.fd;

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/error.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::can {
 

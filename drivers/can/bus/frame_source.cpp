@@ -2,7 +2,7 @@
 
 namespace dyncal::drivers::can {
 
-const char* to_text(BusState state) {
+const char* to_string(BusState state) {
   switch (state) {
   case BusState::error_active:
     return "error active";

@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "drivers/can/bus/can_frame.hpp"
-#include "drivers/can/message_index.hpp"
+#include "drivers/can/bus/frame_filter.hpp"
 #include "drivers/error.hpp"
+#include "drivers/link/stop_signal.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -29,7 +30,7 @@ enum class BusState {
   sleeping
 };
 
-[[nodiscard]] const char* to_text(BusState state);
+[[nodiscard]] const char* to_string(BusState state);
 
 struct LinkState {
   std::string name; // of the interface now: it may have been renamed
@@ -85,7 +86,12 @@ public:
   // Waits for events up to `limit` and appends what there is.
   [[nodiscard]] virtual Expected<ReadState> read(std::vector<BusEvent>& events,
                                                  std::chrono::milliseconds limit) = 0;
-  virtual void stop() = 0;
+
+  // Ends the read that waits and every later one with ReadState::stopped. From any thread.
+  void stop() { stop_.raise(); }
+
+protected:
+  StopSignal stop_;
 };
 
 } // namespace dyncal::drivers::can

@@ -134,8 +134,8 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
   sockaddr_nl address{};
   address.nl_family = AF_NETLINK;
   address.nl_groups = RTMGRP_LINK;
-  if (!socket.open() ||
-      ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (!socket.is_open() ||
+      ::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return fail(ErrorCode::refused, "the kernel gives no access to the state of interfaces (" +
                                         system_text(errno) + ")");
   }
@@ -149,7 +149,7 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
 
 Expected<void> LinkMonitor::request_links() {
   LinkRequest request(RTM_GETLINK, NLM_F_DUMP);
-  if (::send(socket_.get(), &request, request.header.nlmsg_len, 0) < 0) {
+  if (::send(socket_.number(), &request, request.header.nlmsg_len, 0) < 0) {
     return fail(ErrorCode::refused,
                 "the kernel does not answer about its interfaces (" + system_text(errno) + ")");
   }
@@ -188,7 +188,7 @@ Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
   alignas(nlmsghdr) std::array<std::uint8_t, 32768> buffer{};
   for (bool done = false; !done;) {
     const ssize_t got =
-        ::recv(socket_.get(), buffer.data(), buffer.size(), wait_for_answer ? 0 : MSG_DONTWAIT);
+        ::recv(socket_.number(), buffer.data(), buffer.size(), wait_for_answer ? 0 : MSG_DONTWAIT);
     if (got < 0 && errno == EINTR) {
       continue;
     }
@@ -292,9 +292,9 @@ Expected<void> LinkMonitor::change(const void* request, const std::string& what)
   std::memcpy(&header, request, sizeof header);
   std::array<std::uint8_t, 1024> answer{};
   int error = 0;
-  if (!socket.open() || ::send(socket.get(), request, header.nlmsg_len, 0) < 0) {
+  if (!socket.is_open() || ::send(socket.number(), request, header.nlmsg_len, 0) < 0) {
     error = errno;
-  } else if (const ssize_t got = ::recv(socket.get(), answer.data(), answer.size(), 0);
+  } else if (const ssize_t got = ::recv(socket.number(), answer.data(), answer.size(), 0);
              got >= static_cast<ssize_t>(NLMSG_LENGTH(sizeof(int)))) {
     std::memcpy(&error, answer.data() + NLMSG_HDRLEN, sizeof error);
     error = -error;

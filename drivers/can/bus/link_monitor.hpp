@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/error.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -23,7 +23,7 @@ class LinkMonitor {
 public:
   [[nodiscard]] static Expected<LinkMonitor> open(const std::string& interface_name);
 
-  [[nodiscard]] int descriptor() const { return socket_.get(); }
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
   [[nodiscard]] const LinkState& state() const { return state_; }
   [[nodiscard]] int interface_index() const { return index_; } // 0: not there
 

@@ -51,20 +51,18 @@ bool LogSource::wait_for_next(std::chrono::milliseconds limit) {
   if (begin_ == Clock::time_point{}) {
     begin_ = Clock::now();
   }
-  std::unique_lock lock(mutex_);
   if (speed_ <= 0.0) {
     return true;
   }
   const Clock::time_point when = due(frames_[next_]);
-  stopped_changed_.wait_until(lock, std::min(when, Clock::now() + limit),
-                              [this] { return stopped_; });
+  static_cast<void>(stop_.wait_for(std::min<Clock::duration>(when - Clock::now(), limit)));
   return Clock::now() >= when;
 }
 
 Expected<ReadState> LogSource::read(std::vector<BusEvent>& events,
                                     std::chrono::milliseconds limit) {
   const bool something = next_ < frames_.size() && wait_for_next(limit);
-  if (const std::scoped_lock lock(mutex_); stopped_) {
+  if (stop_.raised()) {
     return ReadState::stopped;
   }
   const Clock::time_point now = Clock::now();
@@ -75,12 +73,6 @@ Expected<ReadState> LogSource::read(std::vector<BusEvent>& events,
     events.emplace_back(frames_[next_++]);
   }
   return next_ < frames_.size() ? ReadState::more : ReadState::ended;
-}
-
-void LogSource::stop() {
-  const std::scoped_lock lock(mutex_);
-  stopped_ = true;
-  stopped_changed_.notify_all();
 }
 
 } // namespace dyncal::drivers::can

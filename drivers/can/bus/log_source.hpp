@@ -9,10 +9,8 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -29,7 +27,6 @@ public:
   [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
   [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events,
                                          std::chrono::milliseconds limit) override;
-  void stop() override;
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -44,9 +41,6 @@ private:
   std::vector<CanFrame> frames_;
   std::size_t next_ = 0;
   Clock::time_point begin_{};
-  std::mutex mutex_;
-  std::condition_variable stopped_changed_;
-  bool stopped_ = false;
 };
 
 } // namespace dyncal::drivers::can

@@ -11,7 +11,7 @@ Expected<LinkState> ScriptedSource::open(const std::vector<FrameFilter>& filters
 
 Expected<ReadState> ScriptedSource::read(std::vector<BusEvent>& events,
                                          std::chrono::milliseconds /*limit*/) {
-  if (stopped_) {
+  if (stop_.raised()) {
     return ReadState::stopped;
   }
   const auto passes = [&](const CanFrame& frame) {

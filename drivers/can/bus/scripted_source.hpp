@@ -3,7 +3,6 @@
 // threads as FrameSource.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -20,7 +19,6 @@ public:
   [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
   [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events,
                                          std::chrono::milliseconds limit) override;
-  void stop() override { stopped_ = true; }
 
 private:
   LinkState link_;
@@ -28,7 +26,6 @@ private:
   std::size_t batch_;
   std::size_t next_ = 0;
   std::vector<FrameFilter> filters_;
-  std::atomic<bool> stopped_ = false;
 };
 
 } // namespace dyncal::drivers::can

@@ -12,7 +12,6 @@
 #include <linux/errqueue.h>
 #include <linux/net_tstamp.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include "drivers/can/bus/error_frame.hpp"
@@ -59,16 +58,9 @@ struct SocketCanSource::Buffers {
 };
 
 SocketCanSource::SocketCanSource(SocketCanSettings settings)
-    : settings_(std::move(settings)), buffers_(std::make_unique<Buffers>()),
-      stop_event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+    : settings_(std::move(settings)), buffers_(std::make_unique<Buffers>()) {}
 
 SocketCanSource::~SocketCanSource() = default;
-
-void SocketCanSource::stop() {
-  const std::uint64_t one = 1;
-  static_cast<void>(
-      ::write(stop_event_.get(), &one, sizeof one)); // fails only when it is signalled already
-}
 
 Expected<void> SocketCanSource::check_link(const LinkState& link) const {
   const std::string& name = settings_.interface_name;
@@ -104,7 +96,7 @@ Expected<LinkState> SocketCanSource::open(const std::vector<FrameFilter>& filter
   // Before the interface is looked for: a kernel without CAN has no CAN interface either, and this
   // is the reason.
   if (const FileDescriptor probe(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
-      !probe.open()) {
+      !probe.is_open()) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
       return failed(ErrorCode::refused, settings_.interface_name +
                                             ": this kernel has no CAN sockets; 'modprobe "
@@ -168,17 +160,17 @@ Expected<void> SocketCanSource::set_options(int socket) const {
 
 Expected<void> SocketCanSource::open_socket() {
   FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
-  if (!socket.open()) {
+  if (!socket.is_open()) {
     return failed(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" +
                                           system_text(errno) + ")");
   }
-  if (auto set = set_options(socket.get()); !set) {
+  if (auto set = set_options(socket.number()); !set) {
     return set;
   }
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = monitor_->interface_index();
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failed(errno == ENODEV ? ErrorCode::not_found : ErrorCode::refused,
                   "interface '" + settings_.interface_name + "' is no CAN interface or has gone (" +
                       system_text(errno) + ")");
@@ -191,17 +183,17 @@ Expected<void> SocketCanSource::open_socket() {
 
 Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
                                           std::chrono::milliseconds limit) {
-  std::array<pollfd, 3> waited = {pollfd{stop_event_.get(), POLLIN, 0},
+  std::array<pollfd, 3> waited = {pollfd{stop_.descriptor(), POLLIN, 0},
                                   pollfd{monitor_->descriptor(), POLLIN, 0},
-                                  pollfd{socket_.get(), POLLIN, 0}};
+                                  pollfd{socket_.number(), POLLIN, 0}};
   const bool some =
-      ::poll(waited.data(), socket_.open() ? 3 : 2, static_cast<int>(limit.count())) > 0;
+      ::poll(waited.data(), socket_.is_open() ? 3 : 2, static_cast<int>(limit.count())) > 0;
   if (some && waited[0].revents != 0) {
     return ReadState::stopped;
   }
   // Frames before announcements: what came before a change stands before it.
   const std::size_t first = events.size();
-  const bool went_down = some && socket_.open() && waited[2].revents != 0 && receive(events);
+  const bool went_down = some && socket_.is_open() && waited[2].revents != 0 && receive(events);
   if (went_down || (some && waited[1].revents != 0)) {
     const auto changes = monitor_->update();
     if (!changes) {
@@ -235,7 +227,7 @@ bool SocketCanSource::receive(std::vector<BusEvent>& events) {
   for (int errors = 0; errors < max_errors;) {
     buffers_->prepare();
     const int got =
-        ::recvmmsg(socket_.get(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
+        ::recvmmsg(socket_.number(), buffers_->messages.data(), batch, MSG_DONTWAIT, nullptr);
     for (int i = 0; i < got; ++i) {
       take(static_cast<std::size_t>(i), events);
     }

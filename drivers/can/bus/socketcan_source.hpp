@@ -23,9 +23,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/bus/file_descriptor.hpp"
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/bus/link_monitor.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -46,7 +46,6 @@ public:
   [[nodiscard]] Expected<LinkState> open(const std::vector<FrameFilter>& filters) override;
   [[nodiscard]] Expected<ReadState> read(std::vector<BusEvent>& events,
                                          std::chrono::milliseconds limit) override;
-  void stop() override;
 
 private:
   struct Buffers;
@@ -65,7 +64,6 @@ private:
   SocketCanSettings settings_;
   std::vector<FrameFilter> filters_;
   std::unique_ptr<Buffers> buffers_;
-  FileDescriptor stop_event_;
   FileDescriptor socket_;
   std::optional<LinkMonitor> monitor_;
   LinkState link_;

@@ -11,7 +11,6 @@
 #include <span>
 #include <vector>
 
-#include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/dbc/dbc.hpp"
 
 namespace dyncal::drivers::can {

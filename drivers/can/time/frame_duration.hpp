@@ -10,14 +10,10 @@
 
 #include <cstdint>
 
+#include "drivers/can/bus/bit_rates.hpp"
 #include "drivers/can/bus/can_frame.hpp"
 
 namespace dyncal::drivers::can {
-
-struct BitRates {
-  double nominal_per_s = 0.0;
-  double data_per_s = 0.0; // of the data phase of FD frames with bit rate switch
-};
 
 struct FrameBits {
   unsigned nominal = 0; // at the nominal rate

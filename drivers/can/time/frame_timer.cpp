@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/can/time/frame_duration.hpp"
+
 namespace dyncal::drivers::can {
 
 namespace {
@@ -18,7 +20,7 @@ constexpr double max_usb_latency_s = 300e-6;
 
 } // namespace
 
-FrameTimer::FrameTimer(const SensorSettings& settings, const LinkState& link)
+FrameTimer::FrameTimer(const FrameTimerSettings& settings, const LinkState& link)
     : settings_(settings),
       remote_adapter_(link.device_bus == "usb" || (link.device_bus.empty() && link.kind == "can")) {
 }
@@ -52,7 +54,7 @@ std::int64_t FrameTimer::hardware_start_ns(const CanFrame& frame) const {
 
 bool FrameTimer::add(const CanFrame& frame) {
   if (!uses_hardware_) {
-    uses_hardware_ = frame.hardware_ns != 0 && settings_.time_source != TimeSource::kernel_stamp;
+    uses_hardware_ = settings_.use_hardware_stamps && frame.hardware_ns != 0;
   }
   max_duration_s_ = std::max(max_duration_s_, static_cast<double>(duration_ns(frame)) * 1e-9);
   if (!*uses_hardware_ || frame.hardware_ns == 0) {

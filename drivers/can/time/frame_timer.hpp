@@ -11,17 +11,30 @@
 #include <cstdint>
 #include <optional>
 
+#include "drivers/can/bus/bit_rates.hpp"
 #include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/bus/frame_source.hpp"
-#include "drivers/can/sensor_settings.hpp"
 #include "drivers/can/time/clock_line.hpp"
+#include "drivers/can/time/stamp_point.hpp"
 
 namespace dyncal::drivers::can {
+
+struct FrameTimerSettings {
+  BitRates bit_rates;
+  bool use_hardware_stamps = true; // where the adapter has them
+  StampPoint hardware_stamp_point = StampPoint::unknown;
+  double hardware_tick_s = 1e-6;
+  bool correct_frame_duration = true; // off only to show what it is worth
+  // From the stamped instant to the stamp, the smallest of the delays; and its standard
+  // uncertainty, by default that of the kind of adapter.
+  double latency_s = 0.0;
+  std::optional<double> u_latency_s;
+};
 
 class FrameTimer {
 public:
   // REQUIRES: settings.bit_rates.nominal_per_s > 0 when the frame duration is corrected.
-  FrameTimer(const SensorSettings& settings, const LinkState& link);
+  FrameTimer(const FrameTimerSettings& settings, const LinkState& link);
 
   // Every frame, in the order received. False when a clock was set: what was said before is no
   // longer comparable.
@@ -45,7 +58,7 @@ private:
   [[nodiscard]] std::int64_t duration_ns(const CanFrame& frame) const;
   [[nodiscard]] std::int64_t hardware_start_ns(const CanFrame& frame) const;
 
-  SensorSettings settings_;
+  FrameTimerSettings settings_;
   bool remote_adapter_; // behind USB or a serial line
   std::optional<bool> uses_hardware_;
   ClockLine hardware_line_;

@@ -1,4 +1,5 @@
 #include "drivers/virtual_bench/can/can_sensor.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -82,11 +82,12 @@ void BenchServer::run(const StopSignal& stop) {
 }
 
 void BenchServer::serve_sockets() {
-  if (Descriptor client = accept_client(acs_listener_); client.open() && !stream_.connected()) {
+  if (FileDescriptor client = accept_client(acs_listener_);
+      client.is_open() && !stream_.connected()) {
     stream_.connect(std::move(client), bench_.acs().description_line());
     frame_.counts.clear();
   }
-  if (Descriptor client = accept_client(generator_listener_); client.open()) {
+  if (FileDescriptor client = accept_client(generator_listener_); client.is_open()) {
     generator_clients_.add(std::move(client));
   }
   stream_.serve();

@@ -13,6 +13,9 @@
 #include <functional>
 #include <optional>
 
+#include "drivers/link/address.hpp"
+#include "drivers/link/file_descriptor.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "drivers/virtual_bench/wire/datagram_path.hpp"
 #include "drivers/virtual_bench/wire/line_clients.hpp"
@@ -76,9 +79,9 @@ private:
   SmartUpPacker packer_;
   DatagramPath path_;
   std::optional<TriggeredServer> triggered_;
-  Descriptor acs_listener_;
-  Descriptor generator_listener_;
-  Descriptor unit_socket_;
+  FileDescriptor acs_listener_;
+  FileDescriptor generator_listener_;
+  FileDescriptor unit_socket_;
   AcsSamples frame_;
   double next_description_s_ = 0.05;
   Clock::time_point pace_host_; // bench time pace_bench_s_ belongs to this instant of the host

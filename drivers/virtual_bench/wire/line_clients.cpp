@@ -18,7 +18,7 @@ bool would_block(int error) {
 
 } // namespace
 
-void LineClients::add(Descriptor socket) {
+void LineClients::add(FileDescriptor socket) {
   if (clients_.size() < max_clients) {
     clients_.push_back(Client{std::move(socket), {}, {}, {}, {}});
   }

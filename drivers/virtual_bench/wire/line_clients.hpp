@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/file_descriptor.hpp"
 #include "drivers/virtual_bench/wire/scpi_instrument.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -19,7 +19,7 @@ class LineClients {
 public:
   explicit LineClients(ScpiInstrument& instrument) : instrument_(instrument) {}
 
-  void add(Descriptor socket);
+  void add(FileDescriptor socket);
   void close_all() { clients_.clear(); }
   // Reads and executes what has come, and answers the waits that are over at this bench time.
   void serve(double bench_time_s);
@@ -29,7 +29,7 @@ public:
 
 private:
   struct Client {
-    Descriptor socket;
+    FileDescriptor socket;
     std::string received;
     std::string answers;
     std::optional<double> wait_until_s;

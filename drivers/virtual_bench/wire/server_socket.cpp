@@ -14,7 +14,7 @@ namespace {
 
 // Resolves the address and hands each result to `use` until it returns an open descriptor.
 template <class Use>
-Expected<Descriptor> open_socket(const Address& address, int type, int flags, Use use) {
+Expected<FileDescriptor> open_socket(const Address& address, int type, int flags, Use use) {
   addrinfo hints{};
   hints.ai_socktype = type;
   hints.ai_flags = flags;
@@ -28,8 +28,8 @@ Expected<Descriptor> open_socket(const Address& address, int type, int flags, Us
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> results(found, &freeaddrinfo);
   int problem = EADDRNOTAVAIL;
   for (const addrinfo* result = found; result != nullptr; result = result->ai_next) {
-    Descriptor socket(::socket(result->ai_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    if (socket.open() && use(socket.number(), *result)) {
+    FileDescriptor socket(::socket(result->ai_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (socket.is_open() && use(socket.number(), *result)) {
       return socket;
     }
     problem = errno;
@@ -39,7 +39,7 @@ Expected<Descriptor> open_socket(const Address& address, int type, int flags, Us
 
 } // namespace
 
-Expected<Descriptor> listen_tcp(const Address& address) {
+Expected<FileDescriptor> listen_tcp(const Address& address) {
   return open_socket(address, SOCK_STREAM, AI_PASSIVE, [](int socket, const addrinfo& result) {
     const int on = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
@@ -47,7 +47,7 @@ Expected<Descriptor> listen_tcp(const Address& address) {
   });
 }
 
-std::uint16_t local_port(const Descriptor& socket) {
+std::uint16_t local_port(const FileDescriptor& socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);
   if (getsockname(socket.number(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
@@ -59,16 +59,16 @@ std::uint16_t local_port(const Descriptor& socket) {
   return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
 }
 
-Descriptor accept_client(const Descriptor& listener) {
-  Descriptor client(accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (client.open()) {
+FileDescriptor accept_client(const FileDescriptor& listener) {
+  FileDescriptor client(accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (client.is_open()) {
     const int on = 1;
     setsockopt(client.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   }
   return client;
 }
 
-Expected<Descriptor> connect_udp(const Address& address) {
+Expected<FileDescriptor> connect_udp(const Address& address) {
   return open_socket(address, SOCK_DGRAM, 0, [](int socket, const addrinfo& result) {
     return connect(socket, result.ai_addr, result.ai_addrlen) == 0;
   });

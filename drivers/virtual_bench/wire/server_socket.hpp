@@ -3,17 +3,18 @@
 #pragma once
 
 #include "drivers/error.hpp"
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/address.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
 // Port 0 lets the system choose one.
-[[nodiscard]] Expected<Descriptor> listen_tcp(const Address& address);
-[[nodiscard]] std::uint16_t local_port(const Descriptor& socket);
+[[nodiscard]] Expected<FileDescriptor> listen_tcp(const Address& address);
+[[nodiscard]] std::uint16_t local_port(const FileDescriptor& socket);
 
 // A waiting client, or a closed descriptor when there is none.
-[[nodiscard]] Descriptor accept_client(const Descriptor& listener);
+[[nodiscard]] FileDescriptor accept_client(const FileDescriptor& listener);
 
-[[nodiscard]] Expected<Descriptor> connect_udp(const Address& address);
+[[nodiscard]] Expected<FileDescriptor> connect_udp(const Address& address);
 
 } // namespace dyncal::drivers::virtual_bench

@@ -24,7 +24,7 @@ void put(std::string& out, T value) {
 
 } // namespace
 
-void StreamClient::connect(Descriptor socket, const std::string& description) {
+void StreamClient::connect(FileDescriptor socket, const std::string& description) {
   socket_ = std::move(socket);
   setsockopt(socket_.number(), SOL_SOCKET, SO_SNDBUF, &socket_buffer_bytes,
              sizeof(socket_buffer_bytes));
@@ -33,7 +33,7 @@ void StreamClient::connect(Descriptor socket, const std::string& description) {
 }
 
 void StreamClient::drop() {
-  socket_ = Descriptor();
+  socket_ = FileDescriptor();
   backlog_.clear();
   sent_ = 0;
 }

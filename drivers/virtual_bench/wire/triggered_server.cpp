@@ -50,8 +50,8 @@ std::uint16_t TriggeredServer::sensor_port() const {
 void TriggeredServer::serve() {
   for (const auto& [listener, clients] : {std::pair{&scope_listener_, &scope_clients_},
                                           std::pair{&sensor_listener_, &sensor_clients_}}) {
-    if (Descriptor client = accept_client(*listener);
-        client.open() && clients->size() < max_clients) {
+    if (FileDescriptor client = accept_client(*listener);
+        client.is_open() && clients->size() < max_clients) {
       clients->push_back(Client{std::move(client), {}, {}, false, {}});
     }
   }

@@ -9,7 +9,9 @@
 #include <list>
 #include <vector>
 
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/address.hpp"
+#include "drivers/link/file_descriptor.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/virtual_bench/model/series_sensor.hpp"
 #include "drivers/virtual_bench/wire/oscilloscope_scpi.hpp"
 
@@ -46,7 +48,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
   struct Client {
-    Descriptor socket;
+    FileDescriptor socket;
     std::string received;
     std::string sending;
     bool disconnect = false; // once `sending` has left
@@ -61,8 +63,8 @@ private:
   OscilloscopeModel scope_;
   OscilloscopeScpi scpi_;
   SeriesSensor sensor_;
-  Descriptor scope_listener_;
-  Descriptor sensor_listener_;
+  FileDescriptor scope_listener_;
+  FileDescriptor sensor_listener_;
   std::list<Client> scope_clients_;
   std::list<Client> sensor_clients_;
 };

@@ -8,6 +8,7 @@
 
 #include "analysis/method/analogue_comparison.hpp"
 #include "drivers/can/sensor_stream.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 
 namespace dyncal::drivers::can {
 namespace {

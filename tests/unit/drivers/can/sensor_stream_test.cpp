@@ -10,6 +10,7 @@
 
 #include "drivers/can/bus/candump_log.hpp"
 #include "drivers/can/bus/scripted_source.hpp"
+#include "drivers/can/time/frame_duration.hpp"
 
 namespace dyncal::drivers::can {
 namespace {

@@ -145,14 +145,5 @@ TEST(ScpiGenerator, RefusesAnAddressOrAmplitudeThatCannotBe) {
   EXPECT_EQ((*generator)->set_amplitude_v(-1.0).error().code, ErrorCode::invalid_setting);
 }
 
-TEST(Address, IsHostAndPort) {
-  EXPECT_EQ(parse_address("lab-3:5025").value().host, "lab-3");
-  EXPECT_EQ(parse_address("[::1]:80").value().host, "::1");
-  EXPECT_EQ(parse_address("[::1]:80").value().port, 80);
-  for (const char* wrong : {"", "host", ":5025", "host:", "host:70000", "host:5x"}) {
-    EXPECT_FALSE(parse_address(wrong)) << wrong;
-  }
-}
-
 } // namespace
 } // namespace dyncal::drivers::generator

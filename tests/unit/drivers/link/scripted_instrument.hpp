@@ -9,7 +9,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers {
 
@@ -41,7 +41,7 @@ public:
     }
 
   private:
-    Descriptor socket_;
+    FileDescriptor socket_;
     std::string heard_;
   };
 
@@ -74,7 +74,7 @@ public:
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
 private:
-  Descriptor listener_;
+  FileDescriptor listener_;
   std::uint16_t port_ = 0;
   std::jthread thread_;
 };

@@ -37,16 +37,16 @@ public:
     EXPECT_EQ(getsockname(listener_.number(), generic, &size), 0);
     address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
   }
-  void accept() { client_ = Descriptor(::accept(listener_.number(), nullptr, nullptr)); }
+  void accept() { client_ = FileDescriptor(::accept(listener_.number(), nullptr, nullptr)); }
   void send(const std::string& bytes) const {
     ::send(client_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
-  void hang_up() { client_ = Descriptor(-1); }
+  void hang_up() { client_ = FileDescriptor(-1); }
   [[nodiscard]] const std::string& address() const { return address_; }
 
 private:
-  Descriptor listener_;
-  Descriptor client_;
+  FileDescriptor listener_;
+  FileDescriptor client_;
   std::string address_;
 };
 

@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  Descriptor socket_;
+  FileDescriptor socket_;
   std::uint16_t port_ = 0;
   std::vector<std::string> datagrams_;
   std::jthread thread_;

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <sys/socket.h>
 
-#include "drivers/link/tcp_connection.hpp"
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -23,7 +23,7 @@ TEST(ReceiveQueue, ReadsTheKernelsTable) {
 }
 
 TEST(ReceiveQueue, SeesWhatNobodyHasRead) {
-  const Descriptor receiver(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const FileDescriptor receiver(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -32,7 +32,7 @@ TEST(ReceiveQueue, SeesWhatNobodyHasRead) {
   getsockname(receiver.number(), reinterpret_cast<sockaddr*>(&address), &size);
   const std::uint16_t port = ntohs(address.sin_port);
   EXPECT_EQ(udp_receive_queue(port), 0U);
-  const Descriptor sender(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const FileDescriptor sender(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const char datagram[900] = {};
   sendto(sender.number(), datagram, sizeof(datagram), 0, reinterpret_cast<sockaddr*>(&address),
          sizeof(address));
