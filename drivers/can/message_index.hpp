@@ -2,8 +2,8 @@
 // through.
 //
 // Ordinary messages match by their whole id. J1939 messages match by their parameter group number
-// alone: priority and source address are left out, and of PDU1 groups (PF < 240) the destination
-// too. Where several messages have one id the first counts. Immutable after it was made: any
+// alone: priority and source address are ignored, and of PDU1 groups (PF < 240) the destination
+// too. Where several messages have one id the first counts. Immutable after construction; any
 // thread.
 #pragma once
 

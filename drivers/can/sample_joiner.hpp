@@ -1,10 +1,10 @@
-// Joins the frames that make up one sample by what stands in them (a counter or a time field),
-// never by when they came.
+// Joins the frames that make up one sample by what they carry (a counter or a time field), never by
+// when they came.
 //
 // A sample of one message is complete with its frame. A sample of several is complete when each
 // message has come once with the same key. Up to `max_open` samples may be open at a time, since
-// frames of neighbouring samples may overtake each other; the oldest is given up when one more
-// begins. Samples leave in the order in which their keys were first seen. Belongs to one thread.
+// frames of neighbouring samples may overtake each other; the oldest is given up, and counted, when
+// one more begins. Samples leave in the order in which their keys first came. One thread.
 #pragma once
 
 #include <cstddef>

@@ -1,9 +1,10 @@
 // What of a DBC file makes up the samples of one sensor: its messages, the columns of its blocks,
-// counter and time field. Made once from the settings, then read only.
+// counter and time field.
 //
-// Fails with one sentence when a message or signal does not exist, a unit is not known, samples of
-// several messages have nothing to be joined by, or a time source lacks what it needs. The DBC file
-// must outlive the layout.
+// Made once from the settings, then read only; the DBC file must outlive it. Fails:
+// invalid_setting, with one sentence, when a message or signal does not exist, a unit is not known,
+// samples of several messages have nothing to be joined by, or a time source lacks what it needs.
+// Any thread.
 #pragma once
 
 #include <optional>

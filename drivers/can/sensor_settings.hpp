@@ -1,4 +1,4 @@
-// What has to be known about a sensor on CAN besides its DBC file. Plain data.
+// What has to be known about a sensor on CAN besides its DBC file. Plain data; any thread.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@ constexpr std::int64_t block_span_ns = 50'000'000;
 constexpr std::size_t max_waiting = 1U << 17U; // 16 s at 8000 samples/s
 constexpr std::size_t max_causes = 32;
 constexpr std::uint8_t trusted = 0;
-constexpr std::uint8_t untimed = stamp_no_uncertainty;
+constexpr std::uint8_t not_trusted = stamp_no_uncertainty;
 
 // A sensor's own oscillator, against its nominal rate: a counter follows the sampling rate of the
 // element, a time field a timer.
@@ -66,11 +66,10 @@ Expected<void> SensorStream::begin(const LinkState& link, SampleSink& sink) {
     settings_.bit_rates.data_per_s = link.data_bit_rate_per_s;
   }
   if (settings_.correct_frame_duration && settings_.bit_rates.nominal_per_s <= 0.0) {
-    return fail(
-        ErrorCode::invalid_setting,
-        "interface '" + link.name +
-            "' does not say its bit rate, which the duration of a frame follows from; give it with "
-            "'bit_rate_per_s'");
+    return fail(ErrorCode::invalid_setting, "interface '" + link.name +
+                                                "' does not report its bit rate, which the "
+                                                "duration of a frame follows from; give it with "
+                                                "'bit_rate_per_s'");
   }
   timer_.emplace(
       FrameTimerSettings{.bit_rates = settings_.bit_rates,
@@ -192,7 +191,7 @@ void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
   timer_->restart(); // drivers seed the adapter's clock anew when the link comes up
 }
 
-// The clock that would have told the time of what waits for it is gone; the next one knows nothing
+// The clock that the waiting samples would have been timed by is gone; the next one knows nothing
 // of it.
 void SensorStream::give_up_bus_time(SampleSink& sink) {
   if (!for_bus_time_.empty()) {
@@ -226,7 +225,7 @@ Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink)
     return fail(ErrorCode::invalid_setting,
                 link_.name +
                     ": the sensor switches to a data bit rate, which the interface does not "
-                    "say; give it with 'data_bit_rate_per_s'");
+                    "report; give it with 'data_bit_rate_per_s'");
   }
   if (settings_.time_source == TimeSource::hardware_stamp && frame.hardware_ns == 0) {
     return fail(
@@ -368,7 +367,7 @@ void SensorStream::decode(const JoinedSample& joined, std::vector<double>& value
   }
 }
 
-std::int64_t SensorStream::free_ns(std::int64_t key) const {
+std::int64_t SensorStream::sensor_clock_ns(std::int64_t key) const {
   return std::llround(static_cast<double>(key) * layout_.key_tick_s * 1e9);
 }
 
@@ -387,14 +386,14 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     for_bus_time_.pop_front();
     if (hopeless || !follows_sensor_clock()) {
       const std::int64_t stamp_ns = resolved.base_ns;
-      give_on(std::move(resolved), stamp_ns, hopeless ? untimed : trusted, sink);
+      emit(std::move(resolved), stamp_ns, hopeless ? not_trusted : trusted, sink);
       continue;
     }
-    if (!key_line_.add(free_ns(resolved.key), resolved.base_ns)) {
+    if (!key_line_.add(sensor_clock_ns(resolved.key), resolved.base_ns)) {
       ++counts_.clock_restarts;
       for (; !for_sensor_time_.empty(); for_sensor_time_.pop_front()) {
         const std::int64_t stamp_ns = for_sensor_time_.front().base_ns;
-        give_on(std::move(for_sensor_time_.front()), stamp_ns, untimed, sink);
+        emit(std::move(for_sensor_time_.front()), stamp_ns, not_trusted, sink);
       }
     }
     for_sensor_time_.push_back(std::move(resolved));
@@ -404,13 +403,13 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     Waiting sample = std::move(for_sensor_time_.front());
     for_sensor_time_.pop_front();
     const std::int64_t stamp_ns =
-        key_line_.ready() ? key_line_.to_host(free_ns(sample.key)) : sample.base_ns;
-    give_on(std::move(sample), stamp_ns, key_line_.ready() ? trusted : untimed, sink);
+        key_line_.ready() ? key_line_.to_host(sensor_clock_ns(sample.key)) : sample.base_ns;
+    emit(std::move(sample), stamp_ns, key_line_.ready() ? trusted : not_trusted, sink);
   }
 }
 
-void SensorStream::give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags,
-                           SampleSink& sink) {
+void SensorStream::emit(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags,
+                        SampleSink& sink) {
   const bool gap = block_.samples > 0 && sample.number != next_number_;
   const bool full = block_.samples > 0 && stamp_ns - block_.stamps_ns.front() >= block_span_ns;
   if (gap || full) {

@@ -5,11 +5,13 @@
 // start of the sample's first frame, for canopen-sync the end of the SYNC frame. With a counter or
 // a time field they are taken from the line between the sensor's clock and the frames' starts,
 // which leaves out what a frame had to wait for the bus. Samples wait until that line has settled.
-// Numbers: by the counter or time field where there is one, so that every lost sample shows as a
-// gap of just its size; otherwise by arrival, with gaps by the nominal rate where it is known and
-// by the frames that the socket has dropped. After an interruption of the link there is always a
-// gap. Nothing is ever filled. A signal that a frame does not have gives NaN. Belongs to one
-// thread; the DBC file is copied.
+//
+// Numbers follow the counter or time field where there is one, so that every lost sample shows as a
+// gap of just its size; otherwise arrival, with gaps by the nominal rate where it is known and by
+// the frames that the socket has dropped. After an interruption of the link there is always a gap.
+// Nothing is ever filled. A signal that a frame lacks gives NaN.
+//
+// Fails: invalid_setting. One thread; the DBC file is copied.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +47,7 @@ public:
 
 struct SensorCounts {
   std::uint64_t frames = 0;         // of the sensor's messages
-  std::uint64_t samples = 0;        // given on
+  std::uint64_t samples = 0;        // emitted
   std::uint64_t lost = 0;           // samples that the numbers say are missing
   std::uint64_t dropped_frames = 0; // by the socket
   std::uint64_t incomplete = 0;     // samples of which a frame did not come
@@ -54,7 +56,7 @@ struct SensorCounts {
       0; // frames too short for their counter, of a rate that is not known, samples without SYNC
   std::uint64_t short_frames = 0;              // frames that lack a signal; its value is NaN
   std::uint64_t no_value = 0;                  // J1939 "not available" and "error"
-  std::uint64_t not_trusted = 0;               // samples given on with a flag
+  std::uint64_t not_trusted = 0;               // samples emitted with a flag
   std::uint64_t interruptions = 0;             // of the link
   std::uint64_t restarts = 0;                  // of the sensor's numbering
   std::uint64_t clock_restarts = 0;            // of a line between clocks
@@ -72,10 +74,10 @@ public:
   [[nodiscard]] Expected<void> begin(const LinkState& link, SampleSink& sink);
   // Fails when the sensor's frames lack what the settings demand (hardware stamps).
   [[nodiscard]] Expected<void> take(const BusEvent& event, SampleSink& sink);
-  // Gives on the block that is being filled: when nothing has come for a while.
+  // Emits the block that is being filled: when nothing has come for a while.
   void flush(SampleSink& sink);
-  // Also gives on the samples that wait for their time, with the flag that their stamp is not
-  // trusted. At the end.
+  // Also emits the samples that wait for their time, with the flag that their stamp is not trusted.
+  // At the end.
   void finish(SampleSink& sink);
 
   [[nodiscard]] SensorCounts counts() const;
@@ -107,8 +109,8 @@ private:
   void decode(const JoinedSample& joined, std::vector<double>& values);
   void resolve(SampleSink& sink, bool at_any_rate);
   void give_up_bus_time(SampleSink& sink);
-  void give_on(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
-  [[nodiscard]] std::int64_t free_ns(std::int64_t key) const;
+  void emit(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
+  [[nodiscard]] std::int64_t sensor_clock_ns(std::int64_t key) const;
   [[nodiscard]] bool follows_sensor_clock() const;
   [[nodiscard]] SourceDescription description() const;
 
@@ -141,7 +143,7 @@ private:
   SampleBlock block_;
   std::uint64_t next_number_ = 0;
   std::optional<std::int64_t> last_stamp_ns_;
-  std::vector<double> rows_; // values sample after sample, until the block is given on
+  std::vector<double> rows_; // values sample after sample, until the block is emitted
   std::int64_t last_kernel_ns_ = 0;
   SensorCounts counts_;
 };

@@ -17,11 +17,6 @@ constexpr double horizontal_divisions = 10.0;
 constexpr double vertical_divisions = 8.0;
 constexpr milliseconds poll_interval{2};
 
-bool same(const Acquisition& a, const Acquisition& b) {
-  return a.before_trigger_s == b.before_trigger_s && a.after_trigger_s == b.after_trigger_s &&
-         a.points == b.points;
-}
-
 std::size_t next_power_of_ten(std::size_t value) {
   std::size_t power = 1000; // the smallest memory that the known families have
   while (power < value && power < 100'000'000) {
@@ -56,7 +51,7 @@ Expected<void> Oscilloscope::connect() {
   if (!connection) {
     return fail(connection.error());
   }
-  // Errors from before our time are not ours.
+  // Errors from before this connection are not ours.
   if (auto cleared = connection->send("*CLS"); !cleared) {
     return cleared;
   }
@@ -73,8 +68,8 @@ Expected<void> Oscilloscope::connect() {
     }
     return fail(ErrorCode::refused,
                 message("'" + shown(*identity) +
-                        "' is none of the known oscilloscopes; name the family it follows (" +
-                        families + ")"));
+                        "' is not a known oscilloscope; name the family it follows (" + families +
+                        ")"));
   }
   for (const char* setting : commands_->set_up) {
     if (auto done = connection->command(setting); !done) {
@@ -92,7 +87,7 @@ Expected<void> Oscilloscope::prepare(const Acquisition& acquisition) {
       !(acquisition.before_trigger_s >= 0.0) || !(acquisition.after_trigger_s > 0.0) ||
       acquisition.points == 0) {
     return fail(ErrorCode::invalid_setting,
-                message("there is no input to trigger on, or no window to record"));
+                message("an acquisition needs an input to trigger on, a window and points"));
   }
   if (connection_ && connection_->lost()) {
     give_up_connection();
@@ -103,7 +98,7 @@ Expected<void> Oscilloscope::prepare(const Acquisition& acquisition) {
       return connected;
     }
   }
-  if (prepared_ && same(*prepared_, acquisition)) {
+  if (prepared_ && *prepared_ == acquisition) {
     return {};
   }
   auto applied = apply(acquisition);
@@ -176,7 +171,7 @@ Expected<std::int64_t> Oscilloscope::wait_for_trigger(milliseconds limit) {
       return fail(state.error());
     }
     if (std::any_of(commands_->finished.begin(), commands_->finished.end(),
-                    [&](const char* word) { return *state == word; })) {
+                    [&](const char* finished) { return *state == finished; })) {
       return utc_now_ns();
     }
     if (Clock::now() >= deadline) {
@@ -224,7 +219,7 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
       !done) {
     return fail(done.error());
   }
-  // Read back: an instrument that is one answer behind betrays itself here.
+  // Read back: an instrument that is one answer behind is found out here.
   const auto source = connection_->query(":WAVeform:SOURce?");
   if (!source) {
     return fail(source.error());
@@ -265,7 +260,8 @@ Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& p
   preamble = *answer;
   Trace trace{input.name, {}, preamble.y_increment_v};
   while (trace.volts.size() < preamble.points) {
-    const std::size_t wanted = std::min(commands_->chunk, preamble.points - trace.volts.size());
+    const std::size_t wanted =
+        std::min(commands_->max_points_per_block, preamble.points - trace.volts.size());
     if (commands_->reads_in_chunks) {
       const std::string first = std::to_string(trace.volts.size() + 1);
       const std::string last = std::to_string(trace.volts.size() + wanted);

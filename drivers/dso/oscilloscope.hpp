@@ -1,14 +1,17 @@
-// An oscilloscope that triggers on sync, tells a time series sensor of it by its trigger output,
-// and records what its inputs see.
+// An oscilloscope that triggers on sync, starts a time series sensor by its trigger output, and
+// records what its inputs see.
 //
 // acquire() takes one single shot: arm, wait for the trigger, read every input. Times are in
-// seconds relative to the trigger point of the instrument, all inputs of a shot on one axis. After
-// anything that leaves question and answer apart (time-out, half an answer, garbage, lost
-// connection) the connection is given up, and the next call connects, identifies and sets up anew:
-// an instrument that was switched off comes back by itself. The shot that failed is not repeated
-// here. One thread; StopSignal ends waits from another. Fails: refused (the instrument's own error,
-// or an instrument that is in no table), timeout (also: no trigger came; the instrument is then
-// told to stop and the connection stays), malformed, disconnected, not_found, invalid_setting.
+// seconds relative to the trigger point of the instrument, all inputs of a shot on one axis.
+//
+// After anything that leaves it open which answer belongs to which question (time-out, half an
+// answer, garbage, lost connection) the connection is closed, and the next call connects,
+// identifies and sets up anew: an instrument that was switched off comes back by itself. The shot
+// that failed is not repeated here.
+//
+// Fails: refused (the instrument's own error, or an instrument that is in no table), timeout (also:
+// no trigger came; the instrument is then told to stop and the connection stays), malformed,
+// disconnected, not_found, invalid_setting. One thread; StopSignal ends waits from another.
 #pragma once
 
 #include <chrono>
@@ -46,6 +49,8 @@ struct Acquisition {
   double before_trigger_s = 0.0; // the trace covers at least [-before, after]
   double after_trigger_s = 0.0;
   std::size_t points = 10'000; // memory depth; the instrument may take the next one it has
+
+  friend bool operator==(const Acquisition&, const Acquisition&) = default;
 };
 
 struct Trace {
@@ -57,9 +62,9 @@ struct Trace {
 struct Shot {
   double first_sample_s = 0.0; // relative to the trigger point
   double interval_s = 0.0;
-  std::vector<Trace> traces;         // in the order of the inputs, all of the same length
-  std::int64_t triggered_utc_ns = 0; // host clock, when the instrument was first seen to have
-                                     // triggered: late by up to one answer
+  std::vector<Trace> traces; // in the order of the inputs, all of the same length
+  // Host clock when the instrument first reported the trigger: late by up to one answer.
+  std::int64_t triggered_utc_ns = 0;
 };
 
 class Oscilloscope {
@@ -74,7 +79,7 @@ public:
   // One shot of the prepared acquisition; the trigger may take `trigger_limit`.
   [[nodiscard]] Expected<Shot> acquire(std::chrono::milliseconds trigger_limit);
 
-  // As the instrument says it; empty before the first connection.
+  // As the instrument reports it; empty before the first connection.
   [[nodiscard]] const std::string& identity() const { return identity_; }
   [[nodiscard]] const std::string& address() const { return settings_.address; }
   [[nodiscard]] std::uint64_t connections() const { return connections_; }

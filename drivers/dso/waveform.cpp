@@ -28,7 +28,7 @@ Expected<Preamble> parse_preamble(std::string_view answer) {
     return malformed("does not announce bytes (format BYTE)");
   }
   if (!whole_and_positive((*fields)[2])) {
-    return malformed("announces no possible number of points");
+    return malformed("announces an impossible number of points");
   }
   if (!((*fields)[4] > 0.0) || !((*fields)[7] > 0.0)) {
     return malformed("has an increment that is not positive");

@@ -1,10 +1,14 @@
-// What :WAVeform:PREamble? and :WAVeform:DATA? say about one trace.
+// What :WAVeform:PREamble? and :WAVeform:DATA? tell of one trace, one byte a sample (format BYTE).
 //
-// Preamble: format,type,points,count,xincrement,xorigin,xreference,yincrement,yorigin,yreference.
-// Time of sample i relative to the trigger: (i - xreference) * xincrement + xorigin. Volts follow
-// the family's VoltageRule. One byte a sample (format BYTE). Fails: malformed when a field is
-// missing or cannot be (no increment, more points than an oscilloscope holds, another format tha
-// bytes).
+// The preamble is ten numbers: format, type, points, count, xincrement, xorigin, xreference,
+// yincrement, yorigin, yreference. Sample i lies at
+//
+//   (i - xreference) * xincrement + xorigin      seconds from the trigger
+//
+// and volts follow the family's VoltageRule.
+//
+// Fails: malformed when a field is missing or impossible (no increment, more points than an
+// oscilloscope holds, another format than bytes). Pure functions; any thread.
 #pragma once
 
 #include <cstddef>

@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "analysis/base/text.hpp"
 #include "drivers/files/decimal.hpp"
 #include "drivers/files/regular_stamps.hpp"
 
@@ -15,16 +16,6 @@ constexpr std::size_t max_quote = 40;
 
 bool blank(char c) {
   return c == ' ' || c == '\r' || c == '\t';
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && blank(text.front())) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && blank(text.back())) {
-    text.remove_suffix(1);
-  }
-  return text;
 }
 
 template <class Number>
@@ -236,7 +227,7 @@ tl::expected<CsvLayout, std::string> CsvLayout::of(std::string_view first_line) 
     double number = 0.0;
     if (name.empty() || is_whole(name, number)) {
       return tl::unexpected("column " + std::to_string(layout.columns.size() + 1) +
-                  " has no name; the first line must name the columns");
+                            " has no name; the first line must name the columns");
     }
     if (std::find(layout.columns.begin(), layout.columns.end(), name) != layout.columns.end()) {
       return tl::unexpected("two columns are called '" + std::string(name) + "'");

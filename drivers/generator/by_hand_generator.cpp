@@ -71,14 +71,15 @@ Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit)
   if (poll(&waiting, 1, static_cast<int>(limit.count())) <= 0) {
     return false; // nothing came, or a signal did
   }
-  // Byte by byte: what follows the line end is the answer to a later question.
+  // One byte at a time: what follows the line end answers a later question.
   for (char byte = 0;;) {
     if (poll(&waiting, 1, 0) <= 0) {
       return false; // the rest of the line is still to come
     }
     if (read(input_, &byte, 1) != 1) {
-      return fail(ErrorCode::disconnected,
-                  "generator by hand: standard input has ended, nobody can confirm the settings");
+      return fail(
+          ErrorCode::disconnected,
+          "generator by hand: standard input has ended, so the settings cannot be confirmed");
     }
     if (byte == '\n') {
       asked_ = false;

@@ -1,12 +1,14 @@
-// A generator that a person sets: says what to set, and takes a line (Enter) as the word that it is
-// done.
+// A generator that a person sets: asks for each setting, and takes a line (Enter) as confirmation.
 //
-// set_frequency() and set_amplitude_v() are remembered; set_output(true) shows all of it with the
+// set_frequency() and set_amplitude_v() are remembered. set_output(true) asks for all of it in the
 // order of the work (values first, output last), set_output(false) asks to switch the output off,
-// and a new amplitude while it is on asks for that alone. Nothing waits for the person but
-// wait_for_effect(), so that the caller can do other things meanwhile. Confirmations are lines of a
-// descriptor, a terminal or not. On a terminal what was typed before the question does not count.
-// Destruction asks to switch the output off when it is, or may be, on. Bench time is the host's.
+// and a new amplitude while the output is on asks for that alone. Only wait_for_effect() waits for
+// the person, so that the caller can do other things meanwhile.
+//
+// Confirmations are lines of a descriptor, a terminal or not; on a terminal, what was typed before
+// the question does not count. Bench time is the host's. Destruction asks to switch the output off
+// when it is, or may be, on.
+//
 // Fails: disconnected (the descriptor has ended). One thread.
 #pragma once
 

@@ -1,11 +1,14 @@
 // The generator that excites the bench, and the bench's own clock.
 //
 // Voltage is the amplitude (zero to peak) of the sine in volt; frequency is decimal text in hertz,
-// passed on digit by digit. Bench time is what durations of steps are measured in: the host's
-// monotonic clock for a real bench, the virtual bench's own time otherwise, so that a run holds its
-// durations however fast the virtual bench goes. One thread. Each setting is asked for its outcome:
-// an instrument error is passed on as the instrument words it (refused). Destruction switches the
-// output off, or asks for it where only a person can.
+// passed on digit by digit. After each setting the instrument is asked whether it accepted it; its
+// error is passed on as the instrument gives it (refused).
+//
+// Bench time measures the durations of steps: the host's monotonic clock for a real bench, the
+// virtual bench's own time otherwise, so that a run holds its durations however fast the virtual
+// bench goes.
+//
+// Destruction switches the output off, or asks for it where only a person can. One thread.
 #pragma once
 
 #include <chrono>
@@ -19,13 +22,13 @@ namespace dyncal::drivers::generator {
 class Generator {
 public:
   virtual ~Generator() = default;
-  // Manufacturer, model, serial number and firmware as the instrument says them.
+  // Manufacturer, model, serial number and firmware as the instrument reports them.
   [[nodiscard]] virtual const std::string& identity() const = 0;
   [[nodiscard]] virtual Expected<void> set_frequency(const std::string& decimal_hz) = 0;
   [[nodiscard]] virtual Expected<void> set_amplitude_v(double amplitude_v) = 0;
   [[nodiscard]] virtual Expected<void> set_output(bool on) = 0;
-  // True once everything that was set is in effect: with an instrument it is when the call that set
-  // it returns, otherwise when the operator has confirmed; waits for that until `limit` has passed.
+  // Returns true once everything that was set is in effect: with an instrument when the call that
+  // set it returns, otherwise when the operator has confirmed; waits up to `limit` for that.
   [[nodiscard]] virtual Expected<bool> wait_for_effect(std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<double> clock_now_s() = 0;
   // Returns the bench time when it has reached `time_s`, or earlier when a stop is requested.

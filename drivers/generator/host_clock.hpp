@@ -1,5 +1,5 @@
-// Bench time of a bench without a time of its own: the host's monotonic clock, from when the object
-// was made. Any thread.
+// Bench time of a bench without a time of its own: the host's monotonic clock, in seconds since the
+// object was made. Any thread.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@ namespace dyncal::drivers::generator {
 class HostClock {
 public:
   [[nodiscard]] double now_s() const;
-  // The time at which it returns: at `time_s`, or as soon as a stop is requested.
+  // Waits until `time_s` or until a stop is requested; returns the time by then.
   [[nodiscard]] double wait_until_s(double time_s, const std::stop_token& stop) const;
 
 private:

@@ -7,7 +7,7 @@
 namespace dyncal::drivers::generator {
 namespace {
 
-constexpr double first_part = 0.5;      // of the voltage that should do
+constexpr double first_fraction = 0.5;  // of the expected voltage
 constexpr double min_response = 0.05;   // of the one expected
 constexpr double rounding = 1.0 + 1e-9; // a limit may be reached
 
@@ -23,8 +23,9 @@ Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
                                    const LevelLimits& limits) {
   const double voltage_v = level_m_s2 / level_per_volt;
   if (!(voltage_v > 0.0) || !std::isfinite(voltage_v)) {
-    return fail(ErrorCode::invalid_setting,
-                "a level of " + number(level_m_s2) + " m/s^2 cannot be set");
+    return fail(ErrorCode::invalid_setting, "no voltage gives a level of " + number(level_m_s2) +
+                                                " m/s^2 at " + number(level_per_volt) +
+                                                " m/s^2 per volt: both must be above 0");
   }
   if (level_m_s2 > limits.maximum_level_m_s2 * rounding) {
     return fail(ErrorCode::invalid_setting, "a level of " + number(level_m_s2) +
@@ -44,7 +45,7 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
     return fail(ErrorCode::invalid_setting,
                 "the level needs a tolerance above 0 and at least one correction");
   }
-  const double level_m_s2 = target.level_m_s2 * (target.response_known ? 1.0 : first_part);
+  const double level_m_s2 = target.level_m_s2 * (target.response_known ? 1.0 : first_fraction);
   const auto possible =
       voltage_for_level(target.level_m_s2, target.level_per_volt,
                         {.maximum_voltage_v = std::numeric_limits<double>::infinity(),

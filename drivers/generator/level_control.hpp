@@ -1,16 +1,19 @@
 // Closed loop of the excitation level: which voltage to set next, from the levels that the
-// reference has shown. Pure arithmetic.
+// reference has shown.
 //
-//   V_0 = 1/2 wanted / r,   V_{n+1} = V_n wanted / measured_n,   r: level per volt as the bench
-//   file says it
+//   V_0 = 1/2 wanted / r,   V_{n+1} = V_n wanted / measured_n
 //
-// The first voltage is half of what should do, since the exciter's response at a frequency is not
-// known before; where it is known from an earlier step, it is used in full. A voltage that would
-// pass a limit is never returned: take() fails instead, and so it does when the reference shows
-// more than the highest level (the caller switches the output off), next to nothing (below a
-// twentieth of what is expected), or when the level is not within the tolerance after `corrections`
-// changes. Levels in m/s^2, voltages in V, both amplitudes (zero to peak). Fails: invalid_setting
-// (limits), refused (the exciter does not follow). One thread.
+//   r: level per volt as the bench file gives it. Levels in m/s^2, voltages in V, both amplitudes
+//   (zero to peak).
+//
+// The first voltage is half of the expected one, since the exciter's response at a frequency is not
+// known before; where an earlier step has shown it, it is used in full. A voltage above a limit is
+// never returned.
+//
+// Fails: invalid_setting (a limit would be passed), refused (the exciter does not follow: the
+// reference shows more than the maximum level, less than a twentieth of what is expected, or the
+// level is not within the tolerance after `corrections` changes). The caller then switches the
+// output off. Pure arithmetic; one thread.
 #pragma once
 
 #include <limits>
@@ -42,8 +45,8 @@ public:
                                                     const LevelLimits& limits);
 
   [[nodiscard]] double voltage_v() const { return voltage_v_; }
-  // True: the level is within the tolerance, keep the voltage. False: set voltage_v(), which has
-  // changed, and measure again.
+  // Returns true if the level is within the tolerance: keep the voltage. Otherwise set voltage_v(),
+  // which has changed, and measure again.
   [[nodiscard]] Expected<bool> take(double measured_m_s2);
   // As last measured.
   [[nodiscard]] double level_per_volt() const { return level_per_volt_; }

@@ -26,20 +26,20 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
 
 ScpiGenerator::~ScpiGenerator() {
   if (connection_) {
-    // Nothing can be done about a failure here: whoever needs to know has called set_output(false)
-    // before.
+    // Nothing can be done about a failure here; whoever needs to know calls set_output(false)
+    // first.
     static_cast<void>(command(":OUTPut1 OFF"));
   }
 }
 
 void ScpiGenerator::choose_clock() {
-  // Only a virtual bench has a time of its own; an instrument that does not know the query says
-  // nothing or reports an error.
+  // Only a virtual bench has a time of its own; other instruments do not answer the query or report
+  // an error.
   has_bench_clock_ = identity_.find("dyncal virtual bench") != std::string::npos;
 }
 
 Expected<void> ScpiGenerator::reconnect() {
-  auto connection = ScpiConnection::connect("generator", address_, answer_limit, never_);
+  auto connection = ScpiConnection::connect("generator", address_, answer_limit, never_raised_);
   if (!connection) {
     return fail(connection.error());
   }
@@ -83,8 +83,9 @@ Expected<void> ScpiGenerator::set_frequency(const std::string& decimal_hz) {
 
 Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
   if (!(amplitude_v >= 0.0 && amplitude_v <= 1000.0)) {
-    return fail(ErrorCode::invalid_setting,
-                "generator: an amplitude of " + scpi_decimal(amplitude_v) + " V cannot be set");
+    return fail(ErrorCode::invalid_setting, "generator: invalid amplitude " +
+                                                scpi_decimal(amplitude_v) +
+                                                " V: must be between 0 and 1000 V");
   }
   return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }

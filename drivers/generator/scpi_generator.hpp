@@ -1,12 +1,13 @@
-// A function generator over TCP that speaks SCPI as the Rigol DG4000 series does (channel 1, load
-// set to high impedance).
+// A function generator over TCP or VXI-11 that speaks SCPI as the Rigol DG4000 series does (channel
+// 1, load set to high impedance).
 //
 // Commands: *IDN?, :SOURce1:FUNCtion, :SOURce1:VOLTage (peak to peak), :SOURce1:FREQuency,
-// :OUTPut1, each followed by :SYSTem:ERRor?; an error that the instrument reports is passed on word
-// for word (refused). An answer may take 2 s (timeout); after that the connection is given up, and
-// the next call connects anew.
-// `:BENCh:TIME?` and `:BENCh:WAIT?` are understood by the virtual bench only; an instrument that
-// does not know them leaves the host's monotonic clock as bench time.
+// :OUTPut1, each followed by :SYSTem:ERRor?; an error that the instrument reports is passed on as
+// it is (refused). An answer may take 2 s (timeout); after that the connection is given up, and the
+// next call connects anew.
+//
+// The virtual bench also understands :BENCh:TIME? and :BENCh:WAIT?; with every other instrument,
+// bench time is the host's monotonic clock. One thread.
 #pragma once
 
 #include <memory>
@@ -32,8 +33,7 @@ public:
   [[nodiscard]] Expected<void> set_frequency(const std::string& decimal_hz) override;
   [[nodiscard]] Expected<void> set_amplitude_v(double amplitude_v) override;
   [[nodiscard]] Expected<void> set_output(bool on) override;
-  // A rectangle in place of the sine, until the next connection: for the calibration of trigger
-  // delays.
+  // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
   [[nodiscard]] Expected<double> clock_now_s() override;
@@ -47,7 +47,7 @@ private:
   Expected<std::string> query(const std::string& text);
   Expected<double> query_bench_time(const std::string& text);
 
-  StopSignal never_; // waits here end by their own limit
+  StopSignal never_raised_; // waits here end by their own limit
   std::string address_;
   std::optional<ScpiConnection> connection_;
   std::string identity_;

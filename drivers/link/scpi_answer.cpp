@@ -3,16 +3,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "analysis/base/text.hpp"
+
 namespace dyncal::drivers {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) {
-    return {};
-  }
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
 
 tl::unexpected<Error> malformed(std::string message) {
   return fail(ErrorCode::malformed, std::move(message));
@@ -96,14 +90,14 @@ std::string scpi_decimal(double value) {
 }
 
 std::string shown(std::string_view answer) {
-  constexpr std::size_t longest = 60;
-  std::string text(answer.substr(0, longest));
+  constexpr std::size_t max_shown = 60;
+  std::string text(answer.substr(0, max_shown));
   for (char& character : text) {
     if (character < ' ' || character > '~') {
       character = '?';
     }
   }
-  return answer.size() > longest ? text + "..." : text;
+  return answer.size() > max_shown ? text + "..." : text;
 }
 
 } // namespace dyncal::drivers

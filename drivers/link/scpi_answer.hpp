@@ -1,8 +1,7 @@
-// What an instrument's answer to a SCPI query says (IEEE 488.2 response data). Pure functions on
-// text; any thread.
+// What an instrument's answer to a SCPI query means (IEEE 488.2 response data).
 //
-// Fails: malformed, with the offending answer in the message (its first 60 characters, what cannot
-// be printed shown as '?').
+// Fails: malformed, with the offending answer in the message (its first 60 characters, unprintable
+// ones as '?'). Pure functions on text; any thread.
 #pragma once
 
 #include <cstddef>
@@ -21,25 +20,25 @@ namespace dyncal::drivers {
 // "1,2.5,-3E-9": all fields must be numbers.
 [[nodiscard]] Expected<std::vector<double>> parse_scpi_numbers(std::string_view answer);
 
-// The answer to :SYSTem:ERRor?: code and text as the instrument words it, e.g. -113 and "Undefined
-// header". Code 0: no error.
+// The answer to :SYSTem:ERRor?: code and text as the instrument gives them, e.g. -113 and
+// "Undefined header". Code 0: no error.
 struct InstrumentError {
   int code = 0;
   std::string text;
 };
 [[nodiscard]] Expected<InstrumentError> parse_instrument_error(std::string_view answer);
 
-// The number of digits that a definite-length block (#<d><length of d digits><bytes>) announces
-// after "#d": 1..9. An indefinite block
-// (#0...) has no length that could be checked and is malformed.
+// The number of digits, 1..9, that a definite-length block (#<d><length of d digits><bytes>)
+// announces in its "#d". An indefinite block (#0...) has no length that could be checked and is
+// malformed.
 [[nodiscard]] Expected<std::size_t> parse_block_digit_count(std::string_view hash_and_digit);
 [[nodiscard]] Expected<std::size_t> parse_block_length(std::string_view digits);
 
-// The shortest decimal text of a number that reads back the same; never an exponent, which some
-// instruments do not read.
+// The shortest decimal text that reads back as the same number; never with an exponent, which some
+// instruments do not understand.
 [[nodiscard]] std::string scpi_decimal(double value);
 
-// As much of an answer as belongs into a message.
+// As much of an answer as belongs in a message.
 [[nodiscard]] std::string shown(std::string_view answer);
 
 } // namespace dyncal::drivers

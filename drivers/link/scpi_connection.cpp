@@ -8,7 +8,7 @@ namespace dyncal::drivers {
 namespace {
 
 constexpr std::chrono::milliseconds connect_limit{5000};
-constexpr std::size_t max_line = 4096;
+constexpr std::size_t max_line_bytes = 4096;
 
 } // namespace
 
@@ -29,38 +29,40 @@ ScpiConnection::ScpiConnection(std::string instrument, std::string address,
     : instrument_(std::move(instrument)), address_(std::move(address)), answer_limit_(answer_limit),
       transport_(std::move(transport)) {}
 
-// The transport's errors begin with the address.
-tl::unexpected<Error> ScpiConnection::failure(const Error& error, const std::string& text) {
+tl::unexpected<Error> ScpiConnection::give_up(const Error& error, const std::string& command) {
   lost_ = true;
-  return fail(error.code, instrument_ + " " + error.message + " (" + text + ")");
+  return fail(error.code, instrument_ + " " + error.message + " (" + command + ")");
 }
 
-tl::unexpected<Error> ScpiConnection::misunderstood(const Error& error, const std::string& text) {
-  return failure(Error{error.code, address_ + ": " + error.message}, text);
+tl::unexpected<Error> ScpiConnection::give_up_misunderstood(const std::string& reason,
+                                                            const std::string& command) {
+  return give_up(Error{ErrorCode::malformed, address_ + ": " + reason}, command);
 }
 
 Expected<void> ScpiConnection::send(const std::string& text) {
   if (lost_) {
-    return failure(Error{ErrorCode::disconnected, address_ + ": the connection is lost"}, text);
+    return give_up(Error{ErrorCode::disconnected, address_ + ": the connection is lost"}, text);
   }
   if (auto sent = transport_->send(text + "\n", answer_limit_); !sent) {
-    return failure(sent.error(), text);
+    return give_up(sent.error(), text);
   }
   return {};
 }
 
-Expected<std::string> ScpiConnection::query(const std::string& text) {
+Expected<void> ScpiConnection::ask(const std::string& query) {
   if (transport_->has_unread()) {
-    return misunderstood(
-        Error{ErrorCode::malformed, "the instrument has answered something that was not asked"},
-        text);
+    return give_up_misunderstood("the instrument has answered something that was not asked", query);
   }
-  if (auto sent = send(text); !sent) {
-    return fail(sent.error());
+  return send(query);
+}
+
+Expected<std::string> ScpiConnection::query(const std::string& text) {
+  if (auto asked = ask(text); !asked) {
+    return fail(asked.error());
   }
-  auto answer = transport_->read_line(max_line, answer_limit_);
+  auto answer = transport_->read_line(max_line_bytes, answer_limit_);
   if (!answer) {
-    return failure(answer.error(), text);
+    return give_up(answer.error(), text);
   }
   return answer;
 }
@@ -72,7 +74,7 @@ Expected<double> ScpiConnection::query_number(const std::string& text) {
   }
   auto number = parse_scpi_number(*answer);
   if (!number) {
-    return misunderstood(number.error(), text);
+    return give_up_misunderstood(number.error().message, text);
   }
   return number;
 }
@@ -87,7 +89,7 @@ Expected<void> ScpiConnection::command(const std::string& text) {
   }
   const auto error = parse_instrument_error(*answer);
   if (!error) {
-    return misunderstood(error.error(), text);
+    return give_up_misunderstood(error.error().message, text);
   }
   if (error->code == 0) {
     return {};
@@ -97,23 +99,18 @@ Expected<void> ScpiConnection::command(const std::string& text) {
 }
 
 Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
-                                                        std::size_t longest) {
-  if (transport_->has_unread()) {
-    return misunderstood(
-        Error{ErrorCode::malformed, "the instrument has answered something that was not asked"},
-        text);
+                                                        std::size_t max_bytes) {
+  if (auto asked = ask(text); !asked) {
+    return fail(asked.error());
   }
-  if (auto sent = send(text); !sent) {
-    return fail(sent.error());
-  }
-  auto block = read_block(longest);
+  auto block = read_block(max_bytes);
   if (!block) {
-    return failure(block.error(), text);
+    return give_up(block.error(), text);
   }
   return block;
 }
 
-Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
+Expected<std::vector<char>> ScpiConnection::read_block(std::size_t max_bytes) {
   const auto malformed = [this](const std::string& message) {
     return fail(ErrorCode::malformed, address_ + ": " + message);
   };
@@ -133,15 +130,15 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t longest) {
   if (!length) {
     return malformed(length.error().message);
   }
-  if (*length > longest) {
+  if (*length > max_bytes) {
     return malformed("a block of " + std::to_string(*length) + " bytes where at most " +
-                     std::to_string(longest) + " can be");
+                     std::to_string(max_bytes) + " are possible");
   }
   std::vector<char> block(*length);
   if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
     return fail(read.error());
   }
-  const auto end = transport_->read_line(max_line, answer_limit_);
+  const auto end = transport_->read_line(max_line_bytes, answer_limit_);
   if (!end) {
     return fail(end.error());
   }

@@ -2,11 +2,14 @@
 // blocks of definite length.
 //
 // Messages name the instrument ("oscilloscope 10.0.0.7:5555") and the command. An error that the
-// instrument reports (:SYSTem:ERRor?) is passed on word for word (refused). An answer that nobody
-// asked for, a block of another length than it says, or a query without an answer mean that
-// question and answer no longer belong together: such a connection says so (malformed, timeout),
-// and lost() is true from then on. Whoever holds it connects again; talking on would mistake one
-// answer for another. One thread at a time.
+// instrument reports (:SYSTem:ERRor?) is passed on as it is (refused); the connection stays.
+//
+// A query without an answer (timeout), an answer to nothing, or a block of another length than it
+// announces (malformed) mean that question and answer no longer belong together. Such a connection
+// fails, and lost() is true from then on: its owner connects anew, because talking on would mistake
+// one answer for another.
+//
+// One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -22,8 +25,8 @@ namespace dyncal::drivers {
 
 class ScpiConnection {
 public:
-  // `instrument`: "oscilloscope", "generator"; `answer_limit`: the longest time one answer may
-  // take. `stop` outlives the connection.
+  // `instrument`: "oscilloscope", "generator"; `answer_limit`: how long one answer may take. `stop`
+  // outlives the connection.
   [[nodiscard]] static Expected<ScpiConnection> connect(std::string instrument, std::string address,
                                                         std::chrono::milliseconds answer_limit,
                                                         const StopSignal& stop);
@@ -34,10 +37,10 @@ public:
   [[nodiscard]] Expected<void> command(const std::string& text);
   [[nodiscard]] Expected<std::string> query(const std::string& text);
   [[nodiscard]] Expected<double> query_number(const std::string& text);
-  // Bytes of the block that answers; longer than `longest` is malformed.
+  // The bytes of the block that answers; a block of more than `max_bytes` is malformed.
   [[nodiscard]] Expected<std::vector<char>> query_block(const std::string& text,
-                                                        std::size_t longest);
-  // Nothing is asked: for commands before the instrument is known to listen, or that end an
+                                                        std::size_t max_bytes);
+  // Sends the command and asks for nothing: before the instrument is known to listen, or to end an
   // activity.
   [[nodiscard]] Expected<void> send(const std::string& text);
 
@@ -45,9 +48,12 @@ public:
   [[nodiscard]] const std::string& address() const { return address_; }
 
 private:
-  Expected<std::vector<char>> read_block(std::size_t longest);
-  tl::unexpected<Error> failure(const Error& error, const std::string& text);
-  tl::unexpected<Error> misunderstood(const Error& error, const std::string& text);
+  Expected<std::vector<char>> read_block(std::size_t max_bytes);
+  Expected<void> ask(const std::string& query);
+  // The connection is lost from now on. `message` of the transport begins with the address.
+  tl::unexpected<Error> give_up(const Error& error, const std::string& command);
+  tl::unexpected<Error> give_up_misunderstood(const std::string& reason,
+                                              const std::string& command);
 
   std::string instrument_;
   std::string address_;

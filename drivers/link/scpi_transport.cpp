@@ -14,8 +14,8 @@ public:
   Expected<void> send(std::string_view message, std::chrono::milliseconds limit) override {
     return connection_.send_all(message, limit);
   }
-  Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
-    return connection_.read_line(longest, limit);
+  Expected<std::string> read_line(std::size_t max_bytes, std::chrono::milliseconds limit) override {
+    return connection_.read_line(max_bytes, limit);
   }
   Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) override {
     return connection_.read_exactly(bytes, limit);

@@ -1,12 +1,15 @@
 // What carries SCPI to an instrument: a TCP socket, or VXI-11 (RPC) through liblxi. Both deliver
 // the answers as one stream of bytes.
 //
-// Addresses: "HOST:PORT" (raw socket; Rigol: port 5555) or "vxi11:HOST" (device inst0),
-// "vxi11:HOST/inst1". Every wait has a limit. StopSignal ends waits on a TCP socket at once; liblxi
-// cannot be interrupted, so over VXI-11 a stop takes effect when the limit of the wait that runs
-// has passed, and the first connection to a host that is gone takes the RPC library's 25 s. A
-// transport belongs to one thread at a time. Fails: malformed (address, line too long), not_found,
-// refused, timeout, disconnected.
+//   HOST:PORT                       raw socket (Rigol: port 5555, Keysight: port 5025)
+//   vxi11:HOST, vxi11:HOST/inst1    VXI-11, device inst0 unless another is named
+//
+// Every wait has a limit. StopSignal ends waits on a TCP socket at once. liblxi cannot be
+// interrupted: over VXI-11 a stop takes effect when the limit of the wait that runs has passed, and
+// the first connection to a host that has gone takes the 25 s of the RPC library.
+//
+// Fails: malformed (address, line too long), not_found, refused, timeout, disconnected. A transport
+// belongs to one thread at a time.
 #pragma once
 
 #include <chrono>
@@ -27,12 +30,11 @@ public:
   [[nodiscard]] virtual Expected<void> send(std::string_view message,
                                             std::chrono::milliseconds limit) = 0;
   // Without its line end ("\n" or "\r\n").
-  [[nodiscard]] virtual Expected<std::string> read_line(std::size_t longest,
+  [[nodiscard]] virtual Expected<std::string> read_line(std::size_t max_bytes,
                                                         std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<void> read_exactly(std::span<char> bytes,
                                                     std::chrono::milliseconds limit) = 0;
-  // Whether bytes have come that nobody has read: before a query that means an answer to something
-  // else.
+  // Whether bytes have come that were not read: before a query they answer something else.
   [[nodiscard]] virtual bool has_unread() = 0;
 };
 

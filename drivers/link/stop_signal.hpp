@@ -1,14 +1,14 @@
 // Ends every wait of a driver from another thread, at once and for good.
 //
-// A wait on a device polls descriptor() beside the device's own descriptor (poll, POLLIN): it is
-// readable from the first raise() on and is never read, so every later wait ends as well. Whoever
-// raised it is told by ErrorCode::disconnected or by the function's own "stopped" outcome.
+// A wait on a device polls descriptor() beside the device's own descriptor (POLLIN): it is readable
+// from the first raise() on and is never read, so every later wait ends as well. The function that
+// waited fails with ErrorCode::disconnected or has an outcome "stopped" of its own.
 //
 // Services stop with std::stop_token; where they call a driver, a std::stop_callback raises the
 // driver's signal.
 //
-// raise() and raised() may be called from any thread, raise() also from a signal handler and as
-// often as one likes. If the system has no event left, the constructor throws std::system_error.
+// raise() and raised() may be called from any thread, raise() from a signal handler too, and more
+// than once. The constructor throws std::system_error when the system is out of descriptors.
 #pragma once
 
 #include <chrono>

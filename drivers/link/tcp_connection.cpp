@@ -179,13 +179,13 @@ Expected<std::size_t> TcpConnection::receive(std::span<char> bytes, Clock::time_
   }
 }
 
-Expected<std::string> TcpConnection::read_line(std::size_t longest,
+Expected<std::string> TcpConnection::read_line(std::size_t max_bytes,
                                                std::chrono::milliseconds limit) {
   const auto deadline = Clock::now() + limit;
   std::size_t searched = 0;
   for (;;) {
     const std::size_t end = received_.find('\n', searched);
-    if (end != std::string::npos && end <= longest) {
+    if (end != std::string::npos && end <= max_bytes) {
       std::string line = received_.substr(0, end);
       received_.erase(0, end + 1);
       if (!line.empty() && line.back() == '\r') {
@@ -193,9 +193,9 @@ Expected<std::string> TcpConnection::read_line(std::size_t longest,
       }
       return line;
     }
-    if (received_.size() > longest) {
+    if (received_.size() > max_bytes) {
       return fail(ErrorCode::malformed, address_.text() + ": a line without an end after " +
-                                            std::to_string(longest) + " bytes");
+                                            std::to_string(max_bytes) + " bytes");
     }
     searched = received_.size();
     char chunk[4096];

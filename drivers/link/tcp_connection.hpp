@@ -29,11 +29,11 @@ public:
   connect(const Address& address, std::chrono::milliseconds limit, const StopSignal& stop);
 
   [[nodiscard]] Expected<void> send_all(std::string_view bytes, std::chrono::milliseconds limit);
-  // Without its line end ("\n" or "\r\n"). A longer line than `longest` is malformed.
-  [[nodiscard]] Expected<std::string> read_line(std::size_t longest,
+  // Without its line end ("\n" or "\r\n"). A line of more than `max_bytes` is malformed.
+  [[nodiscard]] Expected<std::string> read_line(std::size_t max_bytes,
                                                 std::chrono::milliseconds limit);
   [[nodiscard]] Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit);
-  // Bytes have come that nobody has read. Does not wait.
+  // Whether bytes have come that were not read. Does not wait.
   [[nodiscard]] bool has_unread() const;
 
 private:
@@ -46,7 +46,7 @@ private:
   FileDescriptor socket_;
   Address address_;
   const StopSignal* stop_;
-  std::string received_; // bytes that came after the end of the last line
+  std::string received_; // what came after the last line or block that was read
 };
 
 } // namespace dyncal::drivers

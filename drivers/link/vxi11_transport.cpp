@@ -31,15 +31,15 @@ public:
     return {};
   }
 
-  Expected<std::string> read_line(std::size_t longest, std::chrono::milliseconds limit) override {
+  Expected<std::string> read_line(std::size_t max_bytes, std::chrono::milliseconds limit) override {
     const auto deadline = Clock::now() + limit;
     for (;;) {
       const auto end =
           std::find(received_.begin() + static_cast<std::ptrdiff_t>(taken_), received_.end(), '\n');
       const std::size_t size = static_cast<std::size_t>(end - received_.begin()) - taken_;
-      if (size > longest) {
+      if (size > max_bytes) {
         return fail(ErrorCode::malformed, address_ + ": a line without an end after " +
-                                              std::to_string(longest) + " bytes");
+                                              std::to_string(max_bytes) + " bytes");
       }
       if (end != received_.end()) {
         std::string line(received_.data() + taken_, size);

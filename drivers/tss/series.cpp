@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/base/text.hpp"
 #include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::tss {
@@ -64,7 +65,7 @@ std::optional<ValueForm> form_by_name(const std::string& name) {
   return found == forms.end() ? std::nullopt : std::optional(found->second);
 }
 
-// get() would make a number of -1 or 1.5 as well; at() on a number throws, as it shall.
+// get() would convert -1 or 1.5 as well; at() on a number throws, as is wanted here.
 std::uint64_t whole(const nlohmann::json& number) {
   return number.is_number_unsigned() ? number.get<std::uint64_t>()
                                      : number.at("a whole number").get<std::uint64_t>();
@@ -101,9 +102,9 @@ Expected<void> check(const Series& series) {
   return {};
 }
 
-class Lines {
+class LineReader {
 public:
-  explicit Lines(std::string_view text) : rest_(text) {}
+  explicit LineReader(std::string_view text) : rest_(text) {}
   // Without the line end; nothing at the end of the text.
   std::optional<std::string_view> next() {
     if (rest_.empty()) {
@@ -125,17 +126,7 @@ private:
   std::size_t number_ = 0;
 };
 
-std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ')) {
-    text.remove_prefix(1);
-  }
-  while (text.ends_with(' ')) {
-    text.remove_suffix(1);
-  }
-  return text;
-}
-
-Expected<void> take_key(std::string_view line, Series& series, std::string& unit) {
+Expected<void> read_key(std::string_view line, Series& series, std::string& unit) {
   const std::size_t sign = line.find('=');
   if (sign == std::string_view::npos) {
     return {}; // a remark
@@ -190,7 +181,8 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
     SeriesHeader header = header_from(line);
     const auto form = form_by_name(line.value("values", ""));
     if (!form) {
-      return malformed("values of a form that is none of int16, int32, float32, float64");
+      return malformed("unknown form of values '" + shown(line.value("values", "")) +
+                       "': must be int16, int32, float32 or float64");
     }
     header.form = *form;
     if (auto possible = check(header.series); !possible) {
@@ -226,13 +218,13 @@ Expected<Series> decode_series(SeriesHeader header, std::span<const char> bytes)
 }
 
 Expected<Series> parse_series_csv(std::string_view text) {
-  Lines lines(text);
+  LineReader lines(text);
   Series series;
   std::string unit;
   std::vector<std::vector<double>> columns;
   while (const auto line = lines.next()) {
     if (line->starts_with('#')) {
-      if (auto taken = take_key(line->substr(1), series, unit); !taken) {
+      if (auto taken = read_key(line->substr(1), series, unit); !taken) {
         return malformed(lines.where() + taken.error().message);
       }
     } else if (columns.empty()) {

@@ -2,9 +2,11 @@
 // a socket or as a file (drivers/tss/README.md).
 //
 // The instants of the samples are unknown; the device promises a nominal rate and counts its
-// triggers (`shot`). Values are in the channel's unit, channel after channel: values[channel *
-// samples + sample]. Plain data; the parsers are pure functions. Fails: malformed, with what is
-// wrong.
+// triggers (`shot`). Values are in the channel's unit, channel after channel:
+//
+//   values[channel * samples + sample]
+//
+// Fails: malformed, with what is wrong. Plain data; the parsers are pure functions: any thread.
 #pragma once
 
 #include <cstddef>

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "drivers/tss/series_source.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::drivers::tss {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds look_interval{20};
+constexpr milliseconds poll_interval{20};
 
 class FolderSource : public SeriesSource {
 public:
@@ -22,13 +23,13 @@ public:
     if (!names) {
       return fail(names.error());
     }
-    seen_ = std::move(*names);
-    looked_ = true;
+    known_names_ = std::move(*names);
+    folder_was_read_ = true;
     return {};
   }
 
   Expected<Series> next(milliseconds limit) override {
-    if (!looked_) {
+    if (!folder_was_read_) {
       if (auto done = discard_pending(); !done) {
         return fail(done.error());
       }
@@ -40,16 +41,16 @@ public:
         return fail(names.error());
       }
       for (const std::string& name : *names) { // in the order of their names
-        if (seen_.insert(name).second) {
+        if (known_names_.insert(name).second) {
           return read(folder_ / name);
         }
       }
       if (Clock::now() >= deadline) {
-        return failure(ErrorCode::timeout, folder_.string() + ": no new series within " +
-                                               std::to_string(limit.count()) + " ms");
+        return sensor_error(ErrorCode::timeout, folder_.string() + ": no new series within " +
+                                                    std::to_string(limit.count()) + " ms");
       }
-      if (stop_.wait_for(look_interval)) {
-        return failure(ErrorCode::disconnected, folder_.string() + ": stopped");
+      if (stop_.wait_for(poll_interval)) {
+        return sensor_error(ErrorCode::disconnected, folder_.string() + ": stopped");
       }
     }
   }
@@ -65,8 +66,8 @@ private:
       }
     }
     if (problem) {
-      return failure(ErrorCode::not_found,
-                     folder_.string() + ": cannot be read (" + problem.message() + ")");
+      return sensor_error(ErrorCode::not_found,
+                          folder_.string() + ": cannot be read (" + problem.message() + ")");
     }
     return names;
   }
@@ -76,26 +77,24 @@ private:
     const std::string text((std::istreambuf_iterator<char>(file)),
                            std::istreambuf_iterator<char>());
     if (!file) {
-      return failure(ErrorCode::not_found, path.string() + ": cannot be read");
+      return sensor_error(ErrorCode::not_found, path.string() + ": cannot be read");
     }
     auto series = parse_series_csv(text);
     if (!series) {
-      return failure(series.error().code, path.string() + ": " + series.error().message);
+      return sensor_error(series.error().code, path.string() + ": " + series.error().message);
     }
-    series->received_utc_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                  std::chrono::system_clock::now().time_since_epoch())
-                                  .count();
+    series->received_utc_ns = utc_now_ns();
     return series;
   }
 
-  static tl::unexpected<Error> failure(ErrorCode code, std::string message) {
+  static tl::unexpected<Error> sensor_error(ErrorCode code, std::string message) {
     return fail(code, "time series sensor " + std::move(message));
   }
 
   std::filesystem::path folder_;
   const StopSignal& stop_;
-  std::set<std::string> seen_;
-  bool looked_ = false;
+  std::set<std::string> known_names_;
+  bool folder_was_read_ = false;
 };
 
 } // namespace

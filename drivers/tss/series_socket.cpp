@@ -4,6 +4,7 @@
 #include "drivers/link/scpi_answer.hpp"
 #include "drivers/link/tcp_connection.hpp"
 #include "drivers/tss/series_source.hpp"
+#include "drivers/utc_clock.hpp"
 
 namespace dyncal::drivers::tss {
 namespace {
@@ -11,9 +12,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds connect_limit{3000};
-constexpr milliseconds rest_limit{5000};  // for the bytes behind a header that has come
-constexpr milliseconds leftover_limit{1}; // what has come is there at once
-constexpr std::size_t max_header = 65'536;
+constexpr milliseconds rest_limit{5000};  // for the bytes after a header that has come
+constexpr milliseconds leftover_limit{1}; // for what has come already
+constexpr std::size_t max_header_bytes = 65'536;
 
 class SocketSource : public SeriesSource {
 public:
@@ -37,28 +38,26 @@ public:
     if (auto connected = connect(); !connected) {
       return fail(connected.error());
     }
-    auto line = connection_->read_line(max_header, limit);
+    auto line = connection_->read_line(max_header_bytes, limit);
     if (!line) {
       // Nothing has come yet: the connection is as good as before.
       return line.error().code == ErrorCode::timeout && !connection_->has_unread()
-                 ? failure(line.error())
-                 : give_up(line.error());
+                 ? sensor_error(line.error())
+                 : disconnect_after(line.error());
     }
     auto header = parse_series_header(*line);
     if (!header) {
-      return give_up({header.error().code, address_ + ": " + header.error().message});
+      return disconnect_after({header.error().code, address_ + ": " + header.error().message});
     }
     auto bytes = read_block(header->bytes());
     if (!bytes) {
-      return give_up(bytes.error());
+      return disconnect_after(bytes.error());
     }
     auto series = decode_series(std::move(*header), *bytes);
     if (!series) {
-      return give_up({series.error().code, address_ + ": " + series.error().message});
+      return disconnect_after({series.error().code, address_ + ": " + series.error().message});
     }
-    series->received_utc_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                  std::chrono::system_clock::now().time_since_epoch())
-                                  .count();
+    series->received_utc_ns = utc_now_ns();
     return series;
   }
 
@@ -69,11 +68,11 @@ private:
     }
     const auto parsed = parse_address(address_);
     if (!parsed) {
-      return failure(parsed.error());
+      return sensor_error(parsed.error());
     }
     auto connection = TcpConnection::connect(*parsed, connect_limit, stop_);
     if (!connection) {
-      return failure(connection.error());
+      return sensor_error(connection.error());
     }
     connection_.emplace(std::move(*connection));
     return {};
@@ -102,7 +101,7 @@ private:
     if (auto read = connection_->read_exactly(bytes, rest_limit); !read) {
       return fail(read.error());
     }
-    const auto end = connection_->read_line(max_header, rest_limit);
+    const auto end = connection_->read_line(max_header_bytes, rest_limit);
     if (!end) {
       return fail(end.error());
     }
@@ -112,12 +111,12 @@ private:
     return bytes;
   }
 
-  static tl::unexpected<Error> failure(const Error& error) {
+  static tl::unexpected<Error> sensor_error(const Error& error) {
     return fail(error.code, "time series sensor " + error.message);
   }
-  tl::unexpected<Error> give_up(const Error& error) {
+  tl::unexpected<Error> disconnect_after(const Error& error) {
     connection_.reset();
-    return failure(error);
+    return sensor_error(error);
   }
 
   std::string address_;

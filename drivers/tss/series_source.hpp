@@ -3,8 +3,11 @@
 //
 // A device sends when it has been triggered, not when it is asked. So before a trigger whatever is
 // left of earlier ones is dropped (discard_pending), and after it the next series is waited for.
-// One thread; StopSignal ends waits from another. Fails: timeout, malformed, disconnected, refused,
-// not_found; after malformed or disconnected a socket is given up, and the next call connects anew.
+//
+// Fails: timeout, malformed, disconnected, refused, not_found. After malformed or disconnected a
+// socket is closed, and the next call connects anew.
+//
+// One thread; StopSignal ends waits from another.
 #pragma once
 
 #include <chrono>
@@ -31,8 +34,8 @@ public:
 // `stop` outlives the source.
 [[nodiscard]] std::unique_ptr<SeriesSource> series_from_socket(std::string address,
                                                                const StopSignal& stop);
-// Files "*.csv" that appear in the folder; a device writes under another name and renames. Files
-// that are there at the first call are old.
+// Files "*.csv" that appear in the folder, in the order of their names; a device writes under
+// another name and renames. Files that are there at the first call are old.
 [[nodiscard]] std::unique_ptr<SeriesSource> series_from_folder(std::filesystem::path folder,
                                                                const StopSignal& stop);
 

@@ -203,9 +203,11 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
 }
 
 Expected<void> read_can(const Words& words, BenchOptions& options) {
-  const auto& kinds = can_bus_kinds();
-  const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                 [&](const CanBusKind& one) { return one.name == words.can_bus; });
+  const auto& kinds = drivers::virtual_bench::can_bus_kinds();
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [&](const drivers::virtual_bench::CanBusKind& one) {
+        return one.name == words.can_bus;
+      });
   if (kind == kinds.end()) {
     return refuse(
         fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));

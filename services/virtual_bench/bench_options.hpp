@@ -25,8 +25,8 @@ struct BenchOptions {
   std::filesystem::path record_folder; // set: files instead of sockets
   bool free_running_sensor =
       false; // of the time series sensor, whose other settings follow from the bench
-  std::string can_interface; // of a sensor with CAN output; empty: none
-  CanSensorSettings can;     // its preset and seed are those of the bench
+  std::string can_interface;                     // of a sensor with CAN output; empty: none
+  drivers::virtual_bench::CanSensorSettings can; // its preset and seed are those of the bench
   std::filesystem::path dbc_file;
   bool exit_with_parent = false;
 };

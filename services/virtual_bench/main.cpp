@@ -73,15 +73,15 @@ struct CanPart {
 
   void advance_to(double time_s, const device::VirtualBench& bench) {
     sensor.advance_to(
-        time_s, bench.excitation(), [this](const dyncal::services::virtual_bench::SentFrame& sent) {
-          const bool exact = sent.frame.id == dyncal::services::virtual_bench::CanSensor::id;
+        time_s, bench.excitation(), [this](const dyncal::drivers::virtual_bench::SentFrame& sent) {
+          const bool exact = sent.frame.id == dyncal::drivers::virtual_bench::CanSensor::id;
           line.put(sent.frame, origin_ns + std::llround(sent.end_s * 1e9), exact);
         });
   }
 
   std::int64_t origin_ns;
-  dyncal::services::virtual_bench::CanSensor sensor;
-  dyncal::services::virtual_bench::CanLine line;
+  dyncal::drivers::virtual_bench::CanSensor sensor;
+  dyncal::drivers::virtual_bench::CanLine line;
 };
 
 // Nothing when the bench has no sensor with CAN output.
@@ -112,7 +112,7 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     return fail(can.error());
   }
   if (*can) {
-    dyncal::services::virtual_bench::go_before_programs(5); // below the line
+    dyncal::drivers::virtual_bench::request_realtime_priority(5); // below the line
     settings.after_advance = [&](double time_s) { (*can)->advance_to(time_s, bench); };
   }
   device::BenchServer server(bench, settings);

@@ -5,7 +5,7 @@
 #include "drivers/can/bus/socketcan_source.hpp"
 #include "tests/can/kernel_can.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 using drivers::can::FrameSender;
@@ -99,4 +99,4 @@ TEST_F(Line, EndsAtOnceWithoutSendingWhatIsStillToCome) {
 }
 
 } // namespace
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

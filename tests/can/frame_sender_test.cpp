@@ -74,7 +74,7 @@ TEST(FrameSender, SaysInOneLineWhyItCannotSend) {
               HasSubstr("there is no interface 'can7'; 'ip link add can7 type vcan'"));
   const auto other = FrameSender::open("lo");
   ASSERT_FALSE(other);
-  EXPECT_THAT(other.error().message, HasSubstr("interface 'lo' is no CAN interface"));
+  EXPECT_THAT(other.error().message, HasSubstr("interface 'lo' is not a CAN interface"));
 
   const VirtualCan link("vcan0");
   auto sender = FrameSender::open("vcan0");
@@ -82,7 +82,7 @@ TEST(FrameSender, SaysInOneLineWhyItCannotSend) {
   ip("set vcan0 down");
   const auto down = sender->send(frame(0x123, 8));
   ASSERT_FALSE(down);
-  EXPECT_THAT(down.error().message, HasSubstr("interface 'vcan0' takes no frame"));
+  EXPECT_THAT(down.error().message, HasSubstr("interface 'vcan0' does not accept the frame"));
   EXPECT_THAT(down.error().message, HasSubstr("is it up? 'ip link set vcan0 up'"));
   ip("set vcan0 mtu 16 up");
   CanFrame fd = frame(0x123, 64);

@@ -36,7 +36,8 @@ TEST(SocketCan, SaysInOneLineWhyAnInterfaceCannotBeUsed) {
   ip("set vcan0 down");
   EXPECT_THAT(failure(SocketCanSource(on("vcan0"))),
               HasSubstr("interface 'vcan0' is down; 'ip link set vcan0 up'"));
-  EXPECT_THAT(failure(SocketCanSource(on("lo"))), HasSubstr("interface 'lo' is no CAN interface"));
+  EXPECT_THAT(failure(SocketCanSource(on("lo"))),
+              HasSubstr("interface 'lo' is not a CAN interface"));
 }
 
 TEST(SocketCan, ReceivesClassicAndFdFramesWithTheKernelsStamp) {

@@ -1,4 +1,4 @@
-// One frame as it was received, with the stamps that came with it. Plain data.
+// One CAN frame as it was received, with the stamps that came with it. Plain data; any thread.
 #pragma once
 
 #include <array>

@@ -1,7 +1,12 @@
-// A recorded log of CAN frames in the format of can-utils' `candump -l`: "(seconds.microseconds)
-// interface id#data", FD as id##FDATA with one hex digit of flags, remote frames as id#R. The
-// stamps of the log become the frames' kernel stamps. Plain function, any thread. Fails with file
-// and line at the first line that is no frame.
+// A recorded log of CAN frames in the format of can-utils' `candump -l`:
+//
+//   (seconds.microseconds) interface id#data
+//
+// FD frames are id##FDATA with one hex digit of flags F, remote frames id#R. The stamps of the log
+// become the frames' kernel stamps.
+//
+// Fails: not_found when the file cannot be read; malformed, with file and line, at the first line
+// that is not a frame. Pure function; any thread.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// What an error frame of the kernel says (linux/can/error.h), in words. Plain function, any thread.
+// What an error frame of the kernel reports (linux/can/error.h), as text. Pure function; any
+// thread.
 #pragma once
 
 #include <cstdint>

@@ -11,27 +11,19 @@
 
 namespace dyncal::drivers::can {
 
-namespace {
-
-tl::unexpected<Error> failed(ErrorCode code, std::string message) {
-  return fail(code, std::move(message));
-}
-
-} // namespace
-
 Expected<FrameSender> FrameSender::open(const std::string& interface_name) {
   FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
   if (!socket.is_open()) {
-    return failed(ErrorCode::refused,
-                  interface_name + ": this kernel has no CAN sockets (" + std::strerror(errno) +
-                      "); 'modprobe can-raw', or use a kernel with CONFIG_CAN_RAW");
+    return fail(ErrorCode::refused,
+                interface_name + ": this kernel has no CAN sockets (" + std::strerror(errno) +
+                    "); 'modprobe can-raw', or use a kernel with CONFIG_CAN_RAW");
   }
   const unsigned index = ::if_nametoindex(interface_name.c_str());
   if (index == 0) {
-    return failed(ErrorCode::not_found, "there is no interface '" + interface_name +
-                                            "'; 'ip link add " + interface_name +
-                                            " type vcan' and 'ip link set " + interface_name +
-                                            " mtu 72 up' make a virtual one");
+    return fail(ErrorCode::not_found, "there is no interface '" + interface_name +
+                                          "'; 'ip link add " + interface_name +
+                                          " type vcan' and 'ip link set " + interface_name +
+                                          " mtu 72 up' make a virtual one");
   }
   const int on = 1;
   ::setsockopt(socket.number(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
@@ -40,8 +32,8 @@ Expected<FrameSender> FrameSender::open(const std::string& interface_name) {
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(index);
   if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return failed(ErrorCode::refused, "interface '" + interface_name + "' is no CAN interface (" +
-                                          std::strerror(errno) + ")");
+    return fail(ErrorCode::refused, "interface '" + interface_name + "' is not a CAN interface (" +
+                                        std::strerror(errno) + ")");
   }
   return FrameSender(interface_name, std::move(socket));
 }
@@ -58,11 +50,11 @@ Expected<void> FrameSender::send(const CanFrame& frame) {
     return {};
   }
   const bool too_long = errno == EINVAL && frame.fd;
-  return failed(ErrorCode::refused,
-                "interface '" + interface_name_ + "' takes no frame (" + std::strerror(errno) +
-                    "); " +
-                    (too_long ? "FD frames need 'ip link set " + interface_name_ + " mtu 72'"
-                              : "is it up? 'ip link set " + interface_name_ + " up'"));
+  return fail(ErrorCode::refused,
+              "interface '" + interface_name_ + "' does not accept the frame (" +
+                  std::strerror(errno) + "); " +
+                  (too_long ? "FD frames need 'ip link set " + interface_name_ + " mtu 72'"
+                            : "is it up? 'ip link set " + interface_name_ + " up'"));
 }
 
 } // namespace dyncal::drivers::can

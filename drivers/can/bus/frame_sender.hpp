@@ -2,9 +2,11 @@
 // under calibration.
 //
 // One raw socket that receives nothing. send() gives the frame to the kernel, which on a virtual
-// interface stamps it at once. Fails at open() when the kernel has no CAN or the interface is not
-// there or is no CAN interface; at send() when the kernel refuses the frame (the interface is down;
-// an FD frame on an interface with the MTU of classic CAN). Belongs to one thread.
+// interface stamps it at once.
+//
+// Fails: at open() when the kernel has no CAN sockets, or the interface does not exist or is not a
+// CAN interface; at send() when the kernel refuses the frame (the interface is down; an FD frame on
+// an interface with the MTU of classic CAN). One thread.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
-// Where frames come from: a CAN interface of the kernel, a recorded log, or a test that scripts
-// them.
+// Where frames come from: a CAN interface of the kernel, a recorded log, or a script of a test.
 //
-// Frames, losses, bus errors and changes of the link come as one stream in the order in which they
-// happened as far as the source can tell. open() once, then read() from one thread; stop() from any
-// thread, at any time.
+// Frames, losses, bus errors and changes of the link come as one stream, in the order in which they
+// happened as far as the source knows it.
+//
+// open() once, then read() from one thread; stop() from any thread, at any time.
 #pragma once
 
 #include <chrono>

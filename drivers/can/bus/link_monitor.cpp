@@ -3,7 +3,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include <linux/if_link.h>
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 namespace dyncal::drivers::can {
@@ -136,7 +136,7 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
   address.nl_groups = RTMGRP_LINK;
   if (!socket.is_open() ||
       ::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return fail(ErrorCode::refused, "the kernel gives no access to the state of interfaces (" +
+    return fail(ErrorCode::refused, "the kernel denies access to the state of its interfaces (" +
                                         system_text(errno) + ")");
   }
   LinkMonitor monitor(interface_name, std::move(socket));
@@ -196,9 +196,8 @@ Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
       if (!wait_for_answer) {
         break;
       }
-      const timespec pause{0, 200'000}; // the answer to a dump is there as soon as it was asked
-                                        // for; only a loaded machine comes here
-      ::nanosleep(&pause, nullptr);
+      pollfd waiting{socket_.number(), POLLIN, 0}; // the answer to a dump is there at once, but
+      ::poll(&waiting, 1, -1);                     // on a loaded machine
       continue;
     }
     if (got < 0 && errno == ENOBUFS) { // announcements were lost: ask for everything
@@ -209,7 +208,7 @@ Expected<void> LinkMonitor::read_messages(bool wait_for_answer) {
     }
     if (got <= 0) {
       return fail(ErrorCode::disconnected,
-                  "the kernel says no more about its interfaces (" + system_text(errno) + ")");
+                  "the kernel no longer reports its interfaces (" + system_text(errno) + ")");
     }
     std::size_t left = static_cast<std::size_t>(got);
     for (std::size_t at = 0; left >= sizeof(nlmsghdr);) {

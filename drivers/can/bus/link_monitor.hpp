@@ -1,11 +1,12 @@
-// What the kernel says about one network interface, by rtnetlink: whether it is there, up,
-// connected, and for a CAN controller its state, error counters, bit rates; and the two changes
+// What the kernel reports about one network interface, by rtnetlink: whether it exists, is up and
+// connected, and for a CAN controller its state, error counters and bit rates; and the two changes
 // that a driver may need: restart after bus-off, down and up.
 //
-// The interface is known by the name it had at open(); when the kernel renames it, it is followed
-// under its new name, until it goes; then the first name is waited for again. open() in one thread,
-// everything else in one thread too. The descriptor becomes readable when update() has something to
-// read.
+// The interface is known by the name it had at open(). When the kernel renames it, it is followed
+// under its new name until it disappears; then the first name is waited for again.
+//
+// Fails: refused or disconnected, with the kernel's reason. One thread. The descriptor becomes
+// readable when update() has something to read.
 #pragma once
 
 #include <cstdint>

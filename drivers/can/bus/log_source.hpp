@@ -1,11 +1,12 @@
 // A recorded candump log as a frame source: the frames of one interface in their order, with the
 // stamps of the log.
 //
-// `speed` 0 gives them as fast as they are read; otherwise each frame comes when as much time has
-// passed as lay between it and the first frame of the log, divided by the speed. Ends after the
-// last frame. A log knows neither bit rate nor losses of the recorder. Fails at open() as
-// read_candump_log does, and when the log has no frame that passes the filters. Threads as
-// FrameSource.
+// `speed` 0 delivers them as fast as they are read; otherwise each frame comes when as much time
+// has passed as lay between it and the first frame of the log, divided by the speed. The source
+// ends after the last frame. A log knows neither bit rate nor losses of the recorder.
+//
+// Fails at open() as read_candump_log does, and when no frame of the log passes the filters.
+// Threads as FrameSource.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// A frame source whose events were written down beforehand, with their own stamps: for tests and
-// for logs. Gives them in order, `batch` at a time, then says that it has ended. Same rules of
-// threads as FrameSource.
+// A frame source whose events were written down beforehand, with their own stamps: for tests.
+//
+// Delivers them in order, `batch` at a time, then ends. Threads as FrameSource.
 #pragma once
 
 #include <cstddef>

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <ctime>
 #include <system_error>
+#include <utility>
 
 #include <linux/can.h>
 #include <linux/can/error.h>
@@ -15,6 +16,7 @@
 #include <sys/socket.h>
 
 #include "drivers/can/bus/error_frame.hpp"
+#include "drivers/can/bus/link_transition.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -26,10 +28,6 @@ constexpr int max_errors = 4; // of an interface that goes, in one read: down, a
 
 std::string system_text(int error) {
   return std::generic_category().message(error);
-}
-
-tl::unexpected<Error> failed(ErrorCode code, std::string message) {
-  return fail(code, std::move(message));
 }
 
 std::int64_t to_ns(const timespec& time) {
@@ -65,20 +63,20 @@ SocketCanSource::~SocketCanSource() = default;
 Expected<void> SocketCanSource::check_link(const LinkState& link) const {
   const std::string& name = settings_.interface_name;
   if (!link.present) {
-    return failed(ErrorCode::not_found,
-                  "there is no interface '" + name + "'; 'ip link' lists those there are");
+    return fail(ErrorCode::not_found, "there is no interface '" + name +
+                                          "'; 'ip link' lists the interfaces of this machine");
   }
   if (!link.up) {
-    return failed(ErrorCode::refused,
-                  "interface '" + name + "' is down; 'ip link set " + name + " up" +
-                      (link.kind == "can" ? " type can bitrate 500000' sets it up at 500 kbit/s"
-                                          : "' sets it up"));
+    return fail(ErrorCode::refused,
+                "interface '" + name + "' is down; 'ip link set " + name + " up" +
+                    (link.kind == "can" ? " type can bitrate 500000' sets it up at 500 kbit/s"
+                                        : "' sets it up"));
   }
   const auto disagrees = [&](const char* what, std::uint32_t wanted, std::uint32_t is) {
-    return failed(ErrorCode::invalid_setting, "interface '" + name + "' runs at a " + what +
-                                                  " of " + std::to_string(is) +
-                                                  " bit/s, the bench file says " +
-                                                  std::to_string(wanted) + "; change one of them");
+    return fail(ErrorCode::invalid_setting, "interface '" + name + "' runs at a " + what + " of " +
+                                                std::to_string(is) +
+                                                " bit/s, the bench file says " +
+                                                std::to_string(wanted) + "; change one of them");
   };
   if (settings_.bit_rate_per_s != 0 && link.bit_rate_per_s != 0 &&
       link.bit_rate_per_s != settings_.bit_rate_per_s) {
@@ -98,14 +96,14 @@ Expected<LinkState> SocketCanSource::open(const std::vector<FrameFilter>& filter
   if (const FileDescriptor probe(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
       !probe.is_open()) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
-      return failed(ErrorCode::refused, settings_.interface_name +
-                                            ": this kernel has no CAN sockets; 'modprobe "
-                                            "can-raw', or a kernel with CONFIG_CAN_RAW");
+      return fail(ErrorCode::refused, settings_.interface_name +
+                                          ": this kernel has no CAN sockets; 'modprobe "
+                                          "can-raw', or a kernel with CONFIG_CAN_RAW");
     }
-    return failed(ErrorCode::refused,
-                  settings_.interface_name + ": no CAN socket may be opened (" +
-                      system_text(errno) +
-                      "); does the program run where raw sockets of CAN are allowed?");
+    return fail(ErrorCode::refused,
+                settings_.interface_name + ": a CAN socket cannot be opened (" +
+                    system_text(errno) +
+                    "); does the program run where raw sockets of CAN are allowed?");
   }
   auto monitor = LinkMonitor::open(settings_.interface_name);
   if (!monitor) {
@@ -137,19 +135,19 @@ Expected<void> SocketCanSource::set_options(int socket) const {
                      SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
   if (!set(SOL_CAN_RAW, CAN_RAW_FILTER, kernel_filters.data(),
            kernel_filters.size() * sizeof(can_filter))) {
-    return failed(ErrorCode::refused, settings_.interface_name +
-                                          ": the kernel does not take the filters of " +
-                                          std::to_string(filters_.size()) + " messages (" +
-                                          system_text(errno) + "); name fewer messages");
+    return fail(ErrorCode::refused, settings_.interface_name +
+                                        ": the kernel does not take the filters of " +
+                                        std::to_string(filters_.size()) + " messages (" +
+                                        system_text(errno) + "); name fewer messages");
   }
   if (!set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) ||
       !set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) ||
       !set(SOL_SOCKET, SO_TIMESTAMPING, &stamps, sizeof stamps) ||
       !set(SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on)) {
-    return failed(ErrorCode::refused,
-                  settings_.interface_name +
-                      ": the kernel is too old for what is needed of its CAN sockets (" +
-                      system_text(errno) + ")");
+    return fail(ErrorCode::refused,
+                settings_.interface_name +
+                    ": the kernel is too old for what is needed of its CAN sockets (" +
+                    system_text(errno) + ")");
   }
   // Beyond the system's limit only the superuser may go; others get what the limit allows.
   if (!set(SOL_SOCKET, SO_RCVBUFFORCE, &settings_.receive_buffer_bytes, sizeof(int))) {
@@ -161,8 +159,8 @@ Expected<void> SocketCanSource::set_options(int socket) const {
 Expected<void> SocketCanSource::open_socket() {
   FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
   if (!socket.is_open()) {
-    return failed(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" +
-                                          system_text(errno) + ")");
+    return fail(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" +
+                                        system_text(errno) + ")");
   }
   if (auto set = set_options(socket.number()); !set) {
     return set;
@@ -171,9 +169,9 @@ Expected<void> SocketCanSource::open_socket() {
   address.can_family = AF_CAN;
   address.can_ifindex = monitor_->interface_index();
   if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return failed(errno == ENODEV ? ErrorCode::not_found : ErrorCode::refused,
-                  "interface '" + settings_.interface_name + "' is no CAN interface or has gone (" +
-                      system_text(errno) + ")");
+    return fail(errno == ENODEV ? ErrorCode::not_found : ErrorCode::refused,
+                "interface '" + settings_.interface_name +
+                    "' is not a CAN interface or has gone (" + system_text(errno) + ")");
   }
   socket_ = std::move(socket);
   bound_index_ = monitor_->interface_index();
@@ -213,7 +211,7 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
       follow_link(announced, events);
     }
   }
-  restart_when_due(events);
+  restart_after_bus_off(events);
   return ReadState::more;
 }
 
@@ -302,46 +300,37 @@ void SocketCanSource::note_fault(const BusFault& fault) {
   }
 }
 
+// Once the socket's interface is another one, or none, it hears nothing more. A refused one is
+// tried again with the next announcement.
+Binding SocketCanSource::follow_interface(int index) {
+  if (index == bound_index_) {
+    return Binding::kept;
+  }
+  socket_.reset();
+  if (!link_.present) {
+    bound_index_ = 0;
+    return Binding::kept;
+  }
+  return open_socket() ? Binding::renewed : Binding::refused;
+}
+
 void SocketCanSource::follow_link(const LinkMonitor::Change& announced,
                                   std::vector<BusEvent>& events) {
-  const LinkState before = link_;
-  link_ = announced.state;
-  // Once bound_index_ is another interface, or none, the socket hears nothing more.
-  const bool gone_or_other = announced.interface_index != bound_index_;
-  if (gone_or_other) {
-    socket_.reset();
-  }
-  LinkChange change{link_, false, ""};
-  if (!link_.present && before.present) {
-    change.what = "interface '" + before.name + "' has gone";
-  } else if (link_.present && gone_or_other &&
-             !open_socket()) { // tried again with the next announcement
-    change.what = "interface '" + link_.name + "' is there but cannot be opened";
-  } else if (link_.present && (gone_or_other || !before.present)) {
-    change.what = "interface '" + link_.name + "' is back";
-  } else if (link_.up != before.up) {
-    change.what = "interface '" + link_.name + "' is " + (link_.up ? "up" : "down");
-  } else if (link_.carrier != before.carrier) {
-    change.what =
-        "interface '" + link_.name + "' has " + (link_.carrier ? "its bus back" : "lost its bus");
-  } else if (link_.bus == BusState::bus_off && before.bus != BusState::bus_off) {
-    change.what = "bus-off";
-  }
-  change.interrupted = !change.what.empty();
+  const LinkState before = std::exchange(link_, announced.state);
+  const Binding binding = follow_interface(announced.interface_index);
+  const LinkTransition transition = transition_between(before, link_, binding);
   if (link_.bus == BusState::bus_off && !bus_off_since_) {
     bus_off_since_ = Clock::now();
   } else if (link_.bus == BusState::error_active || !link_.up) {
     bus_off_since_.reset();
   }
-  if (change.what.empty() && link_.name != before.name) {
-    change.what = "interface '" + before.name + "' is now called '" + link_.name + "'";
-  }
-  if (!(link_ == before) || change.interrupted) {
-    events.emplace_back(std::move(change));
+  if (transition != LinkTransition::none || !(link_ == before)) {
+    events.emplace_back(
+        LinkChange{link_, interrupts(transition), describe(transition, before, link_)});
   }
 }
 
-void SocketCanSource::restart_when_due(std::vector<BusEvent>& events) {
+void SocketCanSource::restart_after_bus_off(std::vector<BusEvent>& events) {
   if (!bus_off_since_ || !settings_.restart_after_bus_off ||
       Clock::now() - *bus_off_since_ < *settings_.restart_after_bus_off) {
     return;

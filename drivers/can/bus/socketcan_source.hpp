@@ -2,18 +2,20 @@
 //
 // One raw socket, read with recvmmsg: every frame comes with its kernel stamp, its hardware stamp
 // where the adapter has one, and the count of frames that the socket had to drop, in the same call
-// (SO_TIMESTAMPING, SO_RXQ_OVFL). The count of drops stands on the next frame after them: drops at
-// the very end are only seen with one more frame. Error frames become BusFault, rtnetlink's
+// (SO_TIMESTAMPING, SO_RXQ_OVFL). The count of drops comes with the next frame after them: drops at
+// the very end only show with one more frame. Error frames become BusFault, rtnetlink's
 // announcements LinkChange.
 //
-// The source goes on through: interface down and up (the socket stays bound), interface gone (it is
-// opened again as soon as one of the name is there), interface renamed (followed), bus-off (the
-// kernel's or the adapter's own restart is waited for; with `restart_after_bus_off` the controller
-// is restarted after that time, by IFLA_CAN_RESTART or, where the driver has none, by down and up).
-// Each of these is a LinkChange with `interrupted`, nothing is filled. Frames that waited to be
-// read while the interface was down and up again stand between two of them: which side they belong
-// to cannot be told. Fails at open() when the kernel has no CAN, the interface is not there, is no
-// CAN interface or is down, or the user may not.
+// The source goes on after: interface down and up (the socket stays bound), interface gone (opened
+// again as soon as one of the name exists), interface renamed (followed), bus-off (the kernel's or
+// the adapter's own restart is waited for; with `restart_after_bus_off` the controller is restarted
+// after that time, by IFLA_CAN_RESTART or, where the driver lacks it, by down and up). Each of
+// these is a LinkChange with `interrupted` (link_transition.hpp); nothing is filled. Frames that
+// waited to be read while the interface was down and up again come between two of them: on which
+// side they belong is unknown.
+//
+// Fails at open() when the kernel has no CAN sockets; the interface does not exist, is not a CAN
+// interface, or is down; or the user lacks the permission. Threads as FrameSource.
 #pragma once
 
 #include <array>
@@ -25,6 +27,7 @@
 
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/bus/link_monitor.hpp"
+#include "drivers/can/bus/link_transition.hpp"
 #include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::can {
@@ -58,8 +61,9 @@ private:
   [[nodiscard]] bool receive(std::vector<BusEvent>& events);
   void take(std::size_t message, std::vector<BusEvent>& events);
   void follow_link(const LinkMonitor::Change& announced, std::vector<BusEvent>& events);
+  [[nodiscard]] Binding follow_interface(int index);
   void note_fault(const BusFault& fault);
-  void restart_when_due(std::vector<BusEvent>& events);
+  void restart_after_bus_off(std::vector<BusEvent>& events);
 
   SocketCanSettings settings_;
   std::vector<FrameFilter> filters_;

@@ -1,14 +1,18 @@
-// A CAN database (DBC file): which frames a device sends, and where in them its signals stand.
+// A CAN database (DBC file): which frames a device sends, and where in them its signals are.
 //
 // Reads BU_, BO_, SG_ (simple and extended multiplexing), SIG_VALTYPE_, SG_MUL_VAL_ and of BA_ the
 // attributes VFrameFormat, GenMsgCycleTime, SystemMessageLongSymbol and SystemSignalLongSymbol;
-// knows and passes over the other statements of the format. A statement it does not know is passed
-// over up to its ';' with a warning. Text that is not UTF-8 is taken for Windows-1252. What would
-// change the decoding and cannot be understood (BO_, SG_, SIG_VALTYPE_, SG_MUL_VAL_) refuses the
-// file with one sentence that begins "FILE:LINE:". Bits are numbered byte * 8 + bit, bit 0 the
-// least significant of its byte; Intel signals start at their least significant bit, Motorola
-// signals at their most significant one. value = raw * factor + offset. Plain data and plain
-// functions: any thread.
+// knows and skips the other statements of the format. An unknown statement is skipped up to its ';'
+// with a warning. Text that is not UTF-8 is taken for Windows-1252.
+//
+// Bits are numbered byte * 8 + bit, bit 0 the least significant of its byte; Intel signals start at
+// their least significant bit, Motorola signals at their most significant one.
+//
+//   value = raw * factor + offset
+//
+// Fails: not_found, refused (the file cannot be read), malformed: one sentence that begins
+// "FILE:LINE:", where a statement that decides the decoding (BO_, SG_, SIG_VALTYPE_, SG_MUL_VAL_)
+// cannot be understood. Plain data and pure functions; any thread.
 #pragma once
 
 #include <cstdint>

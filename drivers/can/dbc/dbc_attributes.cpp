@@ -134,7 +134,7 @@ std::optional<FrameFormat> DbcParser::frame_format(const Attribute& attribute) c
 }
 
 void DbcParser::apply(const Attribute& attribute) {
-  Draft* found = draft(attribute.id);
+  PendingMessage* found = pending_message(attribute.id);
   if (found == nullptr) {
     return;
   }
@@ -142,7 +142,7 @@ void DbcParser::apply(const Attribute& attribute) {
   if (attribute.name == format_attribute) {
     if (const auto format = frame_format(attribute)) {
       message.format = *format;
-      format_given_[static_cast<std::size_t>(found - drafts_.data())] = true;
+      format_given_[static_cast<std::size_t>(found - pending_messages_.data())] = true;
     } else {
       warn(message.line, "message '" + message.name + "' has the unknown frame format " +
                              attribute.value + "; taken for an ordinary frame");
@@ -169,8 +169,8 @@ void DbcParser::apply(const Attribute& attribute) {
 // id does.
 void DbcParser::apply_default_format() {
   const auto format = default_format_ ? frame_format(*default_format_) : std::nullopt;
-  for (std::size_t i = 0; i < drafts_.size(); ++i) {
-    DbcMessage& message = drafts_[i].message;
+  for (std::size_t i = 0; i < pending_messages_.size(); ++i) {
+    DbcMessage& message = pending_messages_[i].message;
     if (format && !format_given_[i]) {
       message.format = *format;
     }

@@ -1,5 +1,7 @@
-// Turns the statements of a DBC file into messages and signals; dbc.hpp says what is read and what
-// is refused. One use: DbcParser(text, path).parse(). Belongs to one thread.
+// Turns the statements of a DBC file into messages and signals.
+//
+// dbc.hpp describes what is read and what is refused. One use: DbcParser(text, path).parse(). One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +19,16 @@ namespace dyncal::drivers::can {
 
 class DbcParser {
 public:
+  // VECTOR__INDEPENDENT_SIG_MSG, the pseudo message of signals that are not in any frame.
+  static constexpr std::uint64_t unused_signals_id = 0xC0000000;
+
   DbcParser(std::string_view text, const std::filesystem::path& path);
 
   [[nodiscard]] Expected<DbcFile> parse();
 
 private:
   // What a message has said besides what DbcMessage keeps, until all statements are known.
-  struct Draft {
+  struct PendingMessage {
     std::uint64_t file_id = 0; // with bit 31 as the mark of an extended id
     std::vector<std::string> short_names;
     std::vector<std::optional<std::uint64_t>> simple_conditions; // mN of SG_
@@ -58,20 +63,20 @@ private:
   void apply(const Attribute& attribute);
   [[nodiscard]] std::optional<FrameFormat> frame_format(const Attribute& attribute) const;
   void apply_default_format();
-  void resolve_simple_multiplexing(Draft& draft);
-  void refuse_circles(const Draft& draft);
+  void resolve_simple_multiplexing(PendingMessage& pending);
+  void refuse_cycles(const PendingMessage& pending);
   void warn_about_repeated_ids();
 
-  [[nodiscard]] Draft* draft(std::uint64_t file_id);
-  [[nodiscard]] static std::optional<std::size_t> signal_index(const Draft& draft,
+  [[nodiscard]] PendingMessage* pending_message(std::uint64_t file_id);
+  [[nodiscard]] static std::optional<std::size_t> signal_index(const PendingMessage& pending,
                                                                const std::string& short_name);
   void refuse(std::size_t line, const std::string& sentence);
   void warn(std::size_t line, const std::string& sentence);
 
   DbcScanner scanner_;
   DbcFile file_;
-  std::vector<Draft> drafts_;
-  std::map<std::uint64_t, std::size_t> draft_of_id_; // the first message of each id
+  std::vector<PendingMessage> pending_messages_;
+  std::map<std::uint64_t, std::size_t> pending_of_id_; // the first message of each id
   bool in_pseudo_message_ = false;
   std::vector<Attribute> attributes_;
   std::vector<std::string> format_names_; // of VFrameFormat, when the file lists them

@@ -1,9 +1,9 @@
-// Reads the words, numbers and strings of a DBC file one after the other, and knows the line it is
-// in.
+// Reads the names, numbers and strings of a DBC file one after the other, and knows its line.
 //
-// Every reader passes over white space first and leaves the place unchanged when what stands there
-// is not what was asked for. White space separates; line ends mean nothing but to `same_line`.
-// Belongs to one thread; the text must outlive it.
+// Every reader skips white space first and leaves its place unchanged when something else than
+// expected follows. White space separates; line ends matter to same_line() only.
+//
+// One thread; the text must outlive it.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // From the bytes of a frame to the signals that its message declares.
 //
 // The raw bits are kept beside every value: value = raw * factor + offset in double, raw read as
-// the signal's type says. Reading never goes beyond the frame: a signal that the frame is too short
-// for is `truncated`. In J1939 messages the raw values that the standard (J1939-71, tables 1 and 2)
-// sets aside for "error" and "not available" give no value. Plain functions, any thread.
+// the signal's type demands. Reading never goes beyond the frame: a signal for which the frame is
+// too short is `truncated`. In J1939 messages the raw values that the standard (J1939-71, tables 1
+// and 2) sets aside for "error" and "not available" give no value. Pure functions; any thread.
 #pragma once
 
 #include <cstdint>

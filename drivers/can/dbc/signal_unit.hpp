@@ -1,8 +1,8 @@
 // The units that people write into DBC files, as D-SI (https://ptb.de/si).
 //
-// What is known is translated, with a factor where D-SI has no such unit (g = 9.80665 m/s^2, CGPM
-// 1901); what is not known is refused, so that no number is published in a unit that nobody can
-// name. Plain function, any thread.
+// Known ones are translated, with a factor where D-SI has no such unit (g = 9.80665 m/s^2, CGPM
+// 1901); unknown ones are refused, so that no number is published in a unit that cannot be named.
+// Pure function; any thread.
 #pragma once
 
 #include <optional>

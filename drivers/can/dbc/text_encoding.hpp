@@ -1,4 +1,4 @@
-// Text of DBC files in one encoding. Any thread.
+// Text of DBC files in one encoding. Pure function; any thread.
 #pragma once
 
 #include <string>

@@ -139,17 +139,17 @@ void ClockLine::draw() {
   line_ = line_below(0, 1);
   rate_ = line_.slope;
   ready_ = true;
-  double apart_at_end_s = 0.0;
-  double apart_at_begin_s = 0.0;
+  double distance_at_end_s = 0.0;
+  double distance_at_begin_s = 0.0;
   for (std::size_t group = 0; group < groups; ++group) {
     const Line of_group = line_below(group, groups);
-    const auto apart = [&](double at_s) {
+    const auto distance_s = [&](double at_s) {
       return std::abs(of_group.at_zero_s - line_.at_zero_s + (of_group.slope - line_.slope) * at_s);
     };
-    apart_at_end_s += apart(newest_free_s_);
-    apart_at_begin_s += apart(chunks_.front().begin_s);
+    distance_at_end_s += distance_s(newest_free_s_);
+    distance_at_begin_s += distance_s(chunks_.front().begin_s);
   }
-  u_s_ = coverage * std::max(apart_at_end_s, apart_at_begin_s) / (groups * (groups - 1.0));
+  u_s_ = coverage * std::max(distance_at_end_s, distance_at_begin_s) / (groups * (groups - 1.0));
 }
 
 std::int64_t ClockLine::to_host(std::int64_t free_ns) const {

@@ -1,19 +1,22 @@
 // The line between a free clock and the host's, from pairs of readings that are late by an amount
 // that is never negative.
 //
-// Model: host = free * (1 + rate) + offset + delay, delay >= 0 (arbitration, interrupts, USB), 0
-// often enough. The line that lies below every point and has the least sum of distances to them is
-// the edge of the lower convex hull of (free, host - free) above the mean of the points (Moon,
-// Skelly, Towsley 1999): it follows the smallest delays and no mean of them. What remains is the
-// smallest delay itself, which no reading can tell from the offset; the user of the line has to
-// know it.
+//   host = free (1 + rate) + offset + delay,   delay >= 0 (arbitration, interrupts, USB), often 0
+//
+// The line that lies below every point and has the least sum of distances to them is the edge of
+// the lower convex hull of (free, host - free) above the mean of the points (Moon, Skelly, Towsley
+// 1999): it follows the smallest delays and no mean of them. What remains is the smallest delay
+// itself, which no reading can tell from the offset; the user of the line has to know it.
 //
 // Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered
-// before `settle_s` and `settle_points`; at low rates older points are kept for it. A point that
-// lies more than `step_s` below the line, or in the free clock before its predecessor, means that
-// one of the clocks was set: the estimate begins anew. A point far above is a late frame and
-// changes nothing; but when all points of `step_points` in a row are that far above, the host clock
-// was set forward. Times are int64 ns; only their differences become double. Belongs to one thread.
+// before `settle_s` and `settle_points`; at low rates older points are kept for it.
+//
+// A point that lies more than `step_s` below the line, or in the free clock before its predecessor,
+// means that one of the clocks was set: the estimate begins anew. A point far above is a late frame
+// and changes nothing; but when `step_points` in a row are that far above, the host clock was set
+// forward.
+//
+// Times are int64 ns; only their differences become double. One thread.
 #pragma once
 
 #include <cstddef>

@@ -1,11 +1,13 @@
-// How long a frame was on the bus, exactly: from the start-of-frame bit to the end of the
-// end-of-frame field, in bits, stuff bits counted from the frame's own bits and checksum (ISO
-// 11898-1:2015; classic CRC-15; CAN FD with fixed stuff bits about its checksum).
+// How long a frame was on the bus, exactly.
+//
+// From the start-of-frame bit to the end of the end-of-frame field, in bits, stuff bits counted
+// from the frame's own bits and checksum (ISO 11898-1:2015; classic CRC-15; CAN FD with fixed stuff
+// bits around its checksum).
 //
 // A CAN FD frame with bit rate switch changes its rate at the sample points of BRS and of the CRC
 // delimiter. The two parts of the switched bits add up to one nominal and one data bit whatever the
 // sample points are, so the duration does not depend on them. Not contained: the intermission, and
-// what transmitter delay adds to ACK. Plain functions, any thread.
+// what transmitter delay adds to ACK. Pure functions; any thread.
 #pragma once
 
 #include <cstdint>

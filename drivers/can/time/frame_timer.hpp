@@ -1,11 +1,14 @@
 // When a frame began on the bus, on the host's clock.
 //
-// The kernel's stamp is taken after the end of the frame: start = stamp - latency - duration, with
-// the duration counted from the frame's own bits. The adapter's stamp marks the start or the end of
-// the frame (settings) on a clock of its own, which ClockLine relates to the kernel's stamps; both
-// are moved to the start of the frame before they are compared, so that stuffing does not tilt the
-// line. Which of the two is used is decided by the first frame: the adapter's where it has one and
-// the settings do not name the kernel's. Belongs to one thread.
+//   start = kernel stamp - latency - duration
+//
+// The kernel's stamp is taken after the end of the frame; the duration is counted from the frame's
+// own bits. The adapter's stamp marks the start or the end of the frame (settings) on a clock of
+// its own, which ClockLine relates to the kernel's stamps; both are moved to the start of the frame
+// before they are compared, so that stuffing does not tilt the line.
+//
+// The first frame decides which of the two is used: the adapter's stamp where it has one and the
+// settings allow it. One thread.
 #pragma once
 
 #include <cstdint>

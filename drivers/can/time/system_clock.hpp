@@ -1,5 +1,7 @@
-// How well the host's clock is known to agree with UTC, as the kernel's clock discipline says it
-// (ntp_adjtime, whichever of chrony, ntpd, ptp4l with phc2sys disciplines it). Any thread.
+// How well the host's clock is known to agree with UTC.
+//
+// As the kernel's clock discipline reports it (ntp_adjtime; chrony, ntpd, or ptp4l with phc2sys may
+// be the one that disciplines it). Any thread.
 #pragma once
 
 namespace dyncal::drivers::can {

@@ -3,7 +3,7 @@
 // The step between two readings is known modulo the counter's range; which of the possible steps it
 // was follows from the time that has passed, where the rate is known: also across a pause in which
 // the counter went around several times. A step that no time explains means that the device has
-// started anew. Belongs to one thread.
+// restarted. One thread.
 #pragma once
 
 #include <cstdint>

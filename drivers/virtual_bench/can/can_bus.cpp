@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <utility>
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 constexpr double intermission_bits = 3.0;
 
 // Lower wins: the bits as they are sent, a base id before an extended one that begins with the same
 // eleven bits.
-std::pair<std::uint32_t, std::uint32_t> priority(const drivers::can::CanFrame& frame) {
+std::pair<std::uint32_t, std::uint32_t> priority(const can::CanFrame& frame) {
   constexpr unsigned extension_bits = 18;
   return frame.extended
              ? std::pair(frame.id >> extension_bits, 1 + (frame.id & ((1U << extension_bits) - 1)))
@@ -20,7 +20,7 @@ std::pair<std::uint32_t, std::uint32_t> priority(const drivers::can::CanFrame& f
 
 } // namespace
 
-void CanBus::offer(const drivers::can::CanFrame& frame, double ready_s) {
+void CanBus::offer(const can::CanFrame& frame, double ready_s) {
   waiting_.push_back({frame, ready_s});
 }
 
@@ -42,10 +42,10 @@ std::optional<SentFrame> CanBus::next_before(double time_s) {
     }
   }
   SentFrame sent{winner->frame, winner->ready_s, start_s,
-                 start_s + drivers::can::frame_duration_s(winner->frame, rates_)};
+                 start_s + can::frame_duration_s(winner->frame, rates_)};
   waiting_.erase(winner);
   idle_from_s_ = sent.end_s + intermission_bits / rates_.nominal_per_s;
   return sent;
 }
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

@@ -1,5 +1,5 @@
-// The bits of a CAN bus that a virtual interface has not: one frame at a time, each as long as its
-// bits last, the lowest id first.
+// The bit timing that a virtual CAN interface lacks: one frame at a time, each as long as its bits
+// last, the lowest id first.
 //
 // A frame that is ready waits until the bus is idle; of those that are ready then, the one with the
 // lowest id begins (arbitration, ISO 11898-1) and is not interrupted. After its end of frame the
@@ -13,10 +13,10 @@
 #include "drivers/can/bus/can_frame.hpp"
 #include "drivers/can/time/frame_duration.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 
 struct SentFrame {
-  drivers::can::CanFrame frame;
+  can::CanFrame frame;
   double ready_s = 0.0;
   double start_s = 0.0; // of the start-of-frame bit
   double end_s = 0.0;   // of the end-of-frame field
@@ -24,9 +24,9 @@ struct SentFrame {
 
 class CanBus {
 public:
-  explicit CanBus(const drivers::can::BitRates& rates) : rates_(rates) {}
+  explicit CanBus(const can::BitRates& rates) : rates_(rates) {}
 
-  void offer(const drivers::can::CanFrame& frame, double ready_s);
+  void offer(const can::CanFrame& frame, double ready_s);
 
   // The next frame, when it starts before `time_s`. REQUIRES: whatever is ready before that time
   // has been offered.
@@ -34,13 +34,13 @@ public:
 
 private:
   struct Waiting {
-    drivers::can::CanFrame frame;
+    can::CanFrame frame;
     double ready_s;
   };
 
-  drivers::can::BitRates rates_;
+  can::BitRates rates_;
   std::vector<Waiting> waiting_;
   double idle_from_s_ = 0.0;
 };
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

@@ -9,7 +9,7 @@
 
 #include "drivers/utc_clock.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 // What a sleeping thread may need to wake up: a few 10 us, on a guest's kernel more, in simulated
@@ -28,22 +28,22 @@ void sleep_until(std::int64_t utc_ns) {
 
 } // namespace
 
-void go_before_programs(int priority) {
+void request_realtime_priority(int priority) {
   const sched_param wanted{.sched_priority = priority};
   static_cast<void>(
       pthread_setschedparam(pthread_self(), SCHED_RR, &wanted)); // refused to ordinary users
 }
 
-CanLine::CanLine(drivers::can::FrameSender sender)
+CanLine::CanLine(can::FrameSender sender)
     : sender_(std::move(sender)), watch_ns_(first_watch_ns),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-void CanLine::put(const drivers::can::CanFrame& frame, std::int64_t end_utc_ns, bool exact) {
+void CanLine::put(const can::CanFrame& frame, std::int64_t end_utc_ns, bool exact) {
   {
     const std::scoped_lock lock(mutex_);
     waiting_.push_back({frame, end_utc_ns, exact});
   }
-  more_.notify_one();
+  frame_added_.notify_one();
 }
 
 // The watch is as long as waking up took of late, and becomes shorter when it takes less.
@@ -58,19 +58,19 @@ void CanLine::sleep_until_watch(std::int64_t end_utc_ns) {
       std::clamp(std::max(needed_ns, watch_ns_ - watch_ns_ / 64), min_watch_ns, max_watch_ns);
 }
 
-void CanLine::send(const Due& due) {
-  if (due.exact) {
-    sleep_until_watch(due.end_utc_ns);
+void CanLine::send(const TimedFrame& timed) {
+  if (timed.exact) {
+    sleep_until_watch(timed.end_utc_ns);
     std::int64_t now_ns = utc_now_ns();
-    while (now_ns < due.end_utc_ns) {
+    while (now_ns < timed.end_utc_ns) {
       now_ns = utc_now_ns();
     }
     ++exact_;
-    late_ += now_ns > due.end_utc_ns + late_ns ? 1 : 0;
-  } else if (utc_now_ns() < due.end_utc_ns) {
-    sleep_until(due.end_utc_ns);
+    late_ += now_ns > timed.end_utc_ns + late_ns ? 1 : 0;
+  } else if (utc_now_ns() < timed.end_utc_ns) {
+    sleep_until(timed.end_utc_ns);
   }
-  if (const auto done = sender_.send(due.frame)) {
+  if (const auto done = sender_.send(timed.frame)) {
     ++sent_;
   } else if (refused_++ == 0) {
     fmt::print(stderr, "dyncal-virtual-bench: {}\n", done.error().message);
@@ -78,24 +78,24 @@ void CanLine::send(const Due& due) {
 }
 
 void CanLine::run(const std::stop_token& stop) {
-  go_before_programs(10);
+  request_realtime_priority(10);
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex_);
-    if (!more_.wait(lock, stop, [this] { return !waiting_.empty(); })) {
+    if (!frame_added_.wait(lock, stop, [this] { return !waiting_.empty(); })) {
       return;
     }
-    const Due due = waiting_.front();
+    const TimedFrame timed = waiting_.front();
     waiting_.pop_front();
     // A sleep that hears of a stop, as long as there is time for one.
-    const std::chrono::nanoseconds attend(due.end_utc_ns - attend_before_ns);
-    more_.wait_until(lock, stop, std::chrono::system_clock::time_point(attend),
-                     [] { return false; });
+    const std::chrono::nanoseconds attend(timed.end_utc_ns - attend_before_ns);
+    frame_added_.wait_until(lock, stop, std::chrono::system_clock::time_point(attend),
+                            [] { return false; });
     if (stop.stop_requested()) {
       return;
     }
     lock.unlock();
-    send(due);
+    send(timed);
   }
 }
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

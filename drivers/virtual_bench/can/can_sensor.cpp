@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 namespace device = drivers::virtual_bench;
-using drivers::can::CanFrame;
+using can::CanFrame;
 
 constexpr double resolution_m_s2 = 0.005;
 constexpr double max_rate_error = 200e-6;
@@ -81,7 +81,7 @@ double CanSensor::next_foreign_pause_s() {
   if (settings_.background_load <= 0.0) {
     return 1e9;
   }
-  const double frame_s = drivers::can::frame_duration_s(foreign_, settings_.bus.rates);
+  const double frame_s = can::frame_duration_s(foreign_, settings_.bus.rates);
   return -std::log(1.0 - traffic_.uniform()) * frame_s / settings_.background_load;
 }
 
@@ -123,4 +123,4 @@ std::string CanSensor::dbc() const {
   return text;
 }
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

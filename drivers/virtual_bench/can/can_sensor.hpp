@@ -2,11 +2,12 @@
 //
 // At the instants of its own clock (rate drawn within 200 ppm of nominal) the sensor measures three
 // axes with the response of the preset, noise and a resolution of 0.005 m/s^2, numbers the sample
-// and has its frame ready `latency_s` later. What the truth says of its phase holds for the instant
-// at which the frame could have begun on an idle bus: that of the reading plus the latency. Other
-// devices send frames of 8 bytes (64 on CAN FD) at random, some with a lower id than the sensor's,
-// for the given share of the bus's time. Everything drawn follows from the seed. Times are seconds
-// of bench time. One thread.
+// and has its frame ready `latency_s` later. The phase in the truth file refers to the instant at
+// which the frame could have begun on an idle bus: that of the reading plus the latency.
+//
+// Other devices send frames of 8 bytes (64 on CAN FD) at random, some with a lower id than the
+// sensor's, for the given share of the bus's time. Everything drawn follows from the seed. Times
+// are seconds of bench time. One thread.
 #pragma once
 
 #include <array>
@@ -20,18 +21,18 @@
 #include "drivers/virtual_bench/model/preset.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 
 struct CanBusKind {
   std::string name; // "500k", "1M", "fd-5M"
-  drivers::can::BitRates rates;
+  can::BitRates rates;
   bool fd = false;
 };
 
 [[nodiscard]] const std::vector<CanBusKind>& can_bus_kinds();
 
 struct CanSensorSettings {
-  drivers::virtual_bench::Preset preset;
+  Preset preset;
   std::uint64_t seed = 1;
   CanBusKind bus;
   double background_load = 0.15; // of the bus's time
@@ -44,7 +45,7 @@ public:
   explicit CanSensor(const CanSensorSettings& settings);
 
   // Measures up to `time_s` and hands over the frames that begin on the bus before it.
-  void advance_to(double time_s, const drivers::virtual_bench::Excitation& excitation,
+  void advance_to(double time_s, const Excitation& excitation,
                   const std::function<void(const SentFrame&)>& sent);
 
   [[nodiscard]] double rate_hz() const { return rate_hz_; }
@@ -55,22 +56,21 @@ public:
   static constexpr double nominal_rate_hz = 500.0;
 
 private:
-  [[nodiscard]] drivers::can::CanFrame
-  measure(double time_s, const drivers::virtual_bench::Excitation& excitation);
-  [[nodiscard]] drivers::can::CanFrame foreign_frame();
+  [[nodiscard]] can::CanFrame measure(double time_s, const Excitation& excitation);
+  [[nodiscard]] can::CanFrame foreign_frame();
   [[nodiscard]] unsigned foreign_bytes() const { return settings_.bus.fd ? 64 : 8; }
   [[nodiscard]] double next_foreign_pause_s();
 
   CanSensorSettings settings_;
   CanBus bus_;
-  drivers::virtual_bench::Random noise_;
-  drivers::virtual_bench::Random traffic_;
+  Random noise_;
+  Random traffic_;
   double rate_hz_ = nominal_rate_hz;
   double noise_m_s2_ = 0.0;
   std::array<double, 3> offset_m_s2_{};
   std::uint64_t next_sample_ = 0;
-  drivers::can::CanFrame foreign_; // the next of another device
+  can::CanFrame foreign_; // the next of another device
   double next_foreign_s_ = 0.0;
 };
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

@@ -1,11 +1,12 @@
 // The analogue calibration system of the virtual bench: reference acceleration and sync,
 // equidistant in a clock of its own.
 //
-// Sample n is taken at bench time n * (1 + rate_error) / rate and stamped origin_ns + n / rate:
+// Sample n is taken at bench time n (1 + rate_error) / rate and stamped origin_ns + n / rate:
 // neither epoch nor rate is that of the bench, unless it is disciplined to UTC. The reference has a
-// gain and a phase error, drawn once from the standard uncertainties that the recipe states. Values
-// are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries them.
-// One thread.
+// gain and a phase error, drawn once from the standard uncertainties that the recipe states.
+//
+// Values are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries
+// them. One thread.
 #pragma once
 
 #include <cstdint>

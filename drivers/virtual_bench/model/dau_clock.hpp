@@ -1,11 +1,13 @@
 // The clock of the SmartUp Unit: a 108 MHz counter whose rate and origin follow the pulses per
 // second of a GPS receiver.
 //
+//   stamp = second + (ticks - origin) / rate, rounded to nanoseconds
+//
 // The crystal is 3.1 ppm off and wanders (Ornstein-Uhlenbeck, 8e-9, 20 s); the pulses jitter by 12
-// ns (uniform); a proportional and integral loop of 8 s tracks them. stamp = second + (ticks -
-// origin) / rate, rounded to nanoseconds. This gives a stamp error of about 18.5 ns standard
-// deviation, below 100 ns. Bench time 0 is unit time start_ns(). One thread; times asked for must
-// not fall by more than a second.
+// ns (uniform); a proportional and integral loop of 8 s tracks them. The stamp error has a standard
+// deviation of about 18.5 ns and stays below 100 ns. Bench time 0 is unit time start_ns().
+//
+// One thread; times asked for must not fall by more than a second.
 #pragma once
 
 #include <cstdint>

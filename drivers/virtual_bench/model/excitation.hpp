@@ -1,11 +1,14 @@
 // What the generator and the exciter do as a function of bench time.
 //
 // The generator is phase continuous: V sin(theta(t)), theta' = 2 pi f; its second output, locked to
-// the first, gives the sync signal of constant amplitude. The exciter turns V into acceleration
-// with a magnitude and phase response of its own; after every change the complex envelope
-// approaches its new value with exp(-t/settling time). Second and third harmonic stand in a fixed
-// ratio to the fundamental. Bench time is in seconds from the start of the bench. Times may be
-// asked for up to `memory_s` before the newest change. One thread.
+// the first, gives the sync signal of constant amplitude.
+//
+// The exciter turns V into acceleration with a magnitude and phase response of its own; after every
+// change the complex envelope approaches its new value with exp(-t/settling time). Second and third
+// harmonic are in a fixed ratio to the fundamental.
+//
+// Bench time is in seconds from the start of the bench. Times may be asked for up to `memory_s`
+// before the newest change. One thread.
 #pragma once
 
 #include <complex>

@@ -1,9 +1,10 @@
 // An oscilloscope with two inputs on the virtual bench: input 1 sees the sync line, input 2 its own
 // trigger output.
 //
-// single() arms; advance_to() looks for the trigger and, when the window has passed, records 8-bit
-// codes of both inputs. 25 codes are one division, code 128 is the screen's centre; what is outside
-// 0..255 is clipped. Sample i lies at origin + i * interval from the trigger point. One thread.
+// single() arms; advance_to() searches for the trigger and, when the window has passed, records
+// 8-bit codes of both inputs. 25 codes are one division, code 128 is the screen's centre; values
+// outside 0..255 are clipped. Sample i lies at origin + i * interval from the trigger point. One
+// thread.
 #pragma once
 
 #include <array>

@@ -1,12 +1,16 @@
 // The sensors that the virtual bench can carry, with the numbers of their models.
 //
 //   mpu9250-paper  the unit of Seeger and Bruns, Acta IMEKO 10 (2021) 3: group delay 8.1 ms,
-//   interval 996.96 us, sd 21 ns, spread 335 ns mpu9250-ptb    the unit of PTB's published
-//   calibration: magnitude and phase of 17 frequencies, delay 1.511 ms bma280         interval 485
-//   us with a late and an early sample every 2200 samples, delay 0.55 ms tss            a sensor
-//   with the response of mpu9250-ptb that records series after a trigger; comes with an
-//   oscilloscope
+//                  interval 996.96 us, sd 21 ns, spread 335 ns
+//   mpu9250-ptb    the unit of PTB's published calibration: magnitude and phase of 17 frequencies,
+//                  delay 1.511 ms
+//   bma280         interval 485 us with a late and an early sample every 2200 samples,
+//                  delay 0.55 ms
+//   tss            a sensor with the response of mpu9250-ptb that records series after a trigger;
+//                  comes with an oscilloscope
+//
 // Excitation is along z; x and y see about 2 % of it, each through a transfer function of its own.
+// Plain data; any thread.
 #pragma once
 
 #include <array>

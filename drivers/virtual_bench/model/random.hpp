@@ -1,7 +1,9 @@
-// Random numbers that are the same on every machine and compiler for the same seed: xoshiro256**
-// (Blackman and Vigna 2018) and the polar method for the normal distribution. The standard
-// library's distributions may differ between implementations. One object per model component, so
-// that what one component draws does not shift the others. One thread an object.
+// Random numbers that are the same on every machine and compiler for the same seed.
+//
+// xoshiro256** (Blackman and Vigna 2018), and the polar method for the normal distribution; the
+// distributions of the standard library may differ between implementations. Each component of a
+// model has an object of its own, so that what one component draws does not shift the others. One
+// thread an object.
 #pragma once
 
 #include <array>

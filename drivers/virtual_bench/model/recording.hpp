@@ -1,10 +1,11 @@
-// A whole programme of steps run without network, written as files: acs.csv, dau.csv, for playing
+// A whole programme of steps run without network and written as files, acs.csv and dau.csv, to play
 // the same samples again and again.
 //
 // The steps follow the recipe of a run: all frequencies, then all again for the next repetition;
 // the generator is off for 0.3 s before each step and at the end. Stamps are the instruments' own;
-// `sample_number` in dau.csv tells what the unit lost. Fails (refused) when a file cannot be
-// written.
+// `sample_number` in dau.csv shows what the unit lost.
+//
+// Fails: refused when a file cannot be written. One thread.
 #pragma once
 
 #include <filesystem>

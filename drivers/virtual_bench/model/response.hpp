@@ -1,10 +1,11 @@
-// The true transfer function of one axis of a sensor: magnitude over frequency and phase = -2 pi f
-// delay + residual phase.
+// The true transfer function of one axis of a sensor: magnitude over frequency, and
 //
-// Between the points of the table magnitude and residual phase follow a monotone cubic (Fritsch and
-// Butland 1984, "PCHIP"); below the first point they stay, above the last one the magnitude falls
-// with 1/f^2 as a low pass of second order does. Phase is lead in radians, a delay is negative. Any
-// thread; immutable.
+//   phase = -2 pi f delay + residual phase
+//
+// in radians, lead positive, so that a delay is negative. Between the points of the table magnitude
+// and residual phase follow a monotone cubic (Fritsch and Butland 1984, "PCHIP"); below the first
+// point they stay constant, above the last one the magnitude falls with 1/f^2 as a low pass of
+// second order does. Immutable; any thread.
 #pragma once
 
 #include <complex>

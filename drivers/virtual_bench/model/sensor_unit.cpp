@@ -49,48 +49,63 @@ SensorUnit::SensorUnit(const SensorUnitSettings& settings)
   } else {
     describe_bma280();
   }
-  describe_scalar(10, "sync", "Voltage", "\\volt", "Voltage/0", -adc_range_v, adc_range_v, 4096.0,
-                  false);
-  describe_scalar(11, "adc_2", "Voltage", "\\volt", "Voltage/1", -adc_range_v, adc_range_v, 4096.0,
-                  false);
-  describe_scalar(12, "adc_3", "Voltage", "\\volt", "Voltage/2", -adc_range_v, adc_range_v, 4096.0,
-                  false);
+  describe_adc(10, "sync");
+  describe_adc(11, "adc_2");
+  describe_adc(12, "adc_3");
 }
 
-void SensorUnit::describe_scalar(std::size_t index, const char* name, const char* quantity,
-                                 const char* unit, const char* hierarchy, double minimum,
-                                 double maximum, double steps, bool declared) {
-  channels_.push_back({index, name, quantity, unit, hierarchy, minimum, maximum, steps, declared});
+void SensorUnit::describe_adc(std::size_t index, const char* name) {
+  channels_.push_back({.index = index,
+                       .name = name,
+                       .quantity = "Voltage",
+                       .unit = "\\volt",
+                       .hierarchy = "Voltage/" + std::to_string(index - 10),
+                       .minimum = -adc_range_v,
+                       .maximum = adc_range_v,
+                       .steps = 4096.0,
+                       .declared = false});
 }
 
-void SensorUnit::describe_vector(std::size_t first, const char* name, const char* quantity,
-                                 const char* unit, const char* hierarchy, double range,
-                                 double steps) {
+void SensorUnit::describe_vector(const VectorQuantity& vector) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string small(1, "xyz"[axis]);
     const std::string capital(1, "XYZ"[axis]);
-    channels_.push_back({first + axis, std::string(name) + "_" + small, capital + " " + quantity,
-                         unit, std::string(hierarchy) + "/" + std::to_string(axis), -range, range,
-                         steps, true});
+    channels_.push_back({.index = vector.first + axis,
+                         .name = std::string(vector.name) + "_" + small,
+                         .quantity = capital + " " + vector.quantity,
+                         .unit = vector.unit,
+                         .hierarchy = std::string(vector.hierarchy) + "/" + std::to_string(axis),
+                         .minimum = -vector.range,
+                         .maximum = vector.range,
+                         .steps = vector.steps});
   }
 }
 
+void SensorUnit::describe_temperature(double minimum, double maximum, double steps) {
+  channels_.push_back({.index = 9,
+                       .name = "temperature",
+                       .quantity = "Temperature",
+                       .unit = "\\degreecelsius",
+                       .hierarchy = "Temperature/0",
+                       .minimum = minimum,
+                       .maximum = maximum,
+                       .steps = steps});
+}
+
 void SensorUnit::describe_mpu9250() {
-  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
-                  range_m_s2_, steps_16_bit);
-  describe_vector(3, "angular_velocity", "Angular velocity", "\\radian\\second\\tothe{-1}",
-                  "Angular_velocity", gyroscope_range_rad_s, steps_16_bit);
-  describe_vector(6, "magnetic_flux_density", "Magnetic flux density", "\\micro\\tesla",
-                  "Magnetic_flux_density", magnetometer_range_ut, steps_16_bit);
-  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -77.14,
-                  119.15, steps_16_bit, true);
+  describe_vector({0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
+                   range_m_s2_, steps_16_bit});
+  describe_vector({3, "angular_velocity", "Angular velocity", "\\radian\\second\\tothe{-1}",
+                   "Angular_velocity", gyroscope_range_rad_s, steps_16_bit});
+  describe_vector({6, "magnetic_flux_density", "Magnetic flux density", "\\micro\\tesla",
+                   "Magnetic_flux_density", magnetometer_range_ut, steps_16_bit});
+  describe_temperature(-77.14, 119.15, steps_16_bit);
 }
 
 void SensorUnit::describe_bma280() {
-  describe_vector(0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
-                  range_m_s2_, 16384.0);
-  describe_scalar(9, "temperature", "Temperature", "\\degreecelsius", "Temperature/0", -41.0, 87.0,
-                  256.0, true);
+  describe_vector({0, "acceleration", "Acceleration", "\\metre\\second\\tothe{-2}", "Acceleration",
+                   range_m_s2_, 16384.0});
+  describe_temperature(-41.0, 87.0, 256.0);
 }
 
 float SensorUnit::quantised(double value, double step, double range) const {

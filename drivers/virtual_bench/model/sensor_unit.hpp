@@ -2,7 +2,7 @@
 //
 // At every data-ready edge the unit stamps the sample, reads the sensor (which shows the
 // acceleration of `delay` earlier, with its response, noise, offset and quantisation), and samples
-// three ADCs; the first one sees the sync signal through its own lag and gain, with 12 bit of +-10
+// three ADCs. The first ADC sees the sync signal through its own lag and gain, with 12 bit of +-10
 // V. One thread.
 #pragma once
 
@@ -49,13 +49,22 @@ public:
   [[nodiscard]] std::optional<UnitSample> next_before(double time_s, const Excitation& excitation);
 
 private:
+  // Three channels, x, y and z, that differ in nothing but the axis.
+  struct VectorQuantity {
+    std::size_t first; // index of x
+    const char* name;
+    const char* quantity;
+    const char* unit;
+    const char* hierarchy;
+    double range; // -range .. range
+    double steps;
+  };
+
   void describe_mpu9250();
   void describe_bma280();
-  void describe_vector(std::size_t first, const char* name, const char* quantity, const char* unit,
-                       const char* hierarchy, double range, double steps);
-  void describe_scalar(std::size_t index, const char* name, const char* quantity, const char* unit,
-                       const char* hierarchy, double minimum, double maximum, double steps,
-                       bool declared);
+  void describe_vector(const VectorQuantity& vector);
+  void describe_temperature(double minimum, double maximum, double steps);
+  void describe_adc(std::size_t index, const char* name);
   void measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation);
   void measure_rest(UnitSample& sample, double temperature_degc);
   void measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation);

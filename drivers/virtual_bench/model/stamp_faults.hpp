@@ -3,11 +3,15 @@
 //   second-slip        a second mislabelled: exactly +1 or -1 s for up to a second, then back
 //   counter-extension  one sample 2^32 ticks (39.768 s) late
 //   torn-counter       one sample 2^16 ticks (606.8 us) off: the halves of the counter were read at
-//   different times pps-offset         an extra edge of the pulse per second: off by less than a
-//   second, for up to a second repeated           the time of the sample before, with a tiny
-//   uncertainty: the conversion was skipped no-uncertainty     uncertainty 0: the unit does not
-//   trust its clock no-fix             time 0: no GPS fix unit-loss          the sample is lost in
-//   the unit; its number is used up
+//                      different times
+//   pps-offset         an extra edge of the pulse per second: off by less than a second, for up to
+//                      a second
+//   repeated           the time of the sample before, with a tiny uncertainty: the conversion was
+//                      skipped
+//   no-uncertainty     uncertainty 0: the unit does not trust its clock
+//   no-fix             time 0: no GPS fix
+//   unit-loss          the sample is lost in the unit; its number is used up
+//
 // One thread.
 #pragma once
 

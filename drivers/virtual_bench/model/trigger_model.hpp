@@ -1,12 +1,13 @@
 // The trigger of an oscilloscope without noise rejection, and its output.
 //
 // The comparator is ready once the signal has been half its amplitude below the level; from then on
-// the first instant at which signal plus noise reach the level triggers, whichever excursion of the
-// noise that is. So the trigger comes early: by about two and a half standard deviations of the
-// noise divided by the slope. Noise is white in a band of 1 MHz: a new value every microsecond,
-// independent of what traces show. The output's rising edge follows the trigger by `output_delay_s`
-// with a jitter of its own: 236(1) ns as in the paper. A rectangle rises in 8 ns and triggers where
-// it crosses the level; noise hardly matters there. One thread.
+// the first instant at which signal plus noise reach the level triggers. So the trigger comes
+// early, by about two and a half standard deviations of the noise divided by the slope. Noise is
+// white in a band of 1 MHz: a new value every microsecond, independent of what traces show.
+//
+// The output's rising edge follows the trigger by `output_delay_s` with a jitter of its own: 236(1)
+// ns as in the paper. A rectangle rises in 8 ns and triggers where it crosses the level; noise
+// hardly matters there. One thread.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,9 @@
-// What the virtual bench knows and no service may: the true transfer functions and everything that
-// was drawn, as JSON for tests; and the calibration of the sync ADC, which a laboratory does have,
-// in the form of the public calibration files. Any thread.
+// What the virtual bench knows and no service may see: the true transfer functions and everything
+// that was drawn, as JSON for tests.
 //
-// Phase is lead in radians, within -pi..pi. The ADC file gives its phase as lag.
+// Also the calibration of the sync ADC, which a laboratory does have, in the form of the public
+// calibration files. Phase is lead in radians, within -pi..pi; the ADC file gives its phase as lag.
+// Any thread.
 #pragma once
 
 #include <string>

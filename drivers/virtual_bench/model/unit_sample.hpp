@@ -1,5 +1,5 @@
 // One sample of the SmartUp Unit and what its channels mean, before they are put into datagrams.
-// Plain data.
+// Plain data; any thread.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // A whole bench without its cables: generator, exciter, ACS and SmartUp Unit, all functions of
 // bench time and of one seed.
 //
-// Whoever holds it moves bench time on with advance_to() and finds what the instruments have to say
-// in the outputs; the generator's setting acts from the present bench time on. Nothing here knows
-// of sockets or of the host's clock. One thread.
+// Its owner moves bench time on with advance_to() and finds in the outputs what the instruments
+// send; the generator's setting acts from the present bench time on. It knows nothing of sockets or
+// of the host's clock. One thread.
 #pragma once
 
 #include <cstdint>

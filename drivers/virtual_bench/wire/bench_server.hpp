@@ -1,12 +1,15 @@
-// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP),
-// where wanted oscilloscope and time series sensor (TCP), and the pace of bench time.
+// The virtual bench on the network: ACS stream (TCP), generator (TCP, SCPI), SmartUp Unit (UDP), on
+// request oscilloscope and time series sensor (TCP), and the pace of bench time.
 //
 // Speed x: bench time runs x times as fast as the host's clock. Speed 0 ("max"): while a client of
 // the generator waits for a bench time and the ACS stream is being read, as fast as the consumers
-// allow; otherwise in real time. Bench time never runs ahead of what the ACS client has taken by
-// more than a tenth of a second beyond the sockets' buffers, and no more than `datagrams_per_s`
-// leave in a second of the host, so that receive buffers of the usual size hold them. One thread
-// runs it; the StopSignal may be raised from any.
+// allow; otherwise in real time.
+//
+// Bench time never runs ahead of what the ACS client has taken by more than a tenth of a second
+// beyond the sockets' buffers, and no more than `datagrams_per_s` leave in a second of the host, so
+// that receive buffers of the usual size hold them.
+//
+// One thread runs it; the StopSignal may be raised from any.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,8 @@
-// The clients of the generator's SCPI port. A client that waits for a bench time (:BENCh:WAIT?) is
-// answered when the time has come, or after half a second of the host's time with the bench time as
-// it is then; its further lines wait meanwhile. A line without an end after 4096 bytes closes its
-// connection. One thread.
+// The clients of the generator's SCPI port.
+//
+// A client that waits for a bench time (:BENCh:WAIT?) is answered when the time has come, or after
+// half a second of the host's time with the bench time by then; its further lines wait meanwhile. A
+// line without an end after 4096 bytes closes its connection. One thread.
 #pragma once
 
 #include <chrono>

@@ -1,10 +1,12 @@
 // The oscilloscope's side of SCPI as the Rigol MSO5000 series speaks it, and what a bad network or
 // instrument makes of the answers.
 //
-// Understands long and short forms in any case: *IDN?, *CLS, *OPC?, :SYSTem:ERRor?,
-// :SYSTem:AOUTput, :ACQuire:TYPE, :ACQuire:MDEPth, :CHANnel<n>:DISPlay, :SCALe, :OFFSet,
-// :TIMebase:MAIN:SCALe, :OFFSet, :TRIGger:MODE, :COUPling, :EDGE:SOURce, :SLOPe, :LEVel, :STATus?,
-// :SINGle, :STOP, :WAVeform:SOURce[?], :MODE, :FORMat, :POINts, :STARt, :STOP, :PREamble?, :DATA?.
+// Understands long and short forms in any case:
+//   *IDN?, *CLS, *OPC?, :SYSTem:ERRor?, :SYSTem:AOUTput, :ACQuire:TYPE, :ACQuire:MDEPth
+//   :CHANnel<n>:DISPlay, :SCALe, :OFFSet           :TIMebase:MAIN:SCALe, :OFFSet
+//   :TRIGger:MODE, :COUPling, :STATus?             :TRIGger:EDGE:SOURce, :SLOPe, :LEVel
+//   :SINGle, :STOP
+//   :WAVeform:SOURce[?], :MODE, :FORMat, :POINts, :STARt, :STOP, :PREamble?, :DATA?
 // Anything else is -113 in the error queue. One thread.
 #pragma once
 

@@ -1,9 +1,8 @@
-// How much waits in the UDP receive buffer of a port of this host, as the kernel tells in
+// How much waits in the UDP receive buffer of a port of this host, as the kernel reports it in
 // /proc/net/udp and udp6.
 //
-// A real unit cannot know; the virtual bench, which may run far faster than real time, holds its
-// time with it instead of flooding a receiver that has not had the processor for a moment. Any
-// thread.
+// A real unit cannot know; the virtual bench, which may run far faster than real time, slows down
+// instead of flooding a receiver that did not have the processor for a moment. Any thread.
 #pragma once
 
 #include <cstddef>

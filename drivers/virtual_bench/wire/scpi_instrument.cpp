@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "analysis/base/text.hpp"
 #include "drivers/virtual_bench/wire/scpi_text.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -12,16 +13,6 @@ namespace {
 constexpr std::size_t max_errors = 20;
 constexpr double max_frequency_hz = 5000.0;
 constexpr double max_voltage_vpp = 20.0;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
-    text.remove_suffix(1);
-  }
-  return text;
-}
 
 // Long and short mnemonics, with and without the leading colon, become one form: "SOUR1:FREQ".
 std::string canonical(std::string_view header) {

@@ -1,10 +1,13 @@
 // The generator's side of SCPI: one line in, perhaps one line out; errors wait in a queue as IEEE
 // 488.2 has it.
 //
-// Understands (long or short form, any case) *IDN?, *RST, *CLS, *OPC?, :SOURce1:FREQuency[?],
-// :SOURce1:VOLTage[?] (peak to peak), :SOURce1:VOLTage:UNIT VPP, :SOURce1:FUNCtion SINusoid|SQUare,
-// :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity, :SYSTem:ERRor?, and of the bench itself :BENCh:TIME?
-// and :BENCh:WAIT? <bench time in s>, which is answered when that time has come. One thread.
+// Understands, long or short form in any case:
+//   *IDN?, *RST, *CLS, *OPC?, :SYSTem:ERRor?
+//   :SOURce1:FREQuency[?], :SOURce1:VOLTage[?] (peak to peak), :SOURce1:VOLTage:UNIT VPP
+//   :SOURce1:FUNCtion SINusoid|SQUare
+//   :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity
+// and of the bench itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when
+// that time has come. One thread.
 #pragma once
 
 #include <deque>

@@ -1,5 +1,7 @@
-// Text of SCPI commands as an instrument reads it. Written apart from what dyncal reads answers
-// with (drivers/link/scpi_answer.hpp): one must not share the other's mistakes. Any thread.
+// Text of SCPI commands as an instrument reads it.
+//
+// Written independently of what dyncal reads answers with (drivers/link/scpi_answer.hpp): one must
+// not share the other's mistakes. Any thread.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// The instruments' ends of their cables: sockets that never block. Fails as
-// drivers/link/tcp_connection.hpp does. Any thread.
+// The instruments' ends of their cables: sockets that never block. Fails: not_found (no such host),
+// refused (the address cannot be listened on). Any thread.
 #pragma once
 
 #include "drivers/error.hpp"

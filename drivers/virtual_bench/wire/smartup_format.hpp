@@ -1,7 +1,7 @@
 // The datagrams of the SmartUp Unit, written byte by byte (proto2 wire format, no schema needed).
 //
-// A datagram is the keyword DATA or DSCP, then messages, each behind its length as varint. DATA is
-// sent when 873 bytes or more are in it, so it never exceeds 1000; DSCP carries one description.
+// A datagram is the keyword DATA or DSCP, then messages, each after its length as varint. DATA is
+// sent when it holds 873 bytes or more, so it never exceeds 1000; DSCP carries one description.
 // `with_ticks` adds field 22 (raw counter), which units have since 2021-07. One thread.
 #pragma once
 

@@ -1,8 +1,8 @@
 // The oscilloscope (SCPI) and the time series sensor of the virtual bench on their TCP ports.
 //
 // The oscilloscope serves up to four clients, whose commands act on one instrument; answers leave
-// in the given number of pieces, with faults as OscilloscopeScpi makes them. The sensor sends every
-// series to all clients that are connected when it is complete. Sockets never block. One thread.
+// in pieces of the given size, with faults as OscilloscopeScpi makes them. The sensor sends every
+// series, when it is complete, to all clients that are connected. Sockets never block. One thread.
 #pragma once
 
 #include <chrono>

@@ -383,7 +383,7 @@ TEST(SensorStream, RefusesSettingsThatDoNotFitWithOneSentence) {
   Collected collected;
   const auto begun = stream->begin(link(), collected);
   ASSERT_FALSE(begun);
-  EXPECT_THAT(begun.error().message, HasSubstr("'can0' does not say its bit rate"));
+  EXPECT_THAT(begun.error().message, HasSubstr("'can0' does not report its bit rate"));
 }
 
 TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {

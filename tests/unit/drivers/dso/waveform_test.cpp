@@ -44,17 +44,5 @@ TEST(Waveform, VoltsFollowTheRuleOfTheFamily) {
   EXPECT_DOUBLE_EQ(volts[1], 10.0 * 0.04 + 1.5);
 }
 
-TEST(ScopeTable, AnIdentityLeadsToItsFamily) {
-  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,MSO5072,MS5A212003221,00.01.03.00.03")->family,
-               "rigol-mso5000");
-  EXPECT_STREQ(scope_by_identity("RIGOL TECHNOLOGIES,DS1104Z,DS1ZA1,00.04.04")->family,
-               "rigol-ds1000z");
-  EXPECT_STREQ(scope_by_identity("KEYSIGHT TECHNOLOGIES,DSO-X 3024T,MY1,07.30")->family,
-               "keysight-infiniivision");
-  EXPECT_EQ(scope_by_identity("ACME,TOASTER,1,2"), nullptr);
-  EXPECT_EQ(scope_by_identity("MSO5072"), nullptr);
-  EXPECT_EQ(scope_by_family("rigol-mso5000"), scope_by_identity("RIGOL TECHNOLOGIES,MSO5354,1,2"));
-}
-
 } // namespace
 } // namespace dyncal::drivers::dso

@@ -157,7 +157,7 @@ TEST(Dbc, SaysWhatIsWrongWithAFileThatCannotBeRead) {
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().code, ErrorCode::not_found);
   EXPECT_THAT(file.error().message, HasSubstr("/nowhere/sensor.dbc"));
-  EXPECT_THAT(refusal("time,value\n0,1\n"), HasSubstr("this is no DBC file"));
+  EXPECT_THAT(refusal("time,value\n0,1\n"), HasSubstr("this is not a DBC file"));
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 using drivers::can::CanFrame;
@@ -78,4 +78,4 @@ TEST(CanSensor, NumbersEverySampleAndSharesTheBusWithTheOthers) {
 }
 
 } // namespace
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench

@@ -12,7 +12,7 @@
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::drivers::virtual_bench {
 namespace {
 
 namespace can = drivers::can;
@@ -181,4 +181,4 @@ INSTANTIATE_TEST_SUITE_P(Buses, CanTruth, testing::ValuesIn(can_bus_kinds()),
                          });
 
 } // namespace
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::drivers::virtual_bench
