@@ -11,10 +11,6 @@
 namespace dyncal::bus {
 namespace {
 
-services::Error network_error(std::string message) {
-  return {services::ErrorCode::network, std::move(message)};
-}
-
 std::string text_of(const sockaddr* address) {
   char text[INET_ADDRSTRLEN] = {};
   const auto* ipv4 = reinterpret_cast<const sockaddr_in*>(address);
@@ -26,7 +22,7 @@ std::string text_of(const sockaddr* address) {
 services::Expected<std::string> interface_address(const std::string& name_or_address) {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
-    return fail(network_error("this machine does not tell its network interfaces"));
+    return fail(services::ErrorCode::network, "this machine does not tell its network interfaces");
   }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
 
@@ -41,9 +37,9 @@ services::Expected<std::string> interface_address(const std::string& name_or_add
     }
     known += (known.empty() ? "" : ", ") + std::string(entry->ifa_name) + " (" + address + ")";
   }
-  return fail(network_error("network interface \"" + name_or_address +
-                            "\" is not one with an IPv4 address on this machine, which has " +
-                            known));
+  return fail(services::ErrorCode::network,
+              "network interface \"" + name_or_address +
+                  "\" is not one with an IPv4 address on this machine, which has " + known);
 }
 
 services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {
@@ -54,8 +50,8 @@ services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std
     wanted.ai_socktype = SOCK_DGRAM;
     addrinfo* found = nullptr;
     if (const int status = getaddrinfo(host.c_str(), nullptr, &wanted, &found); status != 0) {
-      return fail(
-          network_error("peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status)));
+      return fail(services::ErrorCode::network,
+                  "peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status));
     }
     addresses.push_back(text_of(found->ai_addr));
     freeaddrinfo(found);

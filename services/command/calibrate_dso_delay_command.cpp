@@ -14,6 +14,7 @@
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/generator/scpi_generator.hpp"
 #include "drivers/link/stop_signal.hpp"
+#include "services/device_error.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -30,10 +31,6 @@ struct Delays {
   std::string instrument;
   int failures = 0;
 };
-
-Error device_error(const drivers::Error& error) {
-  return {ErrorCode::device, error.message};
-}
 
 // A microsecond around the trigger for a rectangle; a whole period for a sine, with the deepest
 // memory that is read in reasonable time.

@@ -1,4 +1,5 @@
 #include "services/dso/shot_device.hpp"
+#include "services/device_error.hpp"
 
 #include <algorithm>
 
@@ -13,10 +14,6 @@ constexpr double periods = 2.0;
 constexpr std::size_t points = 10'000;
 constexpr milliseconds min_trigger_limit{3000};
 constexpr milliseconds series_limit{10'000}; // from the trigger to the end of the series
-
-Error device_error(const drivers::Error& error) {
-  return {ErrorCode::device, error.message};
-}
 
 drivers::dso::OscilloscopeSettings oscilloscope_settings(const SourceSettings& source) {
   drivers::dso::OscilloscopeSettings settings;

@@ -9,6 +9,7 @@
 #include "analysis/base/frequency.hpp"
 #include "drivers/generator/by_hand_generator.hpp"
 #include "drivers/generator/scpi_generator.hpp"
+#include "services/device_error.hpp"
 #include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
@@ -29,10 +30,6 @@ constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames a
 // analysis/step/excitation_window.hpp.
 double margin_s(double frequency_hz) {
   return edge_frames * std::clamp(1.0 / frequency_hz, 0.1, 50.0 / frequency_hz);
-}
-
-Error device_error(const drivers::Error& error) {
-  return {ErrorCode::device, error.message};
 }
 
 analysis::Frequency frequency_of(const wire::PlannedStep& step) {

@@ -28,10 +28,6 @@ namespace dds = eprosima::fastdds::dds;
 namespace fastrtps = eprosima::fastrtps;
 using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
 
-services::Error network_error(std::string message) {
-  return {services::ErrorCode::network, std::move(message)};
-}
-
 template <class Rep, class Period>
 fastrtps::Duration_t duration(std::chrono::duration<Rep, Period> time) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
@@ -298,19 +294,21 @@ public:
                                                             const std::string& partition) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return fail(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+      return fail(services::ErrorCode::network,
+                  "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(partition.c_str());
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);
     if (publisher == nullptr) {
-      return fail(network_error("Fast DDS refuses to publish in partition " + partition));
+      return fail(services::ErrorCode::network,
+                  "Fast DDS refuses to publish in partition " + partition);
     }
     dds::DataWriter* fast_writer =
         publisher->create_datawriter(fast_topic, writer_qos(qos_profile(profile)));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
-      return fail(network_error("Fast DDS refuses a writer of topic " + topic));
+      return fail(services::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
     }
     return std::make_unique<FastDdsWriter>(participant_, publisher, fast_writer);
   }
@@ -320,19 +318,21 @@ public:
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return fail(network_error("Fast DDS refuses topic " + topic + " of type " + type.name));
+      return fail(services::ErrorCode::network,
+                  "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::SubscriberQos subscriber_qos;
     subscriber_qos.partition().push_back(partition.c_str());
     dds::Subscriber* subscriber = participant_->get()->create_subscriber(subscriber_qos);
     if (subscriber == nullptr) {
-      return fail(network_error("Fast DDS refuses to subscribe in partition " + partition));
+      return fail(services::ErrorCode::network,
+                  "Fast DDS refuses to subscribe in partition " + partition);
     }
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
     if (!fast_reader->open(fast_topic, reader_qos(qos_profile(profile)))) {
-      return fail(network_error("Fast DDS refuses a reader of topic " + topic));
+      return fail(services::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
     }
     if (wake_up) {
       wake_up->ring();
@@ -362,9 +362,9 @@ create_fast_dds_participant(const ParticipantOptions& options) {
       dds::DomainParticipantFactory::get_instance()->create_participant(
           static_cast<std::uint32_t>(options.domain), *qos);
   if (participant == nullptr) {
-    return fail(
-        network_error("Fast DDS cannot join domain " + std::to_string(options.domain) +
-                      ": see its messages above, and check the profiles file if you set one"));
+    return fail(services::ErrorCode::network,
+                "Fast DDS cannot join domain " + std::to_string(options.domain) +
+                    ": see its messages above, and check the profiles file if you set one");
   }
   return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
       std::move(number), participant, std::make_shared<MalformedMessages>(options.warn)));

@@ -1,0 +1,13 @@
+// What a driver reports, as an error of a program: the sentence as it is. Any thread.
+#pragma once
+
+#include "drivers/error.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] inline Error device_error(const drivers::Error& error) {
+  return {ErrorCode::device, error.message};
+}
+
+} // namespace dyncal::services
