@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Builds dyncal with a preset of CMakePresets.json and prints nothing of weight when there is nothing to do:
+# Builds dyncal with a preset of CMakePresets.json; nearly silent when there is nothing to do:
 #
 #   deploy/build.sh PRESET with-tests|programs
 #
-# CMake is called only for a build directory that is new, or that lacks the tests now asked for; ninja sees to the rest.
+# CMake is called only for a build directory that is new, or that lacks the tests now asked for;
+# ninja sees to the rest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -22,7 +23,8 @@ case $2 in
     ;;
   programs)
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
-    targets=(dyncal dyncal-dau dyncal-acs dyncal-can dyncal-dso dyncal-analysis dyncal-virtual-bench)
+    targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso
+      dyncal-virtual-bench)
     ;;
   *)
     echo "build.sh: '$2' is neither with-tests nor programs" >&2

@@ -1,18 +1,27 @@
 #!/usr/bin/env bash
-# Says in a few lines what a run of ctest came to, with the reason of every test that was skipped:
+# Sums up a run of ctest in a few lines, with the reason of every test that was skipped:
 #
 #   tests/summary.sh OUTPUT_OF_CTEST LastTest.log
 #
-# A reason is what GoogleTest prints after "Skipped", or a line of the test's output that begins with "skipped:".
+# A reason is what GoogleTest prints after "Skipped", or a line of the test's output that begins
+# with "skipped:".
 set -euo pipefail
 
 awk '
   # Output of ctest: how many ran, which ones failed or were skipped.
   FNR == NR && /tests passed,.* tests failed out of / { failed = $(NF - 5); total = $NF }
-  FNR == NR && /^\t *[0-9]+ - .* \(Skipped\)$/ { sub(/^\t *[0-9]+ - /, ""); sub(/ \(Skipped\)$/, ""); skipped[++skips] = $0 }
+  FNR == NR && /^\t *[0-9]+ - .* \(Skipped\)$/ {
+    sub(/^\t *[0-9]+ - /, "")
+    sub(/ \(Skipped\)$/, "")
+    skipped[++skips] = $0
+  }
   FNR == NR { next }
   # The log: the output of every test.
-  /^[0-9]+\/[0-9]+ Test: / { name = $0; sub(/^[0-9]+\/[0-9]+ Test: /, "", name); next_is_reason = 0 }
+  /^[0-9]+\/[0-9]+ Test: / {
+    name = $0
+    sub(/^[0-9]+\/[0-9]+ Test: /, "", name)
+    next_is_reason = 0
+  }
   next_is_reason { reason[name] = $0; next_is_reason = 0 }
   /: Skipped$/ { next_is_reason = 1 }
   tolower($0) ~ /^skipped: / && !(name in reason) { reason[name] = substr($0, 10) }

@@ -1,8 +1,21 @@
 # What can be chosen when dyncal is built, and the compiler settings of all its targets.
+include_guard(DIRECTORY)
+include(GNUInstallDirs)
+
+cmake_path(SET dyncal_root NORMALIZE ${CMAKE_CURRENT_LIST_DIR}/../..)
+string(REGEX REPLACE "/$" "" dyncal_root ${dyncal_root})
+
 option(DYNCAL_FAST_DDS "Build the adapter for Fast DDS" ON)
 option(DYNCAL_CYCLONE_DDS "Build the adapter for Cyclone DDS" ON)
-option(DYNCAL_BUILD_TESTS "Build the tests" ON)
-option(DYNCAL_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+option(DYNCAL_MODELS "Build the parametric models, which need Ceres; all programs need them" ON)
+option(DYNCAL_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(DYNCAL_INSTALL "Install programs and library" ${PROJECT_IS_TOP_LEVEL})
+option(DYNCAL_WARNINGS_AS_ERRORS "Stop at the first compiler warning, as the presets do" OFF)
+set(DYNCAL_SANITIZE OFF CACHE STRING "Sanitizers: OFF, address (with undefined behaviour), thread")
+set_property(CACHE DYNCAL_SANITIZE PROPERTY STRINGS OFF address thread)
+if(NOT DYNCAL_SANITIZE MATCHES "^(OFF|address|thread)$")
+  message(FATAL_ERROR "DYNCAL_SANITIZE = ${DYNCAL_SANITIZE}: must be OFF, address or thread")
+endif()
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
@@ -11,12 +24,13 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 # Asserts stay on in release builds: a wrong number must never be published silently.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")
 set(CMAKE_C_FLAGS_RELEASE "-O2")
 # The same bits everywhere: no fused or reordered arithmetic unless the code asks for it by name.
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
+# Asserts name files as this tree does, not where it was built.
+add_compile_options(-fmacro-prefix-map=${dyncal_root}/=)
 
 find_program(CCACHE ccache)
 if(CCACHE)
@@ -31,14 +45,50 @@ endif()
 if(DYNCAL_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1") # with -O2 and more, single files take minutes
   set(CMAKE_C_FLAGS_RELEASE "-O1")
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g1)
-  add_link_options(-fsanitize=address,undefined)
+  set(sanitizers thread)
+  if(DYNCAL_SANITIZE STREQUAL "address")
+    set(sanitizers address,undefined)
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+  add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer -g1)
+  add_link_options(-fsanitize=${sanitizers})
 endif()
 
-# Link this into every target of our own (generated code keeps its own warnings): includes are written from the top of the project.
-add_library(dyncal_options INTERFACE)
-target_include_directories(dyncal_options INTERFACE ${CMAKE_CURRENT_SOURCE_DIR})
-target_compile_options(dyncal_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wconversion
-                                               -Wno-sign-conversion -Werror)
-# GCC 12 sees an overflow in fmt's headers, and an overlap in "text" + std::string, that are not there.
-target_compile_options(dyncal_options INTERFACE -Wno-stringop-overflow -Wno-restrict)
+# Link this into every target of our own (generated code keeps its own warnings): includes are
+# written from the top of the project. Libraries that are exported take it as
+# $<BUILD_INTERFACE:dyncal_options>.
+if(NOT TARGET dyncal_options)
+  add_library(dyncal_options INTERFACE)
+  target_include_directories(dyncal_options INTERFACE ${dyncal_root})
+  target_compile_options(dyncal_options INTERFACE
+    -Wall
+    -Wextra
+    -Wpedantic
+    -Wshadow
+    -Wnon-virtual-dtor
+    -Wold-style-cast
+    -Wconversion
+    -Wno-sign-conversion
+    # GCC 12 reports an overflow in fmt's headers, and an overlap in "text" + std::string, that are
+    # not there.
+    -Wno-stringop-overflow
+    -Wno-restrict
+    $<$<BOOL:${DYNCAL_WARNINGS_AS_ERRORS}>:-Werror>)
+endif()
+
+# dyncal_library(target name): makes a library one that others may link, as dyncal::name, whether
+# they add this tree to theirs or find what was installed. Either way they include
+# <dyncal/analysis/...> and <dyncal/services/...>: in the tree by a link to it in the build folder.
+set(dyncal_include ${CMAKE_BINARY_DIR}/dyncal-include)
+file(MAKE_DIRECTORY ${dyncal_include})
+file(CREATE_LINK ${dyncal_root} ${dyncal_include}/dyncal SYMBOLIC)
+function(dyncal_library target name)
+  add_library(dyncal::${name} ALIAS ${target})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${dyncal_root}>
+    $<BUILD_INTERFACE:${dyncal_include}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  # Shared libraries of others may hold it.
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+endfunction()

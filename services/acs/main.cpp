@@ -12,6 +12,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/program/program.hpp"
 #include "services/source/run_sources.hpp"
+#include "services/version.hpp"
 
 namespace {
 
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Publishes the sources of bench files whose driver is \"socket\" (an analogue "
                "calibration system's TCP stream) or \"file\" "
                "(a recorded series)."};
+  app.set_version_flag("--version", build_description());
   std::vector<std::string> files;
   NetworkOptions network;
   app.add_option("bench", files, "bench files")->required();

@@ -10,11 +10,13 @@
 
 #include "services/analysis/analysis_service.hpp"
 #include "services/program/program.hpp"
+#include "services/version.hpp"
 
 int main(int argc, char** argv) {
   using namespace dyncal;
   CLI::App app{"Computes the complex transfer function of digital sensors from samples on DDS and "
                "publishes it."};
+  app.set_version_flag("--version", services::build_description());
   services::NetworkOptions network;
   services::add_network_options(app, network);
   CLI11_PARSE(app, argc, argv);

@@ -11,6 +11,7 @@
 #include "services/can/can_source.hpp"
 #include "services/program/program.hpp"
 #include "services/source/run_sources.hpp"
+#include "services/version.hpp"
 
 namespace {
 
@@ -67,6 +68,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Publishes the sources of bench files whose driver is \"can\": sensors on CAN and "
                "CAN FD interfaces of this host.",
                "dyncal-can"};
+  app.set_version_flag("--version", build_description());
   std::vector<std::string> files;
   NetworkOptions network;
   app.add_option("BENCH", files, "bench files (TOML)")->required();

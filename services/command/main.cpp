@@ -15,6 +15,7 @@
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
 #include "services/run/output_guard.hpp"
+#include "services/version.hpp"
 
 namespace {
 
@@ -236,6 +237,7 @@ int execute(const CLI::App& app, const Commands& commands) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS."};
+  app.set_version_flag("--version", build_description());
   app.require_subcommand(1);
   Commands commands;
   add_demo(app, commands.demo);

@@ -143,6 +143,7 @@ int main(int argc, char** argv) {
   using namespace dyncal::services;
   CLI::App app{"Receives SmartUp Units and publishes the samples of their sensors on DDS.",
                "dyncal-dau"};
+  app.set_version_flag("--version", build_description());
   std::vector<std::string> benches;
   NetworkOptions network;
   app.add_option("BENCH", benches, "bench files (TOML)")->required();

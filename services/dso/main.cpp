@@ -11,6 +11,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/dso/bench_service.hpp"
 #include "services/program/program.hpp"
+#include "services/version.hpp"
 
 namespace {
 
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Triggers time series sensors by an oscilloscope and publishes the records of both on DDS.",
       "dyncal-dso"};
+  app.set_version_flag("--version", build_description());
   std::vector<std::string> benches;
   NetworkOptions network;
   app.add_option("BENCH", benches, "bench files (TOML)")->required();

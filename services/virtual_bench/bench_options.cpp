@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 #include <map>
 
+#include "services/version.hpp"
+
 namespace dyncal::services::virtual_bench {
 namespace {
 
@@ -276,6 +278,7 @@ Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) 
   CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration "
                "system and SmartUp Unit, reached through "
                "their real protocols."};
+  app.set_version_flag("--version", build_description());
   Words words;
   BenchOptions options;
   add_options(app, words, options);

@@ -1,0 +1,64 @@
+# Part of `cmake --install`: the public headers, under dyncal/ on the include path of who uses them.
+#
+# Inside the tree a header is included as "analysis/sine/sine_fit.hpp"; installed it is
+# dyncal/analysis/sine/sine_fit.hpp, and its includes are rewritten accordingly. Everything of
+# analysis/ is public but what is listed here; of services/ only the headers listed here and what
+# they include.
+#
+# root: of the source tree; made: folder for what is installed; includedir: where headers go.
+cmake_minimum_required(VERSION 3.25)
+
+set(private
+  analysis/sine/equidistant_axis.hpp
+  analysis/sine/extended_basis.hpp
+  analysis/sine/frequency_search.hpp
+  analysis/sine/frequency_series.hpp
+  analysis/sine/sine_pass.hpp
+  analysis/sine/sine_solve.hpp
+  analysis/sine/sine_stream_state.hpp
+)
+set(kernel "^analysis/sine/kernel/")
+set(public
+  services/bus/bus.hpp
+  services/contract/channel_name.hpp
+  services/contract/digest.hpp
+  services/contract/sample_continuity.hpp
+  services/contract/topics.hpp
+  services/contract/unit.hpp
+)
+
+foreach(header IN LISTS private public)
+  if(NOT EXISTS ${root}/${header})
+    message(FATAL_ERROR "InstallHeaders.cmake names ${header}, which does not exist")
+  endif()
+endforeach()
+file(GLOB_RECURSE analysis RELATIVE ${root} ${root}/analysis/*.hpp)
+list(FILTER analysis EXCLUDE REGEX ${kernel})
+list(REMOVE_ITEM analysis ${private})
+list(APPEND public ${analysis})
+
+set(own_include "#include \"((analysis|services|idl)/[^\"]+)\"")
+set(headers)
+while(public)
+  list(POP_FRONT public header)
+  list(APPEND headers ${header})
+  file(READ ${root}/${header} text)
+  string(REGEX MATCHALL "${own_include}" includes "${text}")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "${own_include}" "\\1" included ${include})
+    if(included MATCHES ${kernel} OR included IN_LIST private)
+      message(FATAL_ERROR "${header} is installed, but includes ${included}, which is private")
+    endif()
+    if(NOT included STREQUAL idl/dyncal.h AND NOT included IN_LIST headers
+       AND NOT included IN_LIST public)
+      list(APPEND public ${included})
+    endif()
+  endforeach()
+
+  string(REGEX REPLACE "${own_include}" "#include \"dyncal/\\1\"" text "${text}")
+  set(copy ${made}/include/dyncal/${header})
+  file(WRITE ${copy}.new "${text}")
+  file(COPY_FILE ${copy}.new ${copy} ONLY_IF_DIFFERENT) # keeps its time
+  cmake_path(GET header PARENT_PATH folder)
+  file(INSTALL ${copy} DESTINATION ${CMAKE_INSTALL_PREFIX}/${includedir}/dyncal/${folder})
+endwhile()
