@@ -7,27 +7,31 @@
 #   run    only run programs that were built elsewhere
 #   test   what the tests need on top of `build`
 #
-# Looks first and calls apt-get only when something is missing; nothing that is installed is upgraded or removed.
+# Looks first and calls apt-get only when something is missing; nothing that is installed is
+# upgraded or removed.
 set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build ccache mold pkgconf
-  fastddsgen libfastrtps-dev libfastcdr-dev # Fast DDS and its IDL compiler, which brings a Java runtime
+  fastddsgen libfastrtps-dev libfastcdr-dev # Fast DDS and its IDL compiler, which needs Java
   cyclonedds-dev cyclonedds-tools           # Cyclone DDS and its IDL compiler
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
 )
 run_packages=(
-  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3 libssl3 libsndfile1 liblxi1 libtirpc3
+  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
+  libssl3 libsndfile1 liblxi1 libtirpc3
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
   clang-14 libclang-rt-14-dev                  # libFuzzer
+  clang-format-14 clang-tidy-14                # how the code is written
+  git python3
   nftables iproute2                            # packet loss between network namespaces
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
-  user-mode-linux busybox-static can-utils     # a kernel with CAN for the CAN tests, where this one has none
+  user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 
 wanted=()
@@ -38,19 +42,21 @@ for purpose in "$@"; do
     run) wanted+=("${run_packages[@]}") ;;
     test) wanted+=("${test_packages[@]}") ;;
     *)
-      echo "install-packages.sh: '$purpose' is none of build, run, test" >&2
+      echo "install-packages.sh: '$purpose' is not one of build, run, test" >&2
       exit 2
       ;;
   esac
 done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  echo "install-packages.sh: this is not a Debian system; install by hand what these Debian 12 packages hold: ${wanted[*]}" >&2
+  echo "install-packages.sh: this is not a Debian system; install by hand what these Debian 12" \
+    "packages hold: ${wanted[*]}" >&2
   exit 1
 fi
 
 # dpkg-query fails for names it has never seen, which are missing like the others.
-installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null | sed -n 's/^installed //p' || true)
+installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
+  sed -n 's/^installed //p' || true)
 missing=()
 for package in "${wanted[@]}"; do
   grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
@@ -60,26 +66,30 @@ done
 as_root=()
 if [[ $EUID -ne 0 ]]; then
   if ! command -v sudo >/dev/null; then
-    echo "install-packages.sh: neither root nor sudo; as root: apt-get install --no-install-recommends ${missing[*]}" >&2
+    echo "install-packages.sh: neither root nor sudo; as root:" \
+      "apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi
   as_root=(sudo)
 fi
 
 install_missing() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends --no-remove --no-upgrade \
-    -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "${missing[@]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes \
+    --no-install-recommends --no-remove --no-upgrade -o DPkg::Lock::Timeout=300 \
+    -o Dpkg::Use-Pty=0 "${missing[@]}"
 }
 
 echo "Installing from Debian: ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-# The usual reasons for a failure are package lists that were never fetched or have aged: fetch them only then.
+# The usual reasons for a failure are package lists that were never fetched or have aged: fetch them
+# only then.
 if ! install_missing >"$log" 2>&1; then
   "${as_root[@]}" apt-get update -o DPkg::Lock::Timeout=300 -qq || true
   if ! install_missing >"$log" 2>&1; then
     tail -n 20 "$log" >&2
-    echo "install-packages.sh: apt-get could not install ${missing[*]}; its last lines are above" >&2
+    echo "install-packages.sh: apt-get could not install ${missing[*]};" \
+      "its last lines are above" >&2
     exit 1
   fi
 fi

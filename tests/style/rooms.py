@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""Holds includes, room sizes and READMEs of analysis/, drivers/ and services/ against the plan
+below. A room is a folder.
+
+    rooms.py arrows    what includes what
+    rooms.py sizes     no room outgrows its tree
+    rooms.py readmes   every room opens with a README
+"""
+
+import collections
+import re
+import sys
+
+from tree import CODE, TOP, conclude, tracked
+
+# Rooms of each tree from the lowest floor up; "." is the tree's own folder. A room includes itself
+# and rooms of lower floors of its tree, never one of its own floor: so there is no circle.
+FLOORS = {
+    "analysis": [
+        ["base"],
+        ["sine/kernel"],
+        ["sine"],
+        ["response", "step", "uncertainty"],
+        ["clock"],
+        ["instrument"],
+        ["method"],
+    ],
+    "drivers": [
+        ["."],
+        ["link", "can/bus"],
+        ["files", "can/dbc", "can/time"],
+        ["acs", "can", "dso", "generator", "smartup", "tss", "virtual_bench/model"],
+        ["virtual_bench/can", "virtual_bench/wire"],
+        ["virtual_bench"],
+    ],
+    "services": [
+        ["."],
+        ["contract", "report/figures"],
+        ["bench", "bus"],
+        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "evaluation/method", "program"],
+        ["evaluation", "source"],
+        ["run"],
+        ["report"],
+        ["acs", "analysis", "can", "dau", "demo", "dso", "virtual_bench"],
+        ["replay"],
+        ["command"],
+    ],
+}
+# What a tree may include of others: rooms, or a whole tree.
+BETWEEN_TREES = {
+    "analysis": [],
+    "drivers": ["analysis/base"],
+    "services": ["analysis", "drivers", "idl"],
+}
+# Rooms that only some may include, on whichever floor.
+ONLY_FROM = {
+    "analysis/sine/kernel": ["analysis/sine"],
+}
+# Drivers know nothing of each other: "drivers/x/..." includes only itself and these. The virtual
+# bench's CAN side is the other end of the wire that the CAN driver reads.
+SHARED_DRIVERS = [".", "link", "files"]
+OTHER_END = {"virtual_bench/can": "can"}
+# DDS vendors and their encoders.
+VENDOR = re.compile(r"(fastdds|fastrtps|fastcdr|dds|ddsc|idl/dyncalPubSub)(/|\b.*\.h)")
+VENDOR_ROOM = "services/bus"
+# Rooms that may be more than this part of their tree.
+LARGEST_PART = 0.20
+LARGE_ROOMS = ["analysis/sine", "services/evaluation"]
+# Lines of a README before its first "## " heading, under which protocols and reference stand.
+README_LINES = 40
+
+
+def files():
+    return [path for path in tracked(*FLOORS) if path.suffix in CODE]
+
+
+def room_in_tree(path):
+    """Tree and room of a file's path."""
+    tree, *folders = path.split("/")[:-1]
+    return tree, "/".join(folders) or "."
+
+
+def floor(tree, room):
+    for number, rooms in enumerate(FLOORS[tree]):
+        if room in rooms:
+            return number
+    return None
+
+
+def within(path, folder):
+    return path == folder or path.startswith(folder + "/")
+
+
+def refusal_in_tree(tree, source, target):
+    if source == target:
+        return None
+    for room in (source, target):
+        if floor(tree, room) is None:
+            return f"{tree}/{room} has no floor in tests/style/rooms.py"
+    if floor(tree, target) >= floor(tree, source):
+        return "the arrow does not run down"
+    if tree == "drivers" and target not in SHARED_DRIVERS:
+        family = source.split("/")[0]
+        if target.split("/")[0] not in (family, OTHER_END.get(source)):
+            return "drivers know nothing of each other"
+    return None
+
+
+def refusal(source, target):
+    """Why one file may not include the other, or nothing."""
+    source_tree, source_room = room_in_tree(source)
+    target_tree, target_room = room_in_tree(target)
+    for room, users in ONLY_FROM.items():
+        if within(target, room) and not any(
+            f"{source_tree}/{source_room}" in (user, room) for user in users
+        ):
+            return f"only {', '.join(users)} includes {room}"
+    if target_tree == source_tree:
+        return refusal_in_tree(source_tree, source_room, target_room)
+    if not any(within(target, allowed) for allowed in BETWEEN_TREES[source_tree]):
+        return f"{source_tree}/ includes nothing of {target_tree}/ but " + (
+            ", ".join(BETWEEN_TREES[source_tree]) or "itself"
+        )
+    return None
+
+
+def check_arrows():
+    findings = []
+    arrows = 0
+    for path in files():
+        for number, line in enumerate((TOP / path).read_text().splitlines(), 1):
+            include = re.match(r'\s*#\s*include\s+["<]([^">]+)[">]', line)
+            if not include:
+                continue
+            target = include[1]
+            if VENDOR.match(target) and not within(str(path), VENDOR_ROOM):
+                findings.append(f"{path}:{number}: {target}: only {VENDOR_ROOM} names a DDS vendor")
+            if target.split("/")[0] not in (*FLOORS, "idl"):
+                continue
+            arrows += 1
+            reason = refusal(str(path), target)
+            if reason:
+                findings.append(f"{path}:{number}: {target}: {reason}")
+    if arrows < 100:
+        sys.exit(f"only {arrows} includes found: the check would pass on nothing")
+    conclude(findings, f"of {arrows} includes refused")
+
+
+def lines_of_rooms():
+    lines = collections.Counter()
+    for path in files():
+        lines[str(path.parent)] += len((TOP / path).read_text().splitlines())
+    return lines
+
+
+def check_sizes():
+    lines = lines_of_rooms()
+    trees = collections.Counter()
+    for room, count in lines.items():
+        trees[room.split("/")[0]] += count
+    findings = []
+    for room, count in sorted(lines.items()):
+        part = count / trees[room.split("/")[0]]
+        if part > LARGEST_PART and room not in LARGE_ROOMS:
+            findings.append(f"{room}: {count} lines, {part:.0%} of its tree")
+    conclude(findings, f"of {len(lines)} rooms too large")
+
+
+def check_readmes():
+    rooms = {str(path.parent) for path in files()} | set(FLOORS)
+    rooms |= {
+        f"{tree}/{room.split('/')[0]}"
+        for tree, floors in FLOORS.items()
+        for rooms_of_floor in floors
+        for room in rooms_of_floor
+        if room != "." and (TOP / tree / room).is_dir()
+    }
+    findings = []
+    for room in sorted(rooms):
+        readme = TOP / room / "README.md"
+        if not readme.is_file():
+            findings.append(f"{room}: no README.md")
+            continue
+        lines = readme.read_text().splitlines()
+        opening = next((i for i, line in enumerate(lines) if line.startswith("## ")), len(lines))
+        if len(lines) > README_LINES < opening:
+            findings.append(
+                f"{room}/README.md: {opening} lines before the first '## ' heading; "
+                f"at most {README_LINES}"
+            )
+    conclude(findings, f"of {len(rooms)} rooms without an opening page")
+
+
+if __name__ == "__main__":
+    {"arrows": check_arrows, "sizes": check_sizes, "readmes": check_readmes}[sys.argv[1]]()
