@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Builds a small User-Mode-Linux kernel for the CAN tests from Debian's kernel source:
 #
-#   build-guest.sh            # -> ${XDG_CACHE_HOME:-~/.cache}/dyncal/linux-can, where the tests look for it
-#   build-guest.sh FOLDER     # -> FOLDER/linux-can; DYNCAL_CAN_KERNEL=FOLDER/linux-can names it to the tests
+#   build-guest.sh            # -> ${XDG_CACHE_HOME:-~/.cache}/dyncal/linux-can, found by the tests
+#   build-guest.sh FOLDER     # -> FOLDER/linux-can; set DYNCAL_CAN_KERNEL=FOLDER/linux-can
 #
-# Beyond Debian's package user-mode-linux it has gs_usb over USB/IP (adapters with hardware stamps), isotp and simulated time
-# (time-travel=inf-cpu). Needs: linux-source-6.1 gcc make flex bison bc xz-utils; about 2 GB while it builds and 3 to 5 min on two
-# processors. A kernel of 7 MB remains; one that was built from the same source package with the same configuration is kept.
+# Beyond Debian's package user-mode-linux it has gs_usb over USB/IP (adapters with hardware stamps),
+# isotp and simulated time (time-travel=inf-cpu). Needs: linux-source-6.1 gcc make flex bison bc
+# xz-utils; about 2 GB while it builds and 3 to 5 min on two processors. A kernel of 7 MB remains;
+# one that was built from the same source package with the same configuration is kept.
 set -euo pipefail
 
 if [[ $# -gt 1 ]]; then
@@ -46,10 +47,13 @@ mkdir "$work/source" "$work/build"
 tar -xf "$source" -C "$work/source" --strip-components=1
 build=(make -s -C "$work/source" ARCH=um O="$work/build")
 "${build[@]}" KCONFIG_ALLCONFIG="$config" allnoconfig >/dev/null
-missing=$(grep -oE '^CONFIG_[A-Z0-9_]+' "$config" | while read -r option; do grep -q "^$option=" "$work/build/.config" || echo "$option"; done)
+missing=$(grep -oE '^CONFIG_[A-Z0-9_]+' "$config" | while read -r option; do
+  grep -q "^$option=" "$work/build/.config" || echo "$option"
+done)
 if [[ -n $missing ]]; then
   echo "build-guest: this source does not have" $missing >&2
-  grep -qE '^CONFIG_(CAN|HOSTFS)' <<<"$missing" && exit 1 # no CAN tests without; the others are for some of them
+  # No CAN tests without these; the others are for some of them.
+  grep -qE '^CONFIG_(CAN|HOSTFS)' <<<"$missing" && exit 1
 fi
 "${build[@]}" -j"$(nproc)" linux
 strip "$work/build/linux"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The bus between two network namespaces, in every pair of vendors: 2000 blocks of 40 kB at 400 a second from two sources, to a
-# reader that is there from the beginning, one that joins late, and one that is killed in the middle and started again. Each must
-# have every block in order.
+# The bus between two network namespaces, in every pair of vendors: 2000 blocks of 40 kB at 400 a
+# second from two sources, to a reader that is there from the beginning, one that joins late, and
+# one that is killed in the middle and started again. Each must have every block in order.
 #
 #   bus_netns_test.sh PEER multicast|unicast LOSS_PERCENT [VENDOR...]
 #
-# Needs root, ip and nft; exits with 77 (skipped) and one line otherwise. Leaves no namespace behind.
+# Needs root, ip and nft; exits with 77 (skipped) and one line otherwise. Leaves no namespace
+# behind.
 set -euo pipefail
 
 peer=$1
@@ -34,9 +35,11 @@ cleanup() {
 }
 trap cleanup EXIT
 
-ip netns add "$writing" 2>/dev/null && ip netns add "$reading" 2>/dev/null || skip "this machine makes no network namespaces"
+ip netns add "$writing" 2>/dev/null && ip netns add "$reading" 2>/dev/null ||
+  skip "this machine makes no network namespaces"
 # The interfaces are made inside the namespaces: they go with them.
-ip -n "$writing" link add lab type veth peer name lab netns "$reading" || skip "this machine makes no veth interfaces"
+ip -n "$writing" link add lab type veth peer name lab netns "$reading" ||
+  skip "this machine makes no veth interfaces"
 address=(10.97.0.1 10.97.0.2)
 for i in 0 1; do
   namespace=$([[ $i == 0 ]] && echo "$writing" || echo "$reading")
@@ -44,7 +47,8 @@ for i in 0 1; do
   ip -n "$namespace" address add "${address[$i]}/24" dev lab
   ip -n "$namespace" link set lab up
   if ((loss_percent > 0)); then
-    ip netns exec "$namespace" nft "table ip lossy { chain input { type filter hook input priority 0;
+    ip netns exec "$namespace" nft "table ip lossy { chain input {
+      type filter hook input priority 0;
       iifname lab meta l4proto udp numgen random mod 100 < $loss_percent counter drop
       }; }" || skip "nft cannot drop packets here"
   fi
@@ -58,8 +62,11 @@ for namespace in "$writing" "$reading"; do
 done
 
 options=(--domain 44)
-[[ $discovery == unicast ]] && options+=(--unicast --peer "${address[0]}" --peer "${address[1]}" --interface lab)
-write() { ip netns exec "$writing" "$peer" write --dds "$1" "${options[@]}" --readers 2 >"$folder/writer" & }
+[[ $discovery == unicast ]] &&
+  options+=(--unicast --peer "${address[0]}" --peer "${address[1]}" --interface lab)
+write() {
+  ip netns exec "$writing" "$peer" write --dds "$1" "${options[@]}" --readers 2 >"$folder/writer" &
+}
 read_as() { ip netns exec "$reading" "$peer" read --dds "$1" "${options[@]}" >"$folder/$2" & }
 
 failed=0
@@ -98,7 +105,8 @@ for from in "${vendors[@]}"; do
   done
 done
 if ((loss_percent > 0)); then
-  dropped=$(ip netns exec "$reading" nft list table ip lossy | sed -n 's/.*counter packets \([0-9]*\).*/\1/p')
+  dropped=$(ip netns exec "$reading" nft list table ip lossy |
+    sed -n 's/.*counter packets \([0-9]*\).*/\1/p')
   echo "$dropped packets to the readers were lost on the way"
   ((dropped > 0)) || failed=1
 fi

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # Runs a command as root on a kernel that has CAN:
 #
-#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] [-g|-i] COMMAND ARGUMENTS...
+#   on_can_kernel.sh [-s XSAVE_SHIM] [-m MEGABYTES] [-t SECONDS] [-w WRITABLE_FOLDER] [-g|-i]
+#                    COMMAND ARGUMENTS...
 #
-# On this kernel, in a network namespace of its own, where it has vcan and we may; otherwise in a User-Mode-Linux guest that sees the
-# files of this machine read-only: DYNCAL_CAN_KERNEL, else the one that build-guest.sh has built, else /usr/bin/linux.uml of Debian's
-# package user-mode-linux.
-# -g: only in the guest that build-guest.sh has built (USB adapters), and in simulated time: sleeping costs nothing, computing takes no
-# time, the clock starts at the same instant every time. -i: in simulated time if the guest has it.
-# Exit status: the command's; 77 with a line "skipped: ..." where there is neither; 125 when the guest did not come to an end.
+# On this kernel, in a network namespace of its own, where it has vcan and we may; otherwise in a
+# User-Mode-Linux guest that sees the files of this machine read-only: DYNCAL_CAN_KERNEL, else the
+# one that build-guest.sh has built, else /usr/bin/linux.uml of Debian's package user-mode-linux.
+# -g: only in the guest that build-guest.sh has built (USB adapters), and in simulated time:
+# sleeping costs nothing, computing takes no time, the clock starts at the same instant every time.
+# -i: in simulated time if the guest has it. Exit status: the command's; 77 with a line "skipped:
+# ..." where there is neither; 125 when the guest did not come to an end.
 set -uo pipefail
 
 shim= memory=512 limit=120 writable= built_only= simulated=
@@ -25,8 +27,12 @@ while getopts s:m:t:w:gi option; do
 done
 shift $((OPTIND - 1))
 
-if [[ -z $built_only && $EUID -eq 0 ]] && unshare --net ip link add probe0 type vcan 2>/dev/null; then
-  exec unshare --net bash -c 'ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; exec "$@"' - "$@"
+if [[ -z $built_only && $EUID -eq 0 ]] &&
+  unshare --net ip link add probe0 type vcan 2>/dev/null; then
+  exec unshare --net bash -c 'ip link set lo up
+    ip link set lo multicast on
+    ip route add 224.0.0.0/4 dev lo
+    exec "$@"' - "$@"
 fi
 
 built=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/dyncal/linux-can
@@ -37,12 +43,14 @@ clock=()
 if [[ -n $simulated && -x $kernel ]] && grep -q 'time-travel=inf-cpu' "$kernel"; then
   clock=(time-travel=inf-cpu time-travel-start=1700000000000000000)
 elif [[ -n $built_only ]]; then
-  echo "skipped: needs a guest kernel with USB adapters and simulated time; tests/can/build-guest.sh builds it"
+  echo "skipped: needs a guest kernel with USB adapters and simulated time;" \
+    "tests/can/build-guest.sh builds it"
   exit 77
 fi
 for needed in "$kernel" /usr/bin/busybox; do
   if [[ ! -x $needed && ! -x ${needed/usr\//} ]]; then
-    echo "skipped: this kernel has no vcan that this user may make, and $needed is not there (apt-get install user-mode-linux busybox-static)"
+    echo "skipped: this kernel has no vcan that this user may make, and $needed is not there" \
+      "(apt-get install user-mode-linux busybox-static)"
     exit 77
   fi
 done
@@ -56,7 +64,8 @@ export -p | grep -E ' (PATH|DYNCAL_[A-Z_]*|GTEST_[A-Z_]*|HOME)=' >"$folder/envir
 
 cat >"$folder/init" <<'INIT'
 #!/bin/bash
-# First program of the guest. $1: the folder of the host with the command, where the exit status goes.
+# First program of the guest. $1: the folder of the host with the command, where the exit status
+# goes.
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 mount -t proc proc /proc
 mount -t sysfs sysfs /sys
@@ -69,7 +78,8 @@ mount -t hostfs -o "$1" none /run/host
 writable=$(cat /run/host/writable)
 [[ -z $writable ]] || mount -t hostfs -o "$writable" none "$writable"
 modules=/usr/lib/uml/modules/$(uname -r)/kernel
-for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan drivers/net/can/vxcan \
+for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan \
+  drivers/net/can/vxcan \
   drivers/net/can/slcan/slcan net/sched/sch_netem; do
   [[ ! -e $modules/$module.ko ]] || busybox insmod "$modules/$module.ko"
 done
@@ -91,13 +101,17 @@ chmod +x "$folder/init"
 # The guest's console is our output; its memory is a file that is gone when it ends.
 memory_folder=/dev/shm
 [[ -w $memory_folder ]] || memory_folder=$folder
-# Every system call of the guest is handed from one process of the host to another: several times faster when both have one processor. Not the
-# same for every guest.
-mapfile -t processors < <(taskset -cp $$ | sed 's/.*: //' | tr ',' '\n' | while IFS=- read -r first last; do seq "$first" "${last:-$first}"; done)
+# Every system call of the guest is handed from one process of the host to another: several times
+# faster when both have one processor. Not the same for every guest.
+mapfile -t processors < <(taskset -cp $$ | sed 's/.*: //' | tr ',' '\n' |
+  while IFS=- read -r first last; do seq "$first" "${last:-$first}"; done)
 processor=${processors[$(($$ % ${#processors[@]}))]}
-timeout --kill-after=5 "$limit" taskset -c "$processor" env -i HOME="$folder" PATH="$PATH" TMPDIR="$memory_folder" ${shim:+LD_PRELOAD="$shim"} \
-  "$kernel" "mem=${memory}M" quiet loglevel=1 "${clock[@]}" root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$folder/init" \
-  con=null con0=null,fd:1 -- "$folder" </dev/null 2>&1 | grep --line-buffered -vE '^reboot: System halted|^$' | tr -d '\r'
+timeout --kill-after=5 "$limit" taskset -c "$processor" \
+  env -i HOME="$folder" PATH="$PATH" TMPDIR="$memory_folder" ${shim:+LD_PRELOAD="$shim"} \
+  "$kernel" "mem=${memory}M" quiet loglevel=1 "${clock[@]}" \
+  root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$folder/init" \
+  con=null con0=null,fd:1 -- "$folder" </dev/null 2>&1 |
+  grep --line-buffered -vE '^reboot: System halted|^$' | tr -d '\r'
 if [[ -s $folder/status ]]; then
   exit "$(cat "$folder/status")"
 fi

@@ -25,11 +25,13 @@ inline constexpr WireVector all_wire_vectors[] = {
    "444154412608808290ff01100718d3fd90fc052005285435cdcccc3d3dcdcc4c3e45cdcc1c417d0000c841"},
   {"data_edge_ticks", // 1 channel + field 22 time_ticks
    "44415441200880bc90ff01100918d3fd90fc0520062854350000803fb001f2dfb89ea7e702"},
-  {"data_interleaved", // 3 messages of 2 sensors in one datagram; sample_number 10 -> 12 for the first
+  {"data_interleaved", // 3 messages of 2 sensors in one datagram; number 10 -> 12 for the first
    "4441544144088082ace60b100a18d4fd90fc0520002854350000003e3d000080be450ae81c414d6f12833a556f1203bb5da69b443b65000048416d00"
    "00f0c175000025427d0000fc412108808290ff01100418d4fd90fc052064285435cdcccc3d3dcdcc4c3e45cdcc1c4146088082ace60b100c18d4fd90"
    "fc0520e2f8792854350000003e3d000080be450ae81c414d6f12833a556f1203bb5da69b443b65000048416d0000f0c175000025427d0000fc41"},
-  {"data_uncertainty_raw_msw", // GPS-semaphore miss signature: time_uncertainty = tick counter MSW (0x2c), time = that of the previous message
+  // GPS-semaphore miss signature: time_uncertainty = tick counter MSW (0x2c), time = that of the
+  // previous message.
+  {"data_uncertainty_raw_msw",
    "4441544146088082ace60b100d18d4fd90fc0520e2f879282c350000003e3d000080be450ae81c414d6f12833a556f1203bb5da69b443b6500004841"
    "6d0000f0c175000025427d0000fc41"},
   {"data_empty", // keyword only
