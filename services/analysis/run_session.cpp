@@ -204,7 +204,7 @@ void RunSession::take_samples(Clock::time_point now) {
   for (auto& entry : record_readers_) {
     entry.second.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
       SourceLink* link =
-          info.valid ? link_of(record.source().to_string(), record.answers_run()) : nullptr;
+          info.valid ? link_of(record.source().to_string(), record.acknowledged_run()) : nullptr;
       if (link != nullptr) {
         link->last_block = now;
         link->ended = record.end_of_stream();
@@ -226,7 +226,7 @@ RunSession::SourceLink* RunSession::link_of(const std::string& source,
 }
 
 void RunSession::take_block(const wire::SampleBlock& block, Clock::time_point now) {
-  SourceLink* link = link_of(block.source().to_string(), block.answers_run());
+  SourceLink* link = link_of(block.source().to_string(), block.acknowledged_run());
   if (link != nullptr) {
     link->last_block = now;
     link->ended = block.end_of_stream();
@@ -382,6 +382,7 @@ void RunSession::publish_status() {
   status.results_published(results_published_);
   status.transfer_functions_published(transfer_functions_published_);
   status.clock_reports_published(clock_reports_published_);
+  status.contract_version(wire::CONTRACT_VERSION);
   write(status_writer_, status);
 }
 

@@ -9,7 +9,6 @@ namespace {
 constexpr std::size_t name_bound = 64;     // bench, source, run, service, target
 constexpr std::size_t channel_bound = 128; // "source/channel"
 
-const KeyLayout one_name{{name_bound}, 0};
 const KeyLayout two_names{{name_bound, name_bound}, 0};
 const KeyLayout three_names{{name_bound, name_bound, name_bound}, 0};
 const KeyLayout names_and_channel{{name_bound, name_bound, channel_bound}, 0};
@@ -42,13 +41,6 @@ template <>
 const TypeSupport& type_support<wire::TriggeredRecord>() {
   static const TypeSupport support =
       make_type_support<wire::TriggeredRecord>("dyncal::wire::TriggeredRecord", two_names);
-  return support;
-}
-
-template <>
-const TypeSupport& type_support<wire::AcsPhasor>() {
-  static const TypeSupport support =
-      make_type_support<wire::AcsPhasor>("dyncal::wire::AcsPhasor", two_names);
   return support;
 }
 
@@ -90,14 +82,14 @@ const TypeSupport& type_support<wire::SampleClockReport>() {
 template <>
 const TypeSupport& type_support<wire::ServiceStatus>() {
   static const TypeSupport support =
-      make_type_support<wire::ServiceStatus>("dyncal::wire::ServiceStatus", two_names);
+      make_type_support<wire::ServiceStatus>("dyncal::wire::ServiceStatus", three_names);
   return support;
 }
 
 template <>
 const TypeSupport& type_support<wire::Command>() {
   static const TypeSupport support =
-      make_type_support<wire::Command>("dyncal::wire::Command", one_name);
+      make_type_support<wire::Command>("dyncal::wire::Command", two_names);
   return support;
 }
 

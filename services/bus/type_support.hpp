@@ -54,8 +54,6 @@ const TypeSupport& type_support<wire::SampleBlock>();
 template <>
 const TypeSupport& type_support<wire::TriggeredRecord>();
 template <>
-const TypeSupport& type_support<wire::AcsPhasor>();
-template <>
 const TypeSupport& type_support<wire::Measurement>();
 template <>
 const TypeSupport& type_support<wire::Excitation>();

@@ -88,13 +88,13 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
 }
 
 analysis::SyncPhasor phasor_of(const wire::SineFit& fit) {
-  return {fit.frequency_hz(), fit.u_frequency_hz(), fit.reference_ns(), fit.sine(),
+  return {fit.frequency_hz(), fit.u_frequency_hz(), fit.phase_origin_ns(), fit.sine(),
           fit.cosine(),       fit.u_sine(),         fit.u_cosine()};
 }
 
 const wire::SineFit* fit_of(const wire::CalibrationResult& result, const ChannelName& channel) {
   for (const wire::SineFit& fit : result.fits()) {
-    if (fit.series() == channel.text()) {
+    if (fit.channel() == channel.text()) {
       return &fit;
     }
   }

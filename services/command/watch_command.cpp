@@ -43,11 +43,9 @@ std::string arm_word(wire::ArmState arm) {
   case wire::ARM_REFUSED:
     return "REFUSED";
   case wire::ARM_FINISHED:
-    return "finished";
-  case wire::ARM_NONE:
     break;
   }
-  return "idle";
+  return "finished";
 }
 
 std::string excitation_word(wire::ExcitationState state) {
@@ -70,7 +68,7 @@ std::string source_line(const wire::SourceStatus& status) {
       "duplicate, {} rejected, "
       "{} stamps not trusted, {} dropped, buffer {:.0f} %, {} readers",
       status.bench().c_str(), status.source().c_str(), state_word(status.state()), status.rate_hz(),
-      status.received(), status.lost_in_device(), status.lost_on_way(), status.duplicates(),
+      status.received(), status.lost_in_device(), status.lost_in_transit(), status.duplicates(),
       status.rejected(), status.stamps_not_trusted(), status.dropped_in_service(),
       status.buffer_fill() * 100.0, status.matched_readers());
   return status.message().empty() ? line : line + " | " + status.message();
@@ -89,14 +87,14 @@ std::string result_line(const wire::CalibrationResult& result) {
 
 std::string run_line(const wire::ServiceStatus& status) {
   const std::string line =
-      fmt::format("{} {}: {} {}, {} results", status.bench(), status.run().c_str(),
+      fmt::format("{} {}: {} {}, {} results", status.bench().c_str(), status.run().c_str(),
                   status.service().c_str(), arm_word(status.arm()), status.results_published());
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
 std::string step_line(const wire::Excitation& excitation) {
   return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(),
-                     excitation.run().c_str(), excitation.step(), excitation.frequency_hz(),
+                     excitation.run().c_str(), excitation.step(), excitation.frequency_text_hz(),
                      excitation.level_m_s2(), excitation_word(excitation.state()));
 }
 
@@ -184,7 +182,8 @@ void take_all(Readers& readers, Screen& screen) {
   });
   readers.services.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
     if (info.valid) {
-      screen.replace(fmt::format("2 {} {}", status.run().c_str(), status.service().c_str()),
+      screen.replace(fmt::format("2 {} {} {}", status.bench().c_str(), status.run().c_str(),
+                                 status.service().c_str()),
                      run_line(status));
     }
   });

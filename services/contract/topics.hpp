@@ -11,7 +11,6 @@ inline constexpr const char* acs_samples = "AcsSamples";                // sampl
 inline constexpr const char* can_samples = "CanSamples";                // samples
 inline constexpr const char* dso_record = "DsoRecord";                  // samples
 inline constexpr const char* tss_record = "TssRecord";                  // samples
-inline constexpr const char* acs_phasor = "AcsPhasor";                  // results
 inline constexpr const char* measurement = "Measurement";               // state
 inline constexpr const char* excitation = "Excitation";                 // state
 inline constexpr const char* calibration_result = "CalibrationResult";  // results

@@ -97,7 +97,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
             fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
   }
   for (const wire::SampleClockReport& report : outcome.clock_reports) {
-    if (report.intervals() ==
+    if (report.interval_count() ==
         0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
       compare(check, report.mean_interval_s() - truth->mean_interval_s, report.u_mean_interval_s(),
               fmt::format("{}, sample interval", report.source().c_str()));

@@ -159,7 +159,7 @@ void BenchService::follow(const wire::Excitation& excitation) {
     }
     return;
   }
-  const auto frequency = analysis::Frequency::parse(excitation.frequency_hz());
+  const auto frequency = analysis::Frequency::parse(excitation.frequency_text_hz());
   if (frequency && !in_step(run, excitation.step())) {
     step_ = Step{run, excitation.step(), frequency->hz(), 0};
     shot_problem_.clear();
@@ -248,7 +248,7 @@ void BenchService::publish(ShotPair& pair, const Step& step) {
     message.shot(shot_);
     message.run(step.run);
     message.step(step.step);
-    message.trigger_ns(pair.trace.triggered_utc_ns);
+    message.trigger_utc_ns(pair.trace.triggered_utc_ns);
     message.interval_s(interval_s);
     message.sample_count(static_cast<std::uint32_t>(samples));
     message.channel_count(static_cast<std::uint32_t>(channels));

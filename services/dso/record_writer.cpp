@@ -42,6 +42,7 @@ void RecordWriter::describe(wire::SourceDescription description) {
   description.software(software_version());
   description.time_base(wire::TIME_BASE_LOCAL);
   description.stamp_instant(wire::STAMP_TRIGGER_EDGE);
+  description.contract_version(wire::CONTRACT_VERSION);
   if (description_ && *description_ == description) {
     return;
   }
@@ -51,7 +52,7 @@ void RecordWriter::describe(wire::SourceDescription description) {
 
 void RecordWriter::answer(const std::string& run) {
   wire::TriggeredRecord record;
-  record.answers_run(run);
+  record.acknowledged_run(run);
   write(std::move(record));
 }
 

@@ -8,19 +8,18 @@ namespace dyncal::services {
 namespace {
 
 void fill_numbers(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
-  report.intervals(clock.intervals);
+  report.interval_count(clock.intervals);
   report.mean_interval_s(clock.mean_interval_s);
   report.u_mean_interval_s(clock.u_mean_interval_s);
-  report.sd_s(clock.sd_s);
-  report.minimum_s(clock.minimum_s);
-  report.maximum_s(clock.maximum_s);
-  report.median_s(clock.median_s);
-  report.mad_sd_s(clock.mad_sd_s);
-  report.quantile_001_s(clock.quantile_001_s);
-  report.quantile_01_s(clock.quantile_01_s);
-  report.quantile_50_s(clock.quantile_50_s);
-  report.quantile_99_s(clock.quantile_99_s);
-  report.quantile_999_s(clock.quantile_999_s);
+  report.sd_interval_s(clock.sd_s);
+  report.min_interval_s(clock.minimum_s);
+  report.max_interval_s(clock.maximum_s);
+  report.median_interval_s(clock.median_s);
+  report.mad_sd_interval_s(clock.mad_sd_s);
+  report.p0_1_interval_s(clock.quantile_001_s);
+  report.p1_interval_s(clock.quantile_01_s);
+  report.p99_interval_s(clock.quantile_99_s);
+  report.p99_9_interval_s(clock.quantile_999_s);
   report.nominal_rate_hz(clock.nominal_rate_hz);
   report.mean_rate_hz(clock.mean_rate_hz);
   report.tick_s(clock.tick_s);
@@ -30,28 +29,28 @@ void fill_numbers(const analysis::SampleClockStatistics& clock, wire::SampleCloc
   report.pair_period_s(clock.pair_period_s);
   report.temperature_correlation(clock.temperature_correlation);
   report.temperature_slope_s_per_degc(clock.temperature_slope_s_per_degc);
-  report.close_up_first_time_s(clock.close_up_first_time_s);
+  report.close_up_begin_s(clock.close_up_first_time_s);
   report.lost(clock.lost);
 }
 
 void fill_lists(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
-  report.modes_s() = clock.modes_s;
-  report.close_up_ns() = clock.close_up_ns;
+  report.mode_intervals_s() = clock.modes_s;
+  report.close_up_interval_ns() = clock.close_up_ns;
   report.scatter_temperature_degc() = clock.scatter_temperature_degc;
   report.scatter_interval_ns() = clock.scatter_interval_ns;
   for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
     wire::HistogramBin message;
     message.interval_ticks(bin.ticks);
     message.interval_ns(bin.interval_ns);
-    message.count(bin.count);
+    message.interval_count(bin.count);
     report.histogram().push_back(message);
   }
   for (const analysis::IntervalBucket& bucket : clock.over_time) {
     wire::IntervalBucket message;
     message.time_s(bucket.time_s);
-    message.minimum_ns(bucket.minimum_ns);
-    message.maximum_ns(bucket.maximum_ns);
-    message.mean_ns(bucket.mean_ns);
+    message.min_interval_ns(bucket.minimum_ns);
+    message.max_interval_ns(bucket.maximum_ns);
+    message.mean_interval_ns(bucket.mean_ns);
     report.over_time().push_back(message);
   }
   for (const analysis::IntervalEvent& event : clock.events) {
@@ -60,7 +59,7 @@ void fill_lists(const analysis::SampleClockStatistics& clock, wire::SampleClockR
     message.sample(event.sample);
     message.time_s(event.time_s);
     message.size_ns(event.size_ns);
-    message.missing(event.missing);
+    message.missing_samples(event.missing);
     report.events().push_back(message);
   }
   for (const analysis::TemperatureBin& bin : clock.over_temperature) {
@@ -68,13 +67,13 @@ void fill_lists(const analysis::SampleClockStatistics& clock, wire::SampleClockR
     message.temperature_degc(bin.temperature_degc);
     message.mean_interval_ns(bin.mean_interval_ns);
     message.sd_interval_ns(bin.sd_interval_ns);
-    message.count(bin.count);
+    message.interval_count(bin.count);
     report.over_temperature().push_back(message);
   }
   for (const analysis::AllanPoint& point : clock.allan) {
     wire::AllanPoint message;
     message.tau_s(point.tau_s);
-    message.deviation(point.deviation);
+    message.deviation_rel(point.deviation);
     report.allan().push_back(message);
   }
 }
@@ -117,7 +116,7 @@ void ClockReportBuilder::add(const wire::SampleBlock& block) {
     temperature = std::span(block.values())
                       .subspan(*temperature_column_ * block.sample_count(), block.sample_count());
   }
-  clock_->push(block.first_sample(), block.stamps_ns(), block.flags(), temperature);
+  clock_->push(block.first_sample(), block.stamps_ns(), block.stamp_flags(), temperature);
 }
 
 std::vector<wire::SampleClockReport> ClockReportBuilder::reports() const {

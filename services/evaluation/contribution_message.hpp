@@ -1,10 +1,10 @@
 // A row of the uncertainty budget as the contract's message, and back: the one place that knows
 // how.
 //
-// The message has no kind yet: it is told from the name, and what repeats follows from the kind.
-// Infinite degrees of freedom are 0 in the message alone. A row that was drawn anew does not say
-// there how much of its magnitude lasts over repetitions; for stamp noise, which has such a part,
-// all of it is then taken to last. Any thread.
+// What a program decides by travels as enums; the name goes with it for people. Infinite degrees of
+// freedom are infinity in both. A message of a later version may have values that this one does not
+// know: such a kind is read as `other` with the name as its subject, such a distribution as normal,
+// and what repeats as common, which never averages. Any thread.
 #pragma once
 
 #include "analysis/uncertainty/contribution.hpp"

@@ -20,10 +20,12 @@ Expected<ChannelName> role(const std::string& what, const std::string& text) {
 }
 
 Expected<void> parse_roles(const wire::Measurement& measurement, Recipe& recipe) {
+  const bool by_series = recipe.method == wire::METHOD_SERIES_TIMESTAMPING;
   const std::vector<std::pair<const char*, std::pair<const std::string*, ChannelName*>>> roles{
       {"reference", {&measurement.reference(), &recipe.reference}},
       {"sync_acs", {&measurement.sync_acs(), &recipe.sync_acs}},
-      {"sync_dau", {&measurement.sync_dau(), &recipe.sync_dau}}};
+      {by_series ? "sync_dso" : "sync_dau",
+       {by_series ? &measurement.sync_dso() : &measurement.sync_dau(), &recipe.sync_dau}}};
   const bool without_sync = recipe.without_sync();
   for (const auto& [what, places] : roles) {
     if (without_sync && places.first->empty()) {
@@ -86,13 +88,14 @@ Expected<void> parse_roles(const wire::Measurement& measurement, Recipe& recipe)
 
 Expected<void> parse_steps(const wire::Measurement& measurement, Recipe& recipe) {
   for (const wire::PlannedStep& planned : measurement.steps()) {
-    const auto frequency = analysis::Frequency::parse(planned.frequency_hz());
+    const auto frequency = analysis::Frequency::parse(planned.frequency_text_hz());
     if (!frequency || !(planned.duration_s() > 0.0) || !(planned.settling_s() >= 0.0)) {
-      return fail(refused(fmt::format(
-          "step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
-          planned.step(), planned.frequency_hz(), planned.settling_s(), planned.duration_s())));
+      return fail(refused(
+          fmt::format("step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
+                      planned.step(), planned.frequency_text_hz(), planned.settling_s(),
+                      planned.duration_s())));
     }
-    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_hz(),
+    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_text_hz(),
                             *frequency, planned.level_m_s2(), planned.settling_s(),
                             planned.duration_s()});
   }
@@ -175,8 +178,8 @@ Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
     recipe.frequency_search_rel = measurement.frequency_search_rel();
   }
   recipe.reference_delay_s = measurement.reference_delay_s();
-  recipe.systematic.reference_magnitude_rel = measurement.reference_magnitude_rel();
-  recipe.systematic.reference_phase_rad = measurement.reference_phase_rad();
+  recipe.systematic.reference_magnitude_rel = measurement.u_reference_magnitude_rel();
+  recipe.systematic.reference_phase_rad = measurement.u_reference_phase_rad();
   recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
   recipe.sha256 = measurement.recipe_sha256();
   if (recipe.method == wire::METHOD_SERIES_TIMESTAMPING &&

@@ -49,7 +49,7 @@ bool SourceRecord::usable(const wire::SampleBlock& block) const {
   const bool stamped = block.stamps_ns().empty()
                            ? block.interval_numerator_ns() > 0 && block.interval_denominator() > 0
                            : block.stamps_ns().size() == samples;
-  const bool flagged = block.flags().empty() || block.flags().size() == samples;
+  const bool flagged = block.stamp_flags().empty() || block.stamp_flags().size() == samples;
   const bool filled =
       block.values().size() == samples * block.channel_count() && block.channel_count() > 0;
   return stamped && flagged && filled;
@@ -98,10 +98,10 @@ void SourceRecord::append(const wire::SampleBlock& block) {
   } else {
     stamps_ns_.insert(stamps_ns_.end(), block.stamps_ns().begin(), block.stamps_ns().end());
   }
-  if (block.flags().empty()) {
+  if (block.stamp_flags().empty()) {
     flags_.resize(flags_.size() + samples, 0);
   } else {
-    flags_.insert(flags_.end(), block.flags().begin(), block.flags().end());
+    flags_.insert(flags_.end(), block.stamp_flags().begin(), block.stamp_flags().end());
   }
   const bool told = block.stamp_uncertainty_ns().size() == samples;
   if (told) {

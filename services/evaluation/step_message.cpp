@@ -25,17 +25,17 @@ wire::SourceSamples samples_message(const SourceRecord& record, const StepSample
   samples.used(series.stamps_ns.size());
   samples.lost(record.lost_between(stretch.begin_ns, stretch.end_ns));
   samples.not_trusted(series.not_trusted);
-  samples.first_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.front());
-  samples.last_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.back());
+  samples.first_stamp_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.front());
+  samples.last_stamp_ns(series.stamps_ns.empty() ? 0 : series.stamps_ns.back());
   return samples;
 }
 
 wire::SineFit fit_message(const analysis::SeriesFit& series) {
   wire::SineFit message;
-  message.series(series.series);
+  message.channel(series.series);
   message.frequency_hz(series.frequency.hz());
   message.u_frequency_hz(series.u_frequency_hz);
-  message.reference_ns(series.reference_ns);
+  message.phase_origin_ns(series.reference_ns);
   message.sine(series.fit.sine);
   message.cosine(series.fit.cosine);
   message.offset(series.fit.offset);
@@ -44,7 +44,7 @@ wire::SineFit fit_message(const analysis::SeriesFit& series) {
   message.u_offset(std::sqrt(series.fit.covariance[5]));
   message.residual_rms(std::sqrt(
       series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
-  message.samples(series.fit.samples);
+  message.sample_count(series.fit.samples);
   return message;
 }
 

@@ -111,8 +111,8 @@ void add_group_delay(const Recipe& recipe, double u_clock_s, std::vector<PointOf
   function.u_group_delay_s(delay->u_delay_s);
   function.intercept_rad(delay->intercept_rad);
   function.u_intercept_rad(delay->u_intercept_rad);
-  function.cov_delay_intercept(delay->cov_delay_intercept);
-  function.phase_covariance() = delay->phase_covariance;
+  function.cov_delay_intercept_rad_s(delay->cov_delay_intercept);
+  function.phase_covariance_rad2() = delay->phase_covariance;
   if (delay->polarity_inverted) {
     function.flags().emplace_back("polarity inverted");
   }

@@ -51,11 +51,11 @@ figures::IntervalHistogramData histogram_data(const wire::SampleClockReport& rep
   data.title = fmt::format("Sample intervals of {}", report.source().c_str());
   data.tick_s = report.tick_s();
   data.mean_interval_s = report.mean_interval_s();
-  data.sd_s = report.sd_s();
-  data.minimum_s = report.minimum_s();
-  data.maximum_s = report.maximum_s();
+  data.sd_s = report.sd_interval_s();
+  data.minimum_s = report.min_interval_s();
+  data.maximum_s = report.max_interval_s();
   for (const wire::HistogramBin& bin : report.histogram()) {
-    data.counts.push_back({bin.interval_ticks(), bin.interval_ns(), bin.count()});
+    data.counts.push_back({bin.interval_ticks(), bin.interval_ns(), bin.interval_count()});
   }
   return data;
 }
@@ -68,8 +68,8 @@ figures::IntervalOverTemperatureData temperature_data(const RunOutcome& outcome,
   data.temperature_degc = report.scatter_temperature_degc();
   data.interval_ns = report.scatter_interval_ns();
   for (const wire::TemperatureBin& bin : report.over_temperature()) {
-    data.bins.push_back(
-        {bin.temperature_degc(), bin.mean_interval_ns(), bin.sd_interval_ns(), bin.count()});
+    data.bins.push_back({bin.temperature_degc(), bin.mean_interval_ns(), bin.sd_interval_ns(),
+                         bin.interval_count()});
   }
   return data;
 }
@@ -80,11 +80,11 @@ figures::IntervalOverTimeData time_data(const RunOutcome& outcome,
   data.title = fmt::format("Sample interval of {} over time", report.source().c_str());
   data.subtitle = run_line(outcome);
   for (const wire::IntervalBucket& bucket : report.over_time()) {
-    data.overview.push_back(
-        {bucket.time_s(), bucket.minimum_ns(), bucket.maximum_ns(), bucket.mean_ns()});
+    data.overview.push_back({bucket.time_s(), bucket.min_interval_ns(), bucket.max_interval_ns(),
+                             bucket.mean_interval_ns()});
   }
-  data.close_up_first_time_s = report.close_up_first_time_s();
-  data.close_up_ns = report.close_up_ns();
+  data.close_up_first_time_s = report.close_up_begin_s();
+  data.close_up_ns = report.close_up_interval_ns();
   return data;
 }
 
@@ -101,7 +101,7 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
     }
   }
   for (const wire::SampleClockReport& report : outcome.clock_reports) {
-    if (report.intervals() == 0) {
+    if (report.interval_count() == 0) {
       continue; // series have no stamps
     }
     const std::string source = report.source().to_string();

@@ -120,12 +120,12 @@ Json clock_json(const wire::SampleClockReport& report) {
   return {{"source", report.source().to_string()},
           {"mean_interval_s", report.mean_interval_s()},
           {"u_mean_interval_s", report.u_mean_interval_s()},
-          {"sd_s", report.sd_s()},
-          {"min_s", report.minimum_s()},
-          {"max_s", report.maximum_s()},
-          {"median_s", report.median_s()},
-          {"mad_sd_s", report.mad_sd_s()},
-          {"count", report.intervals()},
+          {"sd_s", report.sd_interval_s()},
+          {"min_s", report.min_interval_s()},
+          {"max_s", report.max_interval_s()},
+          {"median_s", report.median_interval_s()},
+          {"mad_sd_s", report.mad_sd_interval_s()},
+          {"count", report.interval_count()},
           {"nominal_rate_hz", report.nominal_rate_hz()},
           {"mean_rate_hz", report.mean_rate_hz()},
           {"tick_s", report.tick_s()},
@@ -201,15 +201,16 @@ std::string result_table(const RunOutcome& outcome) {
                         fmt::join(quiet, ", "));
   }
   for (const wire::SampleClockReport& report : outcome.clock_reports) {
-    if (report.intervals() == 0) {
+    if (report.interval_count() == 0) {
       text += series_clock_line(outcome, report);
       continue;
     }
     text += fmt::format("\nSample clock of {}: mean interval {:.5f} us, sd {:.1f} ns, spread "
                         "{:.0f} ns, {} intervals, {} events, {} samples lost\n",
                         report.source().c_str(), report.mean_interval_s() * 1e6,
-                        report.sd_s() * 1e9, (report.maximum_s() - report.minimum_s()) * 1e9,
-                        report.intervals(), report.event_count(), report.lost());
+                        report.sd_interval_s() * 1e9,
+                        (report.max_interval_s() - report.min_interval_s()) * 1e9,
+                        report.interval_count(), report.event_count(), report.lost());
   }
   std::vector<std::string> problems;
   for (const wire::CalibrationResult& result : outcome.results) {

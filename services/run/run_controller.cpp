@@ -246,7 +246,7 @@ void RunController::announce(const wire::PlannedStep& step, wire::ExcitationStat
   excitation.bench(bench_.bench);
   excitation.run(run_);
   excitation.step(step.step());
-  excitation.frequency_hz(step.frequency_hz());
+  excitation.frequency_text_hz(step.frequency_text_hz());
   excitation.level_m_s2(step.level_m_s2());
   excitation.repetition(step.repetition());
   excitation.state(state);
@@ -314,7 +314,7 @@ void RunController::show(const std::string& phase, const std::string& request) {
   progress.phase = phase;
   progress.results = outcome_.results.size();
   if (step_ > 0 && step_ <= progress.steps) {
-    progress.frequency_hz = outcome_.measurement.steps()[step_ - 1].frequency_hz();
+    progress.frequency_hz = outcome_.measurement.steps()[step_ - 1].frequency_text_hz();
   }
   if (step_ > 1) {
     const double per_step_s =

@@ -28,7 +28,7 @@ void plan_steps(const BenchFile& file, wire::Measurement& measurement) {
       wire::PlannedStep step;
       step.step(++number);
       step.repetition(static_cast<std::uint32_t>(repetition));
-      step.frequency_hz(excitation.frequencies_hz[i]);
+      step.frequency_text_hz(excitation.frequencies_hz[i]);
       step.level_m_s2(excitation.levels_m_s2[i]);
       step.settling_s(planned_settling_s(
           file, analysis::Frequency::parse(excitation.frequencies_hz[i])->hz(), repetition));
@@ -68,7 +68,11 @@ plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now
     return name.source.empty() ? std::string() : name.text();
   };
   measurement.sync_acs(text_of(file.method.sync_acs));
-  measurement.sync_dau(text_of(file.method.sync_dau));
+  if (file.method.kind == EvaluationMethod::series_timestamping) {
+    measurement.sync_dso(text_of(file.method.sync_dau));
+  } else {
+    measurement.sync_dau(text_of(file.method.sync_dau));
+  }
   for (const ChannelName& name : file.method.dut) {
     measurement.dut().push_back(name.text());
   }
@@ -77,8 +81,8 @@ plan_measurement(const BenchFile& file, const std::string& run, std::int64_t now
   }
   plan_steps(file, measurement);
   plan_adc(adc_calibration, measurement);
-  measurement.reference_magnitude_rel(file.uncertainty.reference_magnitude_rel);
-  measurement.reference_phase_rad(file.uncertainty.reference_phase_rad);
+  measurement.u_reference_magnitude_rel(file.uncertainty.reference_magnitude_rel);
+  measurement.u_reference_phase_rad(file.uncertainty.reference_phase_rad);
   measurement.dso_delay_s(file.corrections.dso_delay_s);
   measurement.u_dso_delay_s(file.corrections.u_dso_delay_s);
   measurement.u_acs_delay_s(file.uncertainty.acs_delay_s);

@@ -33,11 +33,11 @@ double margin_s(double frequency_hz) {
 }
 
 analysis::Frequency frequency_of(const wire::PlannedStep& step) {
-  return *analysis::Frequency::parse(step.frequency_hz()); // the bench file was checked
+  return *analysis::Frequency::parse(step.frequency_text_hz()); // the bench file was checked
 }
 
 Error of_step(const wire::PlannedStep& step, ErrorCode code, const std::string& what) {
-  return {code, fmt::format("step {}, {} Hz: {}", step.step(), step.frequency_hz(), what)};
+  return {code, fmt::format("step {}, {} Hz: {}", step.step(), step.frequency_text_hz(), what)};
 }
 
 } // namespace
@@ -104,7 +104,7 @@ drivers::generator::LevelLimits StepExcitation::limits() const {
 }
 
 drivers::generator::LevelTarget StepExcitation::target_of(const wire::PlannedStep& step) const {
-  const auto known = known_responses_.find(step.frequency_hz());
+  const auto known = known_responses_.find(step.frequency_text_hz());
   const bool is_known = known != known_responses_.end();
   return {.level_m_s2 = step.level_m_s2(),
           .tolerance_rel = *bench_.generator.level_tolerance_rel,
@@ -179,7 +179,7 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
 // The bench time from which on the output is on.
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
-  const auto set = generator_->set_frequency(step.frequency_hz())
+  const auto set = generator_->set_frequency(step.frequency_text_hz())
                        .and_then([&] { return generator_->set_amplitude_v(voltage_v); })
                        .and_then([&] { return generator_->set_output(true); });
   if (!set) {
@@ -217,7 +217,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
     if (!reached) {
       return fail(of_step(step, ErrorCode::device, reached.error().message));
     }
-    known_responses_[step.frequency_hz()] = loop->level_per_volt();
+    known_responses_[step.frequency_text_hz()] = loop->level_per_volt();
     if (*reached) {
       return began;
     }

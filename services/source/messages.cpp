@@ -84,6 +84,7 @@ dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uin
   message.stamp_instant(to_contract(description.stamp_instant));
   message.tick_s(description.tick_s);
   message.stamp_uncertainty_s(description.stamp_uncertainty_s);
+  message.contract_version(dyncal::wire::CONTRACT_VERSION);
   return message;
 }
 
@@ -105,7 +106,7 @@ dyncal::wire::SampleBlock to_message(const SourceOptions& source, std::uint64_t 
   }
   message.stamps_ns(std::move(block.stamps_ns));
   message.stamp_uncertainty_ns(std::move(block.stamp_uncertainty_ns));
-  message.flags(std::move(block.flags));
+  message.stamp_flags(std::move(block.flags));
   message.values(std::move(block.values));
   message.received_utc_ns(block.received_utc_ns);
   return message;
@@ -120,7 +121,7 @@ dyncal::wire::SourceStatus to_message(const SourceOptions& source,
   message.session(snapshot.session);
   message.received(counts.received);
   message.lost_in_device(counts.lost_in_device);
-  message.lost_on_way(counts.lost_on_way);
+  message.lost_in_transit(counts.lost_on_way);
   message.duplicates(counts.duplicates);
   message.rejected(counts.rejected);
   message.stamps_not_trusted(counts.stamps_not_trusted);

@@ -107,7 +107,7 @@ bool SourceChannel::next_message() {
   answer.first_sample = next_sample_;
   answer.received_utc_ns = utc_now_ns();
   pending_ = to_message(publisher_->options(), session_, block_number_++, std::move(answer));
-  pending_->answers_run(runs_to_answer_.front());
+  pending_->acknowledged_run(runs_to_answer_.front());
   runs_to_answer_.pop_front();
   return true;
 }

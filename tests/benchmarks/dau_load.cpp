@@ -143,7 +143,7 @@ public:
     status_.take([&](const wire::SourceStatus& status, const bus::SampleInfo&) {
       const std::string name = std::string(status.bench().c_str()) + "/" + status.source().c_str();
       lost_by_account_[name] =
-          status.lost_in_device() + status.lost_on_way() + status.dropped_in_service();
+          status.lost_in_device() + status.lost_in_transit() + status.dropped_in_service();
       for (const auto& cause : status.causes()) {
         causes_[cause.name()] = std::max(causes_[cause.name()], cause.value());
       }

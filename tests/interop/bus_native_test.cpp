@@ -117,14 +117,14 @@ protected:
   }
 };
 
-wire::SineFit example_fit(const std::string& series) {
+wire::SineFit example_fit(const std::string& channel) {
   wire::SineFit fit;
-  fit.series(series);
+  fit.channel(channel);
   fit.frequency_hz(10.0 + 1e-9);
-  fit.reference_ns(1'500'000'000'123'456'789);
+  fit.phase_origin_ns(1'500'000'000'123'456'789);
   fit.sine(0.1);
   fit.cosine(-0.2);
-  fit.samples(3010);
+  fit.sample_count(3010);
   return fit;
 }
 
@@ -140,14 +140,14 @@ TEST_P(BusNative, ExchangesSampleBlocks) {
       block.first_sample(number * 3);
       block.sample_count(3);
       block.channel_count(2);
-      block.answers_run(number == 0 ? "" : "run-" + std::to_string(number));
+      block.acknowledged_run(number == 0 ? "" : "run-" + std::to_string(number));
       block.end_of_stream(number == 49);
       block.origin_ns(-1);
       block.interval_numerator_ns(1'000'000);
       block.interval_denominator(3);
       block.stamps_ns({1, 2, 3});
       block.stamp_uncertainty_ns({4, 5, 0xffffffffU});
-      block.flags({0, 1, 128});
+      block.stamp_flags({0, 1, 128});
       block.values(
           std::vector<double>(number == 7 ? 10'000 : 6, 0.1 * static_cast<double>(number)));
       block.received_utc_ns(1'700'000'000'000'000'000);
@@ -168,7 +168,7 @@ TEST_P(BusNative, ExchangesMeasurements) {
   for (std::uint32_t step = 0; step < 51; ++step) {
     wire::PlannedStep planned;
     planned.step(step);
-    planned.frequency_hz("12.5");
+    planned.frequency_text_hz("12.5");
     planned.level_m_s2(10.0);
     planned.repetition(step % 3 + 1);
     measurement.steps().push_back(planned);

@@ -78,8 +78,8 @@ wire::SourceSamples shots_message(const SourceRecord& source,
     used += series ? shot.series->sample_count() : shot.trace->sample_count();
   }
   samples.used(used);
-  samples.first_ns(shots.front().trace->trigger_ns());
-  samples.last_ns(shots.back().trace->trigger_ns());
+  samples.first_stamp_ns(shots.front().trace->trigger_utc_ns());
+  samples.last_stamp_ns(shots.back().trace->trigger_utc_ns());
   return samples;
 }
 

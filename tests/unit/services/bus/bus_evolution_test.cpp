@@ -31,7 +31,7 @@ struct NewerCommand : wire::Command {
 // Its bytes end in the middle of a member.
 struct BrokenCommand : wire::Command {
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
+    cdr << std::string("bench") << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
   }
 };
 
@@ -41,10 +41,12 @@ struct LongKeyCommand : wire::Command {
     return Command::getCdrSerializedSize(sample) + 200;
   }
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string(150, 'k') << std::uint32_t{0} << std::string("b") << std::string("r")
-        << std::uint32_t{0} << std::string("s");
+    cdr << std::string("b") << std::string(150, 'k') << std::uint32_t{0} << std::string("r")
+        << std::string("s");
   }
-  void serializeKey(eprosima::fastcdr::Cdr& cdr) const { cdr << std::string(150, 'k'); }
+  void serializeKey(eprosima::fastcdr::Cdr& cdr) const {
+    cdr << std::string("b") << std::string(150, 'k');
+  }
 };
 
 } // namespace
@@ -52,19 +54,19 @@ struct LongKeyCommand : wire::Command {
 template <>
 const TypeSupport& type_support<NewerCommand>() {
   static const TypeSupport support =
-      make_type_support<NewerCommand>("dyncal::wire::Command", KeyLayout{{64}, 0});
+      make_type_support<NewerCommand>("dyncal::wire::Command", KeyLayout{{64, 64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<BrokenCommand>() {
   static const TypeSupport support =
-      make_type_support<BrokenCommand>("dyncal::wire::Command", KeyLayout{{64}, 0});
+      make_type_support<BrokenCommand>("dyncal::wire::Command", KeyLayout{{64, 64}, 0});
   return support;
 }
 template <>
 const TypeSupport& type_support<LongKeyCommand>() {
   static const TypeSupport support =
-      make_type_support<LongKeyCommand>("dyncal::wire::Command", KeyLayout{{200}, 0});
+      make_type_support<LongKeyCommand>("dyncal::wire::Command", KeyLayout{{64, 200}, 0});
   return support;
 }
 
@@ -76,7 +78,7 @@ protected:
   static T filled() {
     T command;
     command.target("dau");
-    command.step(7);
+    command.run("run-7");
     command.sender("test");
     return command;
   }

@@ -24,10 +24,10 @@ protected:
     return block;
   }
 
-  static wire::Command command(const std::string& target, std::uint32_t step) {
+  static wire::Command command(const std::string& target, std::uint32_t run) {
     wire::Command command;
     command.target(target);
-    command.step(step);
+    command.run(std::to_string(run));
     return command;
   }
 };
@@ -163,21 +163,21 @@ TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
   ASSERT_EQ(writer.write(command("dau", 1)), WriteOutcome::written);
   auto reader = this->reader<wire::Command>(topics::command, Profile::command);
   ASSERT_TRUE(wait_for_match(writer, reader));
-  std::vector<std::uint32_t> steps;
+  std::vector<std::string> runs;
   const auto take = [&] {
     reader.take(
-        [&](const wire::Command& sample, const SampleInfo&) { steps.push_back(sample.step()); });
-    return !steps.empty();
+        [&](const wire::Command& sample, const SampleInfo&) { runs.push_back(sample.run()); });
+    return !runs.empty();
   };
   // One side may match before the other: commands are repeated until they are answered.
-  for (std::uint32_t step = 2; step < 200; ++step) {
-    ASSERT_EQ(writer.write(command("dau", step)), WriteOutcome::written);
+  for (std::uint32_t run = 2; run < 200; ++run) {
+    ASSERT_EQ(writer.write(command("dau", run)), WriteOutcome::written);
     if (wait_for(take, 100ms)) {
       break;
     }
   }
-  ASSERT_FALSE(steps.empty());
-  EXPECT_NE(steps.front(), 1U);
+  ASSERT_FALSE(runs.empty());
+  EXPECT_NE(runs.front(), "1");
 }
 
 TEST_P(BusExchange, CarriesKeysOf1And64Characters) {

@@ -29,10 +29,10 @@ wire::SampleBlock example_block() {
   block.first_sample(150);
   block.sample_count(2);
   block.channel_count(2);
-  block.answers_run("run-1");
+  block.acknowledged_run("run-1");
   block.stamps_ns({1'500'000'000'000'000'001, 1'500'000'000'001'000'002});
   block.stamp_uncertainty_ns({100, 101});
-  block.flags({0, 4});
+  block.stamp_flags({0, 4});
   block.values({0.1, -0.2, 1e300, 5e-324});
   block.received_utc_ns(-1);
   return block;
@@ -97,8 +97,8 @@ TEST(TypeSupport, SurvivesAnyBytes) {
 template <class T>
 class EveryType : public testing::Test {};
 using Types = testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
-                             wire::TriggeredRecord, wire::AcsPhasor, wire::Measurement,
-                             wire::Excitation, wire::CalibrationResult, wire::TransferFunction,
+                             wire::TriggeredRecord, wire::Measurement, wire::Excitation,
+                             wire::CalibrationResult, wire::TransferFunction,
                              wire::SampleClockReport, wire::ServiceStatus, wire::Command>;
 TYPED_TEST_SUITE(EveryType, Types);
 

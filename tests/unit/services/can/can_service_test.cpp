@@ -137,7 +137,7 @@ TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
     EXPECT_EQ(block.first_sample(), next);
     EXPECT_EQ(block.stamps_ns().size(), block.sample_count());
     EXPECT_EQ(block.stamp_uncertainty_ns().size(), block.sample_count());
-    EXPECT_EQ(block.flags().size(), block.sample_count());
+    EXPECT_EQ(block.stamp_flags().size(), block.sample_count());
     EXPECT_EQ(block.values().size(), block.sample_count());
     EXPECT_DOUBLE_EQ(block.values()[0], static_cast<double>(next % 50) * 0.01);
     next += block.sample_count();
@@ -160,7 +160,7 @@ TEST_F(CanService, TellsBusStateErrorCountersDropsAndGapsInTheStatus) {
   publish(std::move(events));
   const auto status = listener.last_status("sensor");
   EXPECT_EQ(status->received(), 1994U);
-  EXPECT_EQ(status->lost_on_way(), 10U);
+  EXPECT_EQ(status->lost_in_transit(), 10U);
   EXPECT_EQ(status->duplicates(), 1U);
   EXPECT_GT(status->clock_uncertainty_s(), 0.0);
   EXPECT_EQ(cause("frames received"), 1995U);
@@ -304,7 +304,8 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
   EXPECT_NEAR(sum[1] / 1669.0, 0.3417, 5e-5);
   EXPECT_NEAR(sum[2] / 1669.0, 10.0466, 5e-5);
   EXPECT_EQ(missing, 5U); // one pause of 606 ms
-  ASSERT_TRUE(listener.until([&] { return listener.last_status("sensor")->lost_on_way() == 5; }));
+  ASSERT_TRUE(
+      listener.until([&] { return listener.last_status("sensor")->lost_in_transit() == 5; }));
   EXPECT_GT(listener.descriptions.front().stamp_uncertainty_s(),
             9.0); // nobody knows how the recorder's clock was kept
 }

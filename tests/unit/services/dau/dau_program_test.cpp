@@ -126,7 +126,7 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   }
 
   unit.lose_datagrams(2);
-  ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_on_way() == 24; }))
+  ASSERT_TRUE(listener.until([&] { return listener.last_status("dau")->lost_in_transit() == 24; }))
       << program->errors();
   EXPECT_EQ(listener.last_status("dau")->lost_in_device(), 0U);
   EXPECT_EQ(listener.last_status("dau")->state(), wire::SOURCE_RUNNING);

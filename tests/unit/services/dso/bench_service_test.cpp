@@ -99,7 +99,7 @@ shots = {}
     excitation.bench(bench_);
     excitation.run("run-1");
     excitation.step(step);
-    excitation.frequency_hz("100");
+    excitation.frequency_text_hz("100");
     excitation.state(state);
     excitation_.write(excitation);
   }

@@ -1,6 +1,7 @@
 #include "services/evaluation/contribution_message.hpp"
 
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -9,17 +10,10 @@ namespace {
 
 using analysis::Contribution;
 using analysis::ContributionKind;
+using analysis::Distribution;
+using analysis::Repeats;
 
-TEST(ContributionMessage, ComesBackAsItWasSent) {
-  const Contribution sent{.kind = ContributionKind::quantisation,
-                          .subject = "the sensor",
-                          .distribution = analysis::Distribution::rectangular,
-                          .degrees_of_freedom = 12.5,
-                          .u_magnitude_rel = 1e-4,
-                          .u_phase_rad = 2e-4};
-  const wire::BudgetContribution message = contribution_message(sent);
-  EXPECT_EQ(message.name(), "quantisation of the sensor");
-  const Contribution read = contribution_of(message);
+void expect_equal(const Contribution& read, const Contribution& sent) {
   EXPECT_EQ(read.kind, sent.kind);
   EXPECT_EQ(read.subject, sent.subject);
   EXPECT_EQ(read.distribution, sent.distribution);
@@ -27,22 +21,59 @@ TEST(ContributionMessage, ComesBackAsItWasSent) {
   EXPECT_EQ(read.degrees_of_freedom, sent.degrees_of_freedom);
   EXPECT_EQ(read.u_magnitude_rel, sent.u_magnitude_rel);
   EXPECT_EQ(read.u_phase_rad, sent.u_phase_rad);
+  EXPECT_EQ(read.u_lasting_magnitude_rel, sent.u_lasting_magnitude_rel);
 }
 
-TEST(ContributionMessage, InfiniteDegreesOfFreedomStayInfinite) {
+TEST(ContributionMessage, EveryKindComesBackAsItWasSent) {
+  std::set<wire::ContributionKind> sent_kinds;
+  for (int i = 0; i <= static_cast<int>(ContributionKind::other); ++i) {
+    const Contribution sent{.kind = static_cast<ContributionKind>(i),
+                            .subject = "the sensor",
+                            .distribution = Distribution::rectangular,
+                            .degrees_of_freedom = 12.5,
+                            .u_magnitude_rel = 1e-4,
+                            .u_phase_rad = 2e-4,
+                            .u_lasting_magnitude_rel = 3e-5};
+    const wire::BudgetContribution message = contribution_message(sent);
+    EXPECT_EQ(message.name(), sent.name());
+    EXPECT_TRUE(sent_kinds.insert(message.kind()).second) << message.name();
+    expect_equal(contribution_of(message), sent);
+  }
+}
+
+TEST(ContributionMessage, EveryDistributionAndEveryRepetitionComesBackAsItWasSent) {
+  for (const Distribution distribution : {Distribution::normal, Distribution::rectangular,
+                                          Distribution::triangular, Distribution::arcsine}) {
+    for (const Repeats repeats : {Repeats::anew, Repeats::common, Repeats::common_delay}) {
+      const Contribution sent{
+          .kind = ContributionKind::reference, .distribution = distribution, .repeats = repeats};
+      expect_equal(contribution_of(contribution_message(sent)), sent);
+    }
+  }
+}
+
+TEST(ContributionMessage, InfiniteDegreesOfFreedomAreInfinityOnTheBus) {
   const wire::BudgetContribution message =
       contribution_message({.kind = ContributionKind::reference, .u_phase_rad = 1e-3});
+  EXPECT_TRUE(std::isinf(message.degrees_of_freedom()));
   EXPECT_TRUE(std::isinf(contribution_of(message).degrees_of_freedom));
 }
 
-// The message does not tell which part of stamp noise only shortens the amplitude.
-TEST(ContributionMessage, TheMagnitudeOfStampNoiseIsTakenToLast) {
-  const Contribution read =
-      contribution_of(contribution_message({.kind = ContributionKind::stamp_tick,
-                                            .subject = "the DAU stamps",
-                                            .u_magnitude_rel = 3e-5}));
-  EXPECT_EQ(read.repeats, analysis::Repeats::anew);
-  EXPECT_EQ(read.u_lasting_magnitude_rel, 3e-5);
+// As a later version of the contract could send them.
+TEST(ContributionMessage, UnknownValuesAreReadAsARowThatNeverAverages) {
+  wire::BudgetContribution message;
+  message.kind(static_cast<wire::ContributionKind>(99));
+  message.subject("the shaker");
+  message.name("tilt of the shaker");
+  message.distribution(static_cast<wire::Distribution>(99));
+  message.repeats(static_cast<wire::Repeats>(99));
+  message.u_magnitude_rel(1e-3);
+  const Contribution row = contribution_of(message);
+  EXPECT_EQ(row.kind, ContributionKind::other);
+  EXPECT_EQ(row.name(), "tilt of the shaker");
+  EXPECT_EQ(row.distribution, Distribution::normal);
+  EXPECT_EQ(row.repeats, Repeats::common);
+  EXPECT_EQ(row.u_magnitude_rel, 1e-3);
 }
 
 } // namespace

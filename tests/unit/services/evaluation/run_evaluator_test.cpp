@@ -115,10 +115,12 @@ TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
     // 0.05 s ln(0.1 / 1e-4) = 0.35 s after the beginning, whole blocks of periods and the window's
     // edge beside it.
     const double begin_s = run.off_s + (result.step() - 1) * (run.on_s + run.off_s);
-    EXPECT_NEAR(static_cast<double>(result.samples()[0].first_ns()) * 1e-9 - begin_s, 0.4, 0.15);
-    EXPECT_NEAR(
-        static_cast<double>(result.samples()[0].last_ns() - result.samples()[0].first_ns()) * 1e-9,
-        0.6, 0.001);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].first_stamp_ns()) * 1e-9 - begin_s, 0.4,
+                0.15);
+    EXPECT_NEAR(static_cast<double>(result.samples()[0].last_stamp_ns() -
+                                    result.samples()[0].first_stamp_ns()) *
+                    1e-9,
+                0.6, 0.001);
   }
 }
 

@@ -29,7 +29,8 @@ protected:
   static wire::Measurement measurement() {
     wire::Measurement measurement = tests::SyntheticRun{}.measurement();
     measurement.method(wire::METHOD_SERIES_TIMESTAMPING);
-    measurement.sync_dau("dso/sync");
+    measurement.sync_dau("");
+    measurement.sync_dso("dso/sync");
     measurement.dut() = {"tss/acceleration_z"};
     measurement.shots(5);
     measurement.trigger_phase_correction(true);

@@ -19,7 +19,7 @@ wire::SampleBlock block_of(std::size_t samples) {
     block.values()[i] = static_cast<double>(i);
     block.values()[samples + i] = -static_cast<double>(i);
   }
-  block.flags().resize(samples, 0);
+  block.stamp_flags().resize(samples, 0);
   return block;
 }
 
@@ -50,7 +50,7 @@ TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
   for (std::size_t i = 0; i < 5000; ++i) {
     switch (random() % 60) {
     case 0:
-      block.flags()[i] = 4;
+      block.stamp_flags()[i] = 4;
       break;
     case 1:
       block.values()[i] = std::nan("");
@@ -80,7 +80,7 @@ TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
     const bool measured =
         std::isfinite(block.values()[i]) && std::isfinite(block.values()[5000 + i]);
     const bool later = expected.empty() || stamp_ns > block.stamps_ns()[expected.back()];
-    if (block.flags()[i] == 0 && measured && later) {
+    if (block.stamp_flags()[i] == 0 && measured && later) {
       expected.push_back(i);
     } else {
       ++left_out;

@@ -62,7 +62,7 @@ wire::Measurement SyntheticRun::measurement() const {
     wire::PlannedStep planned;
     planned.step(++number);
     planned.repetition(1);
-    planned.frequency_hz(step.frequency_hz);
+    planned.frequency_text_hz(step.frequency_hz);
     planned.level_m_s2(10.0);
     planned.settling_s(0.2);
     planned.duration_s(0.8);

@@ -1,5 +1,7 @@
 #include "services/report/run_report.hpp"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -61,7 +63,7 @@ RunOutcome outcome() {
   wire::SampleClockReport clock;
   clock.source("dau");
   clock.mean_interval_s(996.96e-6);
-  clock.intervals(1000);
+  clock.interval_count(1000);
   one.clock_reports.push_back(clock);
   return one;
 }
@@ -86,17 +88,19 @@ TEST(RunReport, JsonHasTheFormOthersRead) {
 TEST(RunReport, InfiniteDegreesOfFreedomAreNull) {
   RunOutcome one = outcome();
   wire::BudgetContribution row;
-  row.name("reference");
-  row.distribution("normal");
+  row.kind(wire::CONTRIBUTION_REFERENCE);
+  row.degrees_of_freedom(std::numeric_limits<double>::infinity());
   row.u_phase_rad(1e-3);
   one.results.front().budget().push_back(row);
-  row.name("noise of the sensor");
+  row.kind(wire::CONTRIBUTION_FIT_NOISE);
+  row.subject("the sensor");
   row.degrees_of_freedom(17.0);
   one.results.front().budget().push_back(row);
   const auto budget = result_json(one)["points"][0]["budget"];
   ASSERT_EQ(budget.size(), 2u);
   EXPECT_EQ(budget[0]["name"], "reference");
   EXPECT_TRUE(budget[0]["degrees_of_freedom"].is_null());
+  EXPECT_EQ(budget[1]["name"], "noise of the sensor");
   EXPECT_EQ(budget[1]["degrees_of_freedom"], 17.0);
 }
 

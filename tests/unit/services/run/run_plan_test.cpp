@@ -14,7 +14,7 @@ TEST(RunPlan, PlansAllFrequenciesOfARepetitionBeforeTheNext) {
   file.excitation.repetitions = 2;
   const wire::Measurement measurement = plan_measurement(file, "r", 5, {});
   ASSERT_EQ(measurement.steps().size(), 4U);
-  EXPECT_EQ(measurement.steps()[2].frequency_hz(), "10");
+  EXPECT_EQ(measurement.steps()[2].frequency_text_hz(), "10");
   EXPECT_EQ(measurement.steps()[2].repetition(), 2U);
   EXPECT_EQ(measurement.steps()[3].step(), 4U);
   EXPECT_DOUBLE_EQ(measurement.steps()[3].level_m_s2(), 2.0);

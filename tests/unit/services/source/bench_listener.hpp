@@ -74,7 +74,7 @@ public:
         asked = std::chrono::steady_clock::now();
       }
       for (const auto& block : blocks) {
-        if (block.answers_run() == run) {
+        if (block.acknowledged_run() == run) {
           return true;
         }
       }

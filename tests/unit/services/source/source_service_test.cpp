@@ -100,7 +100,7 @@ TEST_P(SourceServiceTest, AnswersArmWithAnEmptyBlockBehindWhatWasWritten) {
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-7"));
   const auto answer = std::ranges::find_if(
-      listener.blocks, [](const auto& block) { return block.answers_run() == "run-7"; });
+      listener.blocks, [](const auto& block) { return block.acknowledged_run() == "run-7"; });
   EXPECT_EQ(answer->sample_count(), 0U);
   EXPECT_EQ(answer->first_sample(), 50U);
   EXPECT_FALSE(answer->end_of_stream());
@@ -221,7 +221,7 @@ TEST_P(SourceServiceTest, PublishesTheCountsOfTheDriver) {
   const auto status = *listener.last_status("acs");
   EXPECT_EQ(status.received(), 10U);
   EXPECT_EQ(status.lost_in_device(), 1U);
-  EXPECT_EQ(status.lost_on_way(), 2U);
+  EXPECT_EQ(status.lost_in_transit(), 2U);
   EXPECT_EQ(status.duplicates(), 3U);
   EXPECT_EQ(status.rejected(), 4U);
   EXPECT_EQ(status.stamps_not_trusted(), 5U);
