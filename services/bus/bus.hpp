@@ -27,12 +27,12 @@
 
 #include "services/bus/names.hpp"
 #include "services/bus/type_support.hpp"
+#include "services/contract/topics.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::bus {
 
 enum class Vendor { fast_dds, cyclone_dds };
-enum class Profile { samples, results, state, command };
 
 struct ParticipantOptions {
   Vendor vendor = Vendor::fast_dds;
@@ -160,6 +160,18 @@ public:
                                                      std::shared_ptr<WakeUp> wake_up) {
     return untyped_->reader(type_support<T>(), topic, profile, partition, std::move(wake_up))
         .map([](auto r) { return Reader<T>(std::move(r)); });
+  }
+
+  // With the profile of the topic.
+  template <class T>
+  [[nodiscard]] services::Expected<Writer<T>> writer(const Topic<T>& topic,
+                                                     const std::string& partition) {
+    return writer<T>(topic.name, topic.profile, partition);
+  }
+  template <class T>
+  [[nodiscard]] services::Expected<Reader<T>>
+  reader(const Topic<T>& topic, const std::string& partition, std::shared_ptr<WakeUp> wake_up) {
+    return reader<T>(topic.name, topic.profile, partition, std::move(wake_up));
   }
 
   // Messages dropped because they were not what the contract says (idl/README.md). Not 0 when there

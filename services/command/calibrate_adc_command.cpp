@@ -46,8 +46,7 @@ Error no_time_scale(const std::string& source) {
 Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
                                          const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader<wire::SourceDescription>(
-      bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
+  auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());
   }

@@ -154,14 +154,10 @@ struct Readers {
 
 Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench,
                                const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto sources = participant.reader<wire::SourceStatus>(bus::topics::source_status,
-                                                        bus::Profile::state, bench, wake_up);
-  auto services = participant.reader<wire::ServiceStatus>(bus::topics::service_status,
-                                                          bus::Profile::state, bench, wake_up);
-  auto excitation = participant.reader<wire::Excitation>(bus::topics::excitation,
-                                                         bus::Profile::state, bench, wake_up);
-  auto results = participant.reader<wire::CalibrationResult>(bus::topics::calibration_result,
-                                                             bus::Profile::results, bench, wake_up);
+  auto sources = participant.reader(bus::topics::source_status, bench, wake_up);
+  auto services = participant.reader(bus::topics::service_status, bench, wake_up);
+  auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
+  auto results = participant.reader(bus::topics::calibration_result, bench, wake_up);
   for (const Error* error :
        {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
         excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {

@@ -1,22 +1,46 @@
-// Names of the topics of the contract and the QoS profile each one uses; idl/README.md explains
-// them.
+// The topics of the contract: the type of each, its name, and the QoS profile that every writer and
+// reader of it uses; idl/README.md explains them.
 #pragma once
 
-namespace dyncal::bus::topics {
+#include <string>
 
-inline constexpr const char* source_description = "SourceDescription";  // state
-inline constexpr const char* source_status = "SourceStatus";            // state
-inline constexpr const char* dau_samples = "DauSamples";                // samples
-inline constexpr const char* acs_samples = "AcsSamples";                // samples
-inline constexpr const char* can_samples = "CanSamples";                // samples
-inline constexpr const char* dso_record = "DsoRecord";                  // samples
-inline constexpr const char* tss_record = "TssRecord";                  // samples
-inline constexpr const char* measurement = "Measurement";               // state
-inline constexpr const char* excitation = "Excitation";                 // state
-inline constexpr const char* calibration_result = "CalibrationResult";  // results
-inline constexpr const char* transfer_function = "TransferFunction";    // results
-inline constexpr const char* sample_clock_report = "SampleClockReport"; // results
-inline constexpr const char* service_status = "ServiceStatus";          // state
-inline constexpr const char* command = "Command";                       // command
+#include "idl/dyncal.h"
 
-} // namespace dyncal::bus::topics
+namespace dyncal::bus {
+
+enum class Profile { samples, results, state, command };
+
+template <class T>
+struct Topic {
+  const char* name;
+  Profile profile;
+
+  // A topic stands for its name where DDS is given one.
+  operator std::string() const { return name; }           // NOLINT(google-explicit-constructor)
+  constexpr operator const char*() const { return name; } // NOLINT(google-explicit-constructor)
+  friend bool operator==(const std::string& name, const Topic& topic) { return name == topic.name; }
+};
+
+namespace topics {
+
+inline constexpr Topic<wire::SourceDescription> source_description{"SourceDescription",
+                                                                   Profile::state};
+inline constexpr Topic<wire::SourceStatus> source_status{"SourceStatus", Profile::state};
+inline constexpr Topic<wire::SampleBlock> dau_samples{"DauSamples", Profile::samples};
+inline constexpr Topic<wire::SampleBlock> acs_samples{"AcsSamples", Profile::samples};
+inline constexpr Topic<wire::SampleBlock> can_samples{"CanSamples", Profile::samples};
+inline constexpr Topic<wire::TriggeredRecord> dso_record{"DsoRecord", Profile::samples};
+inline constexpr Topic<wire::TriggeredRecord> tss_record{"TssRecord", Profile::samples};
+inline constexpr Topic<wire::Measurement> measurement{"Measurement", Profile::state};
+inline constexpr Topic<wire::Excitation> excitation{"Excitation", Profile::state};
+inline constexpr Topic<wire::CalibrationResult> calibration_result{"CalibrationResult",
+                                                                   Profile::results};
+inline constexpr Topic<wire::TransferFunction> transfer_function{"TransferFunction",
+                                                                 Profile::results};
+inline constexpr Topic<wire::SampleClockReport> sample_clock_report{"SampleClockReport",
+                                                                    Profile::results};
+inline constexpr Topic<wire::ServiceStatus> service_status{"ServiceStatus", Profile::state};
+inline constexpr Topic<wire::Command> command{"Command", Profile::command};
+
+} // namespace topics
+} // namespace dyncal::bus

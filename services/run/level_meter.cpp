@@ -40,13 +40,11 @@ LevelMeter::LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescriptio
 
 Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench,
                                         std::shared_ptr<bus::WakeUp> wake_up) {
-  auto descriptions = participant.reader<wire::SourceDescription>(
-      bus::topics::source_description, bus::Profile::state, bench.bench, wake_up);
+  auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());
   }
-  auto samples = participant.reader<wire::SampleBlock>(bus::topics::acs_samples,
-                                                       bus::Profile::samples, bench.bench, wake_up);
+  auto samples = participant.reader(bus::topics::acs_samples, bench.bench, wake_up);
   if (!samples) {
     return fail(samples.error());
   }

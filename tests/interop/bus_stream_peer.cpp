@@ -77,10 +77,7 @@ void wait_until_ended() {
 int write_stream(bus::Participant& participant, const Options& options) {
   std::vector<bus::Writer<wire::SampleBlock>> writers;
   for (std::size_t i = 0; i < source_names().size(); ++i) {
-    writers.push_back(
-        participant
-            .writer<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, bench)
-            .value());
+    writers.push_back(participant.writer(bus::topics::dau_samples, bench).value());
   }
   const auto give_up = Clock::now() + patience;
   for (const auto& writer : writers) {
@@ -125,10 +122,7 @@ int write_stream(bus::Participant& participant, const Options& options) {
 
 int read_stream(bus::Participant& participant) {
   auto bell = std::make_shared<bus::WakeUp>();
-  auto reader =
-      participant
-          .reader<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples, "*", bell)
-          .value();
+  auto reader = participant.reader(bus::topics::dau_samples, "*", bell).value();
   bus::SampleContinuity continuity;
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
