@@ -143,6 +143,11 @@ std::vector<std::string> Recipe::sources() const {
 Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
   Recipe recipe;
   recipe.method = measurement.method();
+  if (recipe.method > wire::METHOD_ABSOLUTE_TIME) {
+    return fail(refused(fmt::format("the recipe's method has number {}, which this version does "
+                                    "not know; update dyncal-analysis",
+                                    static_cast<std::uint32_t>(recipe.method))));
+  }
   recipe.dso_delay_s = measurement.dso_delay_s();
   recipe.u_dso_delay_s = measurement.u_dso_delay_s();
   recipe.shots = measurement.shots();

@@ -3,6 +3,7 @@
 // work.
 #include <csignal>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -197,7 +198,10 @@ TEST_P(BusNative, ExchangesCalibrationResults) {
     result.phase_rad(-0.5);
     result.fits({example_fit("acs/reference"), example_fit("dau/acceleration_z")});
     wire::BudgetContribution contribution;
+    contribution.kind(wire::CONTRIBUTION_SHOTS);
     contribution.name("reference");
+    contribution.repeats(wire::REPEATS_ANEW);
+    contribution.degrees_of_freedom(std::numeric_limits<double>::infinity());
     contribution.u_magnitude_rel(1e-3);
     result.budget({contribution});
     wire::SourceSamples samples;
@@ -211,6 +215,41 @@ TEST_P(BusNative, ExchangesCalibrationResults) {
   std::sort(echoes.begin(), echoes.end(),
             [](const auto& a, const auto& b) { return a.step() < b.step(); });
   EXPECT_EQ(echoes, results);
+}
+
+// As a later version of the contract could have it. idl/README.md tells what each tool makes of it.
+TEST_P(BusNative, GoesOnAfterAnEnumValueOfALaterVersion) {
+  auto reader =
+      participant_
+          .reader<wire::Measurement>(topics::measurement, Profile::state, from_native_, bell_)
+          .value();
+  auto writer =
+      participant_.writer<wire::Measurement>(topics::measurement, Profile::state, to_native_)
+          .value();
+  wire::Measurement later;
+  later.bench("acc-1");
+  later.run("later");
+  later.method(static_cast<wire::Method>(99));
+  wire::Measurement last;
+  last.bench("acc-1");
+  last.run("last");
+  ASSERT_EQ(writer.write(later), WriteOutcome::written);
+  ASSERT_EQ(writer.write(last), WriteOutcome::written);
+  std::map<std::string, wire::Method> echoes;
+  const auto give_up = Clock::now() + 30s;
+  while (!echoes.contains("last") && Clock::now() < give_up) {
+    bell_->wait_until(Clock::now() + 50ms);
+    reader.take([&](const wire::Measurement& echo, const SampleInfo&) {
+      echoes[echo.run().to_string()] = echo.method();
+    });
+  }
+  EXPECT_TRUE(echoes.contains("last"));
+  if (std::get<0>(GetParam()).name == "idlc") {
+    EXPECT_FALSE(echoes.contains("later"));
+  } else {
+    ASSERT_TRUE(echoes.contains("later"));
+    EXPECT_EQ(echoes["later"], static_cast<wire::Method>(99));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryTool, BusNative,

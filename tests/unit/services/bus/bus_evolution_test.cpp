@@ -139,6 +139,18 @@ TEST_P(BusEvolution, LetsANewerProgramReadAnOlderOneWithZerosForWhatItLacks) {
   EXPECT_EQ(samples[0].reason, "");
 }
 
+TEST_P(BusEvolution, ReadsAnEnumValueThatALaterVersionAppended) {
+  auto writer = this->writer<wire::Command>(topics::command, Profile::state);
+  auto reader = this->reader<wire::Command>(topics::command, Profile::state);
+  auto command = filled<wire::Command>();
+  command.kind(static_cast<wire::CommandKind>(1234));
+  ASSERT_EQ(writer.write(command), WriteOutcome::written);
+  auto last = filled<wire::Command>();
+  last.target("last");
+  ASSERT_EQ(writer.write(last), WriteOutcome::written);
+  EXPECT_EQ(take_until_last(reader), std::vector<wire::Command>{command});
+}
+
 TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
   auto broken_writer = this->writer<BrokenCommand>(topics::command, Profile::state);
   auto reader = this->reader<wire::Command>(topics::command, Profile::state);

@@ -20,6 +20,25 @@ TEST(Recipe, ComesOutOfTheMessageAsItWentIn) {
   EXPECT_DOUBLE_EQ(recipe->steps[1].duration_s, 0.8);
 }
 
+TEST(Recipe, RefusesAMethodOfALaterVersion) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.method(static_cast<wire::Method>(99));
+  const auto recipe = parse_recipe(measurement);
+  ASSERT_FALSE(recipe);
+  EXPECT_THAT(recipe.error().message, HasSubstr("method has number 99"));
+}
+
+TEST(Recipe, TakesTheSyncOfTheOscilloscopeForSeriesAlone) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_dso("dso/sync");
+  EXPECT_EQ(parse_recipe(measurement)->sources(), (std::vector<std::string>{"acs", "dau"}));
+  measurement.method(wire::METHOD_SERIES_TIMESTAMPING);
+  measurement.dut({"tss/z"});
+  EXPECT_EQ(parse_recipe(measurement)->sources(), (std::vector<std::string>{"acs", "dso", "tss"}));
+  measurement.sync_dso("");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dso is \"\""));
+}
+
 TEST(Recipe, RefusesRolesThatAreNoChannels) {
   wire::Measurement measurement = tests::SyntheticRun{}.measurement();
   measurement.sync_dau("dau");
