@@ -9,7 +9,8 @@ namespace dyncal::analysis {
 namespace {
 
 TEST(Coverage, InfiniteDegreesOfFreedomNeedTheFactorTwo) {
-  EXPECT_NEAR(coverage_factor(0.0), 2.0, 1e-12);
+  EXPECT_NEAR(coverage_factor(infinite_degrees_of_freedom), 2.0, 1e-12);
+  EXPECT_TRUE(std::isinf(coverage_factor(0.0))); // nothing is covered without any
   EXPECT_NEAR(coverage_factor(1e9), 2.0, 1e-7);
 }
 
