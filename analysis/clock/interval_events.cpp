@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -47,12 +49,6 @@ Verdict judge_one(const SampleInterval& interval, const SampleInterval* next,
     }
   }
   return {"step"};
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 void describe_period(IntervalVerdict& verdict, const std::vector<SampleInterval>& pairs) {

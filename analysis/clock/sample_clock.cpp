@@ -5,20 +5,20 @@
 #include <cassert>
 #include <cmath>
 
+#include "analysis/base/statistics.hpp"
 #include "analysis/clock/interval_counts.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
 constexpr std::uint64_t first_lesson = 64; // intervals after which it is known what is usual
-constexpr double normal_mad = 1.4826;
 constexpr double core_scales = 6.0;
 constexpr double gap_part =
     1.5; // an interval longer than this many medians interrupts the Allan deviation
 
 UsualInterval usual_of(const IntervalDistribution& distribution) {
   return {distribution.quantile(0.5),
-          std::max(0.5, normal_mad * distribution.median_absolute_deviation())};
+          std::max(0.5, mad_to_sd * distribution.median_absolute_deviation())};
 }
 
 double seconds(double ns) {
@@ -137,7 +137,7 @@ void describe_intervals(SampleClockStatistics& result, const IntervalCounts& cou
   result.minimum_s = seconds(static_cast<double>(counts.minimum_ns()));
   result.maximum_s = seconds(static_cast<double>(counts.maximum_ns()));
   result.median_s = seconds(distribution.quantile(0.5));
-  result.mad_sd_s = seconds(normal_mad * distribution.median_absolute_deviation());
+  result.mad_sd_s = seconds(mad_to_sd * distribution.median_absolute_deviation());
   result.quantile_001_s = seconds(distribution.quantile(0.001));
   result.quantile_01_s = seconds(distribution.quantile(0.01));
   result.quantile_50_s = result.median_s;

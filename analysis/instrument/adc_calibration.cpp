@@ -6,6 +6,8 @@
 #include <numeric>
 #include <string>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -136,13 +138,6 @@ Interpolated interpolate(const std::vector<double>& f, const std::vector<double>
           std::hypot((1.0 - weight) * u[i] + weight * u[i + 1], missed)};
 }
 
-double median(std::span<const double> all) {
-  std::vector<double> values(all.begin(), all.end());
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 // Scatter differs by decades between 1 Hz and 100 kHz: each point takes it from this many points on
 // either side.
 constexpr std::size_t neighbours = 4;
@@ -150,6 +145,11 @@ constexpr std::size_t neighbours = 4;
 std::span<const double> around(const std::vector<double>& values, std::size_t i) {
   const std::size_t begin = i > neighbours ? i - neighbours : 0;
   return std::span(values).subspan(begin, std::min(values.size(), i + neighbours + 1) - begin);
+}
+
+double median_around(const std::vector<double>& values, std::size_t i) {
+  const std::span<const double> near = around(values, i);
+  return median({near.begin(), near.end()});
 }
 
 // Distances of single points from the line through their neighbours, in standard deviations'
@@ -226,7 +226,7 @@ points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
   const auto scatter = [&](const std::vector<double>& squares,
                            const std::vector<double>& deviations, std::size_t i) {
     if (!repeated) {
-      return f.size() < 3 ? 0.0 : 1.4826 * median(around(deviations, i));
+      return f.size() < 3 ? 0.0 : mad_to_sd * median_around(deviations, i);
     }
     const double local = sum(around(freedom, i));
     return local >= 1.0 ? std::sqrt(sum(around(squares, i)) / local)

@@ -3,7 +3,7 @@
 // Model: G(f) = g0 e^{-i w tau} / (1 + i f / fc), approximated to the points (1 / g^2 is linear in
 // f^2; the rest of the lag is w tau); the ratio of points and model is interpolated, log gain and
 // phase each linearly in f. A pure delay and a first-order low pass are therefore exact. Sign:
-// phase_lag_rad = -arg G, positive = the ADC reads late (analysis/method/sample_stamping.hpp). u^2
+// phase_lag_rad = -arg G, positive = the ADC reads late. u^2
 // = (w1 u1 + w2 u2)^2 + e^2 / 3 with e the larger of the neighbouring second differences as a bound
 // of what a straight line misses; the first term holds however much the two points have in common
 // (time scales, voltmeter), and is an upper bound where they have nothing. Points of different test
@@ -18,9 +18,15 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
-#include "analysis/method/sample_stamping.hpp"
 
 namespace dyncal::analysis {
+
+struct AdcResponse { // of the DAU's sync ADC at one frequency
+  double gain = 1.0;
+  double phase_lag_rad = 0.0;
+  double u_gain = 0.0;
+  double u_phase_lag_rad = 0.0;
+};
 
 struct AdcCalibrationPoint {
   double frequency_hz = 0.0;

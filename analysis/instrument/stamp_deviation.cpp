@@ -6,6 +6,8 @@
 #include <numeric>
 #include <span>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -45,44 +47,23 @@ struct Raw { // t_n - n of one reference edge
   std::int64_t second = 0; // of the reference
 };
 
-double mean_of(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double sd_of(std::span<const double> values) {
-  const double mean = mean_of(values);
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - mean) * (value - mean);
-  }
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
 double u_mean_by_blocks(std::vector<double> blocks) {
-  double u = sd_of(blocks) / std::sqrt(static_cast<double>(blocks.size()));
+  double u = standard_deviation(blocks) / std::sqrt(static_cast<double>(blocks.size()));
   while (blocks.size() / 2 >= min_blocks) {
     for (std::size_t i = 0; i < blocks.size() / 2; ++i) {
       blocks[i] = 0.5 * (blocks[2 * i] + blocks[2 * i + 1]);
     }
     blocks.resize(blocks.size() / 2);
-    u = std::max(u, sd_of(blocks) / std::sqrt(static_cast<double>(blocks.size())));
+    u = std::max(u, standard_deviation(blocks) / std::sqrt(static_cast<double>(blocks.size())));
   }
   return u;
 }
 
 double effective_count(const std::vector<double>& values, double u_mean) {
-  const double sd = sd_of(values);
+  const double sd = standard_deviation(values);
   return u_mean > 0.0
              ? std::clamp(sd * sd / (u_mean * u_mean), 1.0, static_cast<double>(values.size()))
              : static_cast<double>(values.size());
-}
-
-// Between neighbours in order: R-7 of Hyndman and Fan.
-double quantile(const std::vector<double>& sorted, double part) {
-  const double place = part * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 // Stamps of one session's reference edges, counted from the session's own first seconds.
@@ -165,7 +146,7 @@ void add_drift(StampDeviationStatistics& statistics, const std::vector<double>& 
   }
   const double inflation = static_cast<double>(residuals.size()) /
                            effective_count(residuals, u_mean_by_blocks(residuals));
-  statistics.u_drift = sd_of(residuals) * std::sqrt(inflation / squares);
+  statistics.u_drift = standard_deviation(residuals) * std::sqrt(inflation / squares);
 }
 
 std::vector<AllanPoint> allan_of_max_stretch(const std::vector<Raw>& raws) {
@@ -211,8 +192,9 @@ std::optional<PulsePrediction> predict_gps_pulses(const SortedPulses& pulses) {
     return std::nullopt;
   }
   const auto [minimum, maximum] = std::minmax_element(predictions_s.begin(), predictions_s.end());
-  return PulsePrediction{predictions_s.size(), sd_of(predictions_s), *minimum, *maximum,
-                         mean_of(ticks),       sd_of(ticks)};
+  return PulsePrediction{
+      predictions_s.size(), standard_deviation(predictions_s), *minimum, *maximum,
+      mean(ticks),          standard_deviation(ticks)};
 }
 
 Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
@@ -238,14 +220,14 @@ Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
   for (const Raw& raw : raws) {
     deviations_s.push_back(raw.rest_s);
   }
-  statistics.reference_offset_s = settings.reference_offset_s.value_or(mean_of(deviations_s));
+  statistics.reference_offset_s = settings.reference_offset_s.value_or(mean(deviations_s));
   for (std::size_t i = 0; i < raws.size(); ++i) {
     deviations_s[i] -= statistics.reference_offset_s;
     raws[i].at.deviation_s = deviations_s[i];
     statistics.deviations.push_back(raws[i].at);
   }
-  statistics.mean_s = settings.reference_offset_s ? mean_of(deviations_s) : 0.0;
-  statistics.sd_s = sd_of(deviations_s);
+  statistics.mean_s = settings.reference_offset_s ? mean(deviations_s) : 0.0;
+  statistics.sd_s = standard_deviation(deviations_s);
   const double u_mean_s = u_mean_by_blocks(deviations_s);
   statistics.u_mean_s = std::hypot(u_mean_s, settings.u_reference_s);
   statistics.effective_count = effective_count(deviations_s, u_mean_s);
@@ -256,8 +238,8 @@ Expected<StampDeviationStatistics> stamp_deviations(const SortedPulses& pulses,
   std::sort(sorted.begin(), sorted.end());
   statistics.minimum_s = sorted.front();
   statistics.maximum_s = sorted.back();
-  statistics.quantile_025_s = quantile(sorted, 0.025);
-  statistics.quantile_975_s = quantile(sorted, 0.975);
+  statistics.quantile_025_s = quantile_of_sorted(sorted, 0.025);
+  statistics.quantile_975_s = quantile_of_sorted(sorted, 0.975);
   add_drift(statistics, deviations_s);
   statistics.allan = allan_of_max_stretch(raws);
   return statistics;

@@ -7,17 +7,11 @@
 #include <numbers>
 #include <string>
 
+#include "analysis/base/statistics.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 namespace {
-
-double quantile(std::vector<double> values, double part) {
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
 
 struct MeanAndScatter {
   double mean = 0.0;
@@ -45,8 +39,8 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
     return fail(ErrorCode::too_few_samples, "a trace of fewer than 10 samples shows no edge");
   }
   const std::vector<double> all(volts.begin(), volts.end());
-  const double low = quantile(all, 0.02);
-  const double high = quantile(all, 0.98);
+  const double low = quantile_value(all, 0.02);
+  const double high = quantile_value(all, 0.98);
   const double height = high - low;
   const auto no_edge = [] {
     return fail(ErrorCode::no_excitation, "the trace shows no rising edge");

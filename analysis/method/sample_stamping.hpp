@@ -23,16 +23,10 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
-
-struct AdcResponse { // of the DAU's sync ADC at the excitation frequency
-  double gain = 1.0;
-  double phase_lag_rad = 0.0;
-  double u_gain = 0.0;
-  double u_phase_lag_rad = 0.0;
-};
 
 struct SystematicUncertainty { // standard uncertainties that no residual shows
   double reference_magnitude_rel = 0.0;

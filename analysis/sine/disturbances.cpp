@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "analysis/sine/extended_sine_fit.hpp"
-#include "analysis/sine/kernel/sine_values.hpp"
+#include "analysis/sine/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {

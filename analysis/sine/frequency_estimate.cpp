@@ -8,6 +8,8 @@
 
 #include <unsupported/Eigen/FFT>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -23,9 +25,7 @@ Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_n
                   "a stamp is not later than the one before it (sample " + std::to_string(i) + ")");
     }
   }
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return upper_median(intervals);
 }
 
 // Hann-windowed and free of its mean; empty when the column is constant.

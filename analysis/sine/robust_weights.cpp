@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
 constexpr double huber_limit = 1.345;
 constexpr double tukey_limit = 4.685;
-constexpr double median_to_sd = 1.4826;
 
 } // namespace
 
@@ -41,10 +42,7 @@ double robust_slope(Weighting weighting, double residual, double scale) {
 }
 
 double robust_scale(std::span<double> absolute_residuals) {
-  const auto middle =
-      absolute_residuals.begin() + static_cast<std::ptrdiff_t>(absolute_residuals.size() / 2);
-  std::nth_element(absolute_residuals.begin(), middle, absolute_residuals.end());
-  return median_to_sd * *middle;
+  return mad_to_sd * upper_median(absolute_residuals);
 }
 
 } // namespace dyncal::analysis

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "analysis/base/statistics.hpp"
+
 namespace dyncal::analysis::kernel {
 namespace {
 
@@ -177,12 +179,11 @@ Expected<void> Record::carries(const Frequency& frequency) const {
   for (std::size_t i = 0; i + 1 < size(); ++i) {
     intervals[i] = stamps_[i + 1] - stamps_[i];
   }
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  if (*middle <= 0) {
+  const std::int64_t usual_ns = upper_median(intervals);
+  if (usual_ns <= 0) {
     return fail(not_increasing());
   }
-  const double rate_hz = 1e9 / static_cast<double>(*middle);
+  const double rate_hz = 1e9 / static_cast<double>(usual_ns);
   if (frequency.hz() <= 0.5 * rate_hz) {
     return {};
   }

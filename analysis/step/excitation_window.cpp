@@ -6,7 +6,8 @@
 #include <memory>
 #include <numbers>
 
-#include "analysis/sine/kernel/sine_values.hpp"
+#include "analysis/base/statistics.hpp"
+#include "analysis/sine/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -32,12 +33,6 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * pi);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Design { // of one frame: sine and cosine of every sample, and their sums about the mean
@@ -301,7 +296,7 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
   for (std::size_t i = run_.size() / 2; i < run_.size(); ++i) {
     late_amplitudes.push_back(run_[i].amplitude);
   }
-  const double plateau = median(std::move(late_amplitudes));
+  const double plateau = upper_median(late_amplitudes);
 
   std::size_t best_begin = 0, best_end = 0, begin = 0;
   for (std::size_t i = 0; i <= run_.size(); ++i) {
@@ -328,7 +323,7 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
     for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i) {
       residuals.push_back(run_[i].max_residual);
     }
-    const double usual = median(std::move(residuals));
+    const double usual = upper_median(residuals);
     if (run_[best_begin].max_residual > 1.6 * usual) {
       ++best_begin;
     }

@@ -6,6 +6,7 @@
 #include <complex>
 #include <vector>
 
+#include "analysis/base/statistics.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
@@ -84,11 +85,8 @@ Expected<Settling> find_settling(const Frequency& frequency,
   for (std::size_t k = settled; k < blocks->size(); ++k) {
     deviations.push_back(std::abs((*blocks)[k].phasor - mean));
   }
-  std::nth_element(deviations.begin(),
-                   deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2),
-                   deviations.end());
   // The median of the distance from the centre of a bivariate normal distribution is 1.1774 s.
-  const double scatter = deviations[deviations.size() / 2] / 1.1774;
+  const double scatter = upper_median(deviations) / 1.1774;
   const double limit = std::max(scatter_factor * scatter, settings.tolerance_rel * size);
 
   Settling result;

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <vector>
 
 #include <Eigen/Cholesky>
-
-#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -139,9 +136,9 @@ bool is_stable(const std::vector<Summary>& batches, double u) {
   return true;
 }
 
-class Gathering { // of one output quantity
+class Trials { // of one output quantity
 public:
-  explicit Gathering(double probability) : probability_(probability) {}
+  explicit Trials(double probability) : probability_(probability) {}
   void add(double value) { trials_.push_back(value); }
   // After every full batch.
   bool close_batch() {
@@ -167,120 +164,40 @@ private:
 
 } // namespace
 
-Expected<MonteCarloResult> propagate_distributions(std::span<const InputQuantity> inputs,
-                                                   std::span<const InputCorrelation> correlations,
-                                                   const MeasurementModel& model,
-                                                   const MonteCarloSettings& settings) {
+Expected<std::vector<MonteCarloResult>>
+propagate_distributions(std::span<const InputQuantity> inputs,
+                        std::span<const InputCorrelation> correlations, std::size_t outputs,
+                        const MeasurementModel& model, const MonteCarloSettings& settings) {
   auto draws = Draws::prepare(inputs, correlations, settings.seed);
   if (!draws) {
     return fail(draws.error());
   }
-  Gathering gathering(settings.probability);
+  std::vector<Trials> trials(outputs, Trials(settings.probability));
+  std::vector<double> values(outputs);
   for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
     for (std::size_t i = 0; i < batch; ++i) {
-      const double value = model(draws->next());
-      if (!std::isfinite(value)) {
-        return fail(ErrorCode::not_finite,
-                    "the measurement model gave no number for a drawn set of inputs");
+      model(draws->next(), values);
+      for (std::size_t output = 0; output < outputs; ++output) {
+        if (!std::isfinite(values[output])) {
+          return fail(ErrorCode::not_finite,
+                      "the measurement model gave no number for a drawn set of inputs");
+        }
+        trials[output].add(values[output]);
       }
-      gathering.add(value);
     }
-    if (gathering.close_batch()) {
+    bool stable = true;
+    for (Trials& one : trials) {
+      stable = one.close_batch() && stable;
+    }
+    if (stable) {
       break;
     }
   }
-  return gathering.result();
-}
-
-namespace {
-
-// Inputs of the quotient: A and B of every fit, then relative magnitude and phase of every other
-// row.
-struct DrawnChain {
-  std::vector<InputQuantity> inputs;
-  std::vector<InputCorrelation> correlations;
-
-  void add_fit(const SeriesFit& series) {
-    const SineFit& fit = series.fit;
-    const double u_a = std::sqrt(fit.covariance[0]), u_b = std::sqrt(fit.covariance[3]);
-    inputs.push_back({.name = series.series + " sine", .value = fit.sine, .u = u_a});
-    inputs.push_back({.name = series.series + " cosine", .value = fit.cosine, .u = u_b});
-    if (u_a > 0.0 && u_b > 0.0) {
-      correlations.push_back(
-          {inputs.size() - 2, inputs.size() - 1, fit.covariance[1] / (u_a * u_b)});
-    }
+  std::vector<MonteCarloResult> results;
+  for (const Trials& one : trials) {
+    results.push_back(one.result());
   }
-  void add_row(const Contribution& row) {
-    inputs.push_back({.name = row.name() + ", magnitude",
-                      .u = row.u_magnitude_rel,
-                      .distribution = row.distribution});
-    inputs.push_back(
-        {.name = row.name() + ", phase", .u = row.u_phase_rad, .distribution = row.distribution});
-  }
-};
-
-bool is_drawn_as_phasor(const Contribution& row) {
-  return row.kind == ContributionKind::fit_noise || row.kind == ContributionKind::rice;
-}
-
-// Of the sensor, the reference and, if there are, sync in the ACS and in the DAU.
-std::complex<double> quotient(std::span<const double> drawn, std::size_t phasors) {
-  const auto phasor = [&](std::size_t i) {
-    return std::complex<double>(drawn[2 * i], drawn[2 * i + 1]);
-  };
-  const std::complex<double> h = phasor(0) / phasor(1);
-  return phasors == 2 ? h : h * unit_phasor(phasor(2)) / unit_phasor(phasor(3));
-}
-
-} // namespace
-
-Expected<MonteCarloTransfer> check_transfer(const TransferPoint& point,
-                                            std::span<const SeriesFit> link,
-                                            const MonteCarloSettings& settings) {
-  if (link.size() != 1 && link.size() != 3) {
-    return fail(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
-  }
-  DrawnChain chain;
-  chain.add_fit(point.dut);
-  for (const SeriesFit& series : link) {
-    chain.add_fit(series);
-  }
-  const std::size_t phasors = 1 + link.size();
-  std::vector<double> estimates;
-  for (const InputQuantity& input : chain.inputs) {
-    estimates.push_back(input.value);
-  }
-  for (const Contribution& row : point.budget) {
-    if (!is_drawn_as_phasor(row)) {
-      chain.add_row(row);
-    }
-  }
-  auto draws = Draws::prepare(chain.inputs, chain.correlations, settings.seed);
-  if (!draws) {
-    return fail(draws.error());
-  }
-
-  const std::complex<double> corrections = point.h / quotient(estimates, phasors);
-  Gathering magnitude(settings.probability), phase(settings.probability);
-  for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
-    for (std::size_t i = 0; i < batch; ++i) {
-      const std::span<const double> drawn = draws->next();
-      std::complex<double> h = quotient(drawn, phasors) * corrections;
-      for (std::size_t row = 2 * phasors; row < drawn.size(); row += 2) {
-        h *= (1.0 + drawn[row]) * std::polar(1.0, drawn[row + 1]);
-      }
-      if (!std::isfinite(h.real()) || !std::isfinite(h.imag())) {
-        return fail(ErrorCode::not_finite, "a drawn phasor was 0");
-      }
-      magnitude.add(std::abs(h));
-      phase.add(point.phase_rad + wrap_phase(std::arg(h) - point.phase_rad));
-    }
-    const bool magnitude_stable = magnitude.close_batch();
-    if (phase.close_batch() && magnitude_stable) {
-      break;
-    }
-  }
-  return MonteCarloTransfer{magnitude.result(), phase.result()};
+  return results;
 }
 
 } // namespace dyncal::analysis

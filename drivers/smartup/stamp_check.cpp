@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/base/statistics.hpp"
 #include "drivers/sample_block.hpp"
 
 namespace dyncal::drivers::smartup {
@@ -33,13 +34,6 @@ constexpr std::uint64_t persistence_samples = 8;
 
 bool is_close(double value, double target, double tolerance) {
   return std::abs(std::abs(value) - target) <= tolerance;
-}
-
-template <class Values>
-double median(Values& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 } // namespace
@@ -93,7 +87,7 @@ void StampCheck::found(const Stamp& stamp) {
     periods.push_back(static_cast<double>(founders_[i].stamp_ns - founders_[i - 1].stamp_ns) /
                       samples);
   }
-  period_ns_ = median(periods);
+  period_ns_ = analysis::upper_median(periods);
   founder_count_ = 0;
   if (!(period_ns_ > 0.0 && period_ns_ < max_period_ns)) {
     return;
@@ -104,11 +98,11 @@ void StampCheck::found(const Stamp& stamp) {
   for (const Stamp& founder : founders_) {
     residuals.push_back(residual_ns(founder));
   }
-  phase_ns_ = median(residuals);
+  phase_ns_ = analysis::upper_median(residuals);
   for (double& residual : residuals) {
     residual = std::abs(residual - phase_ns_);
   }
-  usual_residual_ns_ = median(residuals);
+  usual_residual_ns_ = analysis::upper_median(residuals);
   distrusted_in_a_row_ = 0;
   founded_ = true;
 }

@@ -1,6 +1,6 @@
 #include "services/evaluation/monte_carlo_check.hpp"
 
-#include "analysis/uncertainty/monte_carlo.hpp"
+#include "analysis/method/transfer_check.hpp"
 
 namespace dyncal::services {
 

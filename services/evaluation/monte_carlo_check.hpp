@@ -1,7 +1,7 @@
 // The Monte Carlo cross-check of one result (JCGM 101) as the contract publishes it: the
 // uncertainty that the budget gives beside the one that drawing from it gives. Both agree for a
 // sound result; where they do not (|H| near 0, little excitation), the interval is the better
-// answer. Where the check itself fails (analysis/uncertainty/monte_carlo.hpp), a flag says so. Any
+// answer. Where the check itself fails (analysis/method/transfer_check.hpp), a flag says so. Any
 // thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-#include "analysis/sine/kernel/sine_values.hpp"
+#include "analysis/sine/sine_values.hpp"
 
 #include <algorithm>
 
