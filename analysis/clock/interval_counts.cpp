@@ -46,9 +46,9 @@ double IntervalDistribution::median_absolute_deviation() const {
   }
   std::sort(deviations.begin(), deviations.end());
   const auto at_rank = [&](std::uint64_t rank) {
-    std::uint64_t seen = 0;
+    std::uint64_t counted = 0;
     for (const auto& [deviation, times] : deviations) {
-      if ((seen += times) > rank) {
+      if ((counted += times) > rank) {
         return deviation;
       }
     }

@@ -54,7 +54,6 @@ public:
   [[nodiscard]] const IntervalSums& sums() const { return sums_; }
   [[nodiscard]] std::int64_t minimum_ns() const { return minimum_ns_; }
   [[nodiscard]] std::int64_t maximum_ns() const { return maximum_ns_; }
-  [[nodiscard]] std::int64_t resolution_ns() const { return resolution_ns_; }
   [[nodiscard]] IntervalDistribution distribution() const;
 
 private:

@@ -76,8 +76,8 @@ std::vector<double> IntervalCloseUp::lengths_ns() const {
   if (!still_wanted_) {
     return result;
   }
-  for (const Kept& kept : recent_) {
-    result.push_back(static_cast<double>(kept.length_ns));
+  for (const RecentInterval& interval : recent_) {
+    result.push_back(static_cast<double>(interval.length_ns));
   }
   return result;
 }

@@ -52,12 +52,12 @@ public:
   }
 
 private:
-  struct Kept {
+  struct RecentInterval {
     std::int64_t length_begin_ns;
     std::int64_t length_ns;
   };
   std::size_t each_side_;
-  std::vector<Kept> recent_;
+  std::vector<RecentInterval> recent_;
   std::optional<std::size_t> still_wanted_; // since the pair was seen
 };
 

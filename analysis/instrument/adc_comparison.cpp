@@ -38,7 +38,7 @@ Expected<AdcComparison> compare_sync_adc(const SyncPhasor& acs, const SyncPhasor
   if (!usable(acs) || !usable(dau)) {
     return fail(ErrorCode::invalid_argument, "a sync signal has no amplitude or no frequency");
   }
-  const double apart_s = static_cast<double>(dau.reference_ns - acs.reference_ns) * 1e-9;
+  const double apart_s = static_cast<double>(dau.phase_origin_ns - acs.phase_origin_ns) * 1e-9;
   if (!(std::abs(apart_s) <= max_apart_s)) {
     return fail(ErrorCode::invalid_argument,
                 "the records of the two systems lie " + std::to_string(apart_s) +

@@ -29,7 +29,7 @@ namespace dyncal::analysis {
 struct SyncPhasor { // one system's sine approximation of sync
   double frequency_hz = 0.0;
   double u_frequency_hz = 0.0;
-  std::int64_t reference_ns = 0; // on the common time scale
+  std::int64_t phase_origin_ns = 0; // on the common time scale
   double sine = 0.0;
   double cosine = 0.0;
   double u_sine = 0.0;

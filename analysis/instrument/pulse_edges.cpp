@@ -58,14 +58,14 @@ double usual_interval(std::span<const PulseEdge> record, const Counter& counter,
   }
   std::sort(intervals.begin(), intervals.end());
   double usual = 0.0;
-  std::size_t most = 0;
+  std::size_t max_count = 0;
   for (std::size_t begin = 0, end = 0; begin < intervals.size(); ++begin) {
     while (end < intervals.size() && intervals[end] <= intervals[begin] * (1.0 + tolerance_s)) {
       ++end;
     }
-    if (end - begin > most) {
-      most = end - begin;
-      usual = intervals[begin + most / 2];
+    if (end - begin > max_count) {
+      max_count = end - begin;
+      usual = intervals[begin + max_count / 2];
     }
   }
   return usual;

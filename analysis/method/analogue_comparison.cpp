@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
-#include "analysis/method/recorded_system.hpp"
 #include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
-Budget systematic_rows(const RecordedSeries& reference, double w,
+Budget systematic_rows(const RecordedChannel& reference, double w,
                        const ComparisonUncertainty& systematic) {
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
@@ -26,17 +26,17 @@ Budget systematic_rows(const RecordedSeries& reference, double w,
 } // namespace
 
 Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
-  const auto system = evaluate_system(input.frequency, input.frequency_search_rel, input.stamps_ns,
-                                      input.reference, input.dut);
+  const auto system = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                input.stamps_ns, input.reference, input.dut);
   if (!system) {
     return fail(system.error());
   }
-  const RecordedSeries& reference = system->pilot;
+  const RecordedChannel& reference = system->pilot;
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
   const Budget common = systematic_rows(reference, w, input.systematic);
   ComparisonResult result{reference.result, {}};
-  for (const RecordedSeries& dut : system->others) {
+  for (const RecordedChannel& dut : system->others) {
     Budget budget;
     add_sensor_rows(budget, dut, 0.0);
     budget.append(common);
@@ -50,21 +50,21 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
 }
 
 Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input) {
-  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel,
-                                   input.reference_stamps_ns, input.reference, {});
+  const auto acs = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                             input.reference_stamps_ns, input.reference, {});
   if (!acs) {
     return fail(acs.error());
   }
-  const RecordedSeries& reference = acs->pilot;
+  const RecordedChannel& reference = acs->pilot;
   ComparisonResult result{reference.result, {}};
   const double w = reference.result.frequency.angular();
   const Budget common = systematic_rows(reference, w, input.systematic);
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
-  const StampsApart stamps{.clock_offset_s = input.systematic.clock_offset_s,
-                           .stamp_jitter_s = input.systematic.stamp_jitter_s};
+  const OwnClockUncertainty clock{.clock_offset_s = input.systematic.clock_offset_s,
+                                  .stamp_jitter_s = input.systematic.stamp_jitter_s};
   for (const ChannelSamples& channel : input.dut) {
-    auto point = evaluate_stamped_apart(reference.result, link, common, input.dut_stamps_ns,
-                                        channel, stamps);
+    auto point = evaluate_own_clock_channel(reference.result, link, common, input.dut_stamps_ns,
+                                            channel, clock);
     if (!point) {
       return fail(point.error());
     }

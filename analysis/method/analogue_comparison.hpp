@@ -14,7 +14,7 @@
 //                 the same rate; what is left of the clocks' offset goes into the phase in full, w
 //                 u(offset) (150 ns: 9.4 mrad at 10 kHz).
 // Both records are evaluated about one instant, the middle of the reference's. Fails as
-// recorded_system.hpp does. Any thread.
+// channels_of_one_clock.hpp does. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -56,7 +56,7 @@ struct AbsoluteTimeInput {
 };
 
 struct ComparisonResult {
-  SeriesFit reference;
+  ChannelFit reference;
   std::vector<TransferPoint> points; // in the order of `dut`
 };
 

@@ -1,20 +1,21 @@
 // Nominal frequency evaluation (paper section 3): the mean sample rate of a sensor from a known
 // excitation alone.
 //
-// The sensor's samples are put on the time axis of its nominal rate and a four-parameter fit finds
-// the apparent frequency.
-//   lambda = f_vib / f_vib,DOS (9),  f_real = f_nom * lambda
+// On the time axis of the sensor's nominal rate (sine/equidistant_axis.hpp) a four-parameter fit
+// finds the apparent frequency:
+//
+//   lambda = f_vib / f_vib,DOS   (9)
+//   f_real = f_nom lambda
+//
 // Eq. (10) as printed, f_nom / lambda, contradicts (6) and (9): a sensor whose clock runs fast
 // senses a frequency that is too low, and its real rate is higher than nominal. (6) is the same
 // relation for series time stamping. u(f_real) / f_real: apparent and applied frequency,
-// independent. Fails: invalid_argument (rates or frequencies not positive), frequency_out_of_range,
-// and as sine_fit.hpp does. Any thread.
+// independent.
+//
+// Fails: invalid_argument (rates or frequencies not positive). Any thread.
 #pragma once
 
-#include <span>
-
 #include "analysis/base/error.hpp"
-#include "analysis/base/frequency.hpp"
 
 namespace dyncal::analysis {
 
@@ -27,14 +28,8 @@ struct NominalFrequency {
   double u_real_rate_hz = 0.0;
 };
 
-// From an apparent frequency that is known already.
 [[nodiscard]] Expected<NominalFrequency>
 real_rate_from_apparent_frequency(double nominal_rate_hz, double applied_hz, double u_applied_hz,
                                   double apparent_hz, double u_apparent_hz);
-
-// From the samples; the rate may be off by `rate_tolerance_rel`.
-[[nodiscard]] Expected<NominalFrequency>
-evaluate_nominal_frequency(double nominal_rate_hz, const Frequency& applied, double u_applied_hz,
-                           std::span<const double> samples, double rate_tolerance_rel = 0.05);
 
 } // namespace dyncal::analysis

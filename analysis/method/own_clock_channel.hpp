@@ -8,7 +8,7 @@
 // middles of the two records, subtracted in whole nanoseconds. The budget takes the sensor's noise
 // and quantisation, jitter of its stamps, the frequency's uncertainty over the distance of the
 // middles, and the uncertainty of one clock against the other in full: w u(offset). Fails as
-// recorded_system.hpp does. Any thread.
+// channels_of_one_clock.hpp does. Any thread.
 #pragma once
 
 #include <complex>
@@ -21,14 +21,14 @@
 
 namespace dyncal::analysis {
 
-struct StampsApart { // standard uncertainties
+struct OwnClockUncertainty { // standard uncertainties
   double clock_offset_s = 0.0;
   double stamp_jitter_s = 0.0; // white noise of the sensor's stamps
 };
 
 [[nodiscard]] Expected<TransferPoint>
-evaluate_stamped_apart(const SeriesFit& pilot, std::complex<double> link, const Budget& common,
-                       std::span<const std::int64_t> dut_stamps_ns, const ChannelSamples& dut,
-                       const StampsApart& stamps);
+evaluate_own_clock_channel(const ChannelFit& pilot, std::complex<double> link, const Budget& common,
+                           std::span<const std::int64_t> dut_stamps_ns, const ChannelSamples& dut,
+                           const OwnClockUncertainty& clock);
 
 } // namespace dyncal::analysis

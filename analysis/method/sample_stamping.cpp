@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
-#include "analysis/method/recorded_system.hpp"
 #include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
@@ -16,10 +16,10 @@ double common_jitter_s(const SystematicUncertainty& systematic) {
 }
 
 // Rows of the reference side and of the corrections, the same for every channel of the sensor.
-Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs,
-                     const RecordedSeries& sync_dau) {
+Budget common_budget(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                     const RecordedChannel& sync_dau) {
   const SystematicUncertainty& systematic = input.systematic;
-  const RecordedSeries& reference = acs.others.front();
+  const RecordedChannel& reference = acs.others.front();
   const double w = input.frequency.angular();
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
@@ -46,8 +46,8 @@ Budget common_budget(const SampleStampingInput& input, const RecordedSystem& acs
 
 // Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
 // sines differ in phase.
-void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedSeries& dut,
-                     const RecordedSeries& sync_dau) {
+void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedChannel& dut,
+                     const RecordedChannel& sync_dau) {
   const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
   const double rest_s = std::sqrt(std::max(
       0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
@@ -68,8 +68,8 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Rec
   add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
 }
 
-TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedSeries& dut,
-                               const RecordedSeries& sync_dau, std::complex<double> link,
+TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedChannel& dut,
+                               const RecordedChannel& sync_dau, std::complex<double> link,
                                const Budget& common) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
@@ -86,19 +86,20 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedS
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
-  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
-                                   input.sync_acs, std::span(&input.reference, 1));
+  const auto acs =
+      fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
+                                input.sync_acs, std::span(&input.reference, 1));
   if (!acs) {
     return fail(acs.error());
   }
-  const bool apart = !input.dut_stamps_ns.empty();
-  const auto dau = evaluate_system(
+  const bool own_clock = !input.dut_stamps_ns.empty();
+  const auto dau = fit_channels_of_one_clock(
       input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
-      apart ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
+      own_clock ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
   if (!dau) {
     return fail(dau.error());
   }
-  const RecordedSeries& reference = acs->others.front();
+  const RecordedChannel& reference = acs->others.front();
   if (const auto excited = require_excitation(reference); !excited) {
     return fail(excited.error());
   }
@@ -114,14 +115,14 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
 
   const Budget common = common_budget(input, *acs, dau->pilot);
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};
-  for (const RecordedSeries& dut : dau->others) {
+  for (const RecordedChannel& dut : dau->others) {
     result.points.push_back(evaluate_channel(input, dut, dau->pilot, link, common));
   }
-  if (!apart) {
+  if (!own_clock) {
     return result;
   }
   for (const ChannelSamples& dut : input.dut) {
-    auto point = evaluate_stamped_apart(
+    auto point = evaluate_own_clock_channel(
         dau->pilot.result, link, common, input.dut_stamps_ns, dut,
         {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
     if (!point) {

@@ -50,7 +50,7 @@ struct SampleStampingInput {
   ChannelSamples sync_dau{};
   std::vector<ChannelSamples> dut{}; // one result each
   // Empty: the sensor has the stamps of the DAU. Otherwise it is stamped beside the DAU that
-  // records sync, on the same time scale (stamped_apart.hpp), with `clock_offset_s` between the
+  // records sync, on the same time scale (own_clock_channel.hpp), with `clock_offset_s` between the
   // two.
   std::span<const std::int64_t> dut_stamps_ns{};
   AdcResponse adc{};
@@ -59,9 +59,9 @@ struct SampleStampingInput {
 };
 
 struct SampleStampingResult {
-  SeriesFit reference;
-  SeriesFit sync_acs;
-  SeriesFit sync_dau;
+  ChannelFit reference;
+  ChannelFit sync_acs;
+  ChannelFit sync_dau;
   std::vector<TransferPoint> points; // in the order of `dut`
 };
 

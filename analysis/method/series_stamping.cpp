@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "analysis/base/phasor.hpp"
-#include "analysis/method/recorded_system.hpp"
+#include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/equidistant_axis.hpp"
 
@@ -125,7 +125,7 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool 
   return result;
 }
 
-Budget common_budget(const SeriesStampingInput& input, const RecordedSystem& acs, double w,
+Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock& acs, double w,
                      double u_phase_apparent) {
   Budget budget;
   add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
@@ -148,16 +148,17 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   if (const auto problem = problem_with(input)) {
     return fail(*problem);
   }
-  const auto acs = evaluate_system(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
-                                   input.sync_acs, std::span(&input.reference, 1));
+  const auto acs =
+      fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
+                                input.sync_acs, std::span(&input.reference, 1));
   if (!acs) {
     return fail(acs.error());
   }
-  const RecordedSeries& reference = acs->others.front();
+  const RecordedChannel& reference = acs->others.front();
   if (const auto excited = require_excitation(reference); !excited) {
     return fail(excited.error());
   }
-  const SeriesFit& sync = acs->pilot.result;
+  const ChannelFit& sync = acs->pilot.result;
   const double w = sync.frequency.angular();
 
   std::vector<TriggerPhase> triggers;

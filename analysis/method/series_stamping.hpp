@@ -1,6 +1,6 @@
-// Series time stamping: the transfer function of a sensor that records a whole series after one
-// trigger (TSS), paper section 2.4 and eqs. (5) to (8), in the project's convention (phases lead,
-// theta = atan2(B, A)):
+// PowerSeries time stamping: the transfer function of a sensor that records a whole series after
+// one trigger (TSS), paper section 2.4 and eqs. (5) to (8), in the project's convention (phases
+// lead, theta = atan2(B, A)):
 //
 //   |H_j| = A_TSS,j / A_ref (5)
 //   arg H_j = theta_TSS,j(n = 0) - w (tau_DSO + l) - beta_j - (theta_ref - theta_sync)_ACS
@@ -18,8 +18,8 @@
 // freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
 // sqrt(12) (T9). Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots
 // and frequencies. Channels are those of `channels`; the first must be excited. Fails as
-// recorded_system.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal length.
-// Any thread.
+// channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal
+// length. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -73,8 +73,8 @@ struct SeriesChannelResult {
 };
 
 struct SeriesStampingResult {
-  SeriesFit reference;
-  SeriesFit sync_acs;
+  ChannelFit reference;
+  ChannelFit sync_acs;
   std::vector<double> trigger_phase_rad; // beta_j
   std::vector<double> u_trigger_phase_rad;
   NominalFrequency rate;

@@ -52,7 +52,7 @@ StartLatency judge_start_latency(std::span<const double> offsets_s, double u_s, 
   return result;
 }
 
-const char* words(StartKind kind) {
+const char* to_string(StartKind kind) {
   switch (kind) {
   case StartKind::fixed:
     return "with the trigger";

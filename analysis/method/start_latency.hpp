@@ -25,6 +25,6 @@ struct StartLatency {
 [[nodiscard]] StartLatency judge_start_latency(std::span<const double> offsets_s, double u_s,
                                                double sample_s);
 
-[[nodiscard]] const char* words(StartKind kind);
+[[nodiscard]] const char* to_string(StartKind kind);
 
 } // namespace dyncal::analysis

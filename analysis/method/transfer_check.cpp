@@ -15,11 +15,11 @@ struct DrawnChain {
   std::vector<InputQuantity> inputs;
   std::vector<InputCorrelation> correlations;
 
-  void add_fit(const SeriesFit& series) {
-    const SineFit& fit = series.fit;
+  void add_fit(const ChannelFit& channel) {
+    const SineFit& fit = channel.fit;
     const double u_a = std::sqrt(fit.covariance[0]), u_b = std::sqrt(fit.covariance[3]);
-    inputs.push_back({.name = series.series + " sine", .value = fit.sine, .u = u_a});
-    inputs.push_back({.name = series.series + " cosine", .value = fit.cosine, .u = u_b});
+    inputs.push_back({.name = channel.channel + " sine", .value = fit.sine, .u = u_a});
+    inputs.push_back({.name = channel.channel + " cosine", .value = fit.cosine, .u = u_b});
     if (u_a > 0.0 && u_b > 0.0) {
       correlations.push_back(
           {inputs.size() - 2, inputs.size() - 1, fit.covariance[1] / (u_a * u_b)});
@@ -49,15 +49,15 @@ std::complex<double> quotient(std::span<const double> drawn, std::size_t phasors
 
 } // namespace
 
-Expected<TransferCheck> check_transfer(const TransferPoint& point, std::span<const SeriesFit> link,
+Expected<TransferCheck> check_transfer(const TransferPoint& point, std::span<const ChannelFit> link,
                                        const MonteCarloSettings& settings) {
   if (link.size() != 1 && link.size() != 3) {
     return fail(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
   }
   DrawnChain chain;
   chain.add_fit(point.dut);
-  for (const SeriesFit& series : link) {
-    chain.add_fit(series);
+  for (const ChannelFit& channel : link) {
+    chain.add_fit(channel);
   }
   const std::size_t phasors = 1 + link.size();
   std::vector<double> estimates;

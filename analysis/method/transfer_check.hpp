@@ -25,7 +25,7 @@ struct TransferCheck {
 };
 
 [[nodiscard]] Expected<TransferCheck> check_transfer(const TransferPoint& point,
-                                                     std::span<const SeriesFit> link,
+                                                     std::span<const ChannelFit> link,
                                                      const MonteCarloSettings& settings = {});
 
 } // namespace dyncal::analysis

@@ -1,5 +1,5 @@
 // What goes into an evaluation and what comes out of it, the same for every method: recorded
-// channels, fitted series, one value of the transfer function with its uncertainty budget.
+// channels, fitted sines, one value of the transfer function with its uncertainty budget.
 //
 // H = |H| e^{i psi}, psi lead in radians, a delay is negative. All u_ are standard uncertainties.
 // Plain data, any thread.
@@ -23,11 +23,11 @@ struct ChannelSamples {
   double resolution = 0.0; // one quantisation step; 0: none
 };
 
-struct SeriesFit { // what was fitted to one of the four series
-  std::string series;
+struct ChannelFit { // the sine fitted to one recorded channel
+  std::string channel;
   Frequency frequency;
   double u_frequency_hz = 0.0;
-  std::int64_t reference_ns = 0;
+  std::int64_t phase_origin_ns = 0;
   SineFit fit;
 };
 
@@ -39,7 +39,7 @@ struct TransferPoint {
   double phase_rad = 0.0; // (-pi, pi]
   double u_phase_rad = 0.0;
   std::vector<Contribution> budget{};
-  SeriesFit dut;
+  ChannelFit dut;
 };
 
 } // namespace dyncal::analysis

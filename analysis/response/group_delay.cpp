@@ -251,12 +251,4 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
   return result;
 }
 
-Expected<std::vector<double>> unwrap_phase(std::span<const PhasePoint> points) {
-  const auto result = evaluate_group_delay(points);
-  if (!result) {
-    return fail(result.error());
-  }
-  return result->unwrapped_rad;
-}
-
 } // namespace dyncal::analysis

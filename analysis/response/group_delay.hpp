@@ -50,7 +50,4 @@ struct GroupDelay {
 [[nodiscard]] Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
                                                         const CommonPhaseUncertainty& common = {});
 
-// The unwrapping alone.
-[[nodiscard]] Expected<std::vector<double>> unwrap_phase(std::span<const PhasePoint> points);
-
 } // namespace dyncal::analysis

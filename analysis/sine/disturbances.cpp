@@ -79,7 +79,7 @@ void for_each_block(std::size_t samples, Visit visit) {
 }
 
 // The channels without the sine that was fitted and the offset, one after the other.
-std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t reference_ns,
+std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t phase_origin_ns,
                                        std::span<const std::int64_t> stamps_ns,
                                        std::span<const std::span<const double>> channels,
                                        const std::vector<SineFit>& fits) {
@@ -87,7 +87,8 @@ std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t 
   std::vector<std::complex<double>> phasors;
   phasors.reserve(fits.size());
   for (const SineFit& fit : fits) {
-    phasors.push_back(turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - reference_ns));
+    phasors.push_back(
+        turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - phase_origin_ns));
   }
   SineBlock block;
   for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
@@ -105,7 +106,7 @@ struct Disturbances { // of one channel
   [[nodiscard]] bool any() const { return basis.max_harmonic > 1 || !basis.lines.empty(); }
 };
 
-std::vector<Disturbances> search(const Frequency& frequency, std::int64_t reference_ns,
+std::vector<Disturbances> search(const Frequency& frequency, std::int64_t phase_origin_ns,
                                  std::span<const std::int64_t> stamps_ns,
                                  std::span<const std::span<const double>> channels,
                                  const std::vector<SineFit>& fits) {
@@ -117,14 +118,14 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
     return found;
   }
   const std::unique_ptr<double[]> residuals =
-      residuals_of(frequency, reference_ns, stamps_ns, channels, fits);
+      residuals_of(frequency, phase_origin_ns, stamps_ns, channels, fits);
   std::vector<std::span<const double>> residual_channels;
   for (std::size_t j = 0; j < channels.size(); ++j) {
     residual_channels.emplace_back(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
   }
 
   for (const Candidate& candidate : tried) {
-    const auto lines = fit_sine(candidate.frequency, reference_ns, stamps_ns, residual_channels);
+    const auto lines = fit_sine(candidate.frequency, phase_origin_ns, stamps_ns, residual_channels);
     if (!lines) {
       continue; // such a line cannot be told from a constant in this record
     }
@@ -143,15 +144,15 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t refere
   return found;
 }
 
-void take_out(UndisturbedFit& result, const Frequency& frequency, const ExtendedFit& fit,
-              std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
-              std::span<const double> values) {
+void remove_disturbances(CleanedFit& result, const Frequency& frequency, const ExtendedFit& fit,
+                         std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
+                         std::span<const double> values) {
   result.fit = fit.fundamental;
   result.values.assign(values.begin(), values.end());
   SineBlock block;
   const auto take = [&](const Frequency& line, const FurtherPhasor& phasor) {
     const std::complex<double> about_first =
-        turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - reference_ns);
+        turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - phase_origin_ns);
     for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
       block.fill(line, stamps_ns.front(), stamps_ns.subspan(first, n));
       block.remove(about_first, 0.0, result.values.data() + first, result.values.data() + first);
@@ -168,26 +169,27 @@ void take_out(UndisturbedFit& result, const Frequency& frequency, const Extended
 
 } // namespace
 
-Expected<std::vector<UndisturbedFit>>
-fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
+Expected<std::vector<CleanedFit>>
+fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_origin_ns,
                              std::span<const std::int64_t> stamps_ns,
                              std::span<const std::span<const double>> channels) {
-  const auto plain = fit_sine(frequency, reference_ns, stamps_ns, channels);
+  const auto plain = fit_sine(frequency, phase_origin_ns, stamps_ns, channels);
   if (!plain) {
     return fail(plain.error());
   }
   const std::vector<Disturbances> found =
-      search(frequency, reference_ns, stamps_ns, channels, *plain);
-  std::vector<UndisturbedFit> result(channels.size());
+      search(frequency, phase_origin_ns, stamps_ns, channels, *plain);
+  std::vector<CleanedFit> result(channels.size());
   for (std::size_t j = 0; j < channels.size(); ++j) {
     result[j].fit = (*plain)[j];
     if (!found[j].any()) {
       continue;
     }
-    const auto fit = fit_sine_extended(frequency, found[j].basis, Weighting::none, reference_ns,
+    const auto fit = fit_sine_extended(frequency, found[j].basis, Weighting::none, phase_origin_ns,
                                        stamps_ns, channels.subspan(j, 1));
     if (fit) {
-      take_out(result[j], frequency, fit->front(), reference_ns, stamps_ns, channels[j]);
+      remove_disturbances(result[j], frequency, fit->front(), phase_origin_ns, stamps_ns,
+                          channels[j]);
     }
   }
   return result;

@@ -5,7 +5,7 @@
 // Each channel is fitted with three parameters (paper eq. (1)). Its residuals are searched for
 // harmonics 2..10 and for 50 Hz and 60 Hz with their first multiples, below 0.45 of the mean sample
 // rate and at least 1.5 / T away from the harmonics. What stands out by 4.5 standard uncertainties
-// (by chance: 4 in 100 000) is fitted beside the signal (sine_fit_extended.hpp). A clean channel
+// (by chance: 4 in 100 000) is fitted beside the signal (extended_sine_fit.hpp). A clean channel
 // therefore keeps the plain three-parameter result, bit for bit; so does one whose disturbance
 // cannot be told apart from the signal. Fails as sine_fit.hpp does. Any thread.
 #pragma once
@@ -20,14 +20,14 @@
 
 namespace dyncal::analysis {
 
-struct UndisturbedFit {
+struct CleanedFit {
   SineFit fit;
   std::vector<double> removed_hz; // what was fitted beside it
   std::vector<double> values;     // the samples without it; empty when nothing was removed
 };
 
-[[nodiscard]] Expected<std::vector<UndisturbedFit>>
-fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t reference_ns,
+[[nodiscard]] Expected<std::vector<CleanedFit>>
+fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_origin_ns,
                              std::span<const std::int64_t> stamps_ns,
                              std::span<const std::span<const double>> channels);
 

@@ -34,8 +34,8 @@ Expected<SineBasis> SineBasis::make(const Record& record, const Frequency& frequ
   }
   frequencies.insert(frequencies.end(), basis.lines.begin(), basis.lines.end());
   for (const Frequency& one : frequencies) {
-    if (const auto carried = record.carries(one); !carried) {
-      return fail(carried.error());
+    if (const auto nyquist = record.check_nyquist(one); !nyquist) {
+      return fail(nyquist.error());
     }
   }
   return SineBasis(record, basis, std::move(frequencies));

@@ -1,4 +1,4 @@
-// Columns of the extended linear model (sine_fit_extended.hpp), made block by block with the vector
+// Columns of the extended linear model (extended_sine_fit.hpp), made block by block with the vector
 // kernel.
 //
 // Order: sine, cosine, constant, drift powers, harmonics (sine, cosine each), lines (likewise), u

@@ -308,7 +308,7 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted,
 
 Expected<std::vector<ExtendedFit>>
 fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
-                  std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                  std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
                   std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
   if (!record) {
@@ -319,7 +319,7 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
     return fail(columns.error());
   }
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the reference instant is more than 292 years away from the record");
   }
@@ -345,7 +345,7 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
     fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
   }
   if (std::none_of(fits.begin(), fits.end(),
-                   [](const ExtendedFit& fit) { return stands_out(fit.fundamental); })) {
+                   [](const ExtendedFit& fit) { return is_significant(fit.fundamental); })) {
     return fail(ErrorCode::no_excitation,
                 "no sine of " + std::to_string(frequency.hz()) +
                     " Hz stands out of the noise in any channel; check frequency and window");

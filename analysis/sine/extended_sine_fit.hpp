@@ -60,7 +60,7 @@ struct ExtendedFit {
 
 [[nodiscard]] Expected<std::vector<ExtendedFit>>
 fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
-                  std::int64_t reference_ns, std::span<const std::int64_t> stamps_ns,
+                  std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
                   std::span<const std::span<const double>> channels);
 
 } // namespace dyncal::analysis

@@ -16,11 +16,11 @@ Complex times(Complex a, Complex b) {
 
 // Coefficients of powers of v, with a = exp(-i delta u) over the segment.
 struct Coefficients {
-  Series shift;       // a
-  Series square;      // a^2
-  Series loss;        // 1 - a
-  Series loss_times;  // a - a^2
-  Series loss_square; // (1 - a)^2
+  PowerSeries shift;       // a
+  PowerSeries square;      // a^2
+  PowerSeries loss;        // 1 - a
+  PowerSeries loss_times;  // a - a^2
+  PowerSeries loss_square; // (1 - a)^2
 
   Coefficients(double delta, double centre) {
     const double angle = delta * centre;
@@ -47,7 +47,7 @@ struct Coefficients {
 
 // Sum of coefficient times moment, the moments `raised` orders higher.
 template <class Moments>
-Complex dot(const Series& coefficients, const Moments& moments, std::size_t raised) {
+Complex dot(const PowerSeries& coefficients, const Moments& moments, std::size_t raised) {
   Complex sum = 0.0;
   for (std::size_t m = 0; m + raised < moment_count; ++m) {
     sum += times(coefficients[m], Complex(moments[m + raised]));
@@ -57,14 +57,15 @@ Complex dot(const Series& coefficients, const Moments& moments, std::size_t rais
 
 // Weighted with u^0, u^1, u^2, u = centre + v.
 template <class Moments>
-std::array<Complex, 3> weighted(const Series& coefficients, const Moments& moments, double centre) {
+std::array<Complex, 3> weighted(const PowerSeries& coefficients, const Moments& moments,
+                                double centre) {
   const Complex zero = dot(coefficients, moments, 0);
   const Complex one = dot(coefficients, moments, 1);
   const Complex two = dot(coefficients, moments, 2);
   return {zero, centre * zero + one, centre * (centre * zero + 2.0 * one) + two};
 }
 
-void add_design(const DesignSeries& d, const Coefficients& k, ShiftedSums& result) {
+void add_design(const DesignFrequencySeries& d, const Coefficients& k, ShiftedSums& result) {
   const double n = d.u[0];
   const double u = d.centre * n + d.u[1];
   const double uu = d.centre * (d.centre * n + 2.0 * d.u[1]) + d.u[2];
@@ -96,7 +97,7 @@ struct DesignChange {
   std::array<Complex, 3> image;  // sum u^j x^2 (a - a^2)
   Complex image_square;          // sum x^2 (1 - a)^2
 
-  DesignChange(const DesignSeries& d, const Coefficients& k)
+  DesignChange(const DesignFrequencySeries& d, const Coefficients& k)
       : constant(dot(k.loss, d.x, 0)), direct(weighted(k.loss, d.u, d.centre)),
         image(weighted(k.loss_times, d.xx, d.centre)), image_square(dot(k.loss_square, d.xx, 0)) {}
 
@@ -114,7 +115,7 @@ struct DesignChange {
 void add_residuals(const Segment& segment, const Coefficients& k, const DesignChange& change,
                    std::span<const Parameters> start, ShiftedSums& result) {
   for (std::size_t j = 0; j < start.size(); ++j) {
-    const ResidualSeries& r = segment.channels[j];
+    const ResidualFrequencySeries& r = segment.channels[j];
     const Complex p{start[j].sine, start[j].cosine};
     const auto ex = weighted(k.shift, r.ex, segment.design->centre);
     const Complex onto = ex[0] + change.onto_basis(p, 0);
@@ -132,8 +133,8 @@ void add_residuals(const Segment& segment, const Coefficients& k, const DesignCh
 
 } // namespace
 
-DesignSeries design_series(const DesignMoments& moments, double centre) {
-  DesignSeries series;
+DesignFrequencySeries design_frequency_series(const DesignMoments& moments, double centre) {
+  DesignFrequencySeries series;
   series.centre = centre;
   for (std::size_t m = 0; m < moment_count; ++m) {
     series.u[m] = moments.u[m];
@@ -143,8 +144,8 @@ DesignSeries design_series(const DesignMoments& moments, double centre) {
   return series;
 }
 
-ResidualSeries residual_series(const ResidualMoments& moments) {
-  ResidualSeries series;
+ResidualFrequencySeries residual_frequency_series(const ResidualMoments& moments) {
+  ResidualFrequencySeries series;
   series.e = moments.e;
   series.ee = moments.ee;
   for (std::size_t m = 0; m < moment_count; ++m) {

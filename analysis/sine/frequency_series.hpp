@@ -22,28 +22,29 @@
 
 namespace dyncal::analysis::kernel {
 
-using Series = std::array<std::complex<double>, moment_count>;
+using PowerSeries = std::array<std::complex<double>, moment_count>;
 
-struct DesignSeries {
+struct DesignFrequencySeries {
   double centre = 0.0;
   std::array<double, moment_count> u{};
-  Series x{};
-  Series xx{};
+  PowerSeries x{};
+  PowerSeries xx{};
 };
 
-struct ResidualSeries {
+struct ResidualFrequencySeries {
   double e = 0.0;
   double ee = 0.0;
-  Series ex{};
+  PowerSeries ex{};
 };
 
-[[nodiscard]] DesignSeries design_series(const DesignMoments& moments, double centre);
-[[nodiscard]] ResidualSeries residual_series(const ResidualMoments& moments);
+[[nodiscard]] DesignFrequencySeries design_frequency_series(const DesignMoments& moments,
+                                                            double centre);
+[[nodiscard]] ResidualFrequencySeries residual_frequency_series(const ResidualMoments& moments);
 
 // What one segment holds: its design and one residual series a channel.
 struct Segment {
-  const DesignSeries* design;
-  const ResidualSeries* channels; // as many as there are start values
+  const DesignFrequencySeries* design;
+  const ResidualFrequencySeries* channels; // as many as there are start values
 };
 
 // All sums at w0 + delta/scale, residuals against the same p0.

@@ -64,9 +64,10 @@ void add(ResidualMoments& total, const Powers& middle, const ResidualSums& sums,
   }
 }
 
-class SeriesPass {
+class FrequencySeriesPass {
 public:
-  SeriesPass(const Record& record, const Frequency& frequency, std::span<const Parameters> start)
+  FrequencySeriesPass(const Record& record, const Frequency& frequency,
+                      std::span<const Parameters> start)
       : kernel_(best_kernel()), record_(record), axis_(record.axis(frequency)), start_(start),
         channels_(start.size(), ResidualMoments{}), values_(start.size()), residuals_(start.size()),
         residual_slopes_(start.size()) {}
@@ -114,12 +115,12 @@ public:
   [[nodiscard]] bool increasing() const {
     return increasing_;
   } // across the blocks of add_on_grid()
-  [[nodiscard]] SeriesSums sums() const {
-    SeriesSums result;
+  [[nodiscard]] FrequencySeriesSums sums() const {
+    FrequencySeriesSums result;
     result.block_half_length = block_half_length_;
-    result.design = design_series(design_, 0.0);
+    result.design = design_frequency_series(design_, 0.0);
     for (const ResidualMoments& moments : channels_) {
-      result.channels.push_back(residual_series(moments));
+      result.channels.push_back(residual_frequency_series(moments));
     }
     return result;
   }
@@ -157,10 +158,12 @@ private:
 
 } // namespace
 
-Expected<SeriesSums> accumulate_series(const Record& record, const Frequency& frequency,
-                                       std::span<const Parameters> start, Selection selection) {
+Expected<FrequencySeriesSums> accumulate_frequency_series(const Record& record,
+                                                          const Frequency& frequency,
+                                                          std::span<const Parameters> start,
+                                                          Selection selection) {
   const auto grid = sample_grid(record.stamps(), frequency);
-  SeriesPass pass(record, frequency, start);
+  FrequencySeriesPass pass(record, frequency, start);
   for (std::size_t i = 0; i < record.size(); i += selection.step) {
     const std::size_t n = std::min(selection.length, record.size() - i);
     for (std::size_t done = grid ? pass.add_on_grid(i, n, *grid) : 0; done < n;) {
@@ -177,9 +180,9 @@ Expected<SeriesSums> accumulate_series(const Record& record, const Frequency& fr
   return pass.sums();
 }
 
-bool all_finite(const SeriesSums& sums) {
+bool all_finite(const FrequencySeriesSums& sums) {
   return std::all_of(sums.channels.begin(), sums.channels.end(),
-                     [](const ResidualSeries& s) { return std::isfinite(s.ee); });
+                     [](const ResidualFrequencySeries& s) { return std::isfinite(s.ee); });
 }
 
 } // namespace dyncal::analysis::kernel

@@ -157,18 +157,18 @@ double SineFit::residual_sd() const {
   return degrees_of_freedom > 0.0 ? std::sqrt(rss / degrees_of_freedom) : 0.0;
 }
 
-Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t reference_ns,
+Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t phase_origin_ns,
                                         std::span<const std::int64_t> stamps_ns,
                                         std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 3);
   if (!record) {
     return fail(record.error());
   }
-  if (const auto carried = record->carries(frequency); !carried) {
-    return fail(carried.error());
+  if (const auto nyquist = record->check_nyquist(frequency); !nyquist) {
+    return fail(nyquist.error());
   }
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the reference instant is more than 292 years away from the record");
   }
@@ -206,7 +206,8 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
     }
     start->plain = false;
   }
-  if (std::none_of(fits.begin(), fits.end(), [](const SineFit& fit) { return stands_out(fit); })) {
+  if (std::none_of(fits.begin(), fits.end(),
+                   [](const SineFit& fit) { return is_significant(fit); })) {
     return fail(ErrorCode::no_excitation,
                 "no sine of " + std::to_string(frequency.hz()) +
                     " Hz stands out of the noise in any channel; check frequency and window");

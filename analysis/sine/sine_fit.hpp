@@ -2,18 +2,19 @@
 // fits on irregular stamps.
 //
 // Model, channel j:  y_j(t) = A_j sin(w (t - t_ref)) + B_j cos(w (t - t_ref)) + C_j   (+ further
-// basis, sine_fit_extended.hpp) Phasor P = A + iB; amplitude |P|; phase theta = atan2(B, A), lead,
+// basis, extended_sine_fit.hpp) Phasor P = A + iB; amplitude |P|; phase theta = atan2(B, A), lead,
 // radians: y = |P| sin(w (t - t_ref) + theta). The paper's lag is -theta. Stamps are int64 ns,
 // strictly increasing, any spacing; t_ref is the caller's (the record's middle keeps w and theta
 // uncorrelated). All channels of a call share stamps and thus the design; every channel is fitted
 // on its own. Uncertainties come from the residuals: V = s^2 (D'D)^-1 with s^2 = rss / (n - p)
-// (analysis of white noise; jitter and systematic parts are added by uncertainty.hpp). A, B, C keep
-// 14 digits of the amplitude, rss at least nine. Nearly equidistant records take a faster form
-// (sine_grid.hpp); which samples do is decided by the stamps alone. Fails: too_few_samples (n <=
-// p), stamps_not_increasing, not_finite, frequency_out_of_range (more than half a turn per sample
-// interval, unless these are so uneven that there is no alias), ill_conditioned, no_excitation (no
-// channel has an amplitude of four standard uncertainties), not_converged, invalid_argument (sizes;
-// a record of more than 26 days). No threads, no state; the same input gives the same bits.
+// (analysis of white noise; jitter and systematic parts are added by law_of_propagation.hpp). A, B,
+// C keep 14 digits of the amplitude, rss at least nine. Nearly equidistant records take a faster
+// form (sine_grid.hpp); which samples do is decided by the stamps alone. Fails: too_few_samples (n
+// <= p), stamps_not_increasing, not_finite, frequency_out_of_range (more than half a turn per
+// sample interval, unless these are so uneven that there is no alias), ill_conditioned,
+// no_excitation (no channel has an amplitude of four standard uncertainties), not_converged,
+// invalid_argument (sizes; a record of more than 26 days). No threads, no state; the same input
+// gives the same bits.
 #pragma once
 
 #include <array>
@@ -44,7 +45,7 @@ struct SineFit {
 
 // Known frequency (three parameters).
 [[nodiscard]] Expected<std::vector<SineFit>>
-fit_sine(const Frequency& frequency, std::int64_t reference_ns,
+fit_sine(const Frequency& frequency, std::int64_t phase_origin_ns,
          std::span<const std::int64_t> stamps_ns,
          std::span<const std::span<const double>> channels);
 
@@ -61,7 +62,7 @@ struct FrequencyFit {
 // iteration, which stops on |dw| T < 1e-9. Each channel counts with its own noise: the frequency
 // minimises sum over channels of log(rss).
 [[nodiscard]] Expected<FrequencyFit>
-fit_sine_and_frequency(const Frequency& start, double search_rel, std::int64_t reference_ns,
+fit_sine_and_frequency(const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
                        std::span<const std::int64_t> stamps_ns,
                        std::span<const std::span<const double>> channels);
 

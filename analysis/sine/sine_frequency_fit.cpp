@@ -1,7 +1,7 @@
 // Four parameters: search, then passes over the samples, each followed by the solution of the whole
-// nonlinear problem in the frequency on the series of that pass (sine_series.hpp). Long records
-// take their first passes on an eighth of the samples; one pass over all of them is then enough as
-// a rule.
+// nonlinear problem in the frequency on the series of that pass (frequency_series.hpp). Long
+// records take their first passes on an eighth of the samples; one pass over all of them is then
+// enough as a rule.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -36,7 +36,7 @@ double radians_to_hz(const Record& record, double delta) {
 
 // What the series left out, in radians: orders of the residual moments from u^2 on, of the design
 // from u^3 on, and its end.
-double series_error(const SeriesSums& sums, const FrequencySolution& solution) {
+double series_error(const FrequencySeriesSums& sums, const FrequencySolution& solution) {
   double residual =
       0.0; // against the amplitude: noise averages out, what the start parameters miss does not
   for (const Solution& channel : solution.channels) {
@@ -55,7 +55,8 @@ double series_error(const SeriesSums& sums, const FrequencySolution& solution) {
 }
 
 Expected<void> pass(const Record& record, Selection selection, Estimate& estimate, double& error) {
-  const auto sums = accumulate_series(record, estimate.frequency, estimate.start, selection);
+  const auto sums =
+      accumulate_frequency_series(record, estimate.frequency, estimate.start, selection);
   if (!sums) {
     return fail(sums.error());
   }
@@ -111,7 +112,7 @@ Expected<void> check_arguments(const Record& record, const Frequency& start, dou
         ErrorCode::invalid_argument,
         "the search range of the frequency must be at least 0 and below 1, relative to the start");
   }
-  return record.carries(start);
+  return record.check_nyquist(start);
 }
 
 Expected<Estimate> estimate_of(const Record& record, const Frequency& start, double search_rel) {
@@ -154,7 +155,7 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
 } // namespace
 
 Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double search_rel,
-                                              std::int64_t reference_ns,
+                                              std::int64_t phase_origin_ns,
                                               std::span<const std::int64_t> stamps_ns,
                                               std::span<const std::span<const double>> channels) {
   const auto record = Record::make(stamps_ns, channels, 4);
@@ -165,7 +166,7 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
     return fail(checked.error());
   }
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(reference_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the reference instant is more than 292 years away from the record");
   }
@@ -186,7 +187,7 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
   const double bins = 1.0 + 2.0 * search_rel * start.hz() * record->span_s();
   bool excited = false;
   for (std::size_t j = 0; j < channels.size(); ++j) {
-    excited |= stands_out(channel_fit(estimate->solution, j, 0.0, 0.0), bins);
+    excited |= is_significant(channel_fit(estimate->solution, j, 0.0, 0.0), bins);
     result.channels.push_back(channel_fit(estimate->solution, j, reference_shift, turns));
   }
   if (!excited) {
@@ -201,8 +202,8 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
                 "the frequency moved to " + std::to_string(result.frequency.hz()) +
                     " Hz, outside of the search range; check the start frequency");
   }
-  if (const auto carried = record->carries(result.frequency); !carried) {
-    return fail(carried.error());
+  if (const auto nyquist = record->check_nyquist(result.frequency); !nyquist) {
+    return fail(nyquist.error());
   }
   return result;
 }

@@ -170,7 +170,7 @@ Expected<Record> Record::make(std::span<const std::int64_t> stamps_ns, Channels 
   return Record(stamps_ns, channels);
 }
 
-Expected<void> Record::carries(const Frequency& frequency) const {
+Expected<void> Record::check_nyquist(const Frequency& frequency) const {
   const double mean_rate_hz = static_cast<double>(size() - 1) / span_s_;
   if (frequency.hz() <= 0.5 * mean_rate_hz) {
     return {};

@@ -36,7 +36,7 @@ public:
 
   // More than half a turn per sample interval cannot be told from its alias, unless the intervals
   // are so uneven that it has none.
-  [[nodiscard]] Expected<void> carries(const Frequency& frequency) const;
+  [[nodiscard]] Expected<void> check_nyquist(const Frequency& frequency) const;
   // Asks for the first samples, on their way while a fit is prepared.
   void fetch_beginning() const;
   [[nodiscard]] TimeAxis axis(const Frequency& frequency) const;
@@ -83,21 +83,20 @@ struct PassSums {
 
 [[nodiscard]] bool all_finite(const PassSums& sums);
 
-// The same with the series of the whole record in the frequency (sine_series.hpp, one segment, u in
-// units of half the span). Design moments up to u^2 and residual moments up to u^1 are exact sums
-// over the samples, higher ones follow from those of the blocks: they are wrong by the square
+// The same with the series of the whole record in the frequency (frequency_series.hpp, one segment,
+// u in units of half the span). Design moments up to u^2 and residual moments up to u^1 are exact
+// sums over the samples, higher ones follow from those of the blocks: they are wrong by the square
 // (residuals) or cube (design) of `block_half_length` only.
-struct SeriesSums {
-  DesignSeries design;
-  std::vector<ResidualSeries> channels;
+struct FrequencySeriesSums {
+  DesignFrequencySeries design;
+  std::vector<ResidualFrequencySeries> channels;
   double block_half_length = 0.0;
 
   [[nodiscard]] Segment segment() const { return {&design, channels.data()}; }
 };
-[[nodiscard]] Expected<SeriesSums> accumulate_series(const Record& record,
-                                                     const Frequency& frequency,
-                                                     std::span<const Parameters> start,
-                                                     Selection selection = {});
-[[nodiscard]] bool all_finite(const SeriesSums& sums);
+[[nodiscard]] Expected<FrequencySeriesSums>
+accumulate_frequency_series(const Record& record, const Frequency& frequency,
+                            std::span<const Parameters> start, Selection selection = {});
+[[nodiscard]] bool all_finite(const FrequencySeriesSums& sums);
 
 } // namespace dyncal::analysis::kernel

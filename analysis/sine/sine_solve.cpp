@@ -90,7 +90,7 @@ SinCos sine_cosine_of_turns(double turns) {
   }
 }
 
-bool stands_out(const SineFit& fit, double picked_from) {
+bool is_significant(const SineFit& fit, double picked_from) {
   const double limit = std::sqrt(16.0 + 2.0 * std::log(picked_from));
   const double amplitude = fit.amplitude();
   // Rounding alone leaves about 1e-16 of the offset.

@@ -57,6 +57,6 @@ struct SinCos {
 // A phasor stands out of the noise when its amplitude is at least four standard uncertainties:
 // noise alone does so once in 3000. When the largest of several independent frequencies was picked,
 // the limit rises so that this stays.
-[[nodiscard]] bool stands_out(const SineFit& fit, double picked_from = 1.0);
+[[nodiscard]] bool is_significant(const SineFit& fit, double picked_from = 1.0);
 
 } // namespace dyncal::analysis::kernel

@@ -74,17 +74,17 @@ Expected<void> SineStream::State::push(std::span<const std::int64_t> stamps,
   }
   for (std::size_t i = 0; i < stamps.size();) {
     const std::size_t n = without_gap(
-        stamps.subspan(i, std::min(stamps.size() - i, BlockSamples::most - samples_.filled)));
+        stamps.subspan(i, std::min(stamps.size() - i, BlockSamples::capacity - samples_.filled)));
     std::copy_n(stamps.data() + i, n, samples_.stamps.data() + samples_.filled);
     for (std::size_t j = 0; j < samples_.values.size(); ++j) {
       std::copy_n(channels[j].data() + i, n, samples_.values[j].data() + samples_.filled);
     }
     i += n;
     samples_.filled += n;
-    if (samples_.filled >= BlockSamples::most / 2) {
+    if (samples_.filled >= BlockSamples::capacity / 2) {
       prepare_block();
     }
-    if (samples_.filled == BlockSamples::most || (n == 0 && samples_.filled > 0)) {
+    if (samples_.filled == BlockSamples::capacity || (n == 0 && samples_.filled > 0)) {
       close_block();
     }
   }
@@ -121,8 +121,8 @@ void kernel::BlockReduction::take_piece(const BlockSamples& samples, const Frequ
     DesignMoments moments;
     kernel.design_moments(samples.stamps.data(), samples.filled, axis, basis_, moments);
     block.half_length_s = samples.half_length_s();
-    block.design =
-        design_series(moments, static_cast<double>(samples.middle_ns() - first_ns) * 1e-9);
+    block.design = design_frequency_series(
+        moments, static_cast<double>(samples.middle_ns() - first_ns) * 1e-9);
     for (Complex& x : block.design.x) {
       x = times(x, back_);
     }
@@ -136,7 +136,7 @@ void kernel::BlockReduction::take_piece(const BlockSamples& samples, const Frequ
   ResidualMoments residuals;
   kernel.residual_moments(samples.values[j].data(), samples.filled, basis_,
                           {p.real(), p.imag(), start[j].offset}, residuals);
-  block.channels[j] = residual_series(residuals);
+  block.channels[j] = residual_frequency_series(residuals);
   for (Complex& ex : block.channels[j].ex) {
     ex = times(ex, back_);
   }
@@ -240,20 +240,20 @@ Expected<void> SineStream::State::ready(std::size_t parameters) const {
   return {};
 }
 
-Expected<std::int64_t> SineStream::State::shift_to(std::int64_t reference_ns) const {
+Expected<std::int64_t> SineStream::State::shift_to(std::int64_t phase_origin_ns) const {
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(reference_ns, first_ns_, &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, first_ns_, &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the reference instant is more than 292 years away from the record");
   }
   return shift_ns;
 }
 
-Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns) {
+Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t phase_origin_ns) {
   if (const auto checked = ready(3); !checked) {
     return fail(checked.error());
   }
-  const auto shift_ns = shift_to(reference_ns);
+  const auto shift_ns = shift_to(phase_origin_ns);
   if (!shift_ns) {
     return fail(shift_ns.error());
   }
@@ -262,7 +262,8 @@ Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns)
     for (const auto& values : samples_.values) {
       channels.emplace_back(values.data(), samples_.filled);
     }
-    return fit_sine(frequency_, reference_ns, {samples_.stamps.data(), samples_.filled}, channels);
+    return fit_sine(frequency_, phase_origin_ns, {samples_.stamps.data(), samples_.filled},
+                    channels);
   }
   const Totals& totals = totals_with_open_block();
   const NormalMatrix matrix(totals.n, totals.design());
@@ -287,7 +288,7 @@ Expected<std::vector<SineFit>> SineStream::State::fit(std::int64_t reference_ns)
     for (std::size_t i = 0; i < unit.size(); ++i) {
       fit.covariance[i] = unit[i] * solution.rss / fit.degrees_of_freedom;
     }
-    excited |= stands_out(fit);
+    excited |= is_significant(fit);
     rotate(fit, turns);
   }
   if (!excited) {
@@ -316,12 +317,12 @@ Expected<void> SineStream::push(std::span<const std::int64_t> stamps_ns,
 std::uint64_t SineStream::samples() const {
   return state_->samples();
 }
-Expected<std::vector<SineFit>> SineStream::fit(std::int64_t reference_ns) const {
-  return state_->fit(reference_ns);
+Expected<std::vector<SineFit>> SineStream::fit(std::int64_t phase_origin_ns) const {
+  return state_->fit(phase_origin_ns);
 }
 Expected<FrequencyFit> SineStream::fit_with_frequency(double search_rel,
-                                                      std::int64_t reference_ns) const {
-  return state_->fit_with_frequency(search_rel, reference_ns);
+                                                      std::int64_t phase_origin_ns) const {
+  return state_->fit_with_frequency(search_rel, phase_origin_ns);
 }
 
 } // namespace dyncal::analysis

@@ -1,10 +1,10 @@
 // Sine approximation while the samples arrive: the result is ready when the last sample is.
 //
 // Samples are reduced in blocks of 64, counted from the first: of each block its sums and its
-// series in the frequency (sine_series.hpp) are kept, the samples themselves are not. The state,
-// and so every bit of a result, depends on the samples alone and not on how they were cut into
-// pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share the stamps.
-// Phases refer to the first stamp inside, results to the caller's reference instant.
+// series in the frequency (frequency_series.hpp) are kept, the samples themselves are not. The
+// state, and so every bit of a result, depends on the samples alone and not on how they were cut
+// into pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share the
+// stamps. Phases refer to the first stamp inside, results to the caller's reference instant.
 //
 // fit() evaluates at the frequency given at the start, from running sums: with the push of the last
 // sample it is there in well under a microsecond, whatever that sample closes (the series of a full
@@ -49,11 +49,11 @@ public:
 
   // The fit of everything pushed so far, at the frequency of the start; more may be pushed
   // afterwards.
-  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t reference_ns) const;
+  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t phase_origin_ns) const;
 
   // The same with the frequency refined within start * (1 +- search_rel).
   [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel,
-                                                          std::int64_t reference_ns) const;
+                                                          std::int64_t phase_origin_ns) const;
 
 private:
   class State;

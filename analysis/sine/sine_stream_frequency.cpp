@@ -8,7 +8,7 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double series_error_allowed = 1e-10;
+constexpr double max_series_error = 1e-10;
 
 } // namespace
 
@@ -87,7 +87,7 @@ void SineStream::State::add_spectra(std::span<const Segment> segments, double st
 }
 
 Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
-                                                             std::int64_t reference_ns) {
+                                                             std::int64_t phase_origin_ns) {
   if (const auto checked = ready(4); !checked) {
     return fail(checked.error());
   }
@@ -96,7 +96,7 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
         ErrorCode::invalid_argument,
         "the search range of the frequency must be at least 0 and below 1, relative to the start");
   }
-  const auto shift_ns = shift_to(reference_ns);
+  const auto shift_ns = shift_to(phase_origin_ns);
   if (!shift_ns) {
     return fail(shift_ns.error());
   }
@@ -135,7 +135,7 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
                       solution.u_delta / (2.0 * std::numbers::pi),
                       {},
                       1};
-  if (!solution.settled || std::pow(2.0 * moved, 7) / 5040.0 > series_error_allowed) {
+  if (!solution.settled || std::pow(2.0 * moved, 7) / 5040.0 > max_series_error) {
     return fail(ErrorCode::not_converged,
                 "the frequency moved to " + std::to_string(result.frequency.hz()) +
                     " Hz, too far from where the stream was reduced; start it at that frequency");
@@ -145,8 +145,8 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
   bool excited = false;
   for (std::size_t j = 0; j < start_.size(); ++j) {
     const double to_middle = result.frequency.reduced_turns((last_ns_ - first_ns_) / 2);
-    excited |=
-        stands_out(channel_fit(solution, j, half_span_s, to_middle), 1.0 + 2.0 * half_range / bin);
+    excited |= is_significant(channel_fit(solution, j, half_span_s, to_middle),
+                              1.0 + 2.0 * half_range / bin);
     result.channels.push_back(
         channel_fit(solution, j, static_cast<double>(*shift_ns) * 1e-9, turns));
   }

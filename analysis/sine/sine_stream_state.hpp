@@ -48,18 +48,18 @@ struct Totals {
 };
 
 struct Block {
-  DesignSeries design;
-  std::vector<ResidualSeries> channels;
+  DesignFrequencySeries design;
+  std::vector<ResidualFrequencySeries> channels;
   double half_length_s = 0.0;
 };
 
 // Samples of one block.
 struct BlockSamples {
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t capacity = 64;
   explicit BlockSamples(std::size_t channels) : values(channels) {}
 
-  std::array<std::int64_t, most> stamps{};
-  std::vector<std::array<double, most>> values;
+  std::array<std::int64_t, capacity> stamps{};
+  std::vector<std::array<double, capacity>> values;
   std::size_t filled = 0;
 
   [[nodiscard]] std::int64_t middle_ns() const {
@@ -70,9 +70,9 @@ struct BlockSamples {
   }
 };
 
-// Series of a block's samples: computed about the middle of the block, phases then turned to the
-// first stamp of the stream. In pieces, the design and then one channel each, so that no sample of
-// a stream has to wait for all of them.
+// PowerSeries of a block's samples: computed about the middle of the block, phases then turned to
+// the first stamp of the stream. In pieces, the design and then one channel each, so that no sample
+// of a stream has to wait for all of them.
 class BlockReduction {
 public:
   // To begin with samples; their block, start values and the rest stay the same until all pieces
@@ -104,15 +104,15 @@ public:
   [[nodiscard]] std::uint64_t samples() const {
     return static_cast<std::uint64_t>(totals_.n) + samples_.filled;
   }
-  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t reference_ns);
+  [[nodiscard]] Expected<std::vector<SineFit>> fit(std::int64_t phase_origin_ns);
   [[nodiscard]] Expected<FrequencyFit> fit_with_frequency(double search_rel,
-                                                          std::int64_t reference_ns);
+                                                          std::int64_t phase_origin_ns);
 
 private:
   [[nodiscard]] Expected<void> check(std::span<const std::int64_t> stamps,
                                      std::span<const std::span<const double>> channels) const;
   [[nodiscard]] Expected<void> ready(std::size_t parameters) const;
-  [[nodiscard]] Expected<std::int64_t> shift_to(std::int64_t reference_ns) const;
+  [[nodiscard]] Expected<std::int64_t> shift_to(std::int64_t phase_origin_ns) const;
   [[nodiscard]] const kernel::Totals& totals_with_open_block();
   [[nodiscard]] std::size_t without_gap(std::span<const std::int64_t> stamps);
   void prepare_block();

@@ -5,7 +5,7 @@
 namespace dyncal::services {
 
 void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point,
-                           std::span<const analysis::SeriesFit> link,
+                           std::span<const analysis::ChannelFit> link,
                            wire::CalibrationResult& result) {
   if (recipe.monte_carlo_trials == 0) {
     return;

@@ -16,7 +16,7 @@ namespace dyncal::services {
 // Nothing when the recipe asks for no check. The seed is fixed, so that the same samples give the
 // same bits. `link` as analysis::check_transfer() takes it.
 void add_monte_carlo_check(const Recipe& recipe, const analysis::TransferPoint& point,
-                           std::span<const analysis::SeriesFit> link,
+                           std::span<const analysis::ChannelFit> link,
                            wire::CalibrationResult& result);
 
 } // namespace dyncal::services

@@ -30,21 +30,21 @@ wire::SourceSamples samples_message(const SourceRecord& record, const StepSample
   return samples;
 }
 
-wire::SineFit fit_message(const analysis::SeriesFit& series) {
+wire::SineFit fit_message(const analysis::ChannelFit& channel) {
   wire::SineFit message;
-  message.channel(series.series);
-  message.frequency_hz(series.frequency.hz());
-  message.u_frequency_hz(series.u_frequency_hz);
-  message.phase_origin_ns(series.reference_ns);
-  message.sine(series.fit.sine);
-  message.cosine(series.fit.cosine);
-  message.offset(series.fit.offset);
-  message.u_sine(std::sqrt(series.fit.covariance[0]));
-  message.u_cosine(std::sqrt(series.fit.covariance[3]));
-  message.u_offset(std::sqrt(series.fit.covariance[5]));
+  message.channel(channel.channel);
+  message.frequency_hz(channel.frequency.hz());
+  message.u_frequency_hz(channel.u_frequency_hz);
+  message.phase_origin_ns(channel.phase_origin_ns);
+  message.sine(channel.fit.sine);
+  message.cosine(channel.fit.cosine);
+  message.offset(channel.fit.offset);
+  message.u_sine(std::sqrt(channel.fit.covariance[0]));
+  message.u_cosine(std::sqrt(channel.fit.covariance[3]));
+  message.u_offset(std::sqrt(channel.fit.covariance[5]));
   message.residual_rms(std::sqrt(
-      series.fit.rss / static_cast<double>(std::max<std::uint64_t>(series.fit.samples, 1))));
-  message.sample_count(series.fit.samples);
+      channel.fit.rss / static_cast<double>(std::max<std::uint64_t>(channel.fit.samples, 1))));
+  message.sample_count(channel.fit.samples);
   return message;
 }
 
@@ -88,14 +88,14 @@ void add_budget(std::span<const analysis::Contribution> budget, wire::Calibratio
 
 wire::CalibrationResult point_result(const Recipe& recipe, const RecipeStep& step,
                                      const ChannelName& name, const analysis::TransferPoint& point,
-                                     std::span<const analysis::SeriesFit> common_fits) {
+                                     std::span<const analysis::ChannelFit> common_fits) {
   wire::CalibrationResult result = result_head(recipe, step, name.text());
   result.valid(true);
   result.magnitude(point.magnitude);
   result.u_magnitude(point.u_magnitude);
   result.phase_rad(point.phase_rad);
   result.u_phase_rad(point.u_phase_rad);
-  for (const analysis::SeriesFit& fit : common_fits) {
+  for (const analysis::ChannelFit& fit : common_fits) {
     result.fits().push_back(fit_message(fit));
   }
   result.fits().push_back(fit_message(point.dut));

@@ -19,7 +19,7 @@ namespace dyncal::services {
 // Everything but the numbers: not valid, magnitude and phase NaN.
 [[nodiscard]] wire::CalibrationResult result_head(const Recipe& recipe, const RecipeStep& step,
                                                   const std::string& channel);
-[[nodiscard]] wire::SineFit fit_message(const analysis::SeriesFit& series);
+[[nodiscard]] wire::SineFit fit_message(const analysis::ChannelFit& channel);
 [[nodiscard]] wire::SourceSamples samples_message(const SourceRecord& record,
                                                   const StepSamples& series,
                                                   const StretchOfTime& stretch);
@@ -30,7 +30,7 @@ void add_budget(std::span<const analysis::Contribution> budget, wire::Calibratio
 [[nodiscard]] wire::CalibrationResult
 point_result(const Recipe& recipe, const RecipeStep& step, const ChannelName& name,
              const analysis::TransferPoint& point,
-             std::span<const analysis::SeriesFit> common_fits);
+             std::span<const analysis::ChannelFit> common_fits);
 
 // SHA-256 over stamps and values of all parts in their order.
 [[nodiscard]] std::string digest_of(std::initializer_list<const StepSamples*> parts);

@@ -25,9 +25,9 @@ struct Lanes {
   }
 
   bool all_at_most(double limit) const {
-    const __m256d most = _mm256_set1_pd(limit);
-    return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(a, most, _CMP_LE_OQ),
-                                            _mm256_cmp_pd(b, most, _CMP_LE_OQ))) == 0xf;
+    const __m256d bound = _mm256_set1_pd(limit);
+    return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(a, bound, _CMP_LE_OQ),
+                                            _mm256_cmp_pd(b, bound, _CMP_LE_OQ))) == 0xf;
   }
 
   double total() const {

@@ -1,4 +1,4 @@
-// Sums of linear models of any number of columns (sine_fit_extended.hpp) over one block, written
+// Sums of linear models of any number of columns (extended_sine_fit.hpp) over one block, written
 // over the eight lanes of sine_kernel_body.hpp and included after it.
 
 // NOLINTBEGIN(misc-definitions-in-headers): every translation unit that includes this has its own,

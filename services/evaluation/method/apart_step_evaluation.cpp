@@ -12,7 +12,7 @@ namespace {
 
 // What both methods give: the fits that are common to all channels, and one point a channel.
 struct Evaluated {
-  std::vector<analysis::SeriesFit> common_fits;
+  std::vector<analysis::ChannelFit> common_fits;
   std::vector<analysis::TransferPoint> points;
 };
 

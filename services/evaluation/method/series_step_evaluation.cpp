@@ -178,7 +178,7 @@ void add_numbers(const Recipe& recipe, const Judged& judged,
   result.sample_rate_hz(rate.real_rate_hz);
   result.u_sample_rate_hz(
       std::hypot(rate.u_real_rate_hz, recipe.u_acs_rate_rel * rate.real_rate_hz));
-  result.series_start(analysis::words(judged.start.kind));
+  result.series_start(analysis::to_string(judged.start.kind));
   result.series_start_scatter_s(judged.start.scatter_s);
   result.fits().push_back(fit_message(judged.result.reference));
   result.fits().push_back(fit_message(judged.result.sync_acs));
@@ -192,7 +192,7 @@ void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots,
     flags.push_back(fmt::format("{} of {} shots", shots, recipe.shots));
   }
   if (judged.start.kind == analysis::StartKind::undecided) {
-    flags.push_back(fmt::format("start of the series: {}", analysis::words(judged.start.kind)));
+    flags.push_back(fmt::format("start of the series: {}", analysis::to_string(judged.start.kind)));
   }
   if (!recipe.trigger_phase_correction) {
     flags.emplace_back("the phase of the trigger is not corrected");

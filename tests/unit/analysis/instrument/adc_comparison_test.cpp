@@ -17,7 +17,7 @@ SyncPhasor seen(double frequency_hz, double amplitude, double delay_s, std::int6
   const double turns = frequency_hz * (static_cast<double>(at_ns - begin_ns) * 1e-9 - delay_s);
   const std::complex<double> phasor = std::polar(amplitude, turn_rad * (turns - std::floor(turns)));
   return {.frequency_hz = frequency_hz,
-          .reference_ns = at_ns,
+          .phase_origin_ns = at_ns,
           .sine = phasor.real(),
           .cosine = phasor.imag(),
           .u_sine = 1e-5,

@@ -1,11 +1,15 @@
 #include "analysis/method/nominal_frequency.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "analysis/sine/equidistant_axis.hpp"
+#include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -21,7 +25,14 @@ TEST(NominalFrequency, AFastClockSensesTheExcitationTooLow) {
     samples.push_back(std::sin(2.0 * std::numbers::pi * 80.0 * i / real_rate + 1.0) +
                       noise(random));
   }
-  const auto result = evaluate_nominal_frequency(1000.0, *Frequency::parse("80"), 0.0, samples);
+  const EquidistantAxis axis(1e-3);
+  const std::vector<std::int64_t> stamps_ns = axis.stamps_ns(samples.size());
+  const std::array<std::span<const double>, 1> channels{samples};
+  const auto fit =
+      fit_sine_and_frequency(axis.on_axis(80.0), 0.05, stamps_ns.back() / 2, stamps_ns, channels);
+  ASSERT_TRUE(fit.has_value()) << fit.error().message;
+  const auto result = real_rate_from_apparent_frequency(
+      1000.0, 80.0, 0.0, axis.hz(fit->frequency.hz()), axis.hz(fit->u_frequency_hz));
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_NEAR(result->apparent_hz, 80.0 * 1000.0 / real_rate, 1e-5);
   EXPECT_NEAR(result->real_rate_hz, real_rate, 4.0 * result->u_real_rate_hz);
@@ -40,10 +51,8 @@ TEST(NominalFrequency, UncertaintiesOfBothFrequenciesCount) {
 
 TEST(NominalFrequency, RefusesWhatIsNotPositive) {
   EXPECT_FALSE(real_rate_from_apparent_frequency(0.0, 80.0, 0.0, 80.0, 0.0).has_value());
-  EXPECT_FALSE(
-      evaluate_nominal_frequency(-1.0, *Frequency::parse("80"), 0.0, std::vector<double>(100, 1.0))
-          .has_value());
-  EXPECT_FALSE(evaluate_nominal_frequency(1000.0, *Frequency::parse("80"), 0.0, {}).has_value());
+  EXPECT_FALSE(real_rate_from_apparent_frequency(1000.0, -80.0, 0.0, 80.0, 0.0).has_value());
+  EXPECT_FALSE(real_rate_from_apparent_frequency(1000.0, 80.0, 0.0, 0.0, 0.0).has_value());
 }
 
 } // namespace

@@ -50,7 +50,7 @@ TEST(Disturbances, HarmonicsAndHumAreFoundAndTakenOut) {
   const std::array channels{std::span<const double>(disturbed.values)};
   const auto result = fit_sine_beside_disturbances(frequency, 0, disturbed.stamps_ns, channels);
   ASSERT_TRUE(result.has_value());
-  const UndisturbedFit& fit = result->front();
+  const CleanedFit& fit = result->front();
   EXPECT_NEAR(fit.fit.sine, 3.0, 6e-6);
   EXPECT_NEAR(fit.fit.cosine, 4.0, 6e-6);
   EXPECT_NEAR(fit.fit.residual_sd(), 1e-4, 3e-6);

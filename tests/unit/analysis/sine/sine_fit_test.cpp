@@ -15,11 +15,12 @@
 namespace dyncal::analysis {
 namespace {
 
-Expected<std::vector<SineFit>> fit_one(const std::string& frequency_hz, std::int64_t reference_ns,
+Expected<std::vector<SineFit>> fit_one(const std::string& frequency_hz,
+                                       std::int64_t phase_origin_ns,
                                        const std::vector<std::int64_t>& stamps,
                                        const std::vector<double>& values) {
   const std::span<const double> channels[] = {values};
-  return fit_sine(*Frequency::parse(frequency_hz), reference_ns, stamps, channels);
+  return fit_sine(*Frequency::parse(frequency_hz), phase_origin_ns, stamps, channels);
 }
 
 ErrorCode error_of(const std::vector<std::int64_t>& stamps, const std::vector<double>& values,

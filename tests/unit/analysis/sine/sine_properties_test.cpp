@@ -45,9 +45,9 @@ DrawnRecord drawn_record() {
   return record;
 }
 
-SineFit fitted(const DrawnRecord& record, std::int64_t reference_ns = epoch_ns) {
+SineFit fitted(const DrawnRecord& record, std::int64_t phase_origin_ns = epoch_ns) {
   const std::vector<std::span<const double>> channels{record.values};
-  auto fit = fit_sine(record.frequency, reference_ns, record.stamps_ns, channels);
+  auto fit = fit_sine(record.frequency, phase_origin_ns, record.stamps_ns, channels);
   RC_ASSERT(fit.has_value());
   return fit->front();
 }

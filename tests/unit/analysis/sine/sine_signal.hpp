@@ -18,13 +18,14 @@ inline constexpr std::int64_t epoch_ns = 1'700'000'000'123'456'789;
 struct Signal {
   std::string frequency_hz = "80";
   double amplitude = 1.25;
-  double phase_rad = 0.7; // at reference_ns
+  double phase_rad = 0.7; // at phase_origin_ns
   double offset = 0.1;
-  std::int64_t reference_ns = epoch_ns;
+  std::int64_t phase_origin_ns = epoch_ns;
 
   [[nodiscard]] double at(std::int64_t stamp_ns, const Frequency& f) const {
-    return amplitude * std::sin(2.0 * std::numbers::pi * f.reduced_turns(stamp_ns - reference_ns) +
-                                phase_rad) +
+    return amplitude *
+               std::sin(2.0 * std::numbers::pi * f.reduced_turns(stamp_ns - phase_origin_ns) +
+                        phase_rad) +
            offset;
   }
 };

@@ -229,12 +229,12 @@ struct LongSums {
   long double a = 0.0L, b = 0.0L, c = 0.0L, rss = 0.0L;
 
   LongSums(const Frequency& f, const std::vector<std::int64_t>& stamps,
-           const std::vector<double>& values, std::int64_t reference_ns) {
+           const std::vector<double>& values, std::int64_t phase_origin_ns) {
     const auto n = static_cast<long double>(stamps.size());
     std::vector<long double> sine, cosine;
     long double s = 0.0L, k = 0.0L, ss = 0.0L, sk = 0.0L, y1 = 0.0L, ys = 0.0L, yk = 0.0L;
     for (std::size_t i = 0; i < stamps.size(); ++i) {
-      const auto dt = static_cast<long double>(stamps[i] - reference_ns);
+      const auto dt = static_cast<long double>(stamps[i] - phase_origin_ns);
       const long double turns = dt * f.turns_per_ns_high() + dt * f.turns_per_ns_low();
       const long double x =
           2.0L * std::numbers::pi_v<long double> * (turns - std::nearbyint(turns));

@@ -126,7 +126,7 @@ TEST(SineKernel, ReducesPhasesOfMonthsToRounding) {
       const long double x = 2.0L * std::numbers::pi_v<long double> *
                             static_cast<long double>(f.reduced_turns(stamps[i] - origin));
       EXPECT_NEAR(basis.sine[i], static_cast<double>(std::sin(x)), 8e-16)
-          << (*kernel)->name; // the reduced phase itself carries 2e-16 turns
+          << (*kernel)->name; // the reduced phase itself check_nyquist 2e-16 turns
       EXPECT_NEAR(basis.cosine[i], static_cast<double>(std::cos(x)), 8e-16) << (*kernel)->name;
     }
   }

@@ -1,4 +1,4 @@
-#include "analysis/method/recorded_system.hpp"
+#include "analysis/method/channels_of_one_clock.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@ namespace {
 constexpr double weakest_signal = 8.0; // u: what a search finds in pure noise stays below
 constexpr double weak_phasor = 10.0;   // u: below, magnitude and phase are not normal any more
 
-tl::unexpected<Error> of_series(const std::string& series, Error error) {
-  error.message = series + ": " + error.message;
+tl::unexpected<Error> of_channel(const std::string& channel, Error error) {
+  error.message = channel + ": " + error.message;
   return fail(std::move(error));
 }
 
@@ -24,25 +24,26 @@ struct FitNoise {
   double u_phase_rad = 0.0;
 };
 
-FitNoise fit_noise(const SeriesFit& series, double jitter_s) {
-  const double variance = series.fit.residual_sd() * series.fit.residual_sd();
+FitNoise fit_noise(const ChannelFit& channel, double jitter_s) {
+  const double variance = channel.fit.residual_sd() * channel.fit.residual_sd();
   const double by_jitter =
-      0.5 * std::pow(series.frequency.angular() * series.fit.amplitude() * jitter_s, 2);
+      0.5 * std::pow(channel.frequency.angular() * channel.fit.amplitude() * jitter_s, 2);
   const double kept = variance > 0.0 ? std::sqrt(std::max(0.0, 1.0 - by_jitter / variance)) : 1.0;
-  // A series that is exactly constant has no direction to project the covariance on.
+  // A channel that is exactly constant has no direction to project the covariance on.
   const double u_component =
-      std::sqrt(std::max(series.fit.covariance[0], series.fit.covariance[3]));
-  const double u_amplitude = series.fit.amplitude() > 0.0 ? series.fit.u_amplitude() : u_component;
-  const double u_phase = series.fit.amplitude() > 0.0 ? series.fit.u_phase_rad() : 0.0;
+      std::sqrt(std::max(channel.fit.covariance[0], channel.fit.covariance[3]));
+  const double u_amplitude =
+      channel.fit.amplitude() > 0.0 ? channel.fit.u_amplitude() : u_component;
+  const double u_phase = channel.fit.amplitude() > 0.0 ? channel.fit.u_phase_rad() : 0.0;
   return {u_amplitude * kept, u_phase * kept};
 }
 
-QuantisationUncertainty quantisation(const RecordedSeries& series) {
-  const SineFit& fit = series.result.fit;
+QuantisationUncertainty quantisation(const RecordedChannel& recorded) {
+  const SineFit& fit = recorded.result.fit;
   const double duration_s =
-      static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
-  const double periods = std::max(1.0, series.result.frequency.hz() * duration_s);
-  return quantisation_uncertainty(fit.amplitude(), fit.residual_sd(), series.samples.resolution,
+      static_cast<double>(recorded.stamps_ns.back() - recorded.stamps_ns.front()) * 1e-9;
+  const double periods = std::max(1.0, recorded.result.frequency.hz() * duration_s);
+  return quantisation_uncertainty(fit.amplitude(), fit.residual_sd(), recorded.samples.resolution,
                                   static_cast<double>(fit.samples) / periods);
 }
 
@@ -52,10 +53,10 @@ struct SensorNoise {
   double u_amplitude = 0.0;
   double amplitude = 0.0; // never so small that dividing by it says nothing
 
-  SensorNoise(const RecordedSeries& series, double jitter_s)
-      : noise(fit_noise(series.result, jitter_s)), steps(quantisation(series)),
+  SensorNoise(const RecordedChannel& recorded, double jitter_s)
+      : noise(fit_noise(recorded.result, jitter_s)), steps(quantisation(recorded)),
         u_amplitude(std::hypot(noise.u_amplitude, steps.u_amplitude)),
-        amplitude(std::max(series.amplitude(), 1e-6 * u_amplitude)) {}
+        amplitude(std::max(recorded.amplitude(), 1e-6 * u_amplitude)) {}
 
   [[nodiscard]] double snr() const {
     if (u_amplitude > 0.0) {
@@ -69,45 +70,46 @@ std::int64_t middle_ns(std::span<const std::int64_t> stamps_ns) {
   return stamps_ns.front() + (stamps_ns.back() - stamps_ns.front()) / 2;
 }
 
-// All channels of one stamp series at one frequency, about its middle.
-Expected<std::vector<RecordedSeries>> evaluate_series(const Frequency& frequency,
-                                                      double u_frequency_hz,
-                                                      std::span<const std::int64_t> stamps_ns,
-                                                      std::span<const ChannelSamples> all) {
+// All channels with the same stamps at one frequency, about its middle.
+Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
+                                                    double u_frequency_hz,
+                                                    std::span<const std::int64_t> stamps_ns,
+                                                    std::span<const ChannelSamples> all) {
   std::vector<std::span<const double>> channels;
   for (const ChannelSamples& channel : all) {
     if (channel.values.size() != stamps_ns.size()) {
-      return of_series(channel.name,
-                       {ErrorCode::invalid_argument, "the numbers of stamps and values differ"});
+      return of_channel(channel.name,
+                        {ErrorCode::invalid_argument, "the numbers of stamps and values differ"});
     }
     channels.push_back(channel.values);
   }
   const std::string who =
       all.size() > 1 ? all.front().name + " and the channels recorded with it" : all.front().name;
   if (stamps_ns.empty()) {
-    return of_series(who, {ErrorCode::too_few_samples, "there are no samples in the window"});
+    return of_channel(who, {ErrorCode::too_few_samples, "there are no samples in the window"});
   }
   auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, channels);
   if (!fits) {
-    return of_series(who, fits.error());
+    return of_channel(who, fits.error());
   }
-  std::vector<RecordedSeries> series;
+  std::vector<RecordedChannel> recorded;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    series.push_back(
+    recorded.push_back(
         {{all[i].name, frequency, u_frequency_hz, middle_ns(stamps_ns), (*fits)[i].fit},
          std::move((*fits)[i].values),
          all[i],
          stamps_ns});
   }
-  return series;
+  return recorded;
 }
 
 } // namespace
 
-Expected<RecordedSystem> evaluate_system(const Frequency& nominal, double frequency_search_rel,
-                                         std::span<const std::int64_t> stamps_ns,
-                                         const ChannelSamples& pilot,
-                                         std::span<const ChannelSamples> others) {
+Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
+                                                       double frequency_search_rel,
+                                                       std::span<const std::int64_t> stamps_ns,
+                                                       const ChannelSamples& pilot,
+                                                       std::span<const ChannelSamples> others) {
   Frequency frequency = nominal;
   double u_frequency_hz = 0.0;
   if (frequency_search_rel > 0.0 && pilot.values.size() == stamps_ns.size() && !stamps_ns.empty()) {
@@ -115,53 +117,53 @@ Expected<RecordedSystem> evaluate_system(const Frequency& nominal, double freque
     const auto refined = fit_sine_and_frequency(nominal, frequency_search_rel, middle_ns(stamps_ns),
                                                 stamps_ns, channels);
     if (!refined) {
-      return of_series(pilot.name, refined.error());
+      return of_channel(pilot.name, refined.error());
     }
     frequency = refined->frequency;
     u_frequency_hz = refined->u_frequency_hz;
   }
   std::vector<ChannelSamples> all{pilot};
   all.insert(all.end(), others.begin(), others.end());
-  auto series = evaluate_series(frequency, u_frequency_hz, stamps_ns, all);
-  if (!series) {
-    return fail(series.error());
+  auto recorded = fit_channels(frequency, u_frequency_hz, stamps_ns, all);
+  if (!recorded) {
+    return fail(recorded.error());
   }
-  if (const auto excited = require_excitation(series->front()); !excited) {
+  if (const auto excited = require_excitation(recorded->front()); !excited) {
     return fail(excited.error());
   }
-  RecordedSystem system{std::move(series->front()), {}};
-  system.others.assign(std::make_move_iterator(series->begin() + 1),
-                       std::make_move_iterator(series->end()));
+  ChannelsOfOneClock system{std::move(recorded->front()), {}};
+  system.others.assign(std::make_move_iterator(recorded->begin() + 1),
+                       std::make_move_iterator(recorded->end()));
   return system;
 }
 
-Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency,
-                                              std::span<const std::int64_t> stamps_ns,
-                                              const ChannelSamples& channel) {
-  auto series = evaluate_series(frequency, 0.0, stamps_ns, std::span(&channel, 1));
-  if (!series) {
-    return fail(series.error());
+Expected<RecordedChannel> fit_weak_channel(const Frequency& frequency,
+                                           std::span<const std::int64_t> stamps_ns,
+                                           const ChannelSamples& channel) {
+  auto recorded = fit_channels(frequency, 0.0, stamps_ns, std::span(&channel, 1));
+  if (!recorded) {
+    return fail(recorded.error());
   }
-  return std::move(series->front());
+  return std::move(recorded->front());
 }
 
-Expected<void> require_excitation(const RecordedSeries& series) {
-  if (series.amplitude() > weakest_signal * series.result.fit.u_amplitude()) {
+Expected<void> require_excitation(const RecordedChannel& recorded) {
+  if (recorded.amplitude() > weakest_signal * recorded.result.fit.u_amplitude()) {
     return {};
   }
-  return of_series(
-      series.result.series,
+  return of_channel(
+      recorded.result.channel,
       {ErrorCode::no_excitation, "no sine of the excitation's frequency stands out of the noise"});
 }
 
-void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series,
+void add_signal_rows(Budget& budget, const std::string& what, const RecordedChannel& recorded,
                      double jitter_s, CountsIn counts_in) {
-  const FitNoise noise = fit_noise(series.result, jitter_s);
-  const QuantisationUncertainty steps = quantisation(series);
-  const double relative = counts_in == CountsIn::phase ? 0.0 : 1.0 / series.amplitude();
+  const FitNoise noise = fit_noise(recorded.result, jitter_s);
+  const QuantisationUncertainty steps = quantisation(recorded);
+  const double relative = counts_in == CountsIn::phase ? 0.0 : 1.0 / recorded.amplitude();
   budget.add({.kind = ContributionKind::fit_noise,
               .subject = what,
-              .degrees_of_freedom = series.result.fit.degrees_of_freedom,
+              .degrees_of_freedom = recorded.result.fit.degrees_of_freedom,
               .u_magnitude_rel = noise.u_amplitude * relative,
               .u_phase_rad = noise.u_phase_rad});
   budget.add({.kind = ContributionKind::quantisation,
@@ -171,14 +173,14 @@ void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeri
               .u_phase_rad = steps.u_phase_rad});
 }
 
-void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter_s) {
-  const SensorNoise sensor(series, jitter_s);
+void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jitter_s) {
+  const SensorNoise sensor(recorded, jitter_s);
   const bool weak = sensor.snr() < weak_phasor;
   const double relative = sensor.amplitude > 0.0 ? 1.0 / sensor.amplitude : 0.0;
   budget.add(
       {.kind = ContributionKind::fit_noise,
        .subject = "the sensor",
-       .degrees_of_freedom = series.result.fit.degrees_of_freedom,
+       .degrees_of_freedom = recorded.result.fit.degrees_of_freedom,
        .u_magnitude_rel = sensor.noise.u_amplitude * relative,
        .u_phase_rad = weak ? phase_standard_uncertainty(sensor.snr()) : sensor.noise.u_phase_rad});
   budget.add({.kind = ContributionKind::quantisation,
@@ -192,10 +194,10 @@ void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter
   }
 }
 
-TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link,
+TransferPoint transfer_point(const RecordedChannel& dut, std::complex<double> link,
                              const Budget& budget) {
   const std::complex<double> h = dut.phasor() * link;
-  return {.channel = dut.result.series,
+  return {.channel = dut.result.channel,
           .h = h,
           .magnitude = std::abs(h),
           .u_magnitude =

@@ -10,7 +10,7 @@
 //   the steps Rice: u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
 //   phase is that of phasor.hpp
 // Fails as sine_fit.hpp does; no_excitation when the pilot is not 8 u above the noise; the message
-// names the series. Any thread.
+// names the channel. Any thread.
 #pragma once
 
 #include <complex>
@@ -25,8 +25,8 @@
 
 namespace dyncal::analysis {
 
-struct RecordedSeries {
-  SeriesFit result;
+struct RecordedChannel {
+  ChannelFit result;
   std::vector<double> cleaned; // the samples without disturbances, where some were found
   ChannelSamples samples;
   std::span<const std::int64_t> stamps_ns;
@@ -38,37 +38,36 @@ struct RecordedSeries {
   [[nodiscard]] double amplitude() const { return result.fit.amplitude(); }
 };
 
-struct RecordedSystem {
-  RecordedSeries pilot;
-  std::vector<RecordedSeries> others;
+struct ChannelsOfOneClock {
+  RecordedChannel pilot;
+  std::vector<RecordedChannel> others;
 };
 
-[[nodiscard]] Expected<RecordedSystem> evaluate_system(const Frequency& frequency,
-                                                       double frequency_search_rel,
-                                                       std::span<const std::int64_t> stamps_ns,
-                                                       const ChannelSamples& pilot,
-                                                       std::span<const ChannelSamples> others);
+[[nodiscard]] Expected<ChannelsOfOneClock>
+fit_channels_of_one_clock(const Frequency& frequency, double frequency_search_rel,
+                          std::span<const std::int64_t> stamps_ns, const ChannelSamples& pilot,
+                          std::span<const ChannelSamples> others);
 
 // One channel at a frequency that is known already; it may be without excitation.
-[[nodiscard]] Expected<RecordedSeries> evaluate_weak_series(const Frequency& frequency,
-                                                            std::span<const std::int64_t> stamps_ns,
-                                                            const ChannelSamples& channel);
+[[nodiscard]] Expected<RecordedChannel> fit_weak_channel(const Frequency& frequency,
+                                                         std::span<const std::int64_t> stamps_ns,
+                                                         const ChannelSamples& channel);
 
-// no_excitation unless the series is 8 u above the noise.
-[[nodiscard]] Expected<void> require_excitation(const RecordedSeries& series);
+// no_excitation unless the channel is 8 u above the noise.
+[[nodiscard]] Expected<void> require_excitation(const RecordedChannel& channel);
 
 enum class CountsIn { magnitude_and_phase, phase };
 
 // Noise and quantisation of a channel that is well above the noise; `what` is the subject of
 // the rows.
-void add_signal_rows(Budget& budget, const std::string& what, const RecordedSeries& series,
+void add_signal_rows(Budget& budget, const std::string& what, const RecordedChannel& channel,
                      double jitter_s, CountsIn counts_in);
 
 // Noise, quantisation and Rice's lengthening of a channel under calibration, however weak.
-void add_sensor_rows(Budget& budget, const RecordedSeries& series, double jitter_s);
+void add_sensor_rows(Budget& budget, const RecordedChannel& channel, double jitter_s);
 
 // H = P_dut * link with the budget's uncertainty. |link| is 1 / the reference's amplitude.
-[[nodiscard]] TransferPoint transfer_point(const RecordedSeries& dut, std::complex<double> link,
+[[nodiscard]] TransferPoint transfer_point(const RecordedChannel& dut, std::complex<double> link,
                                            const Budget& budget);
 
 } // namespace dyncal::analysis
