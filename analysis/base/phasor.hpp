@@ -1,6 +1,9 @@
-// Phasors and their phase: P = A + iB of y = A sin(w (t - t_ref)) + B cos(w (t - t_ref)), phase
-// theta = atan2(B, A), lead, in radians (ISO 2041). Only atan2 is used; a phase difference is the
-// argument of P conj(Q), never the difference of two phases. Any thread.
+// Phasors and their phase.
+//
+//   P = A + iB   of y = A sin(w (t - t_0)) + B cos(w (t - t_0)),   theta = atan2(B, A)
+//
+// theta is lead, in radians (ISO 2041). Only atan2 is used; a phase difference is the argument of P
+// conj(Q), never the difference of two phases. Any thread.
 #pragma once
 
 #include <complex>

@@ -1,8 +1,9 @@
 // Overlapping Allan deviation (NIST SP 1065, section 5.2.4) of time stamps:
-//   sigma_y^2(m tau_0) = sum_i (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 m^2 tau_0^2 (N - 2m)),   x_i =
-//   t_i - i tau_0, N phases
-// The second difference does not see the mean interval, so stamps are used as they are, in
-// integers. One thread.
+//
+//   sigma_y^2(m tau_0) = sum_i (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 m^2 tau_0^2 (N - 2m))
+//
+// with x_i = t_i - i tau_0 and N phases. The second difference does not see the mean interval, so
+// stamps are used as they are, in integers. One thread.
 #pragma once
 
 #include <cstddef>

@@ -1,14 +1,16 @@
 // One clock against another from the phases of a sync signal that both recorded in several
-// excitation steps: the time error as a polynomial shared by all steps, robustly.
+// excitation steps: the time error as a polynomial shared by all steps, robustly. No program uses
+// it yet.
 //
-//   theta_sk = a_s + w_s x(t_k),   x(t) = c_1 u + c_2 u^2 + ... + c_m u^m,   u = (t - t_0) / T in
-//   [-1, 1]
+//   theta_sk = a_s + w_s x(t_k)
+//   x(t)     = c_1 u + c_2 u^2 + ... + c_m u^m,   u = (t - t_0) / T in [-1, 1]
 //
-// theta_sk: phase of step s in block k against the frequency w_s of the step in the other clock,
-// lead, unwrapped within the step; a_s is free, for the sine starts anywhere. x > 0: this clock's
-// stamps are too small for the phase that has passed, the clock is slow by x; -x'(t) is its rate
-// error. So a clock's drift is seen through steps of any frequency at once, and a step of the clock
-// shows as residuals of one part of the run. Solved by Ceres with Huber's loss, with covariance.
+// theta_sk is the phase of step s in block k against the frequency w_s of the step in the other
+// clock, lead, unwrapped within the step; a_s is free, for the sine starts anywhere. x > 0: this
+// clock's stamps are too small for the phase that has passed, the clock is slow by x; -x'(t) is its
+// rate error. So a clock's drift is seen through steps of any frequency at once, and a step of the
+// clock shows as residuals of one part of the run. Solved with Huber's loss, with covariance.
+//
 // Fails: invalid_argument (sizes, order, uncertainties), and as least_squares.hpp does. Any thread.
 #pragma once
 

@@ -1,13 +1,17 @@
-// Intervals that are not as usual, and what they are. With m the median, s = 1.4826 MAD (at least
-// half a nanosecond):
-//   backward  d < 0                                 duplicate  0 <= d <= 0.02 m
-//   gap       |d - k m| < max(8 s sqrt(k), 0.02 m), k = 2, 3 ...; k - 1 samples are missing
-//   pair      |d - m| > 6 s and the next interval deviates the other way, the two sum to less than
-//   9 s: one late or early sample step      |d - m| > 6 s otherwise: stamps have moved against the
-//   samples for good
+// Intervals that are not as usual, and what they are.
+//
+// With the interval d, the median m and s = 1.4826 MAD (at least half a nanosecond):
+//
+//   backward   d < 0
+//   duplicate  0 <= d <= 0.02 m
+//   gap        |d - k m| < max(8 s sqrt(k), 0.02 m), k = 2, 3 ...; k - 1 samples are missing
+//   pair       |d - m| > 6 s and the next interval deviates the other way, the two sum to less than
+//              9 s: one late or early sample
+//   step       |d - m| > 6 s otherwise: stamps have moved against the samples for good
+//
 // The collector keeps every interval that lies outside 4 s of what was usual up to then (all of the
-// first 64), at most `max_kept`, and counts the rest; the verdict comes at the end, with the final
-// m and s. One thread.
+// first 64), up to a bound, and counts the rest; the verdict comes at the end, with the final m and
+// s. One thread.
 #pragma once
 
 #include <cstddef>

@@ -1,15 +1,19 @@
-// Histogram of sample intervals on the lattice of the stamping counter, and what may be said about
-// its shape.
+// Histogram of sample intervals on the lattice of the stamping counter, and the modes of its shape.
 //
 // Stamps of a counter with the tick q make intervals that are whole ticks: with bins of another
 // width any distribution looks like a comb. Bins are therefore whole ticks (several, when there
 // would be more than 4096 bins); without a known tick, max(1 ns, a quarter of the robust standard
-// deviation). Lattice statistic: L = |sum exp(2 pi i d / q)| / n, 1 when every interval is a whole
-// number of ticks, 0 when none is preferred. Modes: peaks of the histogram after five
-// Richardson-Lucy steps against the triangular error of two quantised stamps (1/6, 2/3, 1/6 of
-// neighbouring ticks), that stand above the higher of the two valleys beside them by five standard
-// deviations of the counts and by two per cent of the peak. Only looked for when the tick is known:
-// otherwise nobody can tell them from the comb. Units: ns. Any thread.
+// deviation).
+//
+//   L = |sum exp(2 pi i d / q)| / n   lattice statistic: 1 when every interval is a whole number of
+//                                     ticks, 0 when none is preferred
+//
+// Modes are peaks of the histogram after five Richardson-Lucy steps against the triangular error of
+// two quantised stamps (1/6, 2/3, 1/6 of neighbouring ticks) that exceed the higher of the two
+// valleys beside them by five standard deviations of the counts and by two per cent of the peak.
+// They are looked for only when the tick is known: otherwise they cannot be told from the comb.
+//
+// Units: ns. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
-// Two bounded views of a long series of intervals, made as it passes: an overview over time whose
-// buckets double their length whenever there would be too many, and a close-up of the intervals
-// around the first late or early sample. Units: ns, int64 stamps. One thread.
+// Two bounded views of a long record of intervals, made as it passes.
+//
+// An overview over time, whose buckets double their length whenever there would be too many, and a
+// close-up of the intervals around the first late or early sample. Units: ns, int64 stamps. One
+// thread.
 #pragma once
 
 #include <cstddef>

@@ -3,14 +3,17 @@
 //
 // Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an
 // integer in ns; mean, standard deviation (n - 1), median, MAD and quantiles (linear between order
-// statistics) are those of the integers, exactly. Histogram, lattice statistic and modes:
-// interval_histogram.hpp. Events ("backward", "duplicate", "gap", "pair", "step"), their number and
-// the period of pairs: interval_events.hpp; core_mean and core_sd leave them out. Temperature: that
-// of the sample which begins an interval, of intervals within 6 s of the usual one
-// (temperature_relation.hpp). Allan deviation: allan_deviation.hpp, within stretches without lost
-// samples. What is usual is known after 64 intervals, and learned again at 128, 256 ... Memory is
-// bounded (settings); what does not depend on a bound is exact however the stream was cut. One
-// thread.
+// statistics) are those of the integers, exactly. What is usual is known after 64 intervals, and
+// learned again at 128, 256 ...
+//
+//   histogram, lattice statistic, modes     interval_histogram.hpp
+//   events, their number, period of pairs   interval_events.hpp; core_mean, core_sd leave them out
+//   temperature                             temperature_relation.hpp: that of the sample which
+//                                           begins an interval, of intervals within 6 s of usual
+//   Allan deviation                         allan_deviation.hpp, within stretches without a loss
+//
+// Memory is bounded (settings); what does not depend on a bound is exact however the stream was
+// divided into blocks. One thread.
 #pragma once
 
 #include <cstddef>

@@ -38,7 +38,7 @@ compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t
                         std::span<const double> sync, int periods) {
   if (stamps_ns.size() != sync.size() || periods < 1) {
     return fail(ErrorCode::invalid_argument,
-                "a clock comparison needs as many stamps as values, and a period at least");
+                "a clock comparison needs as many stamps as values, and at least one period");
   }
   if (stamps_ns.empty()) {
     return fail(ErrorCode::too_few_samples, "there are no samples to compare the clock by");
@@ -54,7 +54,7 @@ compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t
   const auto count = static_cast<std::int64_t>(
       static_cast<double>(stamps_ns.back() - stamps_ns.front()) / block_ns);
   if (count < 3) {
-    return fail(ErrorCode::too_few_samples, "a clock comparison needs three blocks");
+    return fail(ErrorCode::too_few_samples, "a clock comparison needs at least three blocks");
   }
   std::vector<ClockComparison> result;
   auto first = stamps_ns.begin();
@@ -70,7 +70,7 @@ compare_clock_with_sync(const Frequency& frequency, std::span<const std::int64_t
     const auto fit =
         fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels);
     if (!fit) {
-      continue; // lost samples: a thin block says nothing
+      continue; // lost samples: a thin block has no phase to use
     }
     const std::complex<double> phasor((*fit)[0].sine, (*fit)[0].cosine);
     block.error_s = std::arg(phasor * std::conj(mean)) / frequency.angular();

@@ -1,16 +1,23 @@
 // The DAU's clock seen through sync: which events of the stamps are the clock's, and which are the
-// sensor's.
+// sensor's. No program uses it yet.
 //
-// Sync is a steady sine, so its phase in the DAU's stamps is a clock comparison: block k of a step
+// Sync is a steady sine, so its phase in the DAU's stamps is a clock comparison. Block k of a step
 // gives
-//   x_k = arg(P_k / P) / w, u(x_k) = u(theta_k) / w
+//
+//   x_k = arg(P_k / P) / w,   u(x_k) = u(theta_k) / w
+//
 // with P_k the block's phasor about one instant at the step's refined frequency. A clock that jumps
 // by +D makes every later stamp too large, the sine seems to come late: x steps by -D. A sample
-// that the sensor takes late or early leaves x where it was, for its stamp tells the truth. Verdict
-// on an event of size D at time t: d = mean x after - mean x before (up to four blocks on each
-// side, the block that holds t left out) with u(d):  dau_clock when |d + D| < 4 u(d) and |D| > 8
-// u(d);  sensor when |d| < 4 u(d) and |D| > 8 u(d);  undecided otherwise. Fails as sine_fit.hpp
-// does; too_few_samples for fewer than three blocks. Any thread.
+// that the sensor takes late or early leaves x where it was, for its stamp is true.
+//
+// Verdict on an event of size D at time t, d = mean x after - mean x before (up to four blocks on
+// each side, without the one that holds t):
+//
+//   dau_clock  |d + D| < 4 u(d) and |D| > 8 u(d)
+//   sensor     |d| < 4 u(d) and |D| > 8 u(d)
+//   undecided  otherwise
+//
+// Fails as sine_fit.hpp does; too_few_samples for fewer than three blocks. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,9 @@
-// How the sample interval follows the temperature that the sensor reports (paper, section 4.2):
-// correlation coefficient, slope of the regression line, mean and standard deviation in bins of
-// temperature, and a bounded sample of pairs for a scatter plot. Bins start at 0.01 degC and double
-// their width whenever there would be too many; of the pairs every 1st, 2nd, 4th ... is kept.
-// Units: degC, ns. One thread.
+// How the sample interval follows the temperature that the sensor reports (paper section 4.2).
+//
+// Gives the correlation coefficient, the slope of the regression line, mean and standard deviation
+// in bins of temperature, and a bounded sample of pairs for a scatter plot. Bins start at 0.01 degC
+// and double their width whenever there would be too many; of the pairs every 1st, 2nd, 4th ... is
+// kept. Units: degC, ns. One thread.
 #pragma once
 
 #include <cstddef>

@@ -52,7 +52,7 @@ of_one_amplitude(std::span<const AdcCalibrationPoint> points, std::optional<doub
     } else if (!same(point.test_amplitude_vpp, chosen)) {
       return fail(ErrorCode::invalid_argument,
                   "the ADC calibration has several test amplitudes (" + number(chosen) + " and " +
-                      number(point.test_amplitude_vpp) + " Vpp), choose one");
+                      number(point.test_amplitude_vpp) + " Vpp): choose one");
     }
   }
   if (wanted_vpp && !(std::abs(std::log2(chosen / *wanted_vpp)) <= 1.0)) {
@@ -270,7 +270,7 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
     if (!f.empty() && same(point.frequency_hz, f.back())) {
       return fail(ErrorCode::invalid_argument,
                   "the ADC calibration has " + number(point.frequency_hz) +
-                      " Hz twice, make one point of repeated measurements first");
+                      " Hz twice: first make one point of repeated measurements");
     }
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));

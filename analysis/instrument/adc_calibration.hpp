@@ -1,14 +1,17 @@
 // The response of the DAU's sync ADC at a frequency, from the points at which it was calibrated.
 //
-// Model: G(f) = g0 e^{-i w tau} / (1 + i f / fc), approximated to the points (1 / g^2 is linear in
-// f^2; the rest of the lag is w tau); the ratio of points and model is interpolated, log gain and
-// phase each linearly in f. A pure delay and a first-order low pass are therefore exact. Sign:
-// phase_lag_rad = -arg G, positive = the ADC reads late. u^2
-// = (w1 u1 + w2 u2)^2 + e^2 / 3 with e the larger of the neighbouring second differences as a bound
-// of what a straight line misses; the first term holds however much the two points have in common
-// (time scales, voltmeter), and is an upper bound where they have nothing. Points of different test
-// amplitudes are never mixed: gains differ by per cents, delays by a factor. Fails:
-// invalid_argument (no points, not positive, several test amplitudes and none chosen),
+//   G(f) = g0 e^{-i w tau} / (1 + i f / fc),   phase_lag_rad = -arg G, positive: the ADC reads late
+//   u^2  = (w1 u1 + w2 u2)^2 + e^2 / 3
+//
+// G is approximated to the points (1 / g^2 is linear in f^2; the rest of the lag is w tau); the
+// ratio of points and model is interpolated, log gain and phase each linearly in f. A pure delay
+// and a first-order low pass are therefore exact. e is the larger of the neighbouring second
+// differences, a bound of what a straight line misses. The first term of u holds however much the
+// two points have in common (time scales, voltmeter), and is an upper bound where they have
+// nothing. Points of different test amplitudes are never mixed: gains differ by per cents, delays
+// by a factor.
+//
+// Fails: invalid_argument (no points, not positive, several test amplitudes and none chosen),
 // out_of_calibration (frequency outside the calibrated range, or no points within a factor of two
 // of the test amplitude): nothing is extrapolated. Any thread.
 #pragma once
@@ -46,7 +49,7 @@ adc_response_at(std::span<const AdcCalibrationPoint> points, double frequency_hz
 // Makes points from repeated or single measurements: the mean of those at the same frequency and
 // amplitude, u from their scatter, pooled over four frequencies on either side; where nothing was
 // repeated, from how far these points lie from the line through their neighbours (median). The u_
-// fields of measurements say what repeating does not show, because repetitions have it in common;
+// fields of measurements are what repeating does not show, because repetitions have it in common;
 // the largest of a frequency is added (in squares). Ordered by amplitude, then frequency.
 [[nodiscard]] std::vector<AdcCalibrationPoint>
 adc_calibration_points(std::span<const AdcCalibrationPoint> measurements);

@@ -1,22 +1,22 @@
 // The response of the DAU's sync ADC from one excitation step: the same sine recorded by the DAU
-// and by an analogue system, in the data-ready path, that is with the stamps and the sampling
-// instants that calibrations use.
+// and by an analogue system, with the stamps and sampling instants that calibrations use.
 //
-//   G = P_dau(t) / P_acs(t),   P(t) = P(t_ref) e^{i w (t - t_ref)},   gain = |G|,   phase lag =
-//   -arg G
+//   G = P_dau(t) / P_acs(t),   P(t) = P(t_0) e^{i w (t - t_0)},   gain = |G|,   phase lag = -arg G
 //
-// t is one instant of ONE time scale in which both systems stamp (UTC, say). This cannot be done
-// without: a sine that both record links two unrelated clocks only up to a delay, and a delay is
-// what an ADC's phase is made of; nor does an event within the sync signal help, for it comes
+// t is one instant of ONE time scale in which both systems stamp (UTC, say), t_0 the phase origin
+// of each. A sine that both record links two unrelated clocks only up to a delay, and a delay is
+// what an ADC's phase is made of; an event within the sync signal does not help, for it comes
 // through the same ADC. What brings in the time scale must reach the DAU past its ADC, as the
-// pulses of a GPS receiver do. The phasors are taken to the instant in the middle of their own
-// reference instants, each at its own frequency. The lag contains the instant of sampling after the
-// stamp (data-ready to conversion): that belongs to the correction. Uncertainty, noise of this
-// step: fits, and their frequencies over the way to t. Common to steps: w u_time_scale and the
-// analogue system's own sync channel: its delay and its gain are taken as known within their
-// uncertainties. Fails: invalid_argument (a phasor without amplitude or frequency, or reference
-// instants further apart than `max_apart_s`: then they are not on one time scale, or not of one
-// step). Any thread.
+// pulses of a GPS receiver do. Both phasors are taken to the middle of their phase origins, each at
+// its own frequency. The lag contains the instant of sampling after the stamp (data-ready to
+// conversion): that belongs to the correction.
+//
+// Uncertainty of this step: fits, and their frequencies over the way to t. Common to steps: w
+// u_time_scale, and the analogue system's sync channel, whose delay and gain are known within their
+// uncertainties.
+//
+// Fails: invalid_argument (a phasor without amplitude or frequency, or phase origins further apart
+// than `max_apart_s`: not one time scale, or not one step). Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,22 +1,26 @@
-// Sorts the recorded edges of the pulse-per-second inputs of a DAU: which of them are seconds, and
-// which are not.
+// Sorts the recorded edges of the pulse-per-second inputs of a DAU: which of them are seconds.
 //
-// A record is a list of edges in the order in which the unit reported them: input (the GPS
-// receiver's pulse that disciplines the unit, or a reference pulse), the edge's running number, and
-// the reading of the capture counter. Within one run of the counter the edges of an input lie on a
-// grid of one second,
-//   c_{i+1} = c_i + k T + e,   k = 1, 2, 3 ...,   |e| <= tolerance,
-// where T (ticks a second) follows the crystal from edge to edge. What does not fit is told apart
-// by what comes next:
-//   extra            the edges after it lie on the old grid: this one is no second (a glitch of the
-//   input) missing          k > 1: k - 1 seconds have no edge in the record duplicate        the
-//   record repeats an edge pulse step       the edges after it lie on a new grid, while the other
-//   input stays on its own: the pulses have moved session restart  the running number goes back, or
-//   every input leaves its grid for a new one: the counter began anew, or the record has
-//                    a gap longer than the counter's period, whose length cannot be known
+// A record lists edges as the unit reported them: input (the GPS receiver's pulse that disciplines
+// the unit, or a reference pulse), the edge's running number, and the reading of the capture
+// counter. Within one run of the counter the edges of an input lie on a grid of one second, where T
+// (ticks a second) follows the crystal from edge to edge:
+//
+//   c_{i+1} = c_i + k T + e,   k = 1, 2, 3 ...,   |e| <= tolerance
+//
+// What does not fit is classified by what comes next:
+//
+//   extra            the edges after it lie on the old grid: this one is not a second
+//   missing          k > 1: k - 1 seconds have no edge in the record
+//   duplicate        the record repeats an edge
+//   pulse step       the edges after it lie on a new grid, those of the other input on its own
+//   session restart  the running number goes back, or every input leaves its grid for a new one:
+//                    the counter began anew, or a gap is longer than the counter's period
+//
 // A counter whose readings all fit 32 bits is taken to wrap at 2^32 (43 s at 100 MHz), with any
-// number of missing edges shorter than that. Fails: too_few_samples (fewer than three edges, or
-// most are not whole seconds apart), invalid_argument (tolerance). Any thread.
+// number of missing edges shorter than that.
+//
+// Fails: too_few_samples (fewer than three edges, or most are not whole seconds apart),
+// invalid_argument (tolerance). Any thread.
 #pragma once
 
 #include <cstddef>

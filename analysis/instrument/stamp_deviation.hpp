@@ -1,29 +1,27 @@
-// How far the time stamps of a DAU are from the true seconds of a reference pulse (paper
-// section 2.2 and figure 2).
+// How far the time stamps of a DAU are from the true seconds of a reference pulse (paper section
+// 2.2 and figure 2).
 //
-// The unit stamps an edge that it captures at the counter reading r from its GPS pulses c_i (second
-// s_i), as its firmware does:
-//   t = s_i + (r - c_i) / m,   i: the latest GPS edge before r,   m: mean of the last 60 figures
-//   (c_j - c_{j-1}) [ticks per second],
-// and says itself that it cannot be trusted with fewer than two such figures: those edges are not
-// judged. The reference pulse n comes at the true time n + o, so the deviation of the stamp is
-//   d_n = t_n - n - o,   positive: the stamp is too late.
-// o, the delay of the reference pulse after the second of GPS at the unit's inputs (antenna,
-// receiver and cables on one side, distribution on the other), is given, and then the mean of d is
-// a result; or it is not known, and o is the mean of t_n - n: only the changes of d are then known.
-// The GPS pulses by themselves, without any reference, say how well they come where the counter
-// expects them:
-//   p_i = (c_i - c_{i-1}) / m - 1.
-// Statistics: sd (n - 1); quantiles; u(mean) from the largest standard deviation of the mean over
-// blocks of 1, 2, 4 ... deviations with at least 16 blocks, since d wanders and its values are not
-// independent (H. Flyvbjerg, H. G. Petersen, J. Chem. Phys. 91 (1989) 461); the independent values
-// that this stands for, n_eff = sd^2 / u^2(mean), give u(sd) = sd / sqrt(2 (n_eff - 1)). Drift: one
-// slope of d over the time of all sessions, each with a constant of its own, its uncertainty
-// enlarged by sqrt(n / n_eff) of the residuals. Allan deviation: of d as time error on the longest
-// stretch without a missing second. Uncertainty of one stamp with the mean corrected: u^2 = sd^2 +
-// u^2(mean) + u^2(o). It contains the unit's tick and clock and the scatter of the reference pulse
-// itself. Fails: too_few_samples (fewer than three reference edges with a stamp), invalid_argument.
-// Any thread.
+// The unit stamps an edge captured at the counter reading r from its GPS pulses c_i (second s_i),
+// as its firmware does; the reference pulse n comes at the true time n + o:
+//
+//   t   = s_i + (r - c_i) / m          i: the latest GPS edge before r
+//   d_n = t_n - n - o                  positive: the stamp is too late
+//   p_i = (c_i - c_{i-1}) / m - 1      GPS pulses against the counter, without any reference
+//
+// m is the mean of the last 60 differences c_j - c_{j-1} in ticks per second; edges with fewer than
+// two of them are not judged. o, the delay of the reference pulse at the unit's inputs, is given,
+// and then the mean of d is a result; otherwise o is the mean of t_n - n, and only changes of d are
+// known.
+//
+// u(mean) is the largest standard deviation of the mean over blocks of 1, 2, 4 ... deviations with
+// at least 16 blocks, since d wanders (Flyvbjerg, Petersen, J. Chem. Phys. 91 (1989) 461). n_eff =
+// sd^2 / u^2(mean) gives u(sd) = sd / sqrt(2 (n_eff - 1)). Drift: one slope over all sessions, each
+// with its own constant, u enlarged by sqrt(n / n_eff). Allan deviation: d as time error on the
+// longest stretch without a missing second. One stamp with the mean corrected has u^2 = sd^2 +
+// u^2(mean) + u^2(o).
+//
+// Fails: too_few_samples (fewer than three reference edges with a stamp), invalid_argument. Any
+// thread.
 #pragma once
 
 #include <cstddef>

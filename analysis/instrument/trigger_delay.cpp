@@ -62,7 +62,7 @@ Expected<double> rising_edge_s(double first_s, double interval_s, std::span<cons
   const auto low_again =
       std::find_if(above, volts.end(), [&](double v) { return v < low + 0.2 * height; });
   if (std::any_of(low_again, volts.end(), [&](double v) { return v > low + 0.8 * height; })) {
-    return fail(ErrorCode::no_excitation, "the trace shows more than one rising edge, which of "
+    return fail(ErrorCode::no_excitation, "the trace shows more than one rising edge: which of "
                                           "them belongs to the trigger is unknown");
   }
   // Line through what lies between, both neighbours included when the edge is as steep as the
@@ -128,7 +128,7 @@ Expected<ShotDelay> delay_by_sine(const DelayTrace& trace, const Frequency& freq
 
 Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, double interval_s) {
   if (shots.size() < 3) {
-    return fail(ErrorCode::too_few_samples, "the delay needs three shots at least");
+    return fail(ErrorCode::too_few_samples, "a trigger delay needs at least three shots");
   }
   const auto tau = [](const ShotDelay& shot) { return shot.output_delay_s; };
   const MeanAndScatter output = mean_and_scatter(shots, tau);

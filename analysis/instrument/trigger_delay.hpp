@@ -3,19 +3,21 @@
 //
 // Times u are in seconds from the trigger point of the time axis. The output's rising edge lies at
 // u_out, where a straight line through the samples between 20 % and 80 % of its height passes half
-// the height.
-//   rectangle  sync is a rectangle whose edge triggers, found likewise at u_in:  tau = u_out - u_in
-//   sine       tau = u_out: the axis begins where the scope's trigger lies, and eqs. (5) to (8)
-//   take the phase beta of
-//              sync(u) = A sin(w u + beta) + C from the same axis, shot by shot. Noise that
-//              triggers too early or too late moves beta and must not be in tau a second time. The
-//              sine approximation says how large that noise is: sync passes C at u_0 = -beta / w,
-//              and from there to the output's edge takes u_out - u_0, which scatters by the
-//              trigger's noise where tau does not.
+// the height:
+//
+//   rectangle  sync is a rectangle whose edge triggers, found likewise at u_in: tau = u_out - u_in
+//   sine       tau = u_out: the axis begins where the scope's trigger lies
+//
+// For a sine, eqs. (5) to (8) take the phase beta of sync(u) = A sin(w u + beta) + C from the same
+// axis, shot by shot. Noise that triggers too early or too late moves beta and must not be in tau a
+// second time. How large it is the sine approximation shows: sync passes C at u_0 = -beta / w, and
+// u_out - u_0 scatters by the trigger's noise where tau does not.
+//
 // u(tau): standard deviation of the mean over shots, and the time resolution of one trace as a
-// rectangle (interval / sqrt(12)), which does not average out when trigger and sampling are locked.
-// Fails: too_few_samples, no_excitation (no edge that rises, or more than one), as sine_fit.hpp
-// does. Any thread.
+// rectangle, interval / sqrt(12), which does not average out when trigger and sampling are locked.
+//
+// Fails: too_few_samples, no_excitation (no rising edge, or more than one), as sine_fit.hpp does.
+// Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,20 +1,24 @@
 // Transfer function when sensor and reference share one time base: paper eqs. (1), (2), in the
 // project's convention.
 //
-//   H = P_dut / P_ref * e^{i w tau_ch},   |H| = |P_dut| / |P_ref|,   arg H = arg(P_dut conj(P_ref))
-//   + w tau_ch
+//   H     = P_dut / P_ref e^{i w tau_ch}
+//   |H|   = |P_dut| / |P_ref|
+//   arg H = arg(P_dut conj(P_ref)) + w tau_ch
 //
 // tau_ch is the known extra delay of the sensor's channel against the reference's (0 for one
 // digitiser). Eq. (2) as printed has arctan(B/A), wrong by pi for A < 0, and the sign that makes
 // e^{-i phi} the conjugate (errata T2, T3); atan2 of the quotient is meant. Two cases:
-//   analogue      one stamp series: evaluate_analogue
-//   absolute time the reference and the sensor are stamped by two clocks on one time scale (GPS):
-//   evaluate_absolute_time. No sync;
-//                 the frequency is refined on the reference and taken over, for both clocks run at
-//                 the same rate; what is left of the clocks' offset goes into the phase in full, w
-//                 u(offset) (150 ns: 9.4 mrad at 10 kHz).
-// Both records are evaluated about one instant, the middle of the reference's. Fails as
-// channels_of_one_clock.hpp does. Any thread.
+//
+//   analogue       both channels have the same stamps: evaluate_analogue
+//   absolute time  two clocks on one time scale (GPS) stamp reference and sensor, without sync:
+//                  evaluate_absolute_time
+//
+// In absolute time the frequency is refined on the reference and taken over, for both clocks run at
+// the same rate; what is left of the clocks' offset goes into the phase in full, w u(offset) (150
+// ns: 9.4 mrad at 10 kHz). Both records are evaluated about one instant, the middle of the
+// reference's.
+//
+// Fails as channels_of_one_clock.hpp does. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,7 @@ struct SensorNoise {
   FitNoise noise;
   QuantisationUncertainty steps;
   double u_amplitude = 0.0;
-  double amplitude = 0.0; // never so small that dividing by it says nothing
+  double amplitude = 0.0; // never so small that a quotient would be meaningless
 
   SensorNoise(const RecordedChannel& recorded, double jitter_s)
       : noise(fit_noise(recorded.result, jitter_s)), steps(quantisation(recorded)),

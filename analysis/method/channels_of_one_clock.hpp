@@ -2,13 +2,15 @@
 // common part of all methods.
 //
 // The frequency is refined on the pilot channel (sync, or the reference where there is no sync) in
-// this clock and serves all channels, about the same reference instant, the middle of the record.
-// Harmonics and hum are fitted beside the signal where they stand out (disturbances.hpp). Rows of
-// the budget:
-//   noise: covariance of the fit without the share of white stamp noise s_t, w^2 A^2 s_t^2 / 2 of
-//   s^2, which has rows of its own quantisation: quantisation.hpp, where the noise does not hide
-//   the steps Rice: u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
-//   phase is that of phasor.hpp
+// this clock and serves all channels, about the same instant, the middle of the record. Significant
+// harmonics and hum are fitted beside the signal (disturbances.hpp). Rows of the budget:
+//
+//   fit noise     covariance of the fit without the share of white stamp noise s_t, which has rows
+//                 of its own: w^2 A^2 s_t^2 / 2 of s^2
+//   quantisation  quantisation.hpp, where the noise does not hide the steps
+//   Rice          u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
+//                 phase is that of phasor.hpp
+//
 // Fails as sine_fit.hpp does; no_excitation when the pilot is not 8 u above the noise; the message
 // names the channel. Any thread.
 #pragma once

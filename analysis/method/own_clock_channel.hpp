@@ -1,14 +1,15 @@
 // A channel of a sensor whose samples have stamps of their own, on the time scale of the record
 // that links it to the reference:
 //
-//   H = P_dut * link * e^{-2 pi i f (t_dut - t_pilot)}
+//   H = P_dut link e^{-2 pi i f (t_dut - t_pilot)}
 //
 // The pilot is what that time scale has of the excitation: sync beside the sensor, or the reference
 // where all clocks are on UTC. Its frequency holds for the sensor too; t_pilot and t_dut are the
 // middles of the two records, subtracted in whole nanoseconds. The budget takes the sensor's noise
 // and quantisation, jitter of its stamps, the frequency's uncertainty over the distance of the
-// middles, and the uncertainty of one clock against the other in full: w u(offset). Fails as
-// channels_of_one_clock.hpp does. Any thread.
+// middles, and the uncertainty of one clock against the other in full: w u(offset).
+//
+// Fails as channels_of_one_clock.hpp does. Any thread.
 #pragma once
 
 #include <complex>

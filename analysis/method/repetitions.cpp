@@ -82,14 +82,14 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
 
 Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions) {
   if (repetitions.empty()) {
-    return fail(ErrorCode::invalid_argument, "there is no repetition to take the mean of");
+    return fail(ErrorCode::invalid_argument, "a mean needs at least one repetition");
   }
   const double n = static_cast<double>(repetitions.size());
   RepetitionMean result;
   result.repetitions = repetitions.size();
   for (const Repetition& repetition : repetitions) {
     if (!is_finite(repetition)) {
-      return fail(ErrorCode::not_finite, "a repetition has a value that is no number");
+      return fail(ErrorCode::not_finite, "a repetition has a value that is not a number");
     }
     result.h += repetition.h / n;
   }

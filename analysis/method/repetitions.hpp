@@ -1,18 +1,22 @@
 // One transfer function value from repeated measurements at the same frequency.
 //
-// Mean: of the phasors, H = sum(H_i) / n. Scatter: e_i = H_i / H - 1, real part relative magnitude,
-// imaginary part phase, sample standard deviations s with n - 1 degrees of freedom. Uncertainty:
-// what is common to all repetitions (reference, ADC, delays) does not average out; the rest is
-// taken twice and the larger counts: (a) observed, s / sqrt(n) with n - 1 degrees of freedom, (b)
-// expected from the fits, rms(u_random) / sqrt(n).
-//   u_c^2 = u_a^2 + u_common^2, nu_eff by Welch-Satterthwaite, U = k u_c at 95.45 %
+//   H       = sum(H_i) / n                                mean of the phasors
+//   e_i     = H_i / H - 1                                 real part magnitude, imaginary part phase
+//   u_a     = max(s / sqrt(n), rms(u_random) / sqrt(n))   observed, and expected from the fits
+//   u_c^2   = u_a^2 + u_common^2                          U = k u_c at 95.45 %
+//
+// s, the sample standard deviation of e_i, has n - 1 degrees of freedom. What is common to all
+// repetitions (reference, ADC, delays) does not average; of observed and expected the wider
+// interval counts. nu_eff is that of Welch and Satterthwaite.
+//
 // k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a common part of 0.2..0.5 u_a;
 // expanding the parts one by one and adding squares covers up to 98 %. k lies a third of the way
 // between: 94.1..96.5 % for n = 3 and any common part (Monte Carlo), exact without one (k = 4.53
 // for n = 3). `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader
-// applies covers 95.45 % although n is small; u_c, nu_eff and k are given as well. A mean that
-// hardly stands out of its uncertainty (below 10 u) has the phase uncertainty of phasor.hpp. Fails:
-// invalid_argument (no repetition), not_finite. Any thread.
+// applies covers 95.45 % although n is small; u_c, nu_eff and k are given as well. A mean below 10
+// u has the phase uncertainty of phasor.hpp.
+//
+// Fails: invalid_argument (no repetition), not_finite. Any thread.
 #pragma once
 
 #include <complex>

@@ -1,20 +1,23 @@
 // Sample time stamping: the complex transfer function of a digital output sensor from the four
-// series of one excitation step, paper eqs. (3) and (4) (section 2.3), in the project's convention
+// channels of one excitation step, paper eqs. (3) and (4), in the project's convention
 //
-//   H = (P_dos / P_ref) * U(P_sync_acs) / U(P_sync_dau,true),   U(z) = z / |z|,   H = |H| e^{i psi}
+//   H = (P_dos / P_ref) U(P_sync_acs) / U(P_sync_dau,true),   U(z) = z / |z|,   H = |H| e^{i psi}
+//   arg P_sync_dau,true = arg P_sync_dau - arg G,             G = gain e^{-i phase_lag}
 //
 // psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} =
-// H (errata T1-T5). arg P_sync_dau,true = arg P_sync_dau - arg G, G = gain e^{-i phase_lag} the
-// response of the DAU's sync ADC: its amplitude must not enter |H|. A known delay of the
-// reference's channel against the ACS's sync is taken out: arg P_ref + w tau_ref. In each system
-// the frequency is refined on its sync channel in that system's own clock, and both of its channels
-// are evaluated at that frequency and the same reference instant, which removes unknown epochs and
-// constant rate errors. Harmonics and hum that stand out of the residuals are fitted beside the
-// signal (disturbances.hpp); what else makes the residuals other than white is found by block-wise
-// scatter and has a row of its own (ratio_scatter.hpp). Fails as sine_fit.hpp does; the message
-// names the series. no_excitation when reference or sync do not stand out of the noise; a channel
-// under calibration may be without excitation, its phase then has an uncertainty up to pi /
-// sqrt(3).
+// H (errata T1-T5). G is the response of the DAU's sync ADC; its amplitude must not enter |H|. A
+// known delay of the reference's channel against the ACS's sync is taken out: arg P_ref + w
+// tau_ref.
+//
+// In each system the frequency is refined on its sync channel in that system's own clock, and both
+// of its channels are evaluated at that frequency about the same instant, which removes unknown
+// epochs and constant rate errors. Significant harmonics and hum are fitted beside the signal
+// (disturbances.hpp); what else makes the residuals other than white is found by block-wise scatter
+// and has a row of its own (ratio_scatter.hpp).
+//
+// Fails as sine_fit.hpp does; the message names the channel. no_excitation when reference or sync
+// is not significant; a channel under calibration may be without excitation, its phase then has an
+// uncertainty up to pi / sqrt(3). Any thread.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,8 @@ Error of_shot(std::size_t shot, const std::string& what, Error error) {
 
 std::optional<Error> problem_with(const SeriesStampingInput& input) {
   if (input.shots.empty() || input.channels.empty()) {
-    return Error{ErrorCode::invalid_argument, "series time stamping needs a shot and a channel"};
+    return Error{ErrorCode::invalid_argument,
+                 "series time stamping needs at least one shot and one channel"};
   }
   if (!(input.nominal_rate_hz > 0.0)) {
     return Error{ErrorCode::invalid_argument, "the nominal rate of the series must be positive"};

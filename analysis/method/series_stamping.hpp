@@ -1,25 +1,24 @@
-// PowerSeries time stamping: the transfer function of a sensor that records a whole series after
-// one trigger (TSS), paper section 2.4 and eqs. (5) to (8), in the project's convention (phases
-// lead, theta = atan2(B, A)):
+// Series time stamping: the transfer function of a sensor that records a whole series after one
+// trigger (TSS), paper section 2.4, in the project's convention (phases lead, theta = atan2(B, A)):
 //
-//   |H_j| = A_TSS,j / A_ref (5)
-//   arg H_j = theta_TSS,j(n = 0) - w (tau_DSO + l) - beta_j - (theta_ref - theta_sync)_ACS
+//   |H_j|   = A_TSS,j / A_ref                                                               (5)
+//   arg H_j = theta_TSS,j(n = 0) - w (tau_DSO + l) - beta_j - (theta_ref - theta_sync)_ACS  (7)
 //
-// Per shot j the oscilloscope records sync(u) = sin(w u + beta_j), u = 0 at its trigger point:
-// beta_j is what the noise of the trigger did (1 % noise without hysteresis is a bias of up to 20
-// mrad, so each trace is fitted). The trigger edge leaves tau_DSO later, and sample 0 is taken l
-// after the edge. Signs: the minus signs of (7) hold for leads; in the paper's lags the delay term
-// has a plus, and (8)'s e^{-i dphi} would be the conjugate (errata T7). The sensor's samples lie on
-// the time axis of its nominal rate; one apparent frequency w_TSS is shared by all shots
-// (four-parameter fit), theta_TSS is that of sample 0, and (6) gives the real rate f_nom w / w_TSS.
-// No correction of the rate is needed at n = 0 (paper section 2.5), but what w_TSS is wrong by
-// turns theta_0 of all shots alike by u(w_TSS) T / 2, beside the noise of each shot. Harmonics and
-// hum that stand out in a series are fitted beside the signal (disturbances.hpp). A TSS that runs
-// freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
+// In shot j the oscilloscope records sync(u) = sin(w u + beta_j), u = 0 at its trigger point;
+// beta_j is what the noise of the trigger did. The trigger edge leaves tau_DSO later, and sample 0
+// is taken l after the edge. In the paper's lags the delay term has a plus, and e^{-i dphi} of (8)
+// would be the conjugate (errata T7).
+//
+// The sensor's samples lie on the time axis of its nominal rate; all shots share one apparent
+// frequency w_TSS, and (6) gives the real rate f_nom w / w_TSS. At n = 0 the rate needs no
+// correction (paper section 2.5), but an error of w_TSS turns theta_0 of all shots alike by
+// u(w_TSS) T / 2. Harmonics and hum are fitted beside the signal (disturbances.hpp). A TSS that
+// runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
 // sqrt(12) (T9). Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots
-// and frequencies. Channels are those of `channels`; the first must be excited. Fails as
-// channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument for no shot, shots of unequal
-// length. Any thread.
+// and frequencies. The first of `channels` must be excited.
+//
+// Fails as channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument (no shot, shots of
+// unequal length). Any thread.
 #pragma once
 
 #include <cstdint>

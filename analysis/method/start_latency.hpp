@@ -1,12 +1,14 @@
 // Does a sensor that records after a trigger start with the trigger, or with its next own sample?
 //
-// From when the series of repeated shots began, relative to their mean (phase of each shot over w).
-// A fixed start scatters with the uncertainty u of one shot; a sensor that runs free starts
-// anywhere within one sample interval T, uniformly: standard deviation T / sqrt(12), mean T / 2
-// late. Judged by the ratio of the likelihoods of N(0, u^2) and of the rectangle T convolved with
-// it; the better one must be 20 times as likely and must itself explain the scatter s: below 3 u
-// for a fixed start, within 0.3 .. 2 of T / sqrt(12) for a uniform one. Anything else, or fewer
-// than three shots, is undecided: then nothing is corrected. Any thread.
+// Judged from when the series of repeated shots began, relative to their mean (phase of each shot
+// over w). A fixed start scatters with the uncertainty u of one shot; a sensor that runs free
+// starts anywhere within one sample interval T, uniformly: standard deviation T / sqrt(12), mean T
+// / 2 late.
+//
+// The likelihoods of N(0, u^2) and of the rectangle T convolved with it are compared: the better
+// one must be 20 times as likely and must itself explain the scatter s, below 3 u for a fixed
+// start, within 0.3 .. 2 of T / sqrt(12) for a uniform one. Anything else, or fewer than three
+// shots, is undecided: then nothing is corrected. Any thread.
 #pragma once
 
 #include <span>

@@ -9,8 +9,9 @@ namespace dyncal::analysis {
 Expected<double> normalised_error(double x, double u_x, double y, double u_y, double covariance) {
   const double variance = u_x * u_x + u_y * u_y - 2.0 * covariance;
   if (!(u_x >= 0.0) || !(u_y >= 0.0) || !(variance > 0.0) || !std::isfinite(x - y)) {
-    return fail(ErrorCode::invalid_argument, "two results are compared by uncertainties that are "
-                                             "positive, with a covariance below them");
+    return fail(
+        ErrorCode::invalid_argument,
+        "the uncertainties of both results must be positive, and the covariance below them");
   }
   return (x - y) / (2.0 * std::sqrt(variance));
 }

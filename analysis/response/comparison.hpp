@@ -1,10 +1,14 @@
-// Do two results agree? The normalised error of ISO/IEC 17043 and ISO 13528: E_n = (x - y) /
-// sqrt(U_x^2 + U_y^2 - 2 cov), |E_n| <= 1 at k = 2 means yes. What both have in common (the same
-// reference, the same method) is given as a covariance of the standard uncertainties and must not
-// make the difference look more uncertain than it is. For a complex result: chi^2 = d' V^-1 d of
-// relative magnitude and phase (independent), 2 degrees of freedom; E_n of both parts. Fails:
-// invalid_argument (uncertainty not positive, or a covariance larger than the uncertainties allow).
-// Any thread.
+// Do two results agree? The normalised error of ISO/IEC 17043 and ISO 13528:
+//
+//   E_n   = (x - y) / sqrt(U_x^2 + U_y^2 - 2 cov)    |E_n| <= 1 at k = 2: they agree
+//   chi^2 = d' V^-1 d                                of a complex result, 2 degrees of freedom
+//
+// What both have in common (the same reference, the same method) is given as a covariance of the
+// standard uncertainties and must not make the difference look more uncertain than it is. d is
+// relative magnitude and phase, taken as independent; E_n is given of both.
+//
+// Fails: invalid_argument (uncertainty not positive, or a covariance larger than the uncertainties
+// allow). Any thread.
 #pragma once
 
 #include "analysis/base/error.hpp"

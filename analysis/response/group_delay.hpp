@@ -1,19 +1,24 @@
 // Group delay of a sensor from its phase over frequency, tau = -d psi / d w (never d psi / d f), by
 // generalised least squares:
 //
-//   psi(f) = psi_0 - 2 pi f tau,   V = diag(u_i^2) + u_delay^2 w w' + u_phase^2 1 1'
+//   psi(f) = psi_0 - 2 pi f tau
+//   V      = diag(u_i^2) + u_delay^2 w w' + u_phase^2 1 1'
 //
 // psi is lead in radians: a delay has falling phase, and tau is positive for it (the paper's lag
 // rises). A delay error common to all frequencies goes into u(tau) in full, a common phase error
-// into u(psi_0). Unwrapping: the delay for which the phases agree best is searched over +-1/2 of
-// the smallest frequency spacing (periodogram of the unit phasors, 6 points and more), else
-// predicted from the two points before; what remains is unwrapped from point to point. It must stay
-// below pi - 3 u at each step. Points whose u is above 0.5 rad follow the line and do not count.
-// psi_0 is reduced to (-pi, pi]; polarity is inverted when it is nearer to pi than to 0: unwrapping
-// never absorbs that. When the residuals are larger than u allows once in a thousand (chi-squared),
-// u(tau) and u(psi_0) grow by the Birge ratio: the phase is then no straight line. Fails:
-// invalid_argument (frequencies not rising, u not positive), too_few_samples (fewer than two points
-// that count), not_converged (cannot be unwrapped; the message says where). Any thread.
+// into u(psi_0).
+//
+// Unwrapping: the delay for which the phases agree best is searched over +-1/2 of the smallest
+// frequency spacing (periodogram of the unit phasors, six points and more), else predicted from the
+// two points before; what remains is unwrapped from point to point and must stay below pi - 3 u at
+// each step. Points whose u is above 0.5 rad follow the line and do not count. psi_0 is reduced to
+// (-pi, pi]; polarity is inverted when it is nearer to pi than to 0: unwrapping never absorbs that.
+//
+// When the residuals are larger than u allows once in a thousand (chi-squared), u(tau) and u(psi_0)
+// grow by the Birge ratio: the phase is then not a straight line.
+//
+// Fails: invalid_argument (frequencies not rising, u not positive), too_few_samples (fewer than two
+// points that count), not_converged (cannot be unwrapped; the message says where). Any thread.
 #pragma once
 
 #include <span>

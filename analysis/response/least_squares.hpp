@@ -1,15 +1,20 @@
-// Nonlinear least squares on model level (some ten to ten thousand residuals).
+// Nonlinear least squares on model level (some ten to ten thousand residuals). No program uses it
+// yet.
 //
 //   minimise 1/2 sum_i rho(r_i(x)^2),   C(x*) = s^2 (J'J)^-1
+//
 // Ceres searches (Levenberg-Marquardt, Levenberg from a narrow trust region, dogleg; dense QR; the
 // lowest of the three minima counts); full Gauss-Newton steps then bring the minimum to the limit
-// of double precision, which the cost alone cannot show. The residuals of a problem with known
-// uncertainties are divided by them (r_i has unit variance): then s^2 = 1. For residuals in the
-// unit of the data s^2 = rss / (n - p) is estimated. With a robust loss C = mean(psi^2) /
-// mean(psi')^2 (J'J)^-1 (Huber), mean(psi^2) taken over n - p. Fails: too_few_samples (fewer
-// residuals than parameters), not_finite (no value at the start), not_converged (with Ceres'
-// reason), ill_conditioned (parameters that the residuals do not determine: reciprocal condition of
-// the scaled Jacobian below 1e-12). One thread. Nothing is printed.
+// of double precision, which the cost alone cannot show.
+//
+// Residuals of a problem with known uncertainties are divided by them (r_i has unit variance): s^2
+// = 1. For residuals in the unit of the data s^2 = rss / (n - p). With a robust loss C =
+// mean(psi^2) / mean(psi')^2 (J'J)^-1 (Huber), mean(psi^2) taken over n - p.
+//
+// Fails: too_few_samples (fewer residuals than parameters), not_finite (no value at the start),
+// not_converged (with Ceres' reason), ill_conditioned (parameters that the residuals do not
+// determine: reciprocal condition of the scaled Jacobian below 1e-12). One thread. Nothing is
+// printed.
 #pragma once
 
 #include <functional>

@@ -1,18 +1,20 @@
-// Parametric models of a measured frequency response, fitted with full covariance.
+// Parametric models of a measured frequency response, fitted with full covariance. No program uses
+// them yet.
 //
 //   H(f) = +-g e^{-i 2 pi f tau} [1 / (1 + i f / fc)] [1 / (1 - (f / f0)^2 + 2 i zeta f / f0)]
 //
 // Brackets are chosen by the kind: a pure delay; a first-order low pass (the front end of an ADC);
 // a second-order system (seismic transducer, the digital low-pass filter of a MEMS sensor); both.
-// psi = arg H is lead, tau > 0 a delay, the sign of g the polarity. Residuals: (ln|H_i| - ln|H|) /
-// u_rel and the phase difference modulo 2 pi / u_phase, whitened with
-//   V = diag(u_i^2) + what is common: u_gain to all magnitudes, u_delay w and u_phase to all
-//   phases.
-// The search starts from the group delay and a few corner frequencies; the best end is taken. A
-// robust loss (Huber, Tukey) acts on the residuals without the common parts, which it therefore
-// refuses. chi_squared / degrees_of_freedom far above 1 says that the model is not the sensor's.
-// Fails: as least_squares.hpp and group_delay.hpp do; invalid_argument (uncertainties not
-// positive). Any thread.
+// psi = arg H is lead, tau > 0 a delay, the sign of g the polarity.
+//
+// Residuals are (ln|H_i| - ln|H|) / u_rel and the phase difference modulo 2 pi / u_phase, whitened
+// with diag(u_i^2) and what is common: u_gain to all magnitudes, u_delay w and u_phase to all
+// phases. The search starts from the group delay and a few corner frequencies; the best end is
+// taken. A robust loss (Huber, Tukey) acts on the residuals without the common parts, which it
+// therefore refuses. chi_squared / degrees_of_freedom far above 1: the model is not the sensor's.
+//
+// Fails as least_squares.hpp and group_delay.hpp do; invalid_argument (uncertainties not positive).
+// Any thread.
 #pragma once
 
 #include <complex>

@@ -26,7 +26,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
     }
   }
   if (!motion.allFinite() || !answer.allFinite()) {
-    return fail(ErrorCode::not_finite, "a phasor of the three axes is no number");
+    return fail(ErrorCode::not_finite, "a phasor of the three axes is not a number");
   }
 
   const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition(motion,
@@ -65,7 +65,8 @@ Expected<TransverseSensitivity>
 transverse_sensitivity(const Axes& column, const std::array<double, 3>& u_column, std::size_t axis,
                        const std::array<double, 3>& own_response, double transverse_motion_rel) {
   if (axis >= 3 || !(transverse_motion_rel >= 0.0)) {
-    return fail(ErrorCode::invalid_argument, "an axis is 0, 1 or 2, and the bound not negative");
+    return fail(ErrorCode::invalid_argument,
+                "an axis must be 0, 1 or 2, and the bound must not be negative");
   }
   const double main = std::abs(column[axis]);
   if (!(main > 0.0)) {

@@ -1,15 +1,18 @@
 // Three axes: the 3x3 complex response of a sensor at one frequency, and transverse sensitivity.
 //
 // Columns are excitations, rows axes. Excitation j moves the base by R[:,j] (phasors of the
-// triaxial reference) and the sensor answers P[:,j] = H R[:,j]; with three excitations H = P R^-1,
-// with more H = P R^+ (least squares). Phase lead, as everywhere. Uncertainty per real component,
-// errors of all phasors independent:
-//   u^2(H_ij) = sum_k |R^-1_kj|^2 (u^2(P_ik) + sum_l |H_il|^2 u^2(R_lk))
+// triaxial reference) and the sensor answers P[:,j] = H R[:,j]. Errors of all phasors are
+// independent:
+//
+//   H         = P R^-1, with more than three excitations P R^+ (least squares)
+//   u^2(H_ij) = sum_k |R^-1_kj|^2 (u^2(P_ik) + sum_l |H_il|^2 u^2(R_lk))   per real component
+//
 // With a single-axis reference only the column of its axis is known. The transverse ratio |H_ij| /
-// |H_jj| then takes the motion across the axis for nothing; it is unknown, and a relative bound b
-// of it moves H_ij by up to b |H_ii|, taken as rectangular: b |H_ii| / sqrt 3. Fails:
-// too_few_samples (fewer than three excitations), ill_conditioned (the motions do not span three
-// directions: reciprocal condition below 1e-6), invalid_argument. Any thread.
+// |H_jj| then neglects the motion across the axis; a relative bound b of it moves H_ij by up to b
+// |H_ii|, taken as rectangular: b |H_ii| / sqrt(3). Phase lead, as everywhere.
+//
+// Fails: too_few_samples (fewer than three excitations), ill_conditioned (the motions do not span
+// three directions: reciprocal condition below 1e-6), invalid_argument. Any thread.
 #pragma once
 
 #include <array>

@@ -1,13 +1,15 @@
 // Sine approximation that looks for disturbances first: harmonics of the exciter and mains hum,
-// which are not white, leak into the phasor by up to h / (pi |f - f_h| T) and are not paid for by
-// the covariance of the residuals.
+// which are not white, leak into the phasor by up to h / (pi |f - f_h| T), and are not in the
+// covariance of the residuals.
 //
 // Each channel is fitted with three parameters (paper eq. (1)). Its residuals are searched for
 // harmonics 2..10 and for 50 Hz and 60 Hz with their first multiples, below 0.45 of the mean sample
-// rate and at least 1.5 / T away from the harmonics. What stands out by 4.5 standard uncertainties
-// (by chance: 4 in 100 000) is fitted beside the signal (extended_sine_fit.hpp). A clean channel
+// rate and at least 1.5 / T away from the harmonics. What exceeds 4.5 standard uncertainties (by
+// chance: 4 in 100 000) is fitted beside the signal (extended_sine_fit.hpp). A clean channel
 // therefore keeps the plain three-parameter result, bit for bit; so does one whose disturbance
-// cannot be told apart from the signal. Fails as sine_fit.hpp does. Any thread.
+// cannot be separated from the signal.
+//
+// Fails as sine_fit.hpp does. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 //
 // The interval is stretched to the next whole nanosecond and the frequency shrunk in the same
 // ratio, so that frequency times stamp, which is all that a fit sees, is exact for every interval.
-// Frequencies that a fit on this axis reports are turned back by `hz()`. Stamps begin at 0. Any
+// Frequencies that a fit on this axis reports are converted back by `hz()`. Stamps begin at 0. Any
 // thread.
 #pragma once
 

@@ -321,7 +321,7 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
-                "the reference instant is more than 292 years away from the record");
+                "the phase origin is more than 292 years away from the record");
   }
   Fitter fitter(*record, std::move(*columns));
   std::vector<ExtendedFit> fits;

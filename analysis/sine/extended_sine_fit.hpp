@@ -1,24 +1,24 @@
 // Sine approximation beside disturbances, and against outliers.
 //
-// Model, channel j, u = (t - t_m) / (T/2) in [-1, 1], t_m the middle and T the length of the
-// record:
+// Channel j, u = (t - t_m) / (T / 2) in [-1, 1], t_m the middle and T the length of the record:
+//
 //   y_j(t) = A sin(w (t - t_ref)) + B cos(w (t - t_ref)) + C
 //          + sum_k d_k u^k                                    drift, k = 1..drift_order
-//          + sum_h (A_h sin(h w (t - t_ref)) + B_h cos(...))   harmonics, h = 2..max_harmonic
-//          + sum_l (A_l sin(w_l (t - t_ref)) + B_l cos(...))   further lines: hum, neighbouring
-//          excitation
-//          + u (A' sin(w (t - t_ref)) + B' cos(...))           linear drift of amplitude and phase
-// C is the level in the middle of the record; with a drifting phasor A and B are those in the
-// middle. Sign, phase and units are those of sine_fit.hpp; drift coefficients carry the unit of the
-// values. Solved by scaled normal equations with two steps of refinement on the residuals; refused
-// (ill_conditioned) when the scaled matrix has a reciprocal condition below 1e-10, e.g. drift
-// powers in a small part of a period.
+//          + sum_h (A_h sin(h w (t - t_ref)) + B_h cos(...))  harmonics, h = 2..max_harmonic
+//          + sum_l (A_l sin(w_l (t - t_ref)) + B_l cos(...))  lines: hum, neighbouring excitation
+//          + u (A' sin(w (t - t_ref)) + B' cos(...))          drift of amplitude and phase
 //
-// Weight functions (iteratively reweighted least squares, M-estimators of Huber and Tukey, tuning
-// constants for 95 % efficiency on normal noise; scale is 1.4826 times the median absolute
-// residual, re-estimated in every step): the covariance is s^2 (D'D)^-1 with Huber's correction,
-// s^2 = sum psi^2 / (n - p) / mean(psi')^2. `rss` is that of the unweighted residuals. Fails as
-// sine_fit.hpp does; invalid_argument for a basis with equal or non-positive lines; not_converged.
+// C is the level in the middle of the record; so are A and B when the phasor drifts. Sign, phase
+// and units are those of sine_fit.hpp; drift coefficients have the unit of the values. Solved by
+// scaled normal equations with two steps of refinement on the residuals.
+//
+// Weights (iteratively reweighted least squares, robust_weights.hpp, scale re-estimated in every
+// step) give the covariance s^2 (D'D)^-1 with Huber's correction, s^2 = sum psi^2 / (n - p) /
+// mean(psi')^2. `rss` is that of the unweighted residuals.
+//
+// Fails as sine_fit.hpp does; invalid_argument (equal or non-positive lines), not_converged,
+// ill_conditioned (reciprocal condition of the scaled matrix below 1e-10, e.g. drift powers in a
+// small part of a period). Any thread.
 #pragma once
 
 #include <cstdint>

@@ -69,7 +69,7 @@ double interpolated_bin(const std::vector<double>& power, std::size_t peak) {
 Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
                                        std::span<const std::span<const double>> columns) {
   if (stamps_ns.size() < min_samples) {
-    return fail(ErrorCode::too_few_samples, "fewer than eight samples do not tell a frequency");
+    return fail(ErrorCode::too_few_samples, "a frequency estimate needs at least eight samples");
   }
   const auto interval_ns = median_interval_ns(stamps_ns);
   if (!interval_ns) {
@@ -91,7 +91,7 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
   for (const std::span<const double> column : columns) {
     if (column.size() != stamps_ns.size()) {
       return fail(ErrorCode::invalid_argument,
-                  "a column has not as many values as there are stamps");
+                  "the numbers of stamps and of values of a column differ");
     }
     if (!std::all_of(column.begin(), column.end(),
                      [](double value) { return std::isfinite(value); })) {

@@ -5,8 +5,10 @@
 // is taken out, and the largest line of the Hann-windowed discrete Fourier transform is
 // interpolated (Grandke 1983). Several columns count by their power over their variance. At most
 // the first 2^20 grid points are used. Good to about 0.1 of a bin 1/T from three cycles on, to
-// about a bin below. Fails: too_few_samples (fewer than eight), not_finite, stamps_not_increasing,
-// no_excitation (all columns constant), invalid_argument (sizes). No state; any thread.
+// about a bin below.
+//
+// Fails: too_few_samples (fewer than eight), not_finite, stamps_not_increasing, no_excitation (all
+// columns constant), invalid_argument (sizes). No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,15 +1,17 @@
-// How the least-squares problem of a record changes with the frequency, without going back to the
+// How the least-squares problem of a record changes with the frequency, without returning to the
 // samples.
 //
 // For the expansion frequency w0, with x_i = exp(-i w0 t_i) and u_i the time in units of a common
-// scale, a segment keeps
-//   U_m = sum v^m,  X_m = sum v^m x,  Q_m = sum v^m x^2,  E_m = sum e v^m x,   v = u - centre,  m =
-//   0..6,
-// e the residual of start parameters p0 at w0. At w0 + delta/scale every sum of the sine
-// approximation follows from the series of exp(-i delta v); truncation is below (2 |delta| h)^7 /
-// 5040 of the amplitude, h the half length of the longest segment. Differences against p0 are
-// formed term by term, so nothing cancels when delta is small. Model, sign and units are those of
-// sine_fit.hpp. No allocation but the vectors; any thread.
+// scale, a segment keeps, for m = 0..6,
+//
+//   U_m = sum v^m,   X_m = sum v^m x,   Q_m = sum v^m x^2,   E_m = sum e v^m x,   v = u - centre
+//
+// e is the residual of start parameters p0 at w0. At w0 + delta / scale every sum of the sine
+// approximation follows from the power series of exp(-i delta v); truncation is below (2 |delta|
+// h)^7 / 5040 of the amplitude, h the half length of the longest segment. Differences against p0
+// are formed term by term, so nothing cancels when delta is small.
+//
+// Model, sign and units are those of sine_fit.hpp. No allocation but the vectors; any thread.
 #pragma once
 
 #include <array>

@@ -1,9 +1,11 @@
-// Weights of M-estimation: how much a residual counts, given the scale of the good ones.
+// Weights of M-estimation: how much a residual r counts, given the scale of the good ones.
 //
-// x = r / scale. Huber: w = 1 for |x| <= 1.345, else 1.345 / |x|. Tukey's biweight: w = (1 - (x
-// / 4.685)^2)^2 within 4.685, else 0. Both constants give 95 % efficiency on normal noise. psi = w
-// r; psi' its derivative by r. After P. J. Huber and E. M. Ronchetti, Robust Statistics, 2nd ed.,
-// sections 4 and 7.
+//   x = r / scale
+//   Huber              w = 1 for |x| <= 1.345, else 1.345 / |x|
+//   Tukey's biweight   w = (1 - (x / 4.685)^2)^2 for |x| <= 4.685, else 0
+//
+// Both constants give 95 % efficiency on normal noise. psi = w r; psi' its derivative by r. After
+// P. J. Huber and E. M. Ronchetti, Robust Statistics, 2nd ed., sections 4 and 7. Any thread.
 #pragma once
 
 #include <span>

@@ -170,7 +170,7 @@ Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
-                "the reference instant is more than 292 years away from the record");
+                "the phase origin is more than 292 years away from the record");
   }
   record->fetch_beginning();
   const auto grid = sample_grid(record->stamps(), frequency);

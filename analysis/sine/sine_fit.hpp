@@ -1,20 +1,23 @@
 // Sine approximation: paper eq. (1), ISO 16063-11 method 3, IEEE 1057 three- and four-parameter
 // fits on irregular stamps.
 //
-// Model, channel j:  y_j(t) = A_j sin(w (t - t_ref)) + B_j cos(w (t - t_ref)) + C_j   (+ further
-// basis, extended_sine_fit.hpp) Phasor P = A + iB; amplitude |P|; phase theta = atan2(B, A), lead,
-// radians: y = |P| sin(w (t - t_ref) + theta). The paper's lag is -theta. Stamps are int64 ns,
-// strictly increasing, any spacing; t_ref is the caller's (the record's middle keeps w and theta
+//   y_j(t) = A_j sin(w (t - t_0)) + B_j cos(w (t - t_0)) + C_j
+//   P = A + iB,   theta = atan2(B, A):   y = |P| sin(w (t - t_0) + theta) + C
+//
+// theta is lead in radians; the paper's lag is -theta. Stamps are int64 ns, strictly increasing,
+// any spacing; t_0 is the caller's phase origin (the record's middle keeps w and theta
 // uncorrelated). All channels of a call share stamps and thus the design; every channel is fitted
-// on its own. Uncertainties come from the residuals: V = s^2 (D'D)^-1 with s^2 = rss / (n - p)
-// (analysis of white noise; jitter and systematic parts are added by law_of_propagation.hpp). A, B,
-// C keep 14 digits of the amplitude, rss at least nine. Nearly equidistant records take a faster
-// form (sine_grid.hpp); which samples do is decided by the stamps alone. Fails: too_few_samples (n
-// <= p), stamps_not_increasing, not_finite, frequency_out_of_range (more than half a turn per
-// sample interval, unless these are so uneven that there is no alias), ill_conditioned,
-// no_excitation (no channel has an amplitude of four standard uncertainties), not_converged,
-// invalid_argument (sizes; a record of more than 26 days). No threads, no state; the same input
-// gives the same bits.
+// on its own. Further columns: extended_sine_fit.hpp.
+//
+// Uncertainties come from the residuals: V = s^2 (D'D)^-1 with s^2 = rss / (n - p), white noise
+// assumed; jitter and systematic parts have rows in the budget. A, B, C keep 14 digits of the
+// amplitude, rss at least nine. Nearly equidistant records take a faster form, decided by the
+// stamps alone. The same input gives the same bits.
+//
+// Fails: too_few_samples (n <= p), stamps_not_increasing, not_finite, frequency_out_of_range (more
+// than half a turn per sample interval, unless these are so uneven that there is no alias),
+// ill_conditioned, no_excitation (no channel has an amplitude of four standard uncertainties),
+// not_converged, invalid_argument (sizes; a record of more than 26 days). No state; any thread.
 #pragma once
 
 #include <array>

@@ -44,9 +44,10 @@ double series_error(const FrequencySeriesSums& sums, const FrequencySolution& so
     const double n = solution.matrix.n;
     const double left =
         std::sqrt(channel.rss) / n + std::sqrt(std::max(0.0, channel.ee - channel.rss) / n);
-    residual = std::max(
-        residual,
-        left < size ? left / size : 0.0); // a channel without the sine has no say in the frequency
+    residual =
+        std::max(residual,
+                 left < size ? left / size
+                             : 0.0); // a channel without the sine does not decide the frequency
   }
   const double delta = std::abs(solution.delta);
   const double length = sums.block_half_length;
@@ -168,7 +169,7 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
-                "the reference instant is more than 292 years away from the record");
+                "the phase origin is more than 292 years away from the record");
   }
   const auto estimate = estimate_of(*record, start, search_rel);
   if (!estimate) {

@@ -2,8 +2,8 @@
 // order.
 //
 // The phase origin is the middle of the record, so that every time difference is exact and w and
-// theta are uncorrelated; a fit is turned to the caller's reference instant afterwards. Fails as
-// sine_fit.hpp says. No threads; does not own the samples.
+// theta are uncorrelated; a fit is turned to the caller's phase origin afterwards. Fails as
+// sine_fit.hpp does. No threads; does not own the samples.
 #pragma once
 
 #include <cstddef>

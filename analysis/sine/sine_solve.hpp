@@ -2,9 +2,12 @@
 //
 // Model about a start value p0 = (A0, B0, C0), basis s_i = sin, c_i = cos of the phase about an
 // origin:
-//   y_i = A s_i + B c_i + C,   e_i = y_i - (A0 s_i + B0 c_i + C0).
+//
+//   y_i = A s_i + B c_i + C
+//   e_i = y_i - (A0 s_i + B0 c_i + C0)
+//
 // The constant is eliminated first (a = SS - S S / n, ...), which keeps 1e-13 down to a fiftieth of
-// a cycle; since the sums are of e and not of y, the residual sum of squares comes out of EE - d'g
+// a cycle. Since the sums are of e and not of y, the residual sum of squares comes out of EE - d'g
 // with the digits of the noise, not of the offset. Used by every form of the fit (whole record,
 // streaming, refined frequency). No allocation, any thread.
 #pragma once

@@ -244,7 +244,7 @@ Expected<std::int64_t> SineStream::State::shift_to(std::int64_t phase_origin_ns)
   std::int64_t shift_ns = 0;
   if (__builtin_sub_overflow(phase_origin_ns, first_ns_, &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
-                "the reference instant is more than 292 years away from the record");
+                "the phase origin is more than 292 years away from the record");
   }
   return shift_ns;
 }

@@ -1,19 +1,20 @@
-// Sine approximation while the samples arrive: the result is ready when the last sample is.
+// Sine approximation while the samples arrive: the result is ready when the last sample is. No
+// program uses it yet.
 //
-// Samples are reduced in blocks of 64, counted from the first: of each block its sums and its
-// series in the frequency (frequency_series.hpp) are kept, the samples themselves are not. The
-// state, and so every bit of a result, depends on the samples alone and not on how they were cut
-// into pushes. Model, sign, units and failures are those of sine_fit.hpp; all channels share the
-// stamps. Phases refer to the first stamp inside, results to the caller's reference instant.
+// Samples are reduced in blocks of 64, counted from the first; the sums of each block and their
+// series in the frequency (frequency_series.hpp) are kept, the samples are not. Every bit of a
+// result depends on the samples alone and not on how they came in pushes. Model, sign, units and
+// failures are those of sine_fit.hpp; all channels share the stamps. Inside, phases refer to the
+// first stamp; results to the caller's phase origin.
 //
-// fit() evaluates at the frequency given at the start, from running sums: with the push of the last
-// sample it is there in well under a microsecond, whatever that sample closes (the series of a full
-// block is made while the next samples come). fit_with_frequency() refines the frequency (shared by
-// all channels, as fit_sine_and_frequency) on the kept series, without the samples: exact while the
-// refined frequency is within about 0.1 turns per block half length of the start, which is checked
-// (not_converged names it). Its residual sum of squares keeps 16 digits of the squared amplitude,
-// not of the noise. Memory: about 600 bytes a block and 250 a block and channel. A record spans at
-// most 13 days. One thread at a time; no locks.
+// fit() evaluates at the frequency given at the start, from running sums: well under a microsecond
+// after the push of the last sample. fit_with_frequency() refines the frequency, shared by all
+// channels, on the kept series: exact while it is within about 0.1 turns per block half length of
+// the start, which is checked (not_converged names it). Its residual sum of squares keeps 16 digits
+// of the squared amplitude, not of the noise.
+//
+// Memory: about 600 bytes a block and 250 a block and channel. A record spans at most 13 days. One
+// thread at a time; no locks.
 #pragma once
 
 #include <cstddef>

@@ -86,6 +86,34 @@ void SineStream::State::add_spectra(std::span<const Segment> segments, double st
   }
 }
 
+// Segments of all closed blocks and, reduced into `last`, of the one that is still open.
+std::vector<Segment> SineStream::State::segments_with(Block& last) {
+  while (reduction_.pending()) {
+    reduce_piece();
+  }
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i < closed_; ++i) {
+    segments.push_back(blocks_[i].segment());
+  }
+  if (samples_.filled > 0) {
+    last.channels.resize(start_.size());
+    BlockReduction reduction;
+    for (reduction.begin(start_.size()); reduction.pending();) {
+      reduction.take_piece(samples_, frequency_, first_ns_, start_, last);
+    }
+    segments.push_back(last.segment());
+  }
+  return segments;
+}
+
+double SineStream::State::max_half_length_s(const Block& last) const {
+  double half_length_s = samples_.filled > 0 ? last.half_length_s : 0.0;
+  for (std::size_t i = 0; i < closed_; ++i) {
+    half_length_s = std::max(half_length_s, blocks_[i].half_length_s);
+  }
+  return half_length_s;
+}
+
 Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
                                                              std::int64_t phase_origin_ns) {
   if (const auto checked = ready(4); !checked) {
@@ -100,28 +128,8 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
   if (!shift_ns) {
     return fail(shift_ns.error());
   }
-  std::vector<Segment> segments;
-  double half_length_s = 0.0;
-  const auto take = [&](const Block& block) {
-    segments.push_back({&block.design, block.channels.data()});
-    half_length_s = std::max(half_length_s, block.half_length_s);
-  };
-  while (reduction_.pending()) {
-    reduce_piece();
-  }
-  for (std::size_t i = 0; i < closed_; ++i) {
-    take(blocks_[i]);
-  }
   Block last;
-  if (samples_.filled > 0) {
-    last.channels.resize(start_.size());
-    BlockReduction reduction;
-    for (reduction.begin(start_.size()); reduction.pending();) {
-      reduction.take_piece(samples_, frequency_, first_ns_, start_, last);
-    }
-    take(last);
-  }
-
+  const std::vector<Segment> segments = segments_with(last);
   const double bin = 2.0 * std::numbers::pi / span_s();
   const double half_range = search_rel * frequency_.angular();
   const FrequencySolution solution = solve_frequency(segments, start_, search(segments, half_range),
@@ -130,7 +138,7 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
     return fail(ErrorCode::ill_conditioned, "frequency, sine, cosine and constant cannot be told "
                                             "apart in this record; record more periods");
   }
-  const double moved = std::abs(solution.delta) * half_length_s;
+  const double moved = std::abs(solution.delta) * max_half_length_s(last);
   FrequencyFit result{frequency_.shifted_by_hz(solution.delta / (2.0 * std::numbers::pi)),
                       solution.u_delta / (2.0 * std::numbers::pi),
                       {},
@@ -140,23 +148,31 @@ Expected<FrequencyFit> SineStream::State::fit_with_frequency(double search_rel,
                 "the frequency moved to " + std::to_string(result.frequency.hz()) +
                     " Hz, too far from where the stream was reduced; start it at that frequency");
   }
-  const double turns = result.frequency.reduced_turns(*shift_ns);
-  const double half_span_s = 0.5 * span_s();
-  bool excited = false;
-  for (std::size_t j = 0; j < start_.size(); ++j) {
-    const double to_middle = result.frequency.reduced_turns((last_ns_ - first_ns_) / 2);
-    excited |= is_significant(channel_fit(solution, j, half_span_s, to_middle),
-                              1.0 + 2.0 * half_range / bin);
-    result.channels.push_back(
-        channel_fit(solution, j, static_cast<double>(*shift_ns) * 1e-9, turns));
-  }
-  if (!excited) {
+  if (!is_any_significant(solution, result.frequency, 1.0 + 2.0 * half_range / bin)) {
     return fail(
         ErrorCode::no_excitation,
         "no sine near " + std::to_string(frequency_.hz()) +
             " Hz stands out of the noise in any channel; check frequency, search range and window");
   }
+  const double turns = result.frequency.reduced_turns(*shift_ns);
+  for (std::size_t j = 0; j < start_.size(); ++j) {
+    result.channels.push_back(
+        channel_fit(solution, j, static_cast<double>(*shift_ns) * 1e-9, turns));
+  }
   return result;
+}
+
+// About the middle of the record, where the covariance is that of amplitude and phase alone.
+bool SineStream::State::is_any_significant(const FrequencySolution& solution,
+                                           const Frequency& frequency, double tries) const {
+  const double half_span_s = 0.5 * span_s();
+  const double to_middle = frequency.reduced_turns((last_ns_ - first_ns_) / 2);
+  for (std::size_t j = 0; j < start_.size(); ++j) {
+    if (is_significant(channel_fit(solution, j, half_span_s, to_middle), tries)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 } // namespace dyncal::analysis

@@ -51,6 +51,8 @@ struct Block {
   DesignFrequencySeries design;
   std::vector<ResidualFrequencySeries> channels;
   double half_length_s = 0.0;
+
+  [[nodiscard]] Segment segment() const { return {&design, channels.data()}; }
 };
 
 // Samples of one block.
@@ -70,7 +72,7 @@ struct BlockSamples {
   }
 };
 
-// PowerSeries of a block's samples: computed about the middle of the block, phases then turned to
+// Power series of a block's samples: computed about the middle of the block, phases then turned to
 // the first stamp of the stream. In pieces, the design and then one channel each, so that no sample
 // of a stream has to wait for all of them.
 class BlockReduction {
@@ -120,6 +122,10 @@ private:
   void reduce_piece();
   void choose_start();
   [[nodiscard]] double span_s() const { return static_cast<double>(last_ns_ - first_ns_) * 1e-9; }
+  [[nodiscard]] std::vector<kernel::Segment> segments_with(kernel::Block& last);
+  [[nodiscard]] double max_half_length_s(const kernel::Block& last) const;
+  [[nodiscard]] bool is_any_significant(const kernel::FrequencySolution& solution,
+                                        const Frequency& frequency, double tries) const;
   [[nodiscard]] double search(std::span<const kernel::Segment> segments, double half_range) const;
   void add_spectra(std::span<const kernel::Segment> segments, double step, int half,
                    std::vector<double>& merit) const;

@@ -1,8 +1,9 @@
-// Sine and cosine of a frequency at any instants, by the vector kernel (sine_kernel.hpp): about 1
-// ns a sample.
+// Sine and cosine of a frequency at any instants, by the vector kernel: about 1 ns a sample.
 //
-// sine[i] = sin(w (stamps[i] - origin)), likewise cosine; error below 3e-16 for |stamps[i] -
-// origin| < 2^51 ns (26 days), which is REQUIRED. Stamps in any order. No allocation; any thread.
+//   sine[i] = sin(w (stamps[i] - origin)),   cosine[i] likewise
+//
+// The error is below 3e-16 for |stamps[i] - origin| < 2^51 ns (26 days), which is REQUIRED. Stamps
+// in any order. No allocation; any thread.
 #pragma once
 
 #include <cstdint>

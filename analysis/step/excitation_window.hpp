@@ -1,25 +1,23 @@
 // Where in a source's own clock an excitation step took place, found from its sync channel alone.
 //
-// The stream is cut into frames of length L = one period, or 100 ms if that is longer, but at most
-// 50 periods. Frame k is [k L, (k+1) L) of the device's own time, so the result depends on the
-// samples only, never on how they were cut into blocks. In each frame a sine of the nominal
-// frequency is approximated (paper eq. (1)); frames belong to one excitation while their residual
-// is small, their amplitude stays and their phase goes on as a frequency within
-// `frequency_tolerance_rel` of the nominal one demands. A neighbouring frequency fails on its
-// residual and its phase, an off-phase on its amplitude, an off-phase shorter than a frame on the
-// residual of the frame it lies in (it must be >= 0.2 s). Of such a run of frames the steady part
-// is the longest stretch whose amplitude is within `amplitude_tolerance_rel` of the plateau; frames
-// at its edges that are only partly excited are dropped, so that it holds nothing but the steady
-// sine. It is up to two frames at each end shorter than the excitation. Lost samples leave frames
-// thinner or empty; an excitation goes on across a gap when its phase does.
+// The stream is divided into frames of one period, or 100 ms if that is longer, but at most 50
+// periods. Frame k is [k L, (k+1) L) of the device's own time: the result does not depend on how
+// the samples came in blocks. A sine of the nominal frequency is approximated in each frame (paper
+// eq. (1)). Frames belong to one excitation while their residual is small, their amplitude stays,
+// and their phase advances as a frequency within `frequency_tolerance_rel` of the nominal one does.
 //
-// Units: stamps int64 ns of any epoch; the window is half-open. Cost: O(samples), about one sine
-// and cosine a sample; memory: the samples of one frame and some 80 bytes for each frame of the
-// excitation (bounded by `max_duration_s`). Samples that are not finite or not later than the one
-// before are left out and counted. Fails (no window): no stretch of at least two frames and
-// `min_duration_s` was found; the frame holds fewer than eight samples or cannot tell sine from
-// cosine (frequency at a multiple of half the sample rate). One thread; no state shared between
-// objects.
+// Of such a run of frames the steady part is the longest stretch whose amplitude is within
+// `amplitude_tolerance_rel` of the plateau, without frames at its edges that are only partly
+// excited. It is up to two frames at each end shorter than the excitation. Lost samples leave
+// frames thinner or empty; an excitation goes on across a gap when its phase does. An off-phase
+// must last 0.2 s.
+//
+// Units: stamps int64 ns of any epoch; the window is half-open. Cost: about one sine and cosine a
+// sample; memory: the samples of one frame and some 80 bytes a frame of the excitation. Samples
+// that are not finite or not later than the one before are left out and counted.
+//
+// No window: no stretch of at least two frames and `min_duration_s`; fewer than eight samples in a
+// frame; a frequency at a multiple of half the sample rate. One thread; no shared state.
 #pragma once
 
 #include <cstddef>
@@ -64,7 +62,7 @@ public:
   // The stream is over: the open frame counts and the excitation, if there is one, has ended.
   void finish();
 
-  // The first excitation found, ended or still going on; empty while there is none.
+  // The first excitation found, ended or still lasting; empty while there is none.
   [[nodiscard]] std::optional<ExcitationWindow> window() const;
   [[nodiscard]] bool ended() const { return ended_; }
 

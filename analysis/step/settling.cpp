@@ -65,7 +65,7 @@ Expected<Settling> find_settling(const Frequency& frequency,
                                  std::span<const double> values, const SettlingSettings& settings) {
   if (stamps_ns.size() != values.size() || stamps_ns.size() < 2) {
     return fail(ErrorCode::invalid_argument,
-                "settling needs as many stamps as values, and two at least");
+                "settling needs as many stamps as values, and at least two");
   }
   const auto blocks = block_phasors(frequency, stamps_ns, values);
   if (!blocks) {

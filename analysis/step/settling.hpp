@@ -5,11 +5,14 @@
 // refined on this record). The last third is taken as settled: its mean P and the scatter s of its
 // blocks (robust, from the median of |P_k - P|). Going backwards, a block belongs to the steady
 // part while
-//   |P_k - P| <= max(4 s, tolerance |P|);
-// the steady part begins after the last block that does not. A first-order approach with time
-// constant tau is so cut off at tau ln(a / max(4 s / |P|, tolerance)), a its size. Fails: as
-// sine_fit.hpp does; too_few_samples (fewer than eight periods), not_converged (less than half of
-// the record is steady). Any thread.
+//
+//   |P_k - P| <= max(4 s, tolerance |P|)
+//
+// and the steady part begins after the last block that does not. A first-order approach of size a
+// and time constant tau is so left out up to tau ln(a / max(4 s / |P|, tolerance)).
+//
+// Fails as sine_fit.hpp does; too_few_samples (fewer than eight periods), not_converged (less than
+// half of the record is steady). Any thread.
 #pragma once
 
 #include <cstdint>

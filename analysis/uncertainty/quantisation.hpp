@@ -1,13 +1,17 @@
-// What the steps of a converter do to a sine approximation when the noise is too small to hide
+// What the steps q of a converter do to a sine approximation when the noise s is too small to hide
 // them.
 //
-// Noise of half a step or more (s >= q/2) makes quantisation a white noise of q^2/12 that the
-// residuals contain: nothing is to be added. Below, the amplitude is off by up to 0.53 q /
-// sqrt(A/q) (bound of the Bessel series over all offsets; below one step the sine may vanish in it:
-// 2 q / pi), damped by exp(-2 pi^2 (s/q)^2); a rectangular distribution is taken, / sqrt(3). The
-// phase is free of this by symmetry, but samples at the same phases of every period repeat their
-// errors, which then average over one period only: q / (sqrt(12) A) sqrt(2 / n_period). Units:
-// those of the samples; radians.
+// Noise of half a step or more (s >= q / 2) makes quantisation a white noise of q^2 / 12 that the
+// residuals contain: nothing is to be added. Below, with the damping D = exp(-2 pi^2 (s / q)^2),
+//
+//   u(A)     = D min(0.53 q / sqrt(A / q), 2 q / pi) / sqrt(3)
+//   u(theta) = D q / (sqrt(12) A) sqrt(2 / n_period)
+//
+// The amplitude's error is bounded by the Bessel series over all offsets (below one step the sine
+// may vanish in it) and taken as rectangular. The phase is free of this by symmetry, but samples at
+// the same phases of every period repeat their errors, which then average over one period only.
+//
+// Units: those of the samples; radians. Any thread.
 #pragma once
 
 namespace dyncal::analysis {

@@ -6,8 +6,10 @@
 // their means gives standard uncertainties of the record's mean, s / sqrt(m) (more when
 // neighbouring blocks are correlated), that contain what the residuals of the whole record hide or
 // take for white: settling remnants, hum and neighbouring lines that beat with the signal, slow
-// noise. Drift of the clock cancels in the ratio. Empty when the record holds fewer than four
-// periods, or a block is too thin or too weak (|P| < 3 u) to be evaluated.
+// noise. Drift of the clock cancels in the ratio.
+//
+// Empty when the record holds fewer than four periods, or a block is too thin or too weak (|P| < 3
+// u) to be evaluated. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +31,7 @@ struct RatioScatter {
                                                         std::span<const double> numerator,
                                                         std::span<const double> denominator);
 
-// What `observed` says beyond `expected`, both standard uncertainties: sqrt(observed^2 -
+// What `observed` shows beyond `expected`, both standard uncertainties: sqrt(observed^2 -
 // expected^2) where the ratio of the variances is larger than white noise gives once in a thousand
 // (chi-squared, `degrees_of_freedom`), 0 otherwise. So white records keep the uncertainty, and with
 // it the coverage, that theory gives them.

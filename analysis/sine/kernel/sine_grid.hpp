@@ -1,12 +1,15 @@
 // Nominal instants of a block of nearly equidistant samples, with sine and cosine there: what the
 // fast form of the fit shares between all blocks of a record.
 //
-// Sample k of a block lies at  t_k = anchor + offset_k + d_k,  the anchor being the stamp in the
-// middle of the block and offset_k the rounded multiple of the usual interval, both integers. With
-// w (t_k - anchor) = phi_k + x_k, x_k = w d_k small, sine and cosine follow from those of phi_k by
-// a polynomial in x_k of third or fifth order; what is left out is below 5e-16. Whether a block is
-// near enough is decided by its integer deviations alone, so the same on every instruction set;
-// within the limit stamps increase strictly. No state; any thread.
+// Sample k of a block lies at
+//
+//   t_k = anchor + offset_k + d_k,   w (t_k - anchor) = phi_k + x_k,   x_k = w d_k
+//
+// the anchor being the stamp in the middle of the block and offset_k the rounded multiple of the
+// usual interval, both integers. Sine and cosine follow from those of phi_k by a polynomial in the
+// small x_k of third or fifth order; what is left out is below 5e-16. Whether a block is near
+// enough is decided by its integer deviations alone, so the same on every instruction set; within
+// the limit stamps increase strictly. No state; any thread.
 #pragma once
 
 #include <cstddef>

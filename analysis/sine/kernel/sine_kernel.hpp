@@ -1,14 +1,17 @@
 // The inner loops of the sine approximation: sums over one block of samples, by the widest
 // instructions the processor has.
 //
-// Phase of sample i in turns: x_i = frac((t_i - origin) * (high + low)), by an error-free product,
-// so that no digit is lost however long the record; s_i = sin(2 pi x_i), c_i = cos(2 pi x_i), u_i =
-// (t_i - origin) * inverse_scale. Every variant keeps eight logical lanes (sample i in lane i mod
-// 8), uses the fused multiply-add at the same places and adds the lanes up as
+//   x_i = frac((t_i - origin) * (high + low))   phase in turns, by an error-free product
+//   s_i = sin(2 pi x_i),  c_i = cos(2 pi x_i),  u_i = (t_i - origin) * inverse_scale
+//
+// No digit is lost however long the record is. Every variant keeps eight logical lanes (sample i in
+// lane i mod 8), uses the fused multiply-add at the same places and adds the lanes up as
 // ((0+1)+(2+3))+((4+5)+(6+7)): the bits do not depend on the instruction set. Without fused
 // multiply-add in hardware it is composed of exact additions and products (correct for |products|
-// in 1e-290..1e290). Blocks hold at most block_samples. REQUIRES: |t_i - origin| < 2^51 ns (26
-// days), less than 2^40 turns. No state but what the caller passes; any thread.
+// in 1e-290..1e290).
+//
+// Blocks hold at most block_samples. REQUIRES: |t_i - origin| < 2^51 ns (26 days), less than 2^40
+// turns. No state but what the caller passes; any thread.
 #pragma once
 
 #include <cstddef>

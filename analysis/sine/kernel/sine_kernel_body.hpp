@@ -316,7 +316,7 @@ bool design_moments(const std::int64_t* stamps, std::size_t n, const TimeAxis& a
       for_each_basis_row(stamps, n, axis, basis, [&](std::size_t i, const SineCosine&, Lanes dt) {
         (dt * scale).store(basis.u + i);
       });
-  // Two goes, so that the sums stay in registers.
+  // Two passes, so that the sums stay in registers.
   constexpr std::size_t half = (moment_count + 1) / 2;
   Lanes power[block_samples / lanes];
   for (std::size_t i = 0; i < n; i += lanes) {

@@ -1,10 +1,11 @@
 // Sine and cosine of an angle given in turns, after exact reduction: polynomials on an eighth of a
-// turn.
+// turn, |r| <= 0.12525.
 //
-// |r| <= 0.12525:  sin(2 pi r) = r S(r^2),  cos(2 pi r) = 1 + r^2 C(r^2).  Minimax coefficients
-// (Remez, 50 digits, then rounded): the polynomials are within 1.9e-17 of the functions, the
-// evaluated values within 1.3e-16. No allocation, no dependence on the standard library: the vector
-// kernels include this file too.
+//   sin(2 pi r) = r S(r^2),   cos(2 pi r) = 1 + r^2 C(r^2)
+//
+// Minimax coefficients (Remez, 50 digits, then rounded): the polynomials are within 1.9e-17 of the
+// functions, the evaluated values within 1.3e-16. No allocation, no dependence on the standard
+// library: the vector kernels include this file too.
 #pragma once
 
 namespace dyncal::analysis::kernel {

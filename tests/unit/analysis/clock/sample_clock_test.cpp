@@ -273,7 +273,7 @@ TEST(SampleClock, ASingleNormalClockHasOneMode) {
   settings.tick_s = tick_ns * 1e-9;
   EXPECT_EQ(statistics_of(stamps, settings).modes_s.size(), 1u);
   EXPECT_TRUE(statistics_of(stamps)
-                  .modes_s.empty()); // without the tick nobody can tell a mode from the comb
+                  .modes_s.empty()); // without the tick a mode cannot be told from the comb
 }
 
 } // namespace

@@ -50,7 +50,7 @@ struct Bench {
   }
 };
 
-TEST(StampedApart, FindsTheTruthThoughTheSensorHasStampsOfItsOwn) {
+TEST(OwnClockChannel, FindsTheTruthThoughTheSensorHasStampsOfItsOwn) {
   const Bench bench;
   const auto result = evaluate_sample_stamping(bench.input());
   ASSERT_TRUE(result) << result.error().message;
@@ -61,7 +61,7 @@ TEST(StampedApart, FindsTheTruthThoughTheSensorHasStampsOfItsOwn) {
   EXPECT_LT(point.u_phase_rad, 1e-3);
 }
 
-TEST(StampedApart, CountsTheOffsetBetweenTheClocksInFull) {
+TEST(OwnClockChannel, CountsTheOffsetBetweenTheClocksInFull) {
   const Bench bench;
   SampleStampingInput input = bench.input();
   const double alone = evaluate_sample_stamping(input)->points.at(0).u_phase_rad;
@@ -70,7 +70,7 @@ TEST(StampedApart, CountsTheOffsetBetweenTheClocksInFull) {
   EXPECT_NEAR(with_offset, std::hypot(alone, 2.0 * std::numbers::pi * 80.0 * 20e-6), 1e-6);
 }
 
-TEST(StampedApart, IsWrongByAnOffsetThatNobodyKnows) {
+TEST(OwnClockChannel, IsWrongByAnUnknownOffset) {
   Bench bench;
   for (std::int64_t& stamp : bench.dut_stamps) {
     stamp += 115'000; // as long as a frame of eight bytes lasts at 1 Mbit/s

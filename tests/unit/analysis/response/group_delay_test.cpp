@@ -60,7 +60,7 @@ TEST(GroupDelay, FewPointsAreUnwrappedByTheSlopeBefore) {
 }
 
 TEST(GroupDelay, SaysSoWhenThePhaseCannotBeUnwrapped) {
-  // Half a turn from the first to the second of few points: lead or delay, nobody knows.
+  // Half a turn from the first to the second of few points: lead or delay is undecided.
   const auto result = evaluate_group_delay(phases_of(0.5 / 50.0, 0.0, 1e-3, {50, 100, 150}));
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::not_converged);

@@ -1,0 +1,50 @@
+#include "analysis/uncertainty/budget.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::analysis {
+namespace {
+
+TEST(Budget, RowsAddInSquares) {
+  Budget budget;
+  budget.add({.kind = ContributionKind::reference, .u_magnitude_rel = 3e-3, .u_phase_rad = 5e-3});
+  budget.add({.kind = ContributionKind::adc_phase, .u_magnitude_rel = 4e-3, .u_phase_rad = 12e-3});
+  EXPECT_DOUBLE_EQ(budget.u_magnitude_rel(), 5e-3);
+  EXPECT_DOUBLE_EQ(budget.u_phase_rad(), 13e-3);
+}
+
+TEST(Budget, ARowOfNothingIsLeftOut) {
+  Budget budget;
+  budget.add({.kind = ContributionKind::clock_offset});
+  EXPECT_TRUE(budget.rows().empty());
+  EXPECT_EQ(budget.u_phase_rad(), 0.0);
+}
+
+TEST(Budget, AppendingKeepsTheOrder) {
+  Budget first, second;
+  first.add({.kind = ContributionKind::rice, .u_magnitude_rel = 1e-3});
+  second.add({.kind = ContributionKind::reference, .u_magnitude_rel = 2e-3});
+  first.append(second);
+  ASSERT_EQ(first.rows().size(), 2u);
+  EXPECT_EQ(first.rows()[0].kind, ContributionKind::rice);
+  EXPECT_EQ(first.rows()[1].kind, ContributionKind::reference);
+}
+
+TEST(Budget, StructureIsWhatScattersBeyondTheExpected) {
+  Budget budget;
+  budget.add_excess("the sensor's signal", RatioScatter{5e-3, 1e-3, 15.0}, 3e-3, 1e-3);
+  ASSERT_EQ(budget.rows().size(), 1u);
+  const Contribution& row = budget.rows().front();
+  EXPECT_EQ(row.name(), "structure in the sensor's signal");
+  EXPECT_EQ(row.repeats, Repeats::anew);
+  EXPECT_EQ(row.degrees_of_freedom, 15.0);
+  EXPECT_NEAR(row.u_magnitude_rel, 4e-3, 1e-15);
+  EXPECT_EQ(row.u_phase_rad, 0.0);
+  budget.add_excess("the reference", std::nullopt, 0.0, 0.0);
+  EXPECT_EQ(budget.rows().size(), 1u);
+}
+
+} // namespace
+} // namespace dyncal::analysis
