@@ -27,8 +27,9 @@ FLOORS = {
     ],
     "drivers": [
         ["."],
-        ["link", "can/bus"],
-        ["files", "can/dbc", "can/time"],
+        ["link"],
+        ["can/bus", "files"],
+        ["can/dbc", "can/time"],
         ["acs", "can", "dso", "generator", "smartup", "tss", "virtual_bench/model"],
         ["virtual_bench/can", "virtual_bench/wire"],
         ["virtual_bench"],
