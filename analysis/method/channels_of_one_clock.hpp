@@ -50,7 +50,8 @@ fit_channels_of_one_clock(const Frequency& frequency, double frequency_search_re
                           std::span<const std::int64_t> stamps_ns, const ChannelSamples& pilot,
                           std::span<const ChannelSamples> others);
 
-// One channel at a frequency that is known already; it may be without excitation.
+// One channel at a frequency that is known already. It may be too weak for a pilot, but must be 4 u
+// above the noise (sine_fit.hpp).
 [[nodiscard]] Expected<RecordedChannel> fit_weak_channel(const Frequency& frequency,
                                                          std::span<const std::int64_t> stamps_ns,
                                                          const ChannelSamples& channel);

@@ -29,8 +29,8 @@ struct System {
   double ee = 0.0; // unweighted
 };
 
-// Sums by the kernels, not by Eigen's products: those are cut into pieces by the sizes of the
-// processor's caches, and so are their last bits.
+// Sums by the kernels, not by Eigen's products, whose order, and with it their last bits, depends
+// on the sizes of the processor's caches.
 class Fitter {
 public:
   Fitter(const Record& record, SineBasis basis)

@@ -39,7 +39,7 @@ struct ExtendedBasis {
   bool drifting_phasor = false;
 };
 
-struct FurtherPhasor { // a harmonic or a line, about the reference instant
+struct FurtherPhasor { // a harmonic or a line, about the phase origin
   double frequency_hz = 0.0;
   double sine = 0.0;
   double cosine = 0.0;

@@ -48,7 +48,7 @@ struct Solution {
 // Covariance of (A, B, C) for unit variance: AA, AB, AC, BB, BC, CC.
 [[nodiscard]] std::array<double, 6> unit_covariance(const NormalMatrix& matrix);
 
-// The phasor and its covariance about another reference instant: P e^{i 2 pi turns}.
+// The phasor and its covariance about another phase origin: P e^{i 2 pi turns}.
 void rotate(SineFit& fit, double turns);
 
 // sin and cos of an angle in turns within [-0.5, 0.5], error 1.3e-16.

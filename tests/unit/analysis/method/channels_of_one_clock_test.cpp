@@ -85,15 +85,28 @@ TEST_F(ChannelsOfOneClockTest, AStrongChannelHasNoiseAndQuantisationInItsBudget)
   EXPECT_GT(of_phase.u_phase_rad(), 0.0);
 }
 
-TEST_F(ChannelsOfOneClockTest, NoiseAloneIsLengthenedAsRiceSays) {
-  const auto found = fit_weak_channel(*Frequency::parse("80.01"), stamps_ns, {"s", quiet});
-  ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(require_excitation(*found).error().code, ErrorCode::no_excitation);
+// Six standard uncertainties: enough to be fitted, not enough for a pilot.
+TEST_F(ChannelsOfOneClockTest, AWeakChannelIsLengthenedAsRiceSays) {
+  const std::vector<double> weak = sine(6.0 * noise * std::sqrt(2.0 / samples), 0.0, 3);
+  const auto found = fit_weak_channel(*Frequency::parse("80.01"), stamps_ns, {"s", weak});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  const auto excited = require_excitation(*found);
+  ASSERT_FALSE(excited.has_value());
+  EXPECT_EQ(excited.error().code, ErrorCode::no_excitation);
   Budget budget;
   add_sensor_rows(budget, *found, 0.0);
   ASSERT_EQ(budget.rows().size(), 2u);
   EXPECT_EQ(budget.rows()[1].kind, ContributionKind::rice);
-  EXPECT_GT(budget.rows()[0].u_phase_rad, 0.3);
+  EXPECT_NEAR(budget.rows()[1].u_magnitude_rel, 0.5 * std::pow(budget.rows()[0].u_magnitude_rel, 2),
+              1e-15);
+  EXPECT_GT(budget.rows()[0].u_phase_rad, 0.1);
+}
+
+TEST_F(ChannelsOfOneClockTest, NoiseAloneIsRefusedByName) {
+  const auto found = fit_weak_channel(*Frequency::parse("80.01"), stamps_ns, {"can/z", quiet});
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error().code, ErrorCode::no_excitation);
+  EXPECT_TRUE(found.error().message.starts_with("can/z: ")) << found.error().message;
 }
 
 } // namespace
