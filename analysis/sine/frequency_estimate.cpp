@@ -31,6 +31,10 @@ Expected<std::int64_t> median_interval_ns(std::span<const std::int64_t> stamps_n
 // Hann-windowed and free of its mean; empty when the column is constant.
 std::vector<double> on_grid(std::span<const std::size_t> places, std::span<const double> values,
                             std::size_t size) {
+  const auto used = values.first(places.size());
+  if (std::all_of(used.begin(), used.end(), [&](double v) { return v == used.front(); })) {
+    return {}; // the mean may differ from the value by rounding
+  }
   double mean = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     mean += values[i] / static_cast<double>(places.size());

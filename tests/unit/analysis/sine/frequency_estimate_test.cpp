@@ -32,7 +32,7 @@ TEST(FrequencyEstimate, GapsStayEmpty) {
   stamps.erase(stamps.begin() + 700, stamps.begin() + 1100);
   const auto found = estimate(stamps, values_of(Signal{}, stamps));
   ASSERT_TRUE(found.has_value());
-  EXPECT_NEAR(found->hz(), 80.0, 0.1);
+  EXPECT_NEAR(found->hz(), 80.0, 0.25); // half a bin: the search of the fit finds it from there
 }
 
 TEST(FrequencyEstimate, RefusesWhatHasNoFrequency) {
