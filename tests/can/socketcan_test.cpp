@@ -30,8 +30,9 @@ std::string failure(SocketCanSource source) {
 }
 
 TEST(SocketCan, SaysInOneLineWhyAnInterfaceCannotBeUsed) {
-  EXPECT_THAT(failure(SocketCanSource(on("can7"))),
-              HasSubstr("there is no interface 'can7'; 'ip link' lists those there are"));
+  EXPECT_THAT(
+      failure(SocketCanSource(on("can7"))),
+      HasSubstr("there is no interface 'can7'; 'ip link' lists the interfaces of this machine"));
   const VirtualCan link("vcan0");
   ip("set vcan0 down");
   EXPECT_THAT(failure(SocketCanSource(on("vcan0"))),
