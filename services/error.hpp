@@ -4,13 +4,15 @@
 // to do about it.
 #pragma once
 
+#include <optional>
+
 #include "analysis/base/failure.hpp"
 
 namespace dyncal::services {
 
 enum class ErrorCode {
-  bad_file,     // a file is missing, unreadable or says something that cannot be
-  bad_argument, // an option of the command line cannot be
+  bad_file,     // a file is missing, unreadable or holds a value that is not valid
+  bad_argument, // an option of the command line is not valid
   no_source,    // a source is missing, silent, or lacks a channel
   no_analysis,  // no analysis service answers, or it refuses the recipe
   device,       // a driver reports an error
@@ -23,5 +25,18 @@ using Error = Failure<ErrorCode>;
 
 template <class T>
 using Expected = tl::expected<T, Error>;
+
+// Of calls that were all made before the first outcome was looked at; nothing if none failed.
+template <class... T>
+[[nodiscard]] std::optional<Error> first_error(const Expected<T>&... outcomes) {
+  std::optional<Error> first;
+  const auto look = [&first](const auto& outcome) {
+    if (!first && !outcome) {
+      first = outcome.error();
+    }
+  };
+  (look(outcomes), ...);
+  return first;
+}
 
 } // namespace dyncal::services

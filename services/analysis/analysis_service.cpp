@@ -14,14 +14,17 @@ constexpr std::chrono::milliseconds max_wait{100};
 
 } // namespace
 
-AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity identity)
-    : participant_(std::move(participant)), identity_(std::move(identity)),
-      wake_up_(std::make_shared<bus::WakeUp>()) {}
+AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity identity,
+                                 bus::Clock& clock)
+    : participant_(std::move(participant)), context_{participant_, clock,
+                                                     std::make_shared<bus::WakeUp>(),
+                                                     std::move(identity)} {}
 
 Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Participant participant,
-                                                                   AnalysisIdentity identity) {
+                                                                   AnalysisIdentity identity,
+                                                                   bus::Clock& clock) {
   std::unique_ptr<AnalysisService> service(
-      new AnalysisService(std::move(participant), std::move(identity)));
+      new AnalysisService(std::move(participant), std::move(identity), clock));
   if (auto opened = service->open_readers(); !opened) {
     return fail(opened.error());
   }
@@ -29,20 +32,13 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
 }
 
 Expected<void> AnalysisService::open_readers() {
-  auto measurement = participant_.reader<wire::Measurement>(
-      bus::topics::measurement, bus::Profile::state, all_benches, wake_up_);
-  auto excitation = participant_.reader<wire::Excitation>(
-      bus::topics::excitation, bus::Profile::state, all_benches, wake_up_);
-  auto description = participant_.reader<wire::SourceDescription>(
-      bus::topics::source_description, bus::Profile::state, all_benches, wake_up_);
-  auto status = participant_.reader<wire::SourceStatus>(bus::topics::source_status,
-                                                        bus::Profile::state, all_benches, wake_up_);
-  for (const Error* error :
-       {measurement ? nullptr : &measurement.error(), excitation ? nullptr : &excitation.error(),
-        description ? nullptr : &description.error(), status ? nullptr : &status.error()}) {
-    if (error != nullptr) {
-      return fail(*error);
-    }
+  const auto& bell = context_.wake_up;
+  auto measurement = participant_.reader(bus::topics::measurement, all_benches, bell);
+  auto excitation = participant_.reader(bus::topics::excitation, all_benches, bell);
+  auto description = participant_.reader(bus::topics::source_description, all_benches, bell);
+  auto status = participant_.reader(bus::topics::source_status, all_benches, bell);
+  if (auto error = first_error(measurement, excitation, description, status)) {
+    return fail(*error);
   }
   readers_ = std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation),
                                                std::move(*description), std::move(*status)});
@@ -50,12 +46,13 @@ Expected<void> AnalysisService::open_readers() {
 }
 
 void AnalysisService::serve(const std::stop_token& stop) {
-  spdlog::info("analysis ready ({} on {})", identity_.dds, identity_.service);
+  spdlog::info("analysis ready ({} on {})", context_.identity.dds, context_.identity.service);
+  bus::Clock& clock = context_.clock;
   while (!stop.stop_requested()) {
-    wake_up_->wait_until(RunSession::Clock::now() + max_wait);
+    clock.wait(*context_.wake_up, clock.now() + max_wait);
     take_messages();
     for (auto& [key, session] : runs_) {
-      session->work(benches_[key.first], RunSession::Clock::now());
+      session->work(benches_[key.first]);
     }
   }
 }
@@ -91,22 +88,25 @@ void AnalysisService::take_messages() {
 
 void AnalysisService::take_measurement(const wire::Measurement& measurement) {
   const RunKey key{measurement.bench().to_string(), measurement.run().to_string()};
-  const auto now = RunSession::Clock::now();
   if (const auto known = runs_.find(key); known != runs_.end()) {
-    known->second->update(measurement, now);
+    known->second->update(measurement);
     return;
   }
-  if (measurement.state() != wire::MEASUREMENT_PLANNED) {
-    // Its first samples are gone, and so are the results of another instance that may have died:
-    // what came of it would look complete and not be. The run ends by itself when nobody else
-    // evaluates it.
-    if (ignored_.insert(key).second && measurement.state() == wire::MEASUREMENT_RUNNING) {
-      spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first,
-                   key.second);
-    }
+  if (measurement.state() == wire::MEASUREMENT_PLANNED) {
+    begin_run(key, measurement);
     return;
   }
-  auto session = RunSession::create(participant_, wake_up_, identity_, measurement, now);
+  // Its first samples are gone, and so are the results of another instance that may have died: what
+  // came of it would look complete without being so. The run ends by itself if nobody else
+  // evaluates it.
+  if (ignored_.insert(key).second && measurement.state() == wire::MEASUREMENT_RUNNING) {
+    spdlog::warn("bench {}, run {}: began before this service; not evaluated", key.first,
+                 key.second);
+  }
+}
+
+void AnalysisService::begin_run(const RunKey& key, const wire::Measurement& measurement) {
+  auto session = RunSession::create(context_, measurement);
   if (!session) {
     spdlog::error("bench {}, run {}: {}", key.first, key.second, session.error().message);
     return;

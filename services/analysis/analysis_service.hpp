@@ -1,8 +1,11 @@
 // The analysis service: learns benches, sources and recipes from DDS alone and keeps one RunSession
 // for every run it hears of.
 //
-// serve() runs in the caller's thread until `stop` is requested; nothing else of it may be called
-// meanwhile. Finished runs are kept for late joiners, the newest `kept_runs` of every bench.
+// Only runs that are PLANNED when they are first heard of are evaluated: of one that began before,
+// samples are lost. Finished runs are kept for late joiners, the newest `kept_runs` of every bench.
+//
+// serve() runs in the caller's thread until `stop` is requested; nothing else may be called
+// meanwhile.
 #pragma once
 
 #include <map>
@@ -14,6 +17,7 @@
 
 #include "services/analysis/run_session.hpp"
 #include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
 
 namespace dyncal::services {
 
@@ -21,8 +25,10 @@ class AnalysisService {
 public:
   static constexpr std::size_t kept_runs = 10;
 
+  // `clock` outlives the service. Fails (network) as readers do.
   [[nodiscard]] static Expected<std::unique_ptr<AnalysisService>>
-  create(bus::Participant participant, AnalysisIdentity identity);
+  create(bus::Participant participant, AnalysisIdentity identity,
+         bus::Clock& clock = bus::system_clock());
 
   void serve(const std::stop_token& stop);
 
@@ -35,15 +41,15 @@ private:
   };
   using RunKey = std::pair<std::string, std::string>; // bench, run
 
-  AnalysisService(bus::Participant participant, AnalysisIdentity identity);
+  AnalysisService(bus::Participant participant, AnalysisIdentity identity, bus::Clock& clock);
   Expected<void> open_readers();
   void take_messages();
   void take_measurement(const wire::Measurement& measurement);
+  void begin_run(const RunKey& key, const wire::Measurement& measurement);
   void drop_old_runs(const std::string& bench);
 
   bus::Participant participant_;
-  AnalysisIdentity identity_;
-  std::shared_ptr<bus::WakeUp> wake_up_;
+  AnalysisContext context_; // of participant_
   std::unique_ptr<Readers> readers_;
   std::map<std::string, KnownSources> benches_;
   std::map<RunKey, std::unique_ptr<RunSession>> runs_;

@@ -3,124 +3,94 @@
 //
 // Armed means: every source of the recipe has described itself with the channels needed, is not
 // silent, and has answered the ARM command in its own sample stream, so commands arrive there and
-// samples arrive here (idl/README.md, "The run protocol"). Samples before a source's answer are not
-// of this run. A run that cannot be armed within `arm_limit` is refused with one sentence. While
-// the run is on, a live source that has sent nothing for `silence_limit` fails it. When the
-// excitation is done and nothing moves any more for `quiet_limit`, the run ends with what there is.
-// Results stay readable for late joiners as long as the session lives. Belongs to the service's one
-// thread; ends with its destruction.
+// samples arrive here (idl/README.md, "The run protocol").
+//
+// Limits: a run that is not armed within `arm_limit` is refused with one sentence. While it is
+// RUNNING, a live source that sent nothing for `silence_limit` fails it. Once the excitation is
+// over and nothing was published for `quiet_limit`, or nothing was heard of the run for
+// `runner_limit`, it ends with what there is.
+//
+// Belongs to the service's one thread. Its results stay readable for late joiners until it is
+// destroyed; services/analysis/README.md describes the states.
 #pragma once
 
 #include <chrono>
-#include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "idl/dyncal.h"
+#include "services/analysis/run_publisher.hpp"
+#include "services/analysis/source_streams.hpp"
 #include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 
 namespace dyncal::services {
 
-struct AnalysisIdentity {
-  std::string service; // key of ServiceStatus
-  std::string host;
-  std::uint32_t process_id = 0;
-  std::string dds; // word of the vendor
+// What all runs of a service share; outlives them.
+struct AnalysisContext {
+  bus::Participant& participant;
+  bus::Clock& clock;
+  std::shared_ptr<bus::WakeUp> wake_up;
+  AnalysisIdentity identity;
 };
-
-// What the service knows of the sources of a bench.
-struct KnownSource {
-  std::optional<wire::SourceDescription> description;
-  std::optional<wire::SourceStatus> status;
-};
-using KnownSources = std::map<std::string, KnownSource>;
 
 class RunSession {
 public:
-  using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds arm_limit{6};
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds quiet_limit{8};
   static constexpr std::chrono::seconds runner_limit{15};
 
+  // Fails (network) as writers do. A recipe that cannot be evaluated makes a session that is
+  // refused.
   [[nodiscard]] static Expected<std::unique_ptr<RunSession>>
-  create(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-         const AnalysisIdentity& identity, const wire::Measurement& measurement,
-         Clock::time_point now);
+  create(const AnalysisContext& context, const wire::Measurement& measurement);
 
-  [[nodiscard]] const std::string& bench() const { return bench_; }
-  [[nodiscard]] const std::string& run() const { return run_; }
   [[nodiscard]] bool finished() const {
-    return arm_ == wire::ARM_FINISHED || arm_ == wire::ARM_REFUSED;
+    return status_.arm == wire::ARM_FINISHED || status_.arm == wire::ARM_REFUSED;
   }
 
-  void update(const wire::Measurement& measurement, Clock::time_point now);
+  void update(const wire::Measurement& measurement);
   void announce(const wire::Excitation& excitation);
   // Does what is due: takes samples, asks sources to answer, evaluates, publishes.
-  void work(const KnownSources& sources, Clock::time_point now);
+  void work(const KnownSources& sources);
 
 private:
-  struct SourceLink {
-    bool described = false;
-    bool answered = false;
-    bool ended = false;
-    bool triggered = false; // sends records when there is a shot, and may be silent else
-    std::optional<wire::SourceDescription> description; // as the evaluation knows it
-    Clock::time_point last_block;
-  };
+  using Instant = bus::Clock::Instant;
 
-  RunSession(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-             const AnalysisIdentity& identity, const wire::Measurement& measurement,
-             Clock::time_point now);
-  Expected<void> open_writers();
-  void take_descriptions(const KnownSources& sources);
-  void open_reader(wire::SourceKind kind);
-  void open_record_reader(wire::SourceKind kind);
-  [[nodiscard]] SourceLink* link_of(const std::string& source, const std::string& answers_run);
-  void take_samples(Clock::time_point now);
-  void take_block(const wire::SampleBlock& block, Clock::time_point now);
-  void arm(const KnownSources& sources, Clock::time_point now);
-  [[nodiscard]] std::string what_is_missing(const KnownSources& sources) const;
-  void evaluate(Clock::time_point now);
-  void watch_sources(Clock::time_point now);
+  RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
+             RunPublisher publisher);
+  void prepare(const wire::Measurement& measurement);
+  void take_samples(const KnownSources& sources, Instant now);
+  void arm(const KnownSources& sources, Instant now);
+  void watch_sources(Instant now);
+  void evaluate(Instant now);
+  void finish();
+  void end_overdue(Instant now);
   void report_failure(std::string message);
   void refuse(std::string message);
-  void publish_status();
-  template <class T>
-  void write(std::optional<bus::Writer<T>>& writer, const T& message);
+  [[nodiscard]] bool excitation_over() const {
+    return measurement_ == wire::MEASUREMENT_DONE || measurement_ == wire::MEASUREMENT_ABORTED;
+  }
 
   bus::Participant& participant_;
+  bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  AnalysisIdentity identity_;
   std::string bench_;
   std::string run_;
-  wire::MeasurementState state_;
-  wire::ArmState arm_ = wire::ARM_WAITING;
-  wire::HealthState health_ = wire::HEALTH_OK;
-  std::string message_;
-  std::uint64_t results_published_ = 0;
-  std::uint64_t transfer_functions_published_ = 0;
-  std::uint64_t clock_reports_published_ = 0;
-  bool excited_by_steps_ =
-      false; // a generator is announced; files and hand-made excitation are not
-  std::unique_ptr<RunEvaluator> evaluator_;
-  std::map<std::string, SourceLink> links_;
-  std::map<wire::SourceKind, bus::Reader<wire::SampleBlock>> readers_;
-  std::map<wire::SourceKind, bus::Reader<wire::TriggeredRecord>> record_readers_;
-  std::optional<bus::Writer<wire::Command>> command_writer_;
-  std::optional<bus::Writer<wire::ServiceStatus>> status_writer_;
-  std::optional<bus::Writer<wire::CalibrationResult>> result_writer_;
-  std::optional<bus::Writer<wire::TransferFunction>> transfer_writer_;
-  std::optional<bus::Writer<wire::SampleClockReport>> clock_writer_;
-  Clock::time_point created_;
-  Clock::time_point last_heard_of_run_;
-  Clock::time_point last_progress_;
-  Clock::time_point next_command_;
-  Clock::time_point next_status_;
+  RunPublisher publisher_;
+  RunState status_;
+  wire::MeasurementState measurement_;
+  bool excited_by_steps_ = false; // by a generator; files and excitation by hand announce no steps
+  std::unique_ptr<RunEvaluator> evaluator_; // until the run is finished or refused
+  std::optional<SourceStreams> streams_;    // as long
+  Instant created_;
+  Instant last_heard_of_run_;
+  Instant last_progress_;
+  Instant next_command_;
+  Instant next_status_;
 };
 
 } // namespace dyncal::services

@@ -23,21 +23,6 @@ std::string words_of_this_build() {
 
 } // namespace
 
-void WakeUp::ring() {
-  {
-    const std::lock_guard lock(mutex_);
-    rung_ = true;
-  }
-  condition_.notify_one();
-}
-
-bool WakeUp::wait_until(std::chrono::steady_clock::time_point deadline) {
-  std::unique_lock lock(mutex_);
-  const bool rang = condition_.wait_until(lock, deadline, [this] { return rung_; });
-  rung_ = false;
-  return rang;
-}
-
 services::Expected<Participant> Participant::create(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > max_domain) {
     return fail(network_error("DDS domain " + std::to_string(options.domain) +

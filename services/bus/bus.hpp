@@ -17,16 +17,15 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "services/bus/names.hpp"
 #include "services/bus/type_support.hpp"
+#include "services/bus/wake_up.hpp"
 #include "services/contract/topics.hpp"
 #include "services/error.hpp"
 
@@ -44,19 +43,6 @@ struct ParticipantOptions {
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.
   std::function<void(const std::string&)> warn;
-};
-
-// A bell that readers ring when something has come. One thread waits, any thread rings.
-class WakeUp {
-public:
-  void ring();
-  // True when it rang since the last wait; false when the time ran out.
-  bool wait_until(std::chrono::steady_clock::time_point deadline);
-
-private:
-  std::mutex mutex_;
-  std::condition_variable condition_;
-  bool rung_ = false;
 };
 
 enum class WriteOutcome { written, timed_out, failed };

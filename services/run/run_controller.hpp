@@ -2,10 +2,12 @@
 // step by step, collects what is published.
 //
 // Order of messages: idl/README.md, "The run protocol"; services/run/step_excitation.hpp excites
-// the steps. The generator's output is off on every way out: end, error, stop. Fails: no_analysis
-// (nobody answers, or the recipe is refused), no_source, device (generator), network, no_result. A
-// stop is no failure: the outcome says `interrupted` and holds what was measured. Belongs to one
-// thread.
+// the steps. The generator's output is off on every way out: end, error, stop.
+//
+// Fails: no_analysis (nobody answers, or the run is not armed in time), no_source (the analysis
+// refuses the run), device (generator), network, interrupted (before the first step). Later there
+// are no failures: the outcome holds what was measured and says why the run ended early. Belongs to
+// one thread.
 #pragma once
 
 #include <chrono>
@@ -17,9 +19,9 @@
 #include <vector>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
-#include "services/bus/bus.hpp"
+#include "services/run/run_messages.hpp"
+#include "services/run/run_outcome.hpp"
 #include "services/run/step_excitation.hpp"
 
 namespace dyncal::services {
@@ -34,21 +36,20 @@ struct RunProgress {
   std::optional<double> seconds_left; // of the host's clock
 };
 
-struct RunOutcome {
-  wire::Measurement measurement;
-  std::string analysis_dds;
-  std::vector<wire::CalibrationResult> results; // in the order of steps, then as published
-  std::vector<wire::TransferFunction> transfer_functions;
-  std::vector<wire::SampleClockReport> clock_reports;
-  bool interrupted = false;
-  std::string problem; // why the run ended early, "" when it did not
-};
-
 class RunController {
 public:
   using ShowProgress = std::function<void(const RunProgress&)>;
 
+  static constexpr std::chrono::seconds answer_limit{4};    // for an analysis service to answer
+  static constexpr std::chrono::seconds armed_limit{9};     // until it has armed or refused the run
+  static constexpr std::chrono::seconds analysis_limit{10}; // between two of its messages
+  static constexpr std::chrono::seconds results_limit{25};  // from the last result to the next
+
   RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
+                ShowProgress show_progress)
+      : RunController(RunEnvironment{.participant = participant}, bench, std::move(run),
+                      std::move(show_progress)) {}
+  RunController(RunEnvironment environment, const BenchFile& bench, std::string run,
                 ShowProgress show_progress);
 
   [[nodiscard]] Expected<RunOutcome>
@@ -56,47 +57,40 @@ public:
           const std::stop_token& stop);
 
 private:
-  using Clock = std::chrono::steady_clock;
+  using Instant = bus::Clock::Instant;
 
-  struct Endpoints {
-    bus::Writer<wire::Measurement> measurement;
-    bus::Writer<wire::Excitation> excitation;
-    bus::Reader<wire::ServiceStatus> status;
-    bus::Reader<wire::CalibrationResult> results;
-    bus::Reader<wire::TransferFunction> transfer_functions;
-    bus::Reader<wire::SampleClockReport> clock_reports;
-  };
-
-  Expected<void> open_endpoints();
+  Expected<void> open_messages();
   Expected<void> open_excitation();
   Expected<void> wait_until_armed(const std::stop_token& stop);
+  // Nothing while the analysis may still answer.
+  [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant began) const;
   Expected<void> excite(const std::stop_token& stop);
-  // Keeps the run alive on the network; fails when the analysis, or a source that it watches, is
-  // lost.
-  Expected<void> attend();
   Expected<void> wait_for_results(const std::stop_token& stop);
-  void announce(const wire::PlannedStep& step, wire::ExcitationState state);
-  void set_state(wire::MeasurementState state);
-  void keep_alive();
-  void take_messages();
-  void show(const std::string& phase, const std::string& request = "");
+  // Waits for messages, for a short while; shows `phase`.
+  void follow(const std::string& phase);
+  Expected<void> watch_analysis();
+  [[nodiscard]] Expected<void> analysis_is_alive() const;
   [[nodiscard]] bool everything_has_come() const;
+  [[nodiscard]] wire::MeasurementState final_state(bool excited) const;
+  void set_state(wire::MeasurementState state);
+  void repeat_measurement();
+  void show(const std::string& phase, const std::string& request = "");
+  void sort_outcome();
 
-  bus::Participant& participant_;
+  RunEnvironment environment_;
+  bus::Clock& clock_;
   const BenchFile& bench_;
   std::string run_;
   ShowProgress show_progress_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  std::unique_ptr<Endpoints> endpoints_;
+  std::optional<RunMessages> messages_;
   RunOutcome outcome_;
-  std::optional<wire::ServiceStatus> analysis_;
-  Clock::time_point analysis_heard_;
-  Clock::time_point last_alive_;
+  Instant measurement_published_;
   std::size_t step_ = 0;
-  std::int64_t window_begin_utc_ns_ = 0;
-  Clock::time_point first_step_began_;
-  std::unique_ptr<StepExcitation>
-      excitation_; // last: its end may ask the operator to switch the output off
+  Instant first_step_began_;
+  // Nothing when recorded files take its place. Last: its end may ask the operator to switch the
+  // output off.
+  std::unique_ptr<StepExcitation> excitation_;
 };
 
 } // namespace dyncal::services

@@ -4,11 +4,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "analysis/base/frequency.hpp"
-#include "drivers/generator/by_hand_generator.hpp"
-#include "drivers/generator/scpi_generator.hpp"
 #include "services/device_error.hpp"
 #include "services/run/level_settling.hpp"
 
@@ -42,46 +39,29 @@ Error of_step(const wire::PlannedStep& step, ErrorCode code, const std::string& 
 
 } // namespace
 
-Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(bus::Participant& participant,
+Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironment& environment,
                                                                const BenchFile& bench,
                                                                const wire::Measurement& measurement,
                                                                std::shared_ptr<bus::WakeUp> wake_up,
-                                                               StepAttendance attendance) {
+                                                               StepHooks hooks) {
   std::unique_ptr<StepExcitation> excitation(new StepExcitation(
-      participant, bench, measurement.run().to_string(), wake_up, std::move(attendance)));
-  if (const auto ready = excitation->check_levels(measurement).and_then([&] {
-        return excitation->connect_generator();
-      });
-      !ready) {
-    return fail(ready.error());
+      environment, bench, measurement.run().to_string(), wake_up, std::move(hooks)));
+  if (const auto valid = excitation->check_levels(measurement); !valid) {
+    return fail(valid.error());
   }
+  auto connection = environment.connect_generator(bench.generator, excitation->hooks_.ask);
+  if (!connection) {
+    return fail(connection.error());
+  }
+  excitation->connection_.emplace(std::move(*connection));
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
-    auto counter = ShotCounter::create(participant, bench.bench, wake_up);
+    auto counter = ShotCounter::create(environment.participant, bench.bench, wake_up);
     if (!counter) {
       return fail(counter.error());
     }
     excitation->shots_.emplace(std::move(*counter));
   }
   return excitation;
-}
-
-Expected<void> StepExcitation::connect_generator() {
-  if (bench_.generator.driver == "by-hand") {
-    generator_ =
-        std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, attendance_.ask);
-    return {};
-  }
-  auto guard = OutputGuard::start(bench_.generator.address);
-  if (!guard) {
-    return fail(guard.error());
-  }
-  guard_.emplace(std::move(*guard));
-  auto generator = drivers::generator::ScpiGenerator::connect(bench_.generator.address);
-  if (!generator) {
-    return fail(device_error(generator.error()));
-  }
-  generator_ = std::move(*generator);
-  return {};
 }
 
 Expected<void> StepExcitation::check_levels(const wire::Measurement& measurement) const {
@@ -131,9 +111,9 @@ void StepExcitation::end() {
 
 Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::stop_token& stop) {
   const auto excited = hold_step(step, stop);
-  const auto off = generator_->set_output(false);
+  const auto off = generator().set_output(false);
   if (!excited || stop.stop_requested()) {
-    attendance_.announce(step, wire::EXCITATION_ABORTED);
+    hooks_.announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
   if (!off) {
@@ -142,8 +122,8 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return confirmed;
   }
-  attendance_.announce(step, wire::EXCITATION_DONE);
-  const auto now = generator_->clock_now_s();
+  hooks_.announce(step, wire::EXCITATION_DONE);
+  const auto now = generator().clock_now_s();
   if (!now) {
     return fail(device_error(now.error()));
   }
@@ -159,15 +139,15 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
     return began.map([](double) {});
   }
   const double steady_from_s = *began + step.settling_s();
-  attendance_.show("settling");
+  hooks_.show("settling");
   if (const auto settled = hold_until(steady_from_s, stop); !settled || !*settled) {
     return settled.map([](bool) {});
   }
   if (shots_) {
     shots_->begin(run_, step.step());
   }
-  attendance_.announce(step, wire::EXCITATION_STEADY);
-  attendance_.show("measuring");
+  hooks_.announce(step, wire::EXCITATION_STEADY);
+  hooks_.show("measuring");
   const auto held =
       hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
   if (!held || !*held || !shots_) {
@@ -179,20 +159,21 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
 // The bench time from which on the output is on.
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
-  const auto set = generator_->set_frequency(step.frequency_text_hz())
-                       .and_then([&] { return generator_->set_amplitude_v(voltage_v); })
-                       .and_then([&] { return generator_->set_output(true); });
+  const auto set = generator()
+                       .set_frequency(step.frequency_text_hz())
+                       .and_then([&] { return generator().set_amplitude_v(voltage_v); })
+                       .and_then([&] { return generator().set_output(true); });
   if (!set) {
     return fail(device_error(set.error()));
   }
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return fail(confirmed.error());
   }
-  const auto began = generator_->clock_now_s();
+  const auto began = generator().clock_now_s();
   if (!began) {
     return fail(device_error(began.error()));
   }
-  attendance_.announce(step, wire::EXCITATION_SETTLING);
+  hooks_.announce(step, wire::EXCITATION_SETTLING);
   return *began;
 }
 
@@ -221,8 +202,8 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
     if (*reached) {
       return began;
     }
-    const auto changed = generator_->set_amplitude_v(loop->voltage_v()).and_then([&] {
-      return generator_->clock_now_s();
+    const auto changed = generator().set_amplitude_v(loop->voltage_v()).and_then([&] {
+      return generator().clock_now_s();
     });
     if (!changed) {
       return fail(device_error(changed.error()));
@@ -231,16 +212,16 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   }
 }
 
-// Nothing when it shall stop.
+// Nothing if a stop was requested.
 Expected<std::optional<double>> StepExcitation::measure_level(const wire::PlannedStep& step,
                                                               double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
-  attendance_.show("setting the level");
+  hooks_.show("setting the level");
   if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
     return fail(settled.error());
   }
   while (!stop.stop_requested()) {
-    const auto now = generator_->clock_now_s();
+    const auto now = generator().clock_now_s();
     if (!now) {
       return fail(device_error(now.error()));
     }
@@ -258,9 +239,9 @@ Expected<std::optional<double>> StepExcitation::measure_level(const wire::Planne
               "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
               bench_.method.reference.text(), *now - changed_s)));
     }
-    wake_up_->wait_until(Clock::now() + look_interval);
-    if (const auto attended = attendance_.attend(); !attended) {
-      return fail(attended.error());
+    clock_.wait(*wake_up_, clock_.now() + look_interval);
+    if (const auto alive = hooks_.keep_alive(); !alive) {
+      return fail(alive.error());
     }
   }
   return std::nullopt;
@@ -268,11 +249,11 @@ Expected<std::optional<double>> StepExcitation::measure_level(const wire::Planne
 
 // A step without all of its shots is measured with those there are; the analysis says how many.
 Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token& stop) {
-  const auto deadline = Clock::now() + shots_limit;
-  while (shots_->shots() < bench_.method.shots && Clock::now() < deadline &&
+  const auto deadline = clock_.now() + shots_limit;
+  while (shots_->shots() < bench_.method.shots && clock_.now() < deadline &&
          !stop.stop_requested()) {
-    attendance_.show("shots");
-    const auto now = generator_->clock_now_s();
+    hooks_.show("shots");
+    const auto now = generator().clock_now_s();
     if (!now) {
       return fail(device_error(now.error()));
     }
@@ -285,26 +266,26 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
 
 Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto in_effect = generator_->wait_for_effect(confirmation_slice);
+    const auto in_effect = generator().wait_for_effect(confirmation_slice);
     if (!in_effect) {
       return fail(device_error(in_effect.error()));
     }
     if (*in_effect) {
       return {};
     }
-    if (const auto attended = attendance_.attend(); !attended) {
-      return attended;
+    if (const auto alive = hooks_.keep_alive(); !alive) {
+      return alive;
     }
   }
   return {};
 }
 
 Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_token& stop) {
-  auto now = generator_->clock_now_s();
+  auto now = generator().clock_now_s();
   while (now && *now < bench_time_s && !stop.stop_requested()) {
-    now = generator_->wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
-    if (const auto attended = attendance_.attend(); !attended) {
-      return fail(attended.error());
+    now = generator().wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
+    if (const auto alive = hooks_.keep_alive(); !alive) {
+      return fail(alive.error());
     }
     if (now && meter_) {
       meter_->take(*now);

@@ -3,15 +3,18 @@
 // A step holds the output on for its planned settling, its duration and a margin in which the
 // analysis finds the edges of the steady part, then off for a moment, which separates it from the
 // next. Durations are in bench time (the generator's clock) and begin when what was set is in
-// effect: with a generator set by hand, when the operator has confirmed. With a level tolerance the
-// voltage follows what the reference shows (drivers/generator/level_control.hpp) within the planned
-// settling (services/run/level_settling.hpp). The output is off whenever excite() has returned, and
-// when the object goes; a guard sees to it when the program is killed. Fails: bad_argument (a level
-// above a limit, before anything is excited), device (generator, exciter), and as `attend` does. A
-// requested stop is no failure. Belongs to one thread.
+// effect: with a generator set by hand, when the operator has confirmed.
+//
+// With a level tolerance the voltage follows what the reference shows
+// (drivers/generator/level_control.hpp) within the planned settling
+// (services/run/level_settling.hpp).
+//
+// The output is off whenever excite() has returned, and when the object is destroyed; a guard
+// switches it off when the program is killed. Fails: bad_argument (a level above a limit, before
+// anything is excited), device (generator, exciter), and as `keep_alive` does. A requested stop is
+// not a failure. Belongs to one thread.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -24,26 +27,35 @@
 #include "idl/dyncal.h"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+#include "services/run/generator_connection.hpp"
 #include "services/run/level_meter.hpp"
-#include "services/run/output_guard.hpp"
 #include "services/run/shot_counter.hpp"
 
 namespace dyncal::services {
 
+// What a run is conducted with. All of it outlives the run; tests bring their own.
+struct RunEnvironment {
+  bus::Participant& participant;
+  bus::Clock& clock = bus::system_clock();
+  ConnectGenerator connect_generator = services::connect_generator;
+};
+
 // What the run does while a step is excited.
-struct StepAttendance {
+struct StepHooks {
   std::function<void(const wire::PlannedStep&, wire::ExcitationState)> announce;
   std::function<void(const std::string& phase)> show;
-  std::function<void(const std::string& request)> ask; // the operator
-  std::function<Expected<void>()> attend;              // often; fails when the run cannot go on
+  AskOperator ask;
+  // Called at least every second of bench time; fails when the run cannot go on.
+  std::function<Expected<void>()> keep_alive;
 };
 
 class StepExcitation {
 public:
-  // Connects the generator and switches its output off.
+  // Connects the generator, its output off.
   [[nodiscard]] static Expected<std::unique_ptr<StepExcitation>>
-  open(bus::Participant& participant, const BenchFile& bench, const wire::Measurement& measurement,
-       std::shared_ptr<bus::WakeUp> wake_up, StepAttendance attendance);
+  open(const RunEnvironment& environment, const BenchFile& bench,
+       const wire::Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up, StepHooks hooks);
 
   // Before the first step and after the last.
   [[nodiscard]] Expected<void> begin();
@@ -51,14 +63,11 @@ public:
   [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, const std::stop_token& stop);
 
 private:
-  using Clock = std::chrono::steady_clock;
+  StepExcitation(const RunEnvironment& environment, const BenchFile& bench, std::string run,
+                 std::shared_ptr<bus::WakeUp> wake_up, StepHooks hooks)
+      : participant_(environment.participant), clock_(environment.clock), bench_(bench),
+        run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {}
 
-  StepExcitation(bus::Participant& participant, const BenchFile& bench, std::string run,
-                 std::shared_ptr<bus::WakeUp> wake_up, StepAttendance attendance)
-      : participant_(participant), bench_(bench), run_(std::move(run)),
-        wake_up_(std::move(wake_up)), attendance_(std::move(attendance)) {}
-
-  Expected<void> connect_generator();
   Expected<void> check_levels(const wire::Measurement& measurement) const;
   Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
@@ -68,18 +77,19 @@ private:
                                                 double deadline_s, const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
   Expected<void> wait_for_effect(const std::stop_token& stop);
-  // False when it shall stop.
+  // Returns false if a stop was requested.
   Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
+  [[nodiscard]] drivers::generator::Generator& generator() { return *connection_->generator; }
   [[nodiscard]] drivers::generator::LevelLimits limits() const;
   [[nodiscard]] drivers::generator::LevelTarget target_of(const wire::PlannedStep& step) const;
 
   bus::Participant& participant_;
+  bus::Clock& clock_;
   const BenchFile& bench_;
   std::string run_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  StepAttendance attendance_;
-  std::optional<OutputGuard> guard_; // goes after the generator, which switches its output off
-  std::unique_ptr<drivers::generator::Generator> generator_;
+  StepHooks hooks_;
+  std::optional<GeneratorConnection> connection_; // from open() on
   std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
   std::optional<ShotCounter> shots_;              // series time stamping only

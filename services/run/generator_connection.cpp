@@ -1,0 +1,32 @@
+#include "services/run/generator_connection.hpp"
+
+#include <unistd.h>
+
+#include "drivers/generator/by_hand_generator.hpp"
+#include "drivers/generator/scpi_generator.hpp"
+#include "services/device_error.hpp"
+
+namespace dyncal::services {
+
+Expected<GeneratorConnection> connect_generator(const GeneratorSettings& settings,
+                                                AskOperator ask) {
+  GeneratorConnection connection;
+  if (settings.driver == "by-hand") {
+    connection.generator =
+        std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, std::move(ask));
+    return connection;
+  }
+  auto guard = OutputGuard::start(settings.address);
+  if (!guard) {
+    return fail(guard.error());
+  }
+  connection.guard.emplace(std::move(*guard));
+  auto generator = drivers::generator::ScpiGenerator::connect(settings.address);
+  if (!generator) {
+    return fail(device_error(generator.error()));
+  }
+  connection.generator = std::move(*generator);
+  return connection;
+}
+
+} // namespace dyncal::services

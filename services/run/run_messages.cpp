@@ -1,0 +1,87 @@
+#include "services/run/run_messages.hpp"
+
+#include <algorithm>
+
+#include "services/contract/topics.hpp"
+
+namespace dyncal::services {
+
+Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Clock& clock,
+                                        const std::string& bench, std::string run,
+                                        const std::shared_ptr<bus::WakeUp>& wake_up) {
+  namespace topics = bus::topics;
+  auto measurement = participant.writer(topics::measurement, bench);
+  auto excitation = participant.writer(topics::excitation, bench);
+  auto status = participant.reader(topics::service_status, bench, wake_up);
+  auto results = participant.reader(topics::calibration_result, bench, wake_up);
+  auto transfer = participant.reader(topics::transfer_function, bench, wake_up);
+  auto clocks = participant.reader(topics::sample_clock_report, bench, wake_up);
+  if (auto error = first_error(measurement, excitation, status, results, transfer, clocks)) {
+    return fail(*error);
+  }
+  return RunMessages(clock, bench, std::move(run),
+                     Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
+                               std::move(*results), std::move(*transfer), std::move(*clocks)});
+}
+
+void RunMessages::publish(const wire::Measurement& measurement) {
+  endpoints_.measurement.write(measurement);
+}
+
+void RunMessages::announce(const wire::PlannedStep& step, wire::ExcitationState state) {
+  if (state == wire::EXCITATION_SETTLING) {
+    window_begin_utc_ns_ = clock_->utc_now_ns();
+  }
+  const bool over = state == wire::EXCITATION_DONE || state == wire::EXCITATION_ABORTED;
+  wire::Excitation excitation;
+  excitation.bench(bench_);
+  excitation.run(run_);
+  excitation.step(step.step());
+  excitation.frequency_text_hz(step.frequency_text_hz());
+  excitation.level_m_s2(step.level_m_s2());
+  excitation.repetition(step.repetition());
+  excitation.state(state);
+  excitation.window_begin_utc_ns(window_begin_utc_ns_);
+  excitation.window_end_utc_ns(over ? clock_->utc_now_ns() : 0);
+  endpoints_.excitation.write(excitation);
+}
+
+void RunMessages::wait_for_acknowledgments(std::chrono::nanoseconds limit) {
+  endpoints_.measurement.wait_for_acknowledgments(limit);
+}
+
+template <class Message, class SameKey>
+void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Message>& all,
+                              SameKey same_key) {
+  reader.take([&](const Message& message, const bus::SampleInfo& info) {
+    if (!info.valid || message.run().to_string() != run_) {
+      return;
+    }
+    const auto known = std::find_if(all.begin(), all.end(),
+                                    [&](const Message& other) { return same_key(other, message); });
+    if (known == all.end()) {
+      all.push_back(message);
+    } else {
+      *known = message;
+    }
+  });
+}
+
+void RunMessages::take(RunOutcome& outcome) {
+  take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
+    return a.step() == b.step() && a.repetition() == b.repetition() && a.channel() == b.channel();
+  });
+  take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
+              [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
+  take_newest(endpoints_.clock_reports, outcome.clock_reports,
+              [](const auto& a, const auto& b) { return a.source() == b.source(); });
+  endpoints_.status.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
+    if (info.valid && status.run().to_string() == run_) {
+      analysis_ = status;
+      analysis_heard_ = clock_->now();
+      outcome.analysis_dds = status.dds();
+    }
+  });
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,65 @@
+// The messages of one run as its conductor sends and receives them: the plan and the excitation go
+// out, status and results of the analysis come in.
+//
+// Of everything that comes the newest of every key is kept; messages of other runs on the bench are
+// left out. Belongs to one thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "idl/dyncal.h"
+#include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+#include "services/error.hpp"
+#include "services/run/run_outcome.hpp"
+
+namespace dyncal::services {
+
+class RunMessages {
+public:
+  // `clock` outlives the object. Fails (network) as writers and readers do.
+  [[nodiscard]] static Expected<RunMessages> open(bus::Participant& participant, bus::Clock& clock,
+                                                  const std::string& bench, std::string run,
+                                                  const std::shared_ptr<bus::WakeUp>& wake_up);
+
+  void publish(const wire::Measurement& measurement);
+  // `state` of a step that is excited now; it began with EXCITATION_SETTLING.
+  void announce(const wire::PlannedStep& step, wire::ExcitationState state);
+  void wait_for_acknowledgments(std::chrono::nanoseconds limit);
+
+  // Takes what has come, results into `outcome`.
+  void take(RunOutcome& outcome);
+  // The newest status of an analysis service for this run; nothing before the first.
+  [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
+  [[nodiscard]] bus::Clock::Instant analysis_heard() const { return analysis_heard_; }
+
+private:
+  struct Endpoints {
+    bus::Writer<wire::Measurement> measurement;
+    bus::Writer<wire::Excitation> excitation;
+    bus::Reader<wire::ServiceStatus> status;
+    bus::Reader<wire::CalibrationResult> results;
+    bus::Reader<wire::TransferFunction> transfer_functions;
+    bus::Reader<wire::SampleClockReport> clock_reports;
+  };
+
+  RunMessages(bus::Clock& clock, std::string bench, std::string run, Endpoints endpoints)
+      : clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
+        endpoints_(std::move(endpoints)) {}
+  template <class Message, class SameKey>
+  void take_newest(bus::Reader<Message>& reader, std::vector<Message>& all, SameKey same_key);
+
+  bus::Clock* clock_;
+  std::string bench_;
+  std::string run_;
+  Endpoints endpoints_;
+  std::optional<wire::ServiceStatus> analysis_;
+  bus::Clock::Instant analysis_heard_;
+  std::int64_t window_begin_utc_ns_ = 0; // of the step that is excited now
+};
+
+} // namespace dyncal::services
