@@ -1,14 +1,14 @@
 // The bus: typed messages of idl/dyncal.idl over DDS, whichever vendor carries them.
 //
 // A process has one Participant, kept for as long as it runs; writers and readers keep it alive.
-// Writers and readers are made from it for one topic, one of four QoS profiles and one partition
-// (the bench; "*" reads all benches). T is a struct of the contract. No vendor's name or type
-// appears here.
+// They are made from it for one topic, one of four QoS profiles and one partition (the bench; "*"
+// reads all benches). T is a struct of the contract. No vendor's name or type appears here.
 //
-// QoS profiles (idl/README.md has the exact settings):
-//   samples  reliable, keep all, transient local with bounded depth: blocks; a late joiner gets the
-//   most recent ones results  reliable, transient local, the newest of every key state    reliable,
-//   transient local, the newest of every key command  reliable, volatile, every one
+// QoS profiles (idl/README.md has the exact settings), all reliable:
+//   samples  keep all, transient local with bounded depth: a late joiner gets the newest blocks
+//   results  transient local, the newest of every key
+//   state    transient local, the newest of every key
+//   command  volatile, every one
 //
 // Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one
 // thread at a time, except Reader's wake-up, which comes from the vendor's threads and only
@@ -49,8 +49,8 @@ enum class WriteOutcome { written, timed_out, failed };
 
 struct SampleInfo {
   bool valid = true; // false: only the key members are set, the instance has ended
-  std::int64_t source_utc_ns =
-      0; // the writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets
+  // The writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets.
+  std::int64_t source_utc_ns = 0;
 };
 
 // What an adapter implements; use Writer<T> and Reader<T>.
@@ -126,6 +126,9 @@ public:
   // Fails (network) when the vendor is not in this build or cannot use the domain, interface or
   // peers.
   [[nodiscard]] static services::Expected<Participant> create(const ParticipantOptions& options);
+  // Over any adapter; tests have one that does not leave the process (services/bus/memory).
+  explicit Participant(std::unique_ptr<UntypedParticipant> untyped)
+      : untyped_(std::move(untyped)) {}
 
   // Fail (bad_argument) when the partition cannot be a bench's name (services/bus/names.hpp), or
   // (network) when the vendor refuses.
@@ -165,15 +168,13 @@ public:
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
 
 private:
-  explicit Participant(std::unique_ptr<UntypedParticipant> untyped)
-      : untyped_(std::move(untyped)) {}
   std::unique_ptr<UntypedParticipant> untyped_;
 };
 
-// "fastdds" or "cyclonedds" (the words of --dds). Fails (bad_argument) on any other word, naming
+// "fastdds" or "cyclonedds", as --dds takes them. Fails (bad_argument) on any other name, with
 // those of this build.
-[[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& word);
-[[nodiscard]] std::string vendor_word(Vendor vendor);
+[[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& name);
+[[nodiscard]] std::string to_string(Vendor vendor);
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();
 
 } // namespace dyncal::bus

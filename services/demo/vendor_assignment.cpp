@@ -10,7 +10,7 @@ namespace dyncal::services {
 
 Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::string& text) {
   const auto vendors = bus::vendors_in_this_build();
-  const std::string usual = vendors.empty() ? "" : bus::vendor_word(vendors.front());
+  const std::string usual = vendors.empty() ? "" : bus::to_string(vendors.front());
   std::map<std::string, std::string> words{
       {"dau", usual}, {"acs", usual}, {"analysis", usual}, {"run", usual}};
   std::istringstream parts(text);

@@ -14,26 +14,30 @@
 namespace dyncal::services {
 namespace {
 
-constexpr int interrupted_status = 130; // 128 + SIGINT, as shells say it
+constexpr int interrupted_status = 130; // 128 + SIGINT, as shells report it
 std::string program_name = "dyncal";
 
-std::vector<std::string> vendor_words() {
-  std::vector<std::string> words;
+// Any name is taken; parse_vendor() judges it, so that the sentence is the same everywhere.
+CLI::Validator vendor_validator() {
+  std::string names;
   for (const bus::Vendor vendor : bus::vendors_in_this_build()) {
-    words.push_back(bus::vendor_word(vendor));
+    names += (names.empty() ? "" : ",") + to_string(vendor);
   }
-  return words;
+  return {[](const std::string& name) {
+            const auto vendor = bus::parse_vendor(name);
+            return vendor ? std::string() : vendor.error().message;
+          },
+          "{" + names + "}", "vendor"};
 }
 
 } // namespace
 
 void add_network_options(CLI::App& app, NetworkOptions& options) {
-  const std::vector<std::string> words = vendor_words();
-  if (!words.empty()) {
-    options.dds = words.front();
+  if (const auto vendors = bus::vendors_in_this_build(); !vendors.empty()) {
+    options.dds = to_string(vendors.front());
   }
   app.add_option("--dds", options.dds, "DDS implementation that carries the messages")
-      ->check(CLI::IsMember(words))
+      ->check(vendor_validator())
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain: one per laboratory")
       ->check(CLI::Range(0, 232))

@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(EveryTool, BusNative,
                                           testing::ValuesIn(vendors_in_this_build())),
                          [](const auto& parameters) {
                            return std::get<0>(parameters.param).name + "_with_" +
-                                  vendor_word(std::get<1>(parameters.param));
+                                  to_string(std::get<1>(parameters.param));
                          });
 
 } // namespace

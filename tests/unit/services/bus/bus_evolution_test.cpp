@@ -111,7 +111,7 @@ protected:
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(AllVendors, BusEvolution, testing::ValuesIn(vendor_pairs()), pair_name);
+INSTANTIATE_TEST_SUITE_P(AllBuses, BusEvolution, testing::ValuesIn(carrier_pairs()), pair_name);
 
 TEST_P(BusEvolution, LetsAnOlderProgramReadANewerOne) {
   auto writer = this->writer<NewerCommand>(topics::command, Profile::state);

@@ -32,7 +32,7 @@ protected:
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(AllVendors, BusExchange, testing::ValuesIn(vendor_pairs()), pair_name);
+INSTANTIATE_TEST_SUITE_P(AllBuses, BusExchange, testing::ValuesIn(carrier_pairs()), pair_name);
 
 TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
   auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
@@ -267,7 +267,7 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
       ASSERT_EQ(writer.write(block(expected)), WriteOutcome::written);
     }
     bool got = false;
-    const auto deadline = Clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     while (!got) {
       ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
       reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {

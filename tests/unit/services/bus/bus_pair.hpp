@@ -1,53 +1,62 @@
-// Two participants of given vendors that talk to each other and to no test running beside.
+// Two participants that talk to each other and to no test running beside: of given vendors, or of
+// the memory bus, which has to behave as they do.
 #pragma once
 
 #include <chrono>
 #include <gtest/gtest.h>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unistd.h>
 #include <vector>
 
 #include "services/bus/bus.hpp"
+#include "services/bus/memory/memory_network.hpp"
 
 namespace dyncal::bus {
 
-using Clock = std::chrono::steady_clock;
+using Carrier = std::optional<Vendor>; // nothing: the memory bus
 
-struct VendorPair {
-  Vendor writer;
-  Vendor reader;
+struct CarrierPair {
+  Carrier writer;
+  Carrier reader;
 };
 
-inline std::vector<VendorPair> vendor_pairs() {
-  std::vector<VendorPair> pairs;
+inline std::vector<CarrierPair> carrier_pairs() {
+  std::vector<CarrierPair> pairs;
   for (const Vendor writer : vendors_in_this_build()) {
     for (const Vendor reader : vendors_in_this_build()) {
       pairs.push_back({writer, reader});
     }
   }
+  pairs.push_back({std::nullopt, std::nullopt});
   return pairs;
 }
 
-inline std::string pair_name(const testing::TestParamInfo<VendorPair>& pair) {
-  return vendor_word(pair.param.writer) + "_to_" + vendor_word(pair.param.reader);
+inline std::string pair_name(const testing::TestParamInfo<CarrierPair>& pair) {
+  const auto name = [](Carrier carrier) { return carrier ? to_string(*carrier) : "memory"; };
+  return name(pair.param.writer) + "_to_" + name(pair.param.reader);
 }
 
-class BusPair : public testing::TestWithParam<VendorPair> {
+class BusPair : public testing::TestWithParam<CarrierPair> {
 protected:
   static constexpr std::chrono::seconds patience{30};
 
   // A bench of this process alone: tests may run side by side in one domain.
   const std::string bench_ = "bus-test-" + std::to_string(getpid());
+  MemoryNetwork network_;
   Participant writing_ = join(GetParam().writer);
   std::vector<std::string> warnings_; // of the reading one
   Participant reading_ =
       join(GetParam().reader, [this](const std::string& warning) { warnings_.push_back(warning); });
   std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
 
-  static Participant join(Vendor vendor, std::function<void(const std::string&)> warn = {}) {
+  Participant join(Carrier carrier, std::function<void(const std::string&)> warn = {}) {
+    if (!carrier) {
+      return network_.join("bus test", std::move(warn));
+    }
     ParticipantOptions options;
-    options.vendor = vendor;
+    options.vendor = *carrier;
     options.domain = 40 + static_cast<int>(getpid() % 10);
     options.name = "bus test";
     options.warn = std::move(warn);
@@ -66,12 +75,13 @@ protected:
   // True when the condition came true in time; it is tried whenever something has come.
   template <class Condition>
   [[nodiscard]] bool wait_for(Condition&& condition, std::chrono::milliseconds limit = patience) {
-    const auto deadline = Clock::now() + limit;
+    const auto deadline = std::chrono::steady_clock::now() + limit;
     while (!condition()) {
-      if (Clock::now() >= deadline) {
+      const auto now = std::chrono::steady_clock::now();
+      if (now >= deadline) {
         return false;
       }
-      bell_->wait_until(std::min(deadline, Clock::now() + std::chrono::milliseconds(20)));
+      bell_->wait_until(std::min(deadline, now + std::chrono::milliseconds(20)));
     }
     return true;
   }

@@ -74,7 +74,7 @@ private:
 class DauProgram : public testing::TestWithParam<bus::Vendor> {
 protected:
   std::unique_ptr<ProgramRun> start(const std::vector<std::string>& benches) {
-    std::vector<std::string> arguments{"--dds", bus::vendor_word(GetParam()), "--domain",
+    std::vector<std::string> arguments{"--dds", bus::to_string(GetParam()), "--domain",
                                        std::to_string(dds_domain)};
     arguments.insert(arguments.end(), benches.begin(), benches.end());
     return std::make_unique<ProgramRun>("dyncal-dau", arguments, folder.path());
@@ -221,7 +221,7 @@ TEST_P(DauProgramErrors, AnAddressOfAnotherHostIsOneLine) {
   EXPECT_THAT(line, HasSubstr("no such address"));
 }
 
-const auto vendor_name = [](const auto& vendor) { return bus::vendor_word(vendor.param); };
+const auto vendor_name = [](const auto& vendor) { return bus::to_string(vendor.param); };
 INSTANTIATE_TEST_SUITE_P(Bus, DauProgram, testing::ValuesIn(bus::vendors_in_this_build()),
                          vendor_name);
 INSTANTIATE_TEST_SUITE_P(Bus, DauProgramErrors,

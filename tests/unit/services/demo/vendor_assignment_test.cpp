@@ -29,7 +29,7 @@ TEST_F(VendorAssignment, NamedServicesGetTheirsAndTheOthersTheFirstOfTheBuild) {
   const auto words = parse_vendor_assignment("dau=cyclonedds,analysis=cyclonedds");
   ASSERT_TRUE(words) << words.error().message;
   EXPECT_EQ(words->at("dau"), "cyclonedds");
-  EXPECT_EQ(words->at("acs"), bus::vendor_word(bus::vendors_in_this_build().front()));
+  EXPECT_EQ(words->at("acs"), bus::to_string(bus::vendors_in_this_build().front()));
 }
 
 TEST_F(VendorAssignment, RefusesWordsThatAreNone) {

@@ -321,7 +321,7 @@ TEST_P(SourceServiceTest, RestsWhenThereIsNothingToDo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bus, SourceServiceTest, testing::ValuesIn(bus::vendors_in_this_build()),
-                         [](const auto& vendor) { return bus::vendor_word(vendor.param); });
+                         [](const auto& vendor) { return bus::to_string(vendor.param); });
 
 } // namespace
 } // namespace dyncal::services
