@@ -1,0 +1,182 @@
+// The analysis service as a bench meets it, on the memory bus and in stepped time.
+#include "services/analysis/analysis_service.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/analysis/played_sources.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+using tests::PlayedSource;
+
+class AnalysisServiceTest : public testing::Test {
+protected:
+  tests::SyntheticRun synthetic_{.steps = {{"40", 10.0}}};
+  bus::SteppedClock clock_;
+  bus::MemoryNetwork network_{clock_};
+  PlayedSource acs_{network_, synthetic_.acs_description()};
+  PlayedSource dau_{network_, synthetic_.dau_description()};
+  tests::PublishedByAnalysis published_{network_};
+  bus::Participant runner_ = network_.join("runner");
+  bus::Writer<wire::Measurement> measurements_ = measurement_writer(tests::played_bench);
+  std::unique_ptr<AnalysisService> service_ =
+      AnalysisService::create(network_.join("analysis"),
+                              {.service = "analysis@test:1", .host = "test", .dds = "memory"},
+                              clock_)
+          .value();
+
+  bus::Writer<wire::Measurement> measurement_writer(const std::string& bench) {
+    return runner_.writer<wire::Measurement>(bus::topics::measurement, bus::Profile::state, bench)
+        .value();
+  }
+  wire::Measurement measurement(const std::string& run, wire::MeasurementState state) const {
+    wire::Measurement measurement = synthetic_.measurement();
+    measurement.run(run);
+    measurement.state(state);
+    return measurement;
+  }
+  void publish(const std::string& run, wire::MeasurementState state) {
+    measurements_.write(measurement(run, state));
+  }
+  void serve_for(std::chrono::nanoseconds time) {
+    std::stop_source stop;
+    clock_.at(clock_.elapsed() + time, [&] { stop.request_stop(); });
+    service_->serve(stop.get_token());
+  }
+  // Sources that are there, answer, and send without end.
+  void play_sources() {
+    for (PlayedSource* source : {&acs_, &dau_}) {
+      source->describe();
+      source->report(wire::SOURCE_RUNNING);
+    }
+    clock_.every(100ms, [this] {
+      for (PlayedSource* source : {&acs_, &dau_}) {
+        source->answer_commands();
+        source->send_nothing();
+      }
+    });
+  }
+  wire::ServiceStatus newest_status_of(const std::string& run) {
+    wire::ServiceStatus newest;
+    for (const wire::ServiceStatus& status : published_.statuses()) {
+      if (status.run().to_string() == run) {
+        newest = status;
+      }
+    }
+    return newest;
+  }
+};
+
+TEST_F(AnalysisServiceTest, ArmsARunWithSourcesThatWereThereBeforeIt) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
+TEST_F(AnalysisServiceTest, ArmsARunWhoseSourceComesLate) {
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  clock_.at(5500ms, [this] { play_sources(); });
+  serve_for(5400ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_WAITING);
+  serve_for(500ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
+TEST_F(AnalysisServiceTest, RefusesARunWhoseSourceHasLeft) {
+  play_sources();
+  acs_.leave();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(RunSession::arm_limit);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_WAITING);
+  serve_for(300ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_REFUSED);
+  EXPECT_THAT(newest_status_of("r1").message(),
+              testing::StartsWith("source 'acs' of bench 'synthetic' is not on the network"));
+}
+
+TEST_F(AnalysisServiceTest, LeavesARunAloneThatBeganBeforeIt) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(10s);
+  EXPECT_TRUE(published_.statuses().empty());
+  publish("r2", wire::MEASUREMENT_PLANNED); // it goes on to serve
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r1").run().to_string(), "");
+}
+
+TEST_F(AnalysisServiceTest, EndsARunWhoseRunnerIsLost) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(RunSession::runner_limit);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  serve_for(500ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
+}
+
+TEST_F(AnalysisServiceTest, KeepsTheNewestTenRunsOfABenchForLateJoiners) {
+  wire::Measurement without_steps = measurement("", wire::MEASUREMENT_PLANNED);
+  without_steps.steps().clear(); // refused at once
+  for (int run = 1; run <= 12; ++run) {
+    without_steps.run("run-" + std::to_string(run));
+    measurements_.write(without_steps);
+    serve_for(200ms);
+  }
+  std::set<std::string> runs;
+  tests::PublishedByAnalysis late(network_, "late");
+  for (const wire::ServiceStatus& status : late.statuses()) {
+    EXPECT_EQ(status.arm(), wire::ARM_REFUSED);
+    runs.insert(status.run().to_string());
+  }
+  EXPECT_EQ(runs.size(), AnalysisService::kept_runs);
+  EXPECT_FALSE(runs.contains("run-1"));
+  EXPECT_FALSE(runs.contains("run-2"));
+  EXPECT_TRUE(runs.contains("run-3"));
+  EXPECT_TRUE(runs.contains("run-12"));
+}
+
+TEST_F(AnalysisServiceTest, SurvivesAMalformedMessage) {
+  play_sources();
+  network_.inject(bus::topics::measurement, tests::played_bench, "no measurement");
+  network_.inject(bus::topics::source_description, tests::played_bench, std::string(3, '\0'));
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
+// As it is: both runs are armed and evaluated from the same samples, each as if it were alone.
+// Nothing keeps the second from being excited into the first.
+TEST_F(AnalysisServiceTest, ArmsTwoRunsOnOneBench) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r2", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
+}
+
+TEST_F(AnalysisServiceTest, EvaluatesARunThatGoesOnWhileAnotherIsRefused) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  wire::Measurement other = measurement("r2", wire::MEASUREMENT_PLANNED);
+  other.sync_dau("nobody/sync");
+  measurements_.write(other);
+  serve_for(RunSession::arm_limit + 500ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
+  EXPECT_THAT(newest_status_of("r2").message(), testing::StartsWith("source 'nobody'"));
+}
+
+} // namespace
+} // namespace dyncal::services

@@ -1,0 +1,161 @@
+// The sources of a bench, and its runner, as an analysis service meets them: on the memory bus, in
+// stepped time, each message when the test wants it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "services/bus/memory/memory_network.hpp"
+#include "services/contract/sample_topic.hpp"
+#include "services/contract/topics.hpp"
+#include "tests/unit/services/evaluation/synthetic_run.hpp"
+
+namespace dyncal::tests {
+
+constexpr const char* played_bench = "synthetic"; // that of SyntheticRun
+constexpr const char* played_run = "r1";
+
+// One source: what it publishes, and the commands it got.
+class PlayedSource {
+public:
+  PlayedSource(bus::MemoryNetwork& network, const wire::SourceDescription& description)
+      : description_(description), participant_(network.join(name())),
+        descriptions_(participant_
+                          .writer<wire::SourceDescription>(bus::topics::source_description,
+                                                           bus::Profile::state, played_bench)
+                          .value()),
+        statuses_(participant_
+                      .writer<wire::SourceStatus>(bus::topics::source_status, bus::Profile::state,
+                                                  played_bench)
+                      .value()),
+        samples_(participant_
+                     .writer<wire::SampleBlock>(bus::sample_topic(description.kind()),
+                                                bus::Profile::samples, played_bench)
+                     .value()),
+        commands_(participant_
+                      .reader<wire::Command>(bus::topics::command, bus::Profile::command,
+                                             played_bench, nullptr)
+                      .value()) {}
+
+  [[nodiscard]] std::string name() const { return description_.source().to_string(); }
+  [[nodiscard]] const wire::SourceDescription& description() const { return description_; }
+
+  void describe() { descriptions_.write(description_); }
+  void report(wire::SourceState state, const std::string& message = "") {
+    statuses_.write(status(state, message));
+  }
+  void leave() { statuses_.unregister(status(wire::SOURCE_ENDED, "")); }
+
+  // An empty block that answers every run that asked; returns how many commands came.
+  std::size_t answer_commands() {
+    std::set<std::string> runs;
+    const std::size_t commands =
+        commands_.take([&](const wire::Command& command, const bus::SampleInfo&) {
+          if (command.target().to_string() == name() && command.kind() == wire::COMMAND_ARM) {
+            runs.insert(command.run());
+          }
+        });
+    for (const std::string& run : runs) {
+      answer(run);
+    }
+    return commands;
+  }
+  void answer(const std::string& run) {
+    wire::SampleBlock block = empty_block();
+    block.answers_run(run);
+    samples_.write(block);
+  }
+  void send_nothing() { samples_.write(empty_block()); }
+  void end_stream() {
+    wire::SampleBlock block = empty_block();
+    block.end_of_stream(true);
+    samples_.write(block);
+  }
+  void send(const std::vector<wire::SampleBlock>& blocks) {
+    for (wire::SampleBlock block : blocks) {
+      block.block(block.block() + number_);
+      samples_.write(block);
+    }
+    number_ += blocks.size();
+  }
+
+private:
+  [[nodiscard]] wire::SourceStatus status(wire::SourceState state,
+                                          const std::string& message) const {
+    wire::SourceStatus status;
+    status.bench(played_bench);
+    status.source(name());
+    status.state(state);
+    status.message(message);
+    return status;
+  }
+  wire::SampleBlock empty_block() {
+    wire::SampleBlock block;
+    block.bench(played_bench);
+    block.source(name());
+    block.session(description_.session());
+    block.block(number_++);
+    return block;
+  }
+
+  wire::SourceDescription description_;
+  bus::Participant participant_;
+  bus::Writer<wire::SourceDescription> descriptions_;
+  bus::Writer<wire::SourceStatus> statuses_;
+  bus::Writer<wire::SampleBlock> samples_;
+  bus::Reader<wire::Command> commands_;
+  std::uint64_t number_ = 0;
+};
+
+// What an analysis service publishes about runs, in the order in which it came.
+class PublishedByAnalysis {
+public:
+  explicit PublishedByAnalysis(bus::MemoryNetwork& network, const std::string& name = "runner")
+      : participant_(network.join(name)) {}
+
+  [[nodiscard]] const std::vector<wire::ServiceStatus>& statuses() {
+    take(status_reader_, statuses_);
+    return statuses_;
+  }
+  [[nodiscard]] wire::ServiceStatus newest_status() {
+    return statuses().empty() ? wire::ServiceStatus() : statuses_.back();
+  }
+  [[nodiscard]] const std::vector<wire::CalibrationResult>& results() {
+    take(result_reader_, results_);
+    return results_;
+  }
+  [[nodiscard]] const std::vector<wire::TransferFunction>& transfer_functions() {
+    take(transfer_reader_, transfer_functions_);
+    return transfer_functions_;
+  }
+
+private:
+  template <class T>
+  bus::Reader<T> reader(const char* topic, bus::Profile profile) {
+    return participant_.reader<T>(topic, profile, played_bench, nullptr).value();
+  }
+  template <class T>
+  static void take(bus::Reader<T>& reader, std::vector<T>& all) {
+    reader.take([&](const T& message, const bus::SampleInfo& info) {
+      if (info.valid) {
+        all.push_back(message);
+      }
+    });
+  }
+
+  bus::Participant participant_;
+  bus::Reader<wire::ServiceStatus> status_reader_ =
+      reader<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state);
+  bus::Reader<wire::CalibrationResult> result_reader_ =
+      reader<wire::CalibrationResult>(bus::topics::calibration_result, bus::Profile::results);
+  bus::Reader<wire::TransferFunction> transfer_reader_ =
+      reader<wire::TransferFunction>(bus::topics::transfer_function, bus::Profile::results);
+  std::vector<wire::ServiceStatus> statuses_;
+  std::vector<wire::CalibrationResult> results_;
+  std::vector<wire::TransferFunction> transfer_functions_;
+};
+
+} // namespace dyncal::tests
