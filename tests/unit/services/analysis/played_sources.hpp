@@ -65,7 +65,7 @@ public:
   }
   void answer(const std::string& run) {
     wire::SampleBlock block = empty_block();
-    block.answers_run(run);
+    block.acknowledged_run(run);
     samples_.write(block);
   }
   void send_nothing() { samples_.write(empty_block()); }
