@@ -1,131 +1,393 @@
-// The conductor of a run against an analysis service that the test plays, on a real bus.
-#include <atomic>
-#include <chrono>
-#include <thread>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include "services/contract/topics.hpp"
+// The conductor of a run at every limit, against an analysis service and a generator that the test
+// plays. No real time passes.
 #include "services/run/run_controller.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/run/played_analysis.hpp"
+#include "tests/unit/services/run/played_generator.hpp"
 
 namespace dyncal::services {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
+using testing::HasSubstr;
 
-constexpr int test_domain = 57;
-constexpr auto patience = 20s;
+constexpr const char* bench_name = "b";
+constexpr const char* run_name = "r1";
+constexpr auto look = 200ms; // between two looks at the messages
 
-bus::Participant join() {
-  bus::ParticipantOptions options;
-  options.vendor = bus::vendors_in_this_build().front();
-  options.domain = test_domain;
-  options.name = "run controller test";
-  return bus::Participant::create(options).value();
-}
+class RunControllerTest : public testing::Test {
+protected:
+  bus::SteppedClock clock_;
+  bus::MemoryNetwork network_{clock_};
+  tests::PlayedAnalysis analysis_{network_, bench_name, run_name};
+  bus::Participant participant_ = network_.join("runner");
+  tests::PlayedInstrument instrument_{clock_};
+  BenchFile bench_ = bench();
+  std::stop_source stop_;
+  std::vector<std::string> phases_;
 
-BenchFile bench_without_generator() {
-  BenchFile bench;
-  bench.bench = "run-controller-test-" + std::to_string(getpid());
-  bench.excitation.frequencies_hz = {"10"};
-  bench.excitation.levels_m_s2 = {1.0};
-  bench.generator.driver = "none";
-  bench.method.reference = {"acs", "reference"};
-  bench.method.sync_acs = {"acs", "sync"};
-  bench.method.sync_dau = {"dau", "sync"};
-  return bench;
-}
+  static BenchFile bench() {
+    BenchFile bench;
+    bench.bench = bench_name;
+    bench.excitation.frequencies_hz = {"40", "80"};
+    bench.excitation.levels_m_s2 = {10.0, 10.0};
+    bench.excitation.settling_s = 0.5;
+    bench.excitation.duration_s = 2.0;
+    bench.generator.driver = "scpi";
+    bench.generator.level_per_volt = 5.0;
+    bench.method.reference = {"acs", "reference"};
+    bench.method.sync_acs = {"acs", "sync"};
+    bench.method.sync_dau = {"dau", "sync"};
+    return bench;
+  }
 
-constexpr const char* run_name = "run-1";
-
-// Says what an analysis service says of one run, each message when the test wants it.
-class PlayedAnalysis {
-public:
-  explicit PlayedAnalysis(const std::string& bench) : bench_(bench) {}
-
-  // False when the run does not come to that state in time.
-  bool wait_for(wire::MeasurementState state) {
-    const auto deadline = Clock::now() + patience;
-    bool reached = false;
-    while (!reached && Clock::now() < deadline) {
-      measurement_.take([&](const wire::Measurement& message, const bus::SampleInfo& info) {
-        reached = reached || (info.valid && message.run() == run_name && message.state() == state);
-      });
-      if (!reached) {
-        bell_->wait_until(deadline);
+  Expected<RunOutcome> conduct() {
+    RunController controller(
+        {participant_, clock_, tests::connect_to(instrument_)}, bench_, run_name,
+        [this](const RunProgress& progress) { phases_.push_back(progress.phase); });
+    auto outcome = controller.conduct({}, stop_.get_token());
+    EXPECT_FALSE(instrument_.on);
+    return outcome;
+  }
+  [[nodiscard]] bool was_excited() const {
+    return std::find(instrument_.settings.begin(), instrument_.settings.end(), "on") !=
+           instrument_.settings.end();
+  }
+  [[nodiscard]] wire::MeasurementState published_state() {
+    const auto measurements = analysis_.measurements();
+    return measurements.empty() ? wire::MEASUREMENT_PLANNED : measurements.back().state();
+  }
+  // Arms at once and reports every second from then on, until `finish` is called.
+  void play_analysis() {
+    clock_.at(100ms, [this] { analysis_.report(wire::ARM_ARMED); });
+    clock_.every(1s, [this] {
+      if (!finished_) {
+        analysis_.report(wire::ARM_ARMED, failure_);
       }
-    }
-    return reached;
+    });
   }
-
-  void say(wire::ArmState arm, std::uint64_t transfer_functions) {
-    wire::ServiceStatus status;
-    status.service("played");
-    status.run(run_name);
-    status.bench(bench_);
-    status.health(wire::HEALTH_OK);
-    status.arm(arm);
-    status.transfer_functions_published(transfer_functions);
-    status_.write(status);
-    status_.wait_for_acknowledgments(patience);
+  void finish() {
+    finished_ = true;
+    analysis_.report(wire::ARM_FINISHED, failure_);
   }
-
-  void publish_transfer_function(const std::string& channel) {
-    wire::TransferFunction function;
-    function.bench(bench_);
-    function.run(run_name);
-    function.channel(channel);
-    transfer_functions_.write(function);
-    transfer_functions_.wait_for_acknowledgments(patience);
-  }
-
-private:
-  std::string bench_;
-  bus::Participant participant_ = join();
-  std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
-  bus::Reader<wire::Measurement> measurement_ =
-      participant_
-          .reader<wire::Measurement>(bus::topics::measurement, bus::Profile::state, bench_, bell_)
-          .value();
-  bus::Writer<wire::ServiceStatus> status_ =
-      participant_
-          .writer<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state, bench_)
-          .value();
-  bus::Writer<wire::TransferFunction> transfer_functions_ =
-      participant_
-          .writer<wire::TransferFunction>(bus::topics::transfer_function, bus::Profile::results,
-                                          bench_)
-          .value();
+  bool finished_ = false;
+  std::string failure_;
 };
 
-TEST(RunController, WaitsForAllTransferFunctionsWhenTheLastComesAfterTheEndWasAnnounced) {
-  const BenchFile bench = bench_without_generator();
-  PlayedAnalysis analysis(bench.bench);
-  std::atomic<int> looks{0}; // of the conductor at its messages
-  std::atomic<bool> over{false};
-  std::jthread play([&] {
-    ASSERT_TRUE(analysis.wait_for(wire::MEASUREMENT_PLANNED));
-    analysis.say(wire::ARM_ARMED, 0);
-    ASSERT_TRUE(analysis.wait_for(wire::MEASUREMENT_RUNNING));
-    analysis.publish_transfer_function("dau/acceleration_x");
-    analysis.say(wire::ARM_FINISHED, 2);
-    const int before = looks;
-    const auto deadline = Clock::now() + patience;
-    while (looks < before + 2 && !over && Clock::now() < deadline) {
-      std::this_thread::yield();
-    }
-    analysis.publish_transfer_function("dau/acceleration_y");
+TEST_F(RunControllerTest, ExcitesEveryStepAndCollectsWhatIsPublished) {
+  play_analysis();
+  clock_.at(8s, [this] {
+    analysis_.publish_result(2);
+    analysis_.publish_result(1);
+    analysis_.publish_transfer_function("dau/acceleration_x");
+    finish();
   });
-  auto participant = join();
-  RunController controller(participant, bench, run_name, [&](const RunProgress&) { ++looks; });
-  const auto outcome = controller.conduct({}, {});
-  over = true;
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_FALSE(outcome->interrupted);
+  EXPECT_EQ(outcome->analysis_dds, "memory");
+  ASSERT_EQ(outcome->results.size(), 2U);
+  EXPECT_EQ(outcome->results[0].step(), 1U);
+  EXPECT_EQ(outcome->transfer_functions.size(), 1U);
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_DONE);
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_DONE);
+  EXPECT_EQ(std::count(instrument_.settings.begin(), instrument_.settings.end(), "on"), 2);
+}
+
+// ---- until the run is armed
+
+TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenNobodyAnswers) {
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
+  EXPECT_EQ(outcome.error().message, "no analysis service answers for bench 'b'; is "
+                                     "dyncal-analysis running in the same DDS domain?");
+  EXPECT_GT(clock_.elapsed(), RunController::answer_limit);
+  EXPECT_LE(clock_.elapsed(), RunController::answer_limit + look);
+  EXPECT_FALSE(was_excited());
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenTheAnalysisDoesNotArm) {
+  clock_.at(RunController::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
+  EXPECT_EQ(outcome.error().message,
+            "the analysis service analysis@test:1 has not armed for bench 'b'");
+  EXPECT_GT(clock_.elapsed(), RunController::armed_limit);
+  EXPECT_LE(clock_.elapsed(), RunController::armed_limit + look);
+  EXPECT_FALSE(was_excited());
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunControllerTest, GoesOnWhenTheAnalysisArmsJustBeforeTheLimit) {
+  clock_.at(RunController::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  clock_.at(RunController::armed_limit - 1ms, [this] { analysis_.report(wire::ARM_ARMED); });
+  clock_.every(1s, [this] {
+    if (clock_.elapsed() > 16s) {
+      analysis_.report(wire::ARM_FINISHED);
+    } else if (clock_.elapsed() >= RunController::armed_limit) {
+      analysis_.report(wire::ARM_ARMED);
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_TRUE(was_excited());
+}
+
+TEST_F(RunControllerTest, PassesOnWhyTheAnalysisRefusesTheRun) {
+  clock_.at(6s, [this] {
+    analysis_.report(wire::ARM_REFUSED, "source 'dau' of bench 'b' is silent: no packets");
+  });
+  clock_.at(1s, [this] { analysis_.report(wire::ARM_WAITING); });
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_source);
+  EXPECT_EQ(outcome.error().message, "source 'dau' of bench 'b' is silent: no packets");
+  EXPECT_EQ(clock_.elapsed(), 6s);
+  EXPECT_FALSE(was_excited());
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunControllerTest, IsInterruptedBeforeTheFirstStepWithoutExcitingAnything) {
+  clock_.at(1s, [this] { stop_.request_stop(); });
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::interrupted);
+  EXPECT_LE(clock_.elapsed(), 1s + look);
+  EXPECT_FALSE(was_excited());
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunControllerTest, RepeatsItsMeasurementSoThatALostFirstOneDoesNotMatter) {
+  network_.lose([](const bus::MessageInTransit& message) {
+    return message.topic == bus::topics::measurement && message.number == 0;
+  });
+  bool heard = false;
+  clock_.every(100ms, [&] {
+    if (!heard && !analysis_.measurements().empty()) {
+      heard = true;
+      EXPECT_GE(clock_.elapsed(), 2s);
+      EXPECT_LE(clock_.elapsed(), 2s + 2 * look);
+      play_analysis();
+      clock_.at(12s, [this] { finish(); });
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_TRUE(heard);
+}
+
+TEST_F(RunControllerTest, IsHeldUpByAFullWriterForItsLimitAndThenFails) {
+  network_.fill_writers(bus::topics::measurement);
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
+  EXPECT_GE(clock_.elapsed(), 10s); // of one write
+  EXPECT_FALSE(was_excited());
+}
+
+// ---- while steps are excited
+
+TEST_F(RunControllerTest, EndsJustAfterItsLimitWhenTheAnalysisFallsSilent) {
+  clock_.at(100ms, [this] { analysis_.report(wire::ARM_ARMED); });
+  bench_.excitation.duration_s = 60.0;
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "the analysis service analysis@test:1 has gone silent");
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_ABORTED);
+  EXPECT_EQ(outcome->measurement.message(), outcome->problem);
+  EXPECT_GT(clock_.elapsed(), RunController::analysis_limit);
+  EXPECT_LE(clock_.elapsed(), RunController::analysis_limit + 100ms + 1s + look);
+  EXPECT_EQ(analysis_.excitations().back().state(), wire::EXCITATION_ABORTED);
+}
+
+TEST_F(RunControllerTest, GoesOnWhenTheAnalysisReportsJustBeforeTheLimit) {
+  bench_.excitation.duration_s = 30.0;
+  for (int i = 0; i < 8; ++i) { // taken a look later at most
+    clock_.at(100ms + i * (RunController::analysis_limit - 1s - look),
+              [this] { analysis_.report(wire::ARM_ARMED); });
+  }
+  clock_.at(67s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "");
+}
+
+TEST_F(RunControllerTest, EndsTheStepWhenTheAnalysisReportsALostSource) {
+  play_analysis();
+  clock_.at(2s, [this] { failure_ = "source 'dau' of bench 'b' has sent nothing for 5 s"; });
+  clock_.at(6s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "source 'dau' of bench 'b' has sent nothing for 5 s");
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_ABORTED);
+  EXPECT_EQ(std::count(instrument_.settings.begin(), instrument_.settings.end(), "on"), 1);
+}
+
+TEST_F(RunControllerTest, EndsTheRunWhenTheGeneratorFails) {
+  play_analysis();
+  instrument_.failing_call = "set_frequency";
+  instrument_.failing_from = 2; // at the second step
+  clock_.at(8s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "set_frequency was refused");
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunControllerTest, HoldsWhatWasMeasuredWhenItIsInterrupted) {
+  play_analysis();
+  clock_.at(2s, [this] { stop_.request_stop(); });
+  clock_.at(3s, [this] {
+    analysis_.publish_result(1);
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_TRUE(outcome->interrupted);
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_ABORTED);
+  EXPECT_EQ(outcome->measurement.message(), "interrupted by the user");
+  EXPECT_EQ(outcome->results.size(), 1U);
+}
+
+TEST_F(RunControllerTest, KeepsTheRunAliveWhileStepsAreExcited) {
+  bench_.excitation.duration_s = 20.0;
+  play_analysis();
+  std::size_t messages = 0;
+  auto longest = 0ns;
+  auto last = 0ns;
+  clock_.every(50ms, [&] {
+    if (const auto came = analysis_.measurements().size(); came > 0) {
+      messages += came;
+      longest = std::max(longest, clock_.elapsed() - last);
+      last = clock_.elapsed();
+    }
+  });
+  clock_.at(45s, [this] { finish(); });
+  ASSERT_TRUE(conduct());
+  EXPECT_GT(messages, 12U);
+  EXPECT_LE(longest, 3s + look); // an analysis gives the run up after 15 s
+}
+
+// ---- until the last result
+
+TEST_F(RunControllerTest, WaitsForResultsThatFinishedOvertakes) {
+  play_analysis();
+  clock_.at(8s, [this] {
+    analysis_.publish_transfer_function("dau/acceleration_x");
+    analysis_.count_transfer_function();
+    finish();
+  });
+  clock_.at(9s, [this] { analysis_.publish_transfer_function("dau/acceleration_y"); });
+  const auto outcome = conduct();
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_EQ(outcome->problem, "");
   ASSERT_EQ(outcome->transfer_functions.size(), 2U);
   EXPECT_EQ(outcome->transfer_functions[1].channel().to_string(), "dau/acceleration_y");
+  EXPECT_EQ(clock_.elapsed(), 9s);
+}
+
+TEST_F(RunControllerTest, GivesUpJustAfterItsLimitWhenTheLastResultsDoNotCome) {
+  play_analysis();
+  std::chrono::nanoseconds excitation_done{};
+  clock_.every(50ms, [&] {
+    for (const wire::Measurement& measurement : analysis_.measurements()) {
+      if (measurement.state() == wire::MEASUREMENT_DONE && excitation_done == 0ns) {
+        excitation_done = clock_.elapsed();
+      }
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "the last results have not come from the analysis service");
+  EXPECT_EQ(outcome->measurement.state(), wire::MEASUREMENT_DONE); // it was excited as planned
+  EXPECT_GE(clock_.elapsed() - excitation_done, RunController::results_limit - 50ms);
+  EXPECT_LE(clock_.elapsed() - excitation_done, RunController::results_limit + look);
+}
+
+TEST_F(RunControllerTest, WaitsAnewAfterEveryResult) {
+  play_analysis();
+  for (int step = 1; step <= 3; ++step) {
+    clock_.at(6s + step * (RunController::results_limit - look),
+              [this, step] { analysis_.publish_result(static_cast<std::uint32_t>(step)); });
+  }
+  clock_.at(6s + 3 * RunController::results_limit, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 3U);
+}
+
+TEST_F(RunControllerTest, EndsWhenTheAnalysisDiesBeforeTheLastResult) {
+  play_analysis();
+  clock_.at(7s, [this] { finished_ = true; }); // and says nothing any more
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "the analysis service analysis@test:1 has gone silent");
+  EXPECT_LE(clock_.elapsed(), 7s + RunController::analysis_limit + look);
+}
+
+// As it is: messages of another run on the bench are left out, and nothing else keeps two runs
+// apart.
+TEST_F(RunControllerTest, LeavesOutMessagesOfAnotherRunOnTheBench) {
+  tests::PlayedAnalysis other(network_, bench_name, "r2");
+  other.report(wire::ARM_REFUSED, "not this one");
+  other.publish_result(1);
+  play_analysis();
+  clock_.at(8s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_TRUE(outcome->results.empty());
+}
+
+// ---- recorded files in place of an excitation
+
+class RunOfFiles : public RunControllerTest {
+protected:
+  RunOfFiles() { bench_.generator.driver = "none"; }
+};
+
+TEST_F(RunOfFiles, WaitsAsLongAsTheAnalysisIsWell) {
+  play_analysis();
+  clock_.at(4 * RunController::results_limit, [this] {
+    EXPECT_EQ(published_state(), wire::MEASUREMENT_RUNNING);
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_FALSE(instrument_.connected);
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_DONE);
+}
+
+TEST_F(RunOfFiles, AbortsWhenTheAnalysisReportsALostSource) {
+  play_analysis();
+  clock_.at(5s, [this] { failure_ = "source 'dau' of bench 'b' has sent nothing for 5 s"; });
+  clock_.at(9s, [this] {
+    EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "source 'dau' of bench 'b' has sent nothing for 5 s");
+}
+
+TEST_F(RunOfFiles, IsAbortedByTheUser) {
+  play_analysis();
+  clock_.at(5s, [this] { stop_.request_stop(); });
+  clock_.at(6s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_TRUE(outcome->interrupted);
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
 }
 
 } // namespace

@@ -1,0 +1,91 @@
+// The analysis service as the conductor of a run meets it: on the memory bus, each message when the
+// test wants it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/bus/memory/memory_network.hpp"
+#include "services/contract/topics.hpp"
+
+namespace dyncal::tests {
+
+class PlayedAnalysis {
+public:
+  PlayedAnalysis(bus::MemoryNetwork& network, std::string bench, std::string run)
+      : bench_(std::move(bench)), run_(std::move(run)), participant_(network.join("analysis")) {}
+
+  void report(wire::ArmState arm, const std::string& failure = "") {
+    wire::ServiceStatus status;
+    status.service("analysis@test:1");
+    status.run(run_);
+    status.bench(bench_);
+    status.arm(arm);
+    status.health(failure.empty() ? wire::HEALTH_OK : wire::HEALTH_FAILED);
+    status.message(failure);
+    status.dds("memory");
+    status.results_published(results_);
+    status.transfer_functions_published(transfer_functions_);
+    status_.write(status);
+  }
+  void publish_result(std::uint32_t step, const std::string& channel = "dau/acceleration_x") {
+    wire::CalibrationResult result;
+    result.bench(bench_);
+    result.run(run_);
+    result.channel(channel);
+    result.step(step);
+    result_.write(result);
+    ++results_;
+  }
+  void publish_transfer_function(const std::string& channel) {
+    wire::TransferFunction function;
+    function.bench(bench_);
+    function.run(run_);
+    function.channel(channel);
+    transfer_function_.write(function);
+    ++transfer_functions_;
+  }
+  // Announced, but written later or never.
+  void count_transfer_function() { ++transfer_functions_; }
+
+  // Every Measurement and Excitation that came since the last call.
+  [[nodiscard]] std::vector<wire::Measurement> measurements() { return take(measurement_); }
+  [[nodiscard]] std::vector<wire::Excitation> excitations() { return take(excitation_); }
+
+private:
+  template <class T>
+  std::vector<T> take(bus::Reader<T>& reader) {
+    std::vector<T> all;
+    reader.take([&](const T& message, const bus::SampleInfo& info) {
+      if (info.valid && message.run().to_string() == run_) {
+        all.push_back(message);
+      }
+    });
+    return all;
+  }
+  template <class T>
+  bus::Writer<T> writer(const char* topic, bus::Profile profile) {
+    return participant_.writer<T>(topic, profile, bench_).value();
+  }
+  template <class T>
+  bus::Reader<T> reader(const char* topic) {
+    return participant_.reader<T>(topic, bus::Profile::state, bench_, nullptr).value();
+  }
+
+  std::string bench_;
+  std::string run_;
+  bus::Participant participant_;
+  bus::Writer<wire::ServiceStatus> status_ =
+      writer<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state);
+  bus::Writer<wire::CalibrationResult> result_ =
+      writer<wire::CalibrationResult>(bus::topics::calibration_result, bus::Profile::results);
+  bus::Writer<wire::TransferFunction> transfer_function_ =
+      writer<wire::TransferFunction>(bus::topics::transfer_function, bus::Profile::results);
+  bus::Reader<wire::Measurement> measurement_ = reader<wire::Measurement>(bus::topics::measurement);
+  bus::Reader<wire::Excitation> excitation_ = reader<wire::Excitation>(bus::topics::excitation);
+  std::uint64_t results_ = 0;
+  std::uint64_t transfer_functions_ = 0;
+};
+
+} // namespace dyncal::tests
