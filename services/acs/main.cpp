@@ -63,7 +63,11 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
   if (!sources) {
     return fail(sources.error());
   }
-  return run_sources("dyncal-acs", *sources, network, stop);
+  auto participant = join_network(network, "dyncal-acs");
+  if (!participant) {
+    return fail(participant.error());
+  }
+  return run_sources(*participant, *sources, stop);
 }
 
 } // namespace

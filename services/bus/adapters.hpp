@@ -8,7 +8,7 @@
 
 namespace dyncal::bus {
 
-// Both throw nothing; the error says which option cannot be used.
+// Neither throws; the error names the option that cannot be used.
 [[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options);
 [[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>

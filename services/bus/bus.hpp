@@ -95,7 +95,7 @@ public:
   }
   bool unregister(const T& sample) { return untyped_->unregister(&sample); }
   [[nodiscard]] int matched_readers() const { return untyped_->matched_readers(); }
-  // Acknowledged by all readers that are there; true as well when there is none.
+  // Acknowledged by all readers that are there; true as well if there is none.
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) {
     return untyped_->wait_for_acknowledgments(limit);
   }
@@ -163,8 +163,8 @@ public:
     return reader<T>(topic.name, topic.profile, partition, std::move(wake_up));
   }
 
-  // Messages dropped because they were not what the contract says (idl/README.md). Not 0 when there
-  // was one; Fast DDS looks at some of them twice.
+  // Messages dropped because they do not match the contract (idl/README.md). Not 0 if there was
+  // one; Fast DDS counts some of them twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
 
 private:

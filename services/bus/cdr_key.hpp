@@ -1,9 +1,9 @@
-// The key of a message, read from and written to CDR without its type: KeyLayout says where it is.
+// The key of a message, read from and written to CDR without its type, by a KeyLayout.
 //
 // DDS identifies an instance by the MD5 of its key members in big-endian CDR (DDSI-RTPS 9.6.3.8).
 // Vendors do this themselves for their own types; the bus needs it because it hands them bytes.
 // Bounded strings are checked here: a foreign message whose key is longer than the contract allows
-// is refused instead of being cut to the name of somebody else.
+// is refused instead of being truncated to the name of somebody else.
 //
 // Pure functions, any thread.
 #pragma once

@@ -22,7 +22,8 @@ std::string text_of(const sockaddr* address) {
 services::Expected<std::string> interface_address(const std::string& name_or_address) {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
-    return fail(services::ErrorCode::network, "this machine does not tell its network interfaces");
+    return fail(services::ErrorCode::network,
+                "the network interfaces of this machine cannot be listed");
   }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
 
@@ -66,12 +67,12 @@ int granted_receive_buffer(int wanted_bytes) {
   }
   int granted = 0;
   socklen_t length = sizeof granted;
-  const bool told =
+  const bool known =
       setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted_bytes, sizeof wanted_bytes) == 0 &&
       getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) == 0;
   close(socket_fd);
   // Linux reports twice what was asked for, its own bookkeeping included.
-  return told ? granted / 2 : 0;
+  return known ? granted / 2 : 0;
 }
 
 std::string receive_buffer_warning(int wanted_bytes, int granted_bytes) {

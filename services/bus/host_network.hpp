@@ -1,5 +1,5 @@
-// What the host says about its network: interfaces, addresses of peers, and how large a socket's
-// receive buffer may be.
+// The host's network: interfaces, addresses of peers, and how large a socket's receive buffer may
+// be.
 //
 // All functions ask the operating system anew, throw nothing and may be called from any thread.
 // resolve_peers() may wait for a name server.
@@ -21,7 +21,7 @@ namespace dyncal::bus {
 resolve_peers(const std::vector<std::string>& hosts);
 
 // What the kernel grants a UDP socket that asks for `wanted` bytes (net.core.rmem_max caps it); 0
-// when there is no telling.
+// if that is not known.
 [[nodiscard]] int granted_receive_buffer(int wanted_bytes);
 
 // One sentence for the user when `granted` is too little, else empty.

@@ -6,12 +6,12 @@ void MalformedMessages::add(const std::string& type_name) {
   ++count_;
   {
     const std::lock_guard lock(mutex_);
-    if (!told_.insert(type_name).second) {
+    if (!warned_of_.insert(type_name).second) {
       return;
     }
   }
   if (warn_) {
-    warn_("dropped a message that is no " + type_name +
+    warn_("dropped a message that is not a " + type_name +
           " of this contract, and will drop others like it: check the program that sends it "
           "against idl/README.md");
   }

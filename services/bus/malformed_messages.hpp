@@ -1,8 +1,7 @@
-// Counts messages that are not what the contract says, and tells the user of the first one of each
-// type.
+// Counts messages that do not match the contract, and warns the user of the first one of each type.
 //
 // They come from programs that do not keep to idl/README.md: another encoding, a key that is too
-// long, a message cut short. They are dropped. Any thread.
+// long, a message that ends too soon. They are dropped. Any thread.
 #pragma once
 
 #include <atomic>
@@ -27,7 +26,7 @@ private:
   std::function<void(const std::string&)> warn_;
   std::atomic<std::uint64_t> count_{0};
   std::mutex mutex_;
-  std::set<std::string> told_; // one entry a type of the contract at most
+  std::set<std::string> warned_of_; // one entry a type of the contract at most
 };
 
 } // namespace dyncal::bus

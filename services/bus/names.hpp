@@ -1,8 +1,8 @@
 // Names of benches, sources, runs and channels on the bus: keys of bounded length, and the bench is
 // the DDS partition as well.
 //
-// Check a name where a user gives it. The key members of the contract's structs cut a longer text
-// silently, and two long names could become one.
+// Check a name where a user gives it. The key members of the contract's structs truncate a longer
+// text silently, and two long names could become one.
 #pragma once
 
 #include <cstddef>

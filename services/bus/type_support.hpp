@@ -33,11 +33,15 @@ struct TypeSupport {
   void* (*create)();
   void (*destroy)(void* sample);
   std::size_t (*serialized_size)(const void* sample);
-  // Bytes written; 0 when the sample does not fit `capacity` or cannot be encoded.
+  // Bytes written; 0 if the sample does not fit `capacity` or cannot be encoded.
   std::size_t (*serialize)(const void* sample, char* bytes, std::size_t capacity);
   // The same for header and key members alone.
   std::size_t (*serialize_key)(const void* sample, char* bytes, std::size_t capacity);
-  // False when the bytes are not such a message; the sample then holds an unspecified part of it.
+  // The key members as DDS identifies an instance by them: big-endian, no header, padding
+  // zero. Bytes written; 0 if they do not fit.
+  std::size_t (*canonical_key)(const void* sample, char* bytes, std::size_t capacity);
+  // Returns false if the bytes are not such a message; the sample then holds an unspecified part of
+  // it.
   bool (*deserialize)(void* sample, const char* bytes, std::size_t count);
 };
 

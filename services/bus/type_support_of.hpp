@@ -28,13 +28,23 @@ struct Encoder {
   }
 
   static std::size_t serialize(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity,
-                 [sample](auto& cdr) { static_cast<const T*>(sample)->serialize(cdr); });
+    return write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
+      cdr.serialize_encapsulation();
+      static_cast<const T*>(sample)->serialize(cdr);
+    });
   }
 
   static std::size_t serialize_key(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity,
-                 [sample](auto& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
+    return write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
+      cdr.serialize_encapsulation();
+      static_cast<const T*>(sample)->serializeKey(cdr);
+    });
+  }
+
+  static std::size_t canonical_key(const void* sample, char* bytes, std::size_t capacity) {
+    std::memset(bytes, 0, capacity); // Fast CDR leaves padding as it is
+    return write(bytes, capacity, Cdr::BIG_ENDIANNESS,
+                 [sample](Cdr& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
   }
 
   static bool deserialize(void* sample, const char* bytes, std::size_t count) {
@@ -60,15 +70,16 @@ struct Encoder {
   }
 
 private:
+  using Cdr = eprosima::fastcdr::Cdr;
+
   static constexpr std::size_t everything = static_cast<std::size_t>(-1);
 
   template <class Serialize>
-  static std::size_t write(char* bytes, std::size_t capacity, Serialize&& serialize_members) {
+  static std::size_t write(char* bytes, std::size_t capacity, Cdr::Endianness byte_order,
+                           Serialize&& serialize_members) {
     try {
       eprosima::fastcdr::FastBuffer buffer(bytes, capacity);
-      eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
-                                 eprosima::fastcdr::Cdr::DDS_CDR);
-      cdr.serialize_encapsulation();
+      Cdr cdr(buffer, byte_order, Cdr::DDS_CDR);
       serialize_members(cdr);
       return cdr.getSerializedDataLength();
     } catch (const std::exception&) {
@@ -80,8 +91,7 @@ private:
   static std::size_t read(void* sample, const char* bytes, std::size_t count) {
     // FastBuffer wants a mutable pointer; nothing is written through it here.
     eprosima::fastcdr::FastBuffer buffer(const_cast<char*>(bytes), count);
-    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                               eprosima::fastcdr::Cdr::DDS_CDR);
+    Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
     try {
       cdr.read_encapsulation();
       static_cast<T*>(sample)->deserialize(cdr);
@@ -101,6 +111,7 @@ template <class T>
                      &Encoder<T>::serialized_size,
                      &Encoder<T>::serialize,
                      &Encoder<T>::serialize_key,
+                     &Encoder<T>::canonical_key,
                      &Encoder<T>::deserialize};
 }
 

@@ -59,7 +59,11 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
   if (!sources) {
     return fail(sources.error());
   }
-  return run_sources("dyncal-can", *sources, network, stop);
+  auto participant = join_network(network, "dyncal-can");
+  if (!participant) {
+    return fail(participant.error());
+  }
+  return run_sources(*participant, *sources, stop);
 }
 
 } // namespace

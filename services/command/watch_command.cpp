@@ -158,12 +158,8 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
   auto services = participant.reader(bus::topics::service_status, bench, wake_up);
   auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
   auto results = participant.reader(bus::topics::calibration_result, bench, wake_up);
-  for (const Error* error :
-       {sources ? nullptr : &sources.error(), services ? nullptr : &services.error(),
-        excitation ? nullptr : &excitation.error(), results ? nullptr : &results.error()}) {
-    if (error != nullptr) {
-      return fail(*error);
-    }
+  if (const auto error = first_error(sources, services, excitation, results)) {
+    return fail(*error);
   }
   return Readers{std::move(*sources), std::move(*services), std::move(*excitation),
                  std::move(*results)};

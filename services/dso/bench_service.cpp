@@ -1,13 +1,13 @@
 #include "services/dso/bench_service.hpp"
 
 #include <algorithm>
-#include <random>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "analysis/base/frequency.hpp"
 #include "drivers/utc_clock.hpp"
+#include "services/contract/session_number.hpp"
 #include "services/contract/topics.hpp"
 #include "services/dso/series_channels.hpp"
 
@@ -18,12 +18,6 @@ using namespace std::chrono_literals;
 
 constexpr auto idle_wait = 100ms;
 constexpr auto retry_wait = 500ms; // after a shot that failed
-
-std::uint64_t random_session() {
-  std::random_device device;
-  const std::uint64_t session = (std::uint64_t{device()} << 32U) | device();
-  return session == 0 ? 1 : session;
-}
 
 const SourceSettings* source_with(const BenchFile& bench, SourceDriver driver) {
   const auto found =
@@ -70,12 +64,8 @@ Expected<std::unique_ptr<BenchService>> BenchService::create(bus::Participant& p
                                      bus::topics::dso_record, wire::SOURCE_DSO, session);
   auto series = RecordWriter::create(participant, bench.bench, sensor->name,
                                      bus::topics::tss_record, wire::SOURCE_TSS, session);
-  for (const Error* error :
-       {excitation ? nullptr : &excitation.error(), command ? nullptr : &command.error(),
-        traces ? nullptr : &traces.error(), series ? nullptr : &series.error()}) {
-    if (error != nullptr) {
-      return fail(*error);
-    }
+  if (const auto error = first_error(excitation, command, traces, series)) {
+    return fail(*error);
   }
   return std::unique_ptr<BenchService>(
       new BenchService(bench, *oscilloscope, *sensor, std::move(wake_up),

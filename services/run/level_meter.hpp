@@ -1,14 +1,19 @@
 // The level of the excitation as the reference shows it, while a run goes on: from the ACS's sample
 // blocks on DDS.
 //
-// Amplitude of the sine of the step's frequency (three-parameter approximation,
+// It is the amplitude of the sine of the step's frequency (three-parameter approximation,
 // analysis/sine/sine_fit.hpp) in the newest window of samples that were taken after a given bench
-// time. The ACS's clock and bench time share nothing, so their difference is learnt from arrival: a
-// block with the newest stamp a that is there at bench time b says that the clocks differ by a - b
-// at least, and the largest of these is short of the truth by the smallest delay of any block.
-// level_transport_s bounds that delay. Against a longer one, and a level that still moves: the two
-// halves of the window must show the same level within the agreement asked for. While it exists its
-// blocks must be taken: call take() at least every second. One thread.
+// time.
+//
+// The ACS's clock and bench time are unrelated. Their difference D is estimated from arrival: a
+// block whose newest stamp is a and that is there at bench time b has travelled for D - (a - b), so
+//
+//   D_estimated = max (a - b) = D - (shortest travel time of any block)
+//
+// which is too small by at most level_transport_s. Against longer travel, and a level that still
+// moves, the two halves of the window must show the same level within the agreement asked for.
+//
+// While the object exists its blocks must be taken: call take() at least every second. One thread.
 #pragma once
 
 #include <cstdint>

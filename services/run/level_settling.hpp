@@ -1,11 +1,12 @@
-// How long a step settles when its level is brought to the wanted one by closed loop: the loop's
-// measurements happen before the evaluated part of the step, so the recipe plans time for as many
-// as may be needed. Durations in bench time. Any thread.
+// How long a step settles when its level is brought to the wanted one by closed loop.
+//
+// The loop's measurements happen before the evaluated part of the step, so the recipe plans time
+// for as many as may be needed, in bench time:
 //
 //   planned settling = settling + n (settling + transport + window + slack)
 //
 // n: 4 measurements in the first repetition, when the exciter's response at the frequency is not
-// known, 2 in later ones.
+// known, 2 in later ones. Any thread.
 #pragma once
 
 #include "services/bench/bench_file.hpp"

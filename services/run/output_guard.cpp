@@ -43,11 +43,11 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
-  std::vector<std::string> words{(program_folder() / "dyncal").string(), "guard-output",
-                                 generator_address};
+  std::vector<std::string> arguments{(program_folder() / "dyncal").string(), "guard-output",
+                                     generator_address};
   std::vector<char*> pointers;
-  for (std::string& word : words) {
-    pointers.push_back(word.data());
+  for (std::string& argument : arguments) {
+    pointers.push_back(argument.data());
   }
   pointers.push_back(nullptr);
   pid_t process = 0;
@@ -56,7 +56,7 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) {
-    return fail(cannot_start(fmt::format("{}: {}", words.front(), std::strerror(problem))));
+    return fail(cannot_start(fmt::format("{}: {}", arguments.front(), std::strerror(problem))));
   }
   return OutputGuard(std::move(writing), process);
 }

@@ -17,8 +17,8 @@ namespace dyncal::services {
 
 class OutputGuard {
 public:
-  // From now on until the object goes. REQUIRES: the generator is switched off before the object
-  // goes.
+  // Guards the output for the lifetime of this object. REQUIRES: the output is switched off before
+  // the object is destroyed.
   [[nodiscard]] static Expected<OutputGuard> start(const std::string& generator_address);
   ~OutputGuard();
   OutputGuard(OutputGuard&&) noexcept = default;

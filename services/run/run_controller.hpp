@@ -6,8 +6,8 @@
 //
 // Fails: no_analysis (nobody answers, or the run is not armed in time), no_source (the analysis
 // refuses the run), device (generator), network, interrupted (before the first step). Later there
-// are no failures: the outcome holds what was measured and says why the run ended early. Belongs to
-// one thread.
+// are no failures: the outcome holds what was measured and gives the reason why the run ended
+// early. Belongs to one thread.
 #pragma once
 
 #include <chrono>

@@ -247,7 +247,7 @@ Expected<std::optional<double>> StepExcitation::measure_level(const wire::Planne
   return std::nullopt;
 }
 
-// A step without all of its shots is measured with those there are; the analysis says how many.
+// A step without all of its shots is measured with those there are; the analysis reports how many.
 Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token& stop) {
   const auto deadline = clock_.now() + shots_limit;
   while (shots_->shots() < bench_.method.shots && clock_.now() < deadline &&

@@ -2,10 +2,9 @@
 // have ended or a stop is requested.
 //
 // A source is a movable class with `Expected<void> run(SourcePublisher&, std::stop_token)`, which
-// blocks; its header says when it ends and fails. run_sources() joins the network under the
-// program's name, announces every source, runs them and leaves the network again; it returns the
-// first failure, if there was one. A source that fails is logged at once and does not end the
-// others. Blocks its caller.
+// blocks; its header tells when it ends and fails. run_sources() announces every source, runs them
+// and returns the first failure, if there was one. A source that fails is logged at once and does
+// not end the others. Blocks its caller.
 #pragma once
 
 #include <memory>
@@ -16,8 +15,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "services/bus/bus.hpp"
 #include "services/error.hpp"
-#include "services/program/program.hpp"
 #include "services/source/source_service.hpp"
 #include "services/version.hpp"
 
@@ -30,14 +29,10 @@ struct RunnableSource {
 };
 
 template <class Source>
-[[nodiscard]] Expected<void>
-run_sources(const std::string& program, std::vector<RunnableSource<Source>>& sources,
-            const NetworkOptions& network, const std::stop_token& stop) {
-  auto participant = join_network(network, program);
-  if (!participant) {
-    return fail(participant.error());
-  }
-  const auto service = SourceService::create(*participant, {.software = software_version()});
+[[nodiscard]] Expected<void> run_sources(bus::Participant& participant,
+                                         std::vector<RunnableSource<Source>>& sources,
+                                         const std::stop_token& stop) {
+  const auto service = SourceService::create(participant, {.software = software_version()});
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (const RunnableSource<Source>& one : sources) {
     auto publisher = service->add(one.options);

@@ -1,24 +1,15 @@
 #include "services/source/source_publisher.hpp"
 
 #include <algorithm>
-#include <random>
 
 #include "services/bus/bus.hpp"
+#include "services/contract/session_number.hpp"
 
 namespace dyncal::services {
 
 using Clock = std::chrono::steady_clock;
 
 namespace {
-
-std::uint64_t random_session() {
-  std::random_device device;
-  std::uint64_t session = 0;
-  while (session == 0) {
-    session = (std::uint64_t{device()} << 32U) | device();
-  }
-  return session;
-}
 
 bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDescription& b) {
   return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit &&

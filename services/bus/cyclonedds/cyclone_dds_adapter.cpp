@@ -12,7 +12,7 @@
 namespace dyncal::bus {
 namespace {
 
-services::Error network_error(const std::string& what, dds_return_t code) {
+services::Error cyclone_error(const std::string& what, dds_return_t code) {
   return {services::ErrorCode::network, what + ": " + dds_strretcode(-code)};
 }
 
@@ -55,8 +55,8 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
   const dds_entity_t handle =
       dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
   if (handle < 0) {
-    return fail(network_error("Cyclone DDS cannot open domain " + std::to_string(number) +
-                                  " (its messages above say more; CYCLONEDDS_URI may be the cause)",
+    return fail(cyclone_error("Cyclone DDS cannot open domain " + std::to_string(number) +
+                                  " (see its messages above; CYCLONEDDS_URI may be the cause)",
                               handle));
   }
   auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
@@ -64,8 +64,8 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
   return domain;
 }
 
-// Writers and readers share it, so that the last of them takes it down. The domain goes after the
-// participant.
+// Writers and readers share it, so that the last of them takes it down. The domain is closed
+// after the participant.
 struct CycloneParticipantHandle {
   std::shared_ptr<Domain> domain;
   Entity entity;
@@ -209,14 +209,14 @@ public:
                                                             const std::string& partition) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
-      return fail(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+      return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
     const Qos qos = writer_qos(qos_profile(profile), partition);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
     if (cyclone_writer < 0) {
-      return fail(network_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
+      return fail(cyclone_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
     }
     return writer;
   }
@@ -226,7 +226,7 @@ public:
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
-      return fail(network_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
+      return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
     const Qos qos = reader_qos(qos_profile(profile), partition);
     dds_listener_t* listener = dds_create_listener(wake_up.get());
@@ -239,7 +239,7 @@ public:
     auto reader =
         std::make_unique<CycloneReader>(participant_, cyclone_topic, cyclone_reader, type, wake_up);
     if (cyclone_reader < 0) {
-      return fail(network_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
+      return fail(cyclone_error("Cyclone DDS refuses a reader of topic " + topic, cyclone_reader));
     }
     if (wake_up) {
       wake_up->ring();
@@ -288,7 +288,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
   if (participant < 0) {
-    return fail(network_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
+    return fail(cyclone_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
                               participant));
   }
   return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(

@@ -1,5 +1,5 @@
 // The bus over Fast DDS 2.9. The settings differ from its defaults wherever those lose samples,
-// wait for seconds or do not reach Cyclone DDS; each says why.
+// wait for seconds or do not reach Cyclone DDS; a comment at each gives the reason.
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -156,7 +156,7 @@ public:
 
   WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
     const auto deadline = std::chrono::steady_clock::now() + limit;
-    // It may give up long before its time: only our own clock says when time is up.
+    // It may give up long before its time: only our own clock decides when time is up.
     while (true) {
       const ReturnCode outcome = writer_->write(const_cast<void*>(sample), dds::InstanceHandle_t());
       if (outcome == ReturnCode::RETCODE_OK) {

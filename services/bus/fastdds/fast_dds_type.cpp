@@ -51,15 +51,13 @@ std::function<uint32_t()> FastDdsType::getSerializedSizeProvider(void* sample) {
 // Every key of the contract can be longer than 16 bytes, so the handle is always the MD5.
 bool FastDdsType::getKey(void* sample, rtps::InstanceHandle_t* handle, bool /*force_md5*/) {
   std::array<char, max_key_payload_bytes> bytes{};
-  const std::size_t count = type_.serialize_key(sample, bytes.data(), bytes.size());
-  const auto key = read_key(type_.key, bytes.data(), count);
-  if (!key) {
+  const std::size_t count = type_.canonical_key(sample, bytes.data(), bytes.size());
+  if (count == 0) {
     return false;
   }
-  const std::string canonical = canonical_key(*key);
   MD5 md5;
   md5.init();
-  md5.update(canonical.data(), static_cast<MD5::size_type>(canonical.size()));
+  md5.update(bytes.data(), static_cast<MD5::size_type>(count));
   md5.finalize();
   for (std::size_t i = 0; i < sizeof md5.digest; ++i) {
     handle->value[static_cast<std::uint16_t>(i)] = md5.digest[i];

@@ -81,8 +81,8 @@ TEST(TypeSupport, RefusesAMessageThatIsCutInsideAMember) {
   EXPECT_FALSE(read(sample, ""));
 }
 
-TEST(TypeSupport, SurvivesAnyBytes) {
-  std::string bytes = bytes_of(example_block());
+TEST(TypeSupport, SurvivesAnyBytesAndReadsTheIntactOnesAfterwards) {
+  const std::string bytes = bytes_of(example_block());
   wire::SampleBlock sample;
   for (std::size_t i = cdr_header_bytes; i < bytes.size(); ++i) {
     std::string damaged = bytes;
@@ -92,6 +92,8 @@ TEST(TypeSupport, SurvivesAnyBytes) {
   for (std::size_t count = 0; count < bytes.size(); ++count) {
     (void)read(sample, bytes.substr(0, count));
   }
+  ASSERT_TRUE(read(sample, bytes));
+  EXPECT_EQ(sample, example_block());
 }
 
 template <class T>
@@ -117,6 +119,23 @@ TYPED_TEST(EveryType, HasItsKeyWhereTheLayoutSays) {
   ASSERT_TRUE(key);
   EXPECT_EQ(read_key(type.key, key_only.data(), key_only.size()), key);
   EXPECT_EQ(key_payload(*key, ByteOrder::little).size(), key_only.size());
+}
+
+TYPED_TEST(EveryType, WritesTheKeyThatIsHashedAsItIsReadFromAMessage) {
+  const TypeSupport& type = type_support<TypeParam>();
+  Key key;
+  for (std::size_t i = 0; i < type.key.string_bounds.size(); ++i) {
+    key.strings.emplace_back(1 + 5 * i, static_cast<char>('a' + i)); // every alignment of the next
+  }
+  for (std::size_t i = 0; i < type.key.numbers; ++i) {
+    key.numbers.push_back(static_cast<std::uint32_t>(0x01020304 + i));
+  }
+  TypeParam sample;
+  ASSERT_TRUE(read(sample, key_payload(key, ByteOrder::little)));
+  std::string canonical(max_key_payload_bytes, '\xFF'); // padding must be written as zeros
+  canonical.resize(type.canonical_key(&sample, canonical.data(), canonical.size()));
+  EXPECT_EQ(canonical, canonical_key(key));
+  EXPECT_EQ(type.canonical_key(&sample, canonical.data(), canonical.size() - 1), 0U);
 }
 
 TYPED_TEST(EveryType, AllowsItsLongestKeyAndHasAlwaysTheHashOfAKeyOver16Bytes) {
