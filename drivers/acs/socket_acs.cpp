@@ -1,5 +1,6 @@
 #include "drivers/acs/socket_acs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -59,7 +60,7 @@ Expected<SourceDescription> SocketAcs::describe() {
     const auto left = std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
     const auto connected = connect(left);
     if (connected) {
-      return stream_.source;
+      return name_channels().map([&] { return stream_.source; });
     }
     // An instrument that is just being switched on refuses; everything else will not get better by
     // trying.
@@ -71,10 +72,39 @@ Expected<SourceDescription> SocketAcs::describe() {
   }
 }
 
-Expected<void> SocketAcs::connect_again() {
+// The names and units of the settings over those of the instrument.
+Expected<void> SocketAcs::name_channels() {
+  std::vector<ChannelDescription>& channels = stream_.source.channels;
+  for (const auto& [device_name, name] : settings_.channels) {
+    const auto found = std::ranges::find(channels, device_name, &ChannelDescription::name);
+    if (found == channels.end()) {
+      return fail(ErrorCode::invalid_setting, "the instrument at " + settings_.address +
+                                                  " has no channel '" + device_name + "'");
+    }
+    found->name = name;
+  }
+  for (const auto& [name, unit] : settings_.units) {
+    const auto found = std::ranges::find(channels, name, &ChannelDescription::name);
+    if (found == channels.end()) {
+      return fail(ErrorCode::invalid_setting,
+                  "a unit is given for '" + name + "', which is not one of its channels");
+    }
+    found->unit = unit;
+  }
+  return {};
+}
+
+Expected<void> SocketAcs::connect_again(SampleSink& sink) {
   connection_.reset();
   while (!stop_.wait_for(retry_interval)) {
     auto connected = connect(settings_.connect_limit);
+    if (connected) {
+      // An instrument that came back with other channels: whoever needs them will miss them.
+      if (const auto named = name_channels(); !named) {
+        ++channels_missing_;
+        sink.warn(named.error().message);
+      }
+    }
     if (connected || connected.error().code == ErrorCode::malformed) {
       return connected;
     }
@@ -82,7 +112,7 @@ Expected<void> SocketAcs::connect_again() {
   return {};
 }
 
-Expected<void> SocketAcs::run(BlockSink& sink) {
+Expected<void> SocketAcs::run(SampleSink& sink) {
   for (;;) {
     const auto ended = read_session(sink);
     if (ended || stop_.raised()) {
@@ -91,7 +121,7 @@ Expected<void> SocketAcs::run(BlockSink& sink) {
     if (ended.error().code != ErrorCode::disconnected) {
       return fail(ended.error());
     }
-    if (auto again = connect_again(); !again) {
+    if (auto again = connect_again(sink); !again) {
       return again;
     }
     if (stop_.raised()) {
@@ -100,15 +130,25 @@ Expected<void> SocketAcs::run(BlockSink& sink) {
   }
 }
 
-// Returns at the end of the stream; the error `disconnected` when the instrument has gone.
-Expected<void> SocketAcs::read_session(BlockSink& sink) {
-  sink.begin_session(stream_.source);
+void SocketAcs::count(SampleSink& sink) const {
+  SampleCounts counts = counts_;
+  counts.add_cause("reconnections without a channel", channels_missing_);
+  sink.count(counts);
+}
+
+// Returns at the end of the stream; fails with disconnected when the instrument is gone.
+Expected<void> SocketAcs::read_session(SampleSink& sink) {
+  sink.begin_session();
+  sink.describe(stream_.source);
   SampleBlock pending;
+  std::optional<std::uint64_t> next_of_block;
   const auto hand_over = [&] {
     if (pending.samples > 0) {
       pending.clock = stream_.clock;
       pending.received_utc_ns = utc_now_ns();
+      counts_.add(pending, next_of_block);
       sink.take(std::exchange(pending, SampleBlock{}));
+      count(sink);
     }
   };
   std::uint64_t next_sample = 0;
@@ -147,7 +187,7 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   frame.first_sample = load<std::uint64_t>(header.data() + 8);
   if (load<std::uint32_t>(header.data()) != frame_magic || frame.samples > max_samples) {
     return fail(ErrorCode::malformed,
-                settings_.address + ": what comes is not a frame of the ACS stream");
+                settings_.address + ": what was received is not a frame of the ACS stream");
   }
   const std::size_t channels = stream_.scale.size();
   const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);

@@ -1,26 +1,32 @@
-// The instrument's TCP stream, as drivers/acs/README.md defines it: a description line, then binary
-// frames.
+// The TCP stream of an analogue calibration system (ACS) as a source of samples. README.md defines
+// it: a description line, then binary frames.
 //
 // A frame that holds 20 ms or more becomes a block; shorter frames that follow each other without a
-// gap are joined to one. When the instrument goes away, run() tries to reach it again every half
+// gap are joined to one. When the instrument disconnects, run() tries to reach it again every half
 // second until stop(); each return is a new session, because its sample numbers and its clock's
-// origin are new. What cannot be understood ends run() with `malformed`: the stream has no mark to
-// find the next frame by.
+// origin are new. A sink that blocks makes the instrument wait.
+//
+// describe() fails with invalid_setting when the settings name a channel that the instrument does
+// not have; an instrument that lacks one after a reconnection is warned of and counted. What cannot
+// be understood ends run() with malformed: the stream has no mark to find the next frame by.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "drivers/acs/acs_driver.hpp"
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/link/tcp_connection.hpp"
+#include "drivers/sample_source.hpp"
 
 namespace dyncal::drivers::acs {
 
 struct SocketSettings {
   std::string address;                           // HOST:PORT
   std::chrono::milliseconds connect_limit{5000}; // how long describe() tries
+  std::map<std::string, std::string> channels{}; // the instrument's name -> ours
+  std::map<std::string, std::string> units{};    // our name -> D-SI
 };
 
 // What the description line says; values of int32 frames are counts, `scale` turns them into the
@@ -35,19 +41,21 @@ struct StreamDescription {
 // Fails (malformed) with a sentence that names the member that is missing or wrong.
 [[nodiscard]] Expected<StreamDescription> parse_stream_description(const std::string& line);
 
-class SocketAcs : public AcsDriver {
+class SocketAcs : public SampleSource {
 public:
   explicit SocketAcs(SocketSettings settings) : settings_(std::move(settings)) {}
 
   [[nodiscard]] Expected<SourceDescription> describe() override;
-  [[nodiscard]] Expected<void> run(BlockSink& sink) override;
+  [[nodiscard]] Expected<void> run(SampleSink& sink) override;
   void stop() override { stop_.raise(); }
 
 private:
   Expected<void> connect(std::chrono::milliseconds limit);
-  Expected<void> connect_again();
-  Expected<void> read_session(BlockSink& sink);
+  Expected<void> connect_again(SampleSink& sink);
+  Expected<void> name_channels();
+  Expected<void> read_session(SampleSink& sink);
   Expected<SampleBlock> read_frame();
+  void count(SampleSink& sink) const;
   void join(SampleBlock& pending, SampleBlock frame) const;
 
   SocketSettings settings_;
@@ -55,6 +63,8 @@ private:
   std::optional<TcpConnection> connection_;
   StreamDescription stream_;
   std::vector<char> payload_;
+  SampleCounts counts_;
+  std::uint64_t channels_missing_ = 0; // after a reconnection
 };
 
 } // namespace dyncal::drivers::acs

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/acs/socket_acs.hpp"
-#include "drivers/files/sample_rate.hpp"
+#include "drivers/sample_rate.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {

@@ -29,7 +29,7 @@ std::string message_names(const DbcFile& dbc) {
   return listed(names);
 }
 
-Expected<std::vector<const DbcMessage*>> choose_messages(const SensorSettings& settings,
+Expected<std::vector<const DbcMessage*>> choose_messages(const StreamSettings& settings,
                                                          const DbcFile& dbc) {
   std::vector<const DbcMessage*> chosen;
   if (settings.messages.empty() && dbc.messages.size() == 1) {
@@ -82,7 +82,7 @@ Expected<std::vector<const DbcSignal*>> find_keys(const SensorLayout& layout,
   return keys;
 }
 
-Expected<ChannelLayout> lay_out_channel(const SensorSettings& settings, const SensorLayout& layout,
+Expected<ChannelLayout> lay_out_channel(const StreamSettings& settings, const SensorLayout& layout,
                                         std::size_t message, std::size_t index,
                                         const std::string& name, const DbcFile& dbc) {
   const DbcSignal& signal = layout.messages[message]->signals[index];
@@ -109,7 +109,7 @@ Expected<ChannelLayout> lay_out_channel(const SensorSettings& settings, const Se
   return channel;
 }
 
-Expected<void> add_channels(const SensorSettings& settings, SensorLayout& layout,
+Expected<void> add_channels(const StreamSettings& settings, SensorLayout& layout,
                             const DbcFile& dbc) {
   std::vector<std::string> unused;
   for (const auto& [signal, name] : settings.channels) {
@@ -151,7 +151,7 @@ Expected<void> add_channels(const SensorSettings& settings, SensorLayout& layout
   return {};
 }
 
-Expected<void> add_keys(const SensorSettings& settings, SensorLayout& layout, const DbcFile& dbc) {
+Expected<void> add_keys(const StreamSettings& settings, SensorLayout& layout, const DbcFile& dbc) {
   // The time field numbers samples as well as a counter does; where both are there it also times
   // them.
   const std::string& name = settings.time_field.empty() ? settings.counter : settings.time_field;
@@ -188,7 +188,7 @@ Expected<void> add_keys(const SensorSettings& settings, SensorLayout& layout, co
   return {};
 }
 
-Expected<void> check_time_source(const SensorSettings& settings, const SensorLayout& layout) {
+Expected<void> check_time_source(const StreamSettings& settings, const SensorLayout& layout) {
   if (settings.time_source == TimeSource::payload_time && !layout.key_is_time) {
     return refused(
         "time source 'payload-time' needs 'time_field', the signal that tells the sensor's time");
@@ -203,7 +203,7 @@ Expected<void> check_time_source(const SensorSettings& settings, const SensorLay
 
 } // namespace
 
-Expected<SensorLayout> lay_out(const SensorSettings& settings, const DbcFile& dbc) {
+Expected<SensorLayout> lay_out(const StreamSettings& settings, const DbcFile& dbc) {
   SensorLayout layout;
   auto messages = choose_messages(settings, dbc);
   if (!messages) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "drivers/can/dbc/dbc.hpp"
-#include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/stream_settings.hpp"
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"
 
@@ -36,6 +36,6 @@ struct SensorLayout {
   double nominal_rate_hz = 0.0; // of the samples
 };
 
-[[nodiscard]] Expected<SensorLayout> lay_out(const SensorSettings& settings, const DbcFile& dbc);
+[[nodiscard]] Expected<SensorLayout> lay_out(const StreamSettings& settings, const DbcFile& dbc);
 
 } // namespace dyncal::drivers::can

@@ -29,10 +29,10 @@ ClockLineOptions key_line_options(bool key_is_time) {
 
 } // namespace
 
-SensorStream::SensorStream(SensorSettings settings, DbcFile dbc)
+SensorStream::SensorStream(StreamSettings settings, DbcFile dbc)
     : settings_(std::move(settings)), dbc_(std::make_shared<const DbcFile>(std::move(dbc))) {}
 
-Expected<std::unique_ptr<SensorStream>> SensorStream::create(SensorSettings settings, DbcFile dbc) {
+Expected<std::unique_ptr<SensorStream>> SensorStream::create(StreamSettings settings, DbcFile dbc) {
   std::unique_ptr<SensorStream> stream(new SensorStream(std::move(settings), std::move(dbc)));
   auto layout = lay_out(stream->settings_, *stream->dbc_);
   if (!layout) {
@@ -180,6 +180,9 @@ Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
 
 void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
   link_ = change.link;
+  if (!change.what.empty()) {
+    sink.warn(change.what);
+  }
   if (!change.interrupted) {
     return;
   }
@@ -310,7 +313,7 @@ bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waitin
   if (reading.step == WrappingCounter::Step::restarted) {
     ++counts_.restarts;
     finish(sink);
-    sink.restart();
+    sink.begin_session();
     key_line_.restart();
     last_number_.reset();
     last_stamp_ns_.reset();
@@ -347,8 +350,8 @@ void SensorStream::number_by_arrival(const CanFrame& head, Waiting& sample) {
     }
   }
   if (interrupted_) {
-    step = std::max<std::uint64_t>(
-        step, 2); // how many were missed nobody knows; that some may have been must show
+    // The number missed is unknown; at least one is reported, so that the gap is visible.
+    step = std::max<std::uint64_t>(step, 2);
   }
   sample.number = *last_number_ + step;
 }
@@ -371,13 +374,13 @@ std::int64_t SensorStream::sensor_clock_ns(std::int64_t key) const {
   return std::llround(static_cast<double>(key) * layout_.key_tick_s * 1e9);
 }
 
-void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
+void SensorStream::resolve(SampleSink& sink, bool give_up_waiting) {
   while (!for_bus_time_.empty()) {
     Waiting& sample = for_bus_time_.front();
     const bool at_sync = time_source_ == TimeSource::canopen_sync;
     auto base =
         at_sync ? timer_->end_of_frame_ns(sample.timed) : timer_->start_of_frame_ns(sample.timed);
-    const bool hopeless = !base && (at_any_rate || for_bus_time_.size() > max_waiting);
+    const bool hopeless = !base && (give_up_waiting || for_bus_time_.size() > max_waiting);
     if (!base && !hopeless) {
       break;
     }
@@ -399,7 +402,7 @@ void SensorStream::resolve(SampleSink& sink, bool at_any_rate) {
     for_sensor_time_.push_back(std::move(resolved));
   }
   while (!for_sensor_time_.empty() &&
-         (key_line_.ready() || at_any_rate || for_sensor_time_.size() > max_waiting)) {
+         (key_line_.ready() || give_up_waiting || for_sensor_time_.size() > max_waiting)) {
     Waiting sample = std::move(for_sensor_time_.front());
     for_sensor_time_.pop_front();
     const std::int64_t stamp_ns =
@@ -460,8 +463,12 @@ void SensorStream::finish(SampleSink& sink) {
   flush(sink);
 }
 
-SensorCounts SensorStream::counts() const {
-  SensorCounts counts = counts_;
+void SensorStream::count(SampleSink& sink) const {
+  sink.count(sample_counts(counts(), link_, u_stamp_s()));
+}
+
+StreamCounts SensorStream::counts() const {
+  StreamCounts counts = counts_;
   counts.incomplete += joiner_.counts().incomplete;
   counts.repeated += joiner_.counts().repeated;
   return counts;

@@ -11,12 +11,12 @@
 // the frames that the socket has dropped. After an interruption of the link there is always a gap.
 // Nothing is ever filled. A signal that a frame lacks gives NaN.
 //
-// Fails: invalid_setting. One thread; the DBC file is copied.
+// The stream has no clock of its own: count() is to be called by whoever drives it, about twice a
+// second. Fails: invalid_setting. One thread; the DBC file is copied.
 #pragma once
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,46 +27,20 @@
 #include "drivers/can/message_index.hpp"
 #include "drivers/can/sample_joiner.hpp"
 #include "drivers/can/sensor_layout.hpp"
-#include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/stream_counts.hpp"
+#include "drivers/can/stream_settings.hpp"
 #include "drivers/can/time/frame_timer.hpp"
 #include "drivers/can/time/wrapping_counter.hpp"
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"
+#include "drivers/sample_sink.hpp"
 
 namespace dyncal::drivers::can {
-
-class SampleSink {
-public:
-  virtual ~SampleSink() = default;
-  // Before the first block, and again when it is known better.
-  virtual void describe(const SourceDescription& description) = 0;
-  // The sensor or its clock has started anew: sample numbers begin again.
-  virtual void restart() = 0;
-  virtual void take(SampleBlock block) = 0;
-};
-
-struct SensorCounts {
-  std::uint64_t frames = 0;         // of the sensor's messages
-  std::uint64_t samples = 0;        // emitted
-  std::uint64_t lost = 0;           // samples that the numbers say are missing
-  std::uint64_t dropped_frames = 0; // by the socket
-  std::uint64_t incomplete = 0;     // samples of which a frame did not come
-  std::uint64_t repeated = 0;       // frames that came twice
-  std::uint64_t rejected =
-      0; // frames too short for their counter, of a rate that is not known, samples without SYNC
-  std::uint64_t short_frames = 0;              // frames that lack a signal; its value is NaN
-  std::uint64_t no_value = 0;                  // J1939 "not available" and "error"
-  std::uint64_t not_trusted = 0;               // samples emitted with a flag
-  std::uint64_t interruptions = 0;             // of the link
-  std::uint64_t restarts = 0;                  // of the sensor's numbering
-  std::uint64_t clock_restarts = 0;            // of a line between clocks
-  std::map<std::string, std::uint64_t> faults; // error frames by cause
-};
 
 class SensorStream {
 public:
   // Fails when the settings do not fit the DBC file or the link (no bit rate is known).
-  [[nodiscard]] static Expected<std::unique_ptr<SensorStream>> create(SensorSettings settings,
+  [[nodiscard]] static Expected<std::unique_ptr<SensorStream>> create(StreamSettings settings,
                                                                       DbcFile dbc);
 
   [[nodiscard]] std::vector<FrameFilter> filters() const;
@@ -79,8 +53,10 @@ public:
   // Also emits the samples that wait for their time, with the flag that their stamp is not trusted.
   // At the end.
   void finish(SampleSink& sink);
+  // The account so far in the words that all drivers share.
+  void count(SampleSink& sink) const;
 
-  [[nodiscard]] SensorCounts counts() const;
+  [[nodiscard]] StreamCounts counts() const;
   [[nodiscard]] const LinkState& link() const { return link_; }
   [[nodiscard]] TimeSource time_source() const { return time_source_; }
   [[nodiscard]] double u_stamp_s() const;
@@ -94,7 +70,7 @@ private:
     std::vector<double> values;
   };
 
-  SensorStream(SensorSettings settings, DbcFile dbc);
+  SensorStream(StreamSettings settings, DbcFile dbc);
 
   Expected<void> take_frame(const CanFrame& frame, SampleSink& sink);
   void take_change(const LinkChange& change, SampleSink& sink);
@@ -107,14 +83,14 @@ private:
                                    SampleSink& sink);
   void number_by_arrival(const CanFrame& head, Waiting& sample);
   void decode(const JoinedSample& joined, std::vector<double>& values);
-  void resolve(SampleSink& sink, bool at_any_rate);
+  void resolve(SampleSink& sink, bool give_up_waiting);
   void give_up_bus_time(SampleSink& sink);
   void emit(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
   [[nodiscard]] std::int64_t sensor_clock_ns(std::int64_t key) const;
   [[nodiscard]] bool follows_sensor_clock() const;
   [[nodiscard]] SourceDescription description() const;
 
-  SensorSettings settings_;
+  StreamSettings settings_;
   std::shared_ptr<const DbcFile> dbc_;
   SensorLayout layout_;
   std::optional<MessageIndex> index_;
@@ -145,7 +121,7 @@ private:
   std::optional<std::int64_t> last_stamp_ns_;
   std::vector<double> rows_; // values sample after sample, until the block is emitted
   std::int64_t last_kernel_ns_ = 0;
-  SensorCounts counts_;
+  StreamCounts counts_;
 };
 
 } // namespace dyncal::drivers::can

@@ -6,7 +6,7 @@
 #include "drivers/files/file_channels.hpp"
 #include "drivers/files/regular_stamps.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 constexpr std::size_t stretch_bytes = std::size_t{1} << 21U;
@@ -171,4 +171,4 @@ Expected<SampleBlock> CsvReader::read(std::size_t samples) {
   return block;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

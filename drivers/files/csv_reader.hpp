@@ -17,7 +17,7 @@
 #include "drivers/files/file_source.hpp"
 #include "drivers/files/mapped_file.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 class CsvReader : public SampleReader {
 public:
@@ -53,4 +53,4 @@ private:
   std::optional<std::uint64_t> last_sample_;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

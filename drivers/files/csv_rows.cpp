@@ -9,7 +9,7 @@
 #include "drivers/files/decimal.hpp"
 #include "drivers/files/regular_stamps.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 constexpr std::size_t max_quote = 40;
@@ -251,4 +251,4 @@ CsvRows read_csv_rows(std::string_view lines, const CsvLayout& layout) {
   return rows;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -12,7 +12,7 @@
 #include "drivers/error.hpp"
 #include "drivers/sample_block.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 enum class CsvMeaning { time, number, channel };
 
@@ -47,4 +47,4 @@ struct CsvRows {
 // Also checks that stamps and sample numbers rise within the stretch.
 [[nodiscard]] CsvRows read_csv_rows(std::string_view lines, const CsvLayout& layout);
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

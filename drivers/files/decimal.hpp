@@ -17,7 +17,7 @@
 #include <cstring>
 #include <limits>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 namespace decimal {
 
@@ -247,4 +247,4 @@ std::from_chars_result read_number(const char* at, const char* end, Number& valu
   return std::from_chars(at, end, value);
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 std::string listed(const std::vector<std::string>& names) {
@@ -55,4 +55,4 @@ Expected<SourceDescription> describe_file_channels(const FileSettings& settings,
   return description;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -7,11 +7,11 @@
 
 #include "drivers/files/file_source.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 // `names` are those of the file. Fails (not_found) when the settings name a channel that the file
 // has not.
 [[nodiscard]] Expected<SourceDescription>
 describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names);
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

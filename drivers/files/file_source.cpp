@@ -8,7 +8,7 @@
 #include "drivers/files/wav_reader.hpp"
 #include "drivers/utc_clock.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 constexpr std::size_t max_block = 4096; // samples
@@ -80,14 +80,19 @@ bool FileSource::wait_for_due_time(const SampleBlock& block,
                                   std::chrono::steady_clock::duration::zero()));
 }
 
-Expected<void> FileSource::run(BlockSink& sink) {
+Expected<void> FileSource::run(SampleSink& sink) {
   const auto started = std::chrono::steady_clock::now();
   const std::size_t samples = block_samples();
-  sink.begin_session(reader_->description());
+  sink.begin_session();
+  sink.describe(reader_->description());
+  SampleCounts counts;
+  std::optional<std::uint64_t> next_sample;
   SampleBlock block = first_;
   while (block.samples > 0 && wait_for_due_time(block, started)) {
     block.received_utc_ns = utc_now_ns();
+    counts.add(block, next_sample);
     sink.take(std::move(block));
+    sink.count(counts);
     auto next = reader_->read(samples);
     if (!next) {
       return fail(next.error());
@@ -97,4 +102,4 @@ Expected<void> FileSource::run(BlockSink& sink) {
   return {};
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

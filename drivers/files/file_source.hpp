@@ -1,11 +1,13 @@
 // A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy) or WAV, of
-// any kind of instrument.
+// any kind of instrument. README.md has the formats.
 //
 // The file is read as it is played, never as a whole. Where the stamps of a block are exactly
 // equidistant the block carries a RegularClock, otherwise one stamp a sample; either way the stamps
-// are those of the file. Pace: at once, in real time or x times faster by the stamps. README.md has
-// the formats. Fails: not_found (file or column), malformed (with file and line), invalid_setting
-// (no time column and no rate).
+// are those of the file. Pace: at once, in real time or x times faster by the stamps. A sink that
+// blocks makes the file wait. Gaps of the sample numbers are counted as lost in the device.
+//
+// Fails: not_found (file or column), malformed (with file and line), invalid_setting (no time
+// column and no rate).
 #pragma once
 
 #include <filesystem>
@@ -14,11 +16,11 @@
 #include <optional>
 #include <string>
 
-#include "drivers/acs/acs_driver.hpp"
-#include "drivers/files/sample_rate.hpp"
 #include "drivers/link/stop_signal.hpp"
+#include "drivers/sample_rate.hpp"
+#include "drivers/sample_source.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 struct FileSettings {
   std::filesystem::path path;
@@ -39,17 +41,17 @@ public:
   [[nodiscard]] virtual Expected<SampleBlock> read(std::size_t samples) = 0;
 };
 
-class FileSource : public AcsDriver {
+class FileSource : public SampleSource {
 public:
   explicit FileSource(FileSettings settings) : settings_(std::move(settings)) {}
 
   [[nodiscard]] Expected<SourceDescription> describe() override;
-  [[nodiscard]] Expected<void> run(BlockSink& sink) override;
+  [[nodiscard]] Expected<void> run(SampleSink& sink) override;
   void stop() override { stop_.raise(); }
 
 private:
   [[nodiscard]] std::size_t block_samples() const;
-  // False when a stop was asked for.
+  // Returns false if a stop was requested.
   [[nodiscard]] bool wait_for_due_time(const SampleBlock& block,
                                        std::chrono::steady_clock::time_point started) const;
 
@@ -59,4 +61,4 @@ private:
   SampleBlock first_;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -6,7 +6,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 tl::unexpected<Error> unreadable(const std::filesystem::path& path) {
@@ -49,4 +49,4 @@ MappedFile::~MappedFile() {
   }
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

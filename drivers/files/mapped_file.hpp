@@ -8,7 +8,7 @@
 
 #include "drivers/error.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 class MappedFile {
 public:
@@ -26,4 +26,4 @@ private:
   std::size_t size_ = 0;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

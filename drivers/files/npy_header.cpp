@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 // Reads the few forms of Python's literals that NumPy writes: {'descr': [('t_ns', '<i8'), ...],
@@ -153,4 +153,4 @@ tl::expected<NpyHeader, std::string> NpyHeader::of(std::string_view file) {
   return header;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -9,7 +9,7 @@
 
 #include <tl/expected.hpp>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 struct NpyField {
   std::string name;
@@ -28,4 +28,4 @@ struct NpyHeader {
   [[nodiscard]] static tl::expected<NpyHeader, std::string> of(std::string_view file);
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -6,7 +6,7 @@
 #include "drivers/files/file_channels.hpp"
 #include "drivers/files/regular_stamps.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 // A field of `rows` rows, one number after the other.
@@ -152,4 +152,4 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
   return block;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

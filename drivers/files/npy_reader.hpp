@@ -14,7 +14,7 @@
 #include "drivers/files/mapped_file.hpp"
 #include "drivers/files/npy_header.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 class NpyReader : public SampleReader {
 public:
@@ -46,4 +46,4 @@ private:
   std::uint64_t next_sample_ = 0;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -1,6 +1,6 @@
 #include "drivers/files/regular_stamps.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 void make_regular(SampleBlock& block) {
   if (block.samples < 2) {
@@ -32,4 +32,4 @@ std::string not_rising(std::uint64_t sample, std::uint64_t before) {
          "; it must rise";
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

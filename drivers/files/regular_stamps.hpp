@@ -6,7 +6,7 @@
 
 #include "drivers/sample_block.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 // One clock for the whole block when its stamps are exactly equidistant.
 void make_regular(SampleBlock& block);
@@ -15,4 +15,4 @@ void make_regular(SampleBlock& block);
 [[nodiscard]] std::string not_rising(std::int64_t stamp_ns, std::int64_t before_ns);
 [[nodiscard]] std::string not_rising(std::uint64_t sample, std::uint64_t before);
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

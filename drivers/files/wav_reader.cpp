@@ -5,7 +5,7 @@
 
 #include "drivers/files/file_channels.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 // One step of an integer format on the scale -1..1; 0 for float.
@@ -83,4 +83,4 @@ Expected<SampleBlock> WavReader::read(std::size_t samples) {
   return block;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

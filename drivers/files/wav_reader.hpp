@@ -9,7 +9,7 @@
 
 struct sf_private_tag;
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 class WavReader : public SampleReader {
 public:
@@ -34,4 +34,4 @@ private:
   std::vector<double> frames_;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -158,7 +158,7 @@ public:
       return fail(cannot_listen(endpoint.listen, errno));
     }
     auto opened =
-        std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.sink));
+        std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.observer));
     const int wanted = endpoint.receive_buffer_bytes;
     const int on = 1;
     // The first needs a privilege and passes the system's limit, the second is capped by it.
@@ -213,8 +213,8 @@ public:
 private:
   static constexpr int rounds = 64;
 
-  Socket(int descriptor, std::vector<SensorSettings> wanted, SampleSink& sink)
-      : descriptor_(descriptor), reception_(std::move(wanted), sink) {}
+  Socket(int descriptor, std::vector<WantedSensor> wanted, ReceptionObserver& observer)
+      : descriptor_(descriptor), reception_(std::move(wanted), observer) {}
 
   void take(Batch& batch, std::size_t i, HostTime now) {
     if (const auto dropped = batch.dropped(i)) {

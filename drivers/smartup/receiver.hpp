@@ -6,8 +6,8 @@
 // datagrams come in batches: the buffer holds far more than that, and a core is spared the
 // wake-ups.
 //
-// Threads: create, start and stop from one thread; the sinks are called on the receiver's thread.
-// The destructor stops.
+// Threads: create, start and stop from one thread; sinks and observers are called on the receiver's
+// thread. The destructor stops.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ class Receiver {
 public:
   struct Endpoint {
     std::string listen;                  // address and port
-    std::vector<SensorSettings> wanted;  // no sensor twice
-    SampleSink* sink = nullptr;          // outlives the receiver
+    std::vector<WantedSensor> wanted;    // no sensor twice
+    ReceptionObserver* observer = nullptr; // outlives the receiver
     int receive_buffer_bytes = 32 << 20; // asked for; the system may give less
   };
 

@@ -20,13 +20,13 @@ std::string Sender::text() const {
   return text + std::to_string(port);
 }
 
-Reception::Reception(std::vector<SensorSettings> wanted, SampleSink& sink) : sink_(sink) {
-  for (auto& settings : wanted) {
-    const std::uint32_t sensor = settings.sensor;
-    sensors_.emplace(sensor, std::make_unique<Entry>(
-                                 Entry{.sensor = Sensor(sensor, settings, sink_), .sender = {}}));
+Reception::Reception(std::vector<WantedSensor> wanted, ReceptionObserver& observer)
+    : observer_(observer) {
+  for (const WantedSensor& one : wanted) {
+    sensors_.emplace(one.settings.sensor,
+                     std::make_unique<Entry>(Entry{.sensor = Sensor(one), .sender = {}}));
   }
-  for (const auto& settings : wanted) {
+  for (const auto& [settings, sink] : wanted) {
     if (!settings.sync_sensor) {
       continue;
     }
@@ -44,8 +44,7 @@ Reception::Entry* Reception::entry_of(std::uint32_t sensor) {
   if (sensors_.size() >= max_sensors) {
     return nullptr;
   }
-  auto entry =
-      std::make_unique<Entry>(Entry{.sensor = Sensor(sensor, std::nullopt, sink_), .sender = {}});
+  auto entry = std::make_unique<Entry>(Entry{.sensor = Sensor(sensor), .sender = {}});
   return sensors_.emplace(sensor, std::move(entry)).first->second.get();
 }
 
@@ -140,10 +139,11 @@ void Reception::take(std::span<const std::uint8_t> bytes, Sender sender, HostTim
 void Reception::report() {
   for (const auto& [sensor, entry] : sensors_) {
     if (entry->received) {
-      sink_.on_report(entry->sensor.report(entry->sender.text()));
+      entry->sensor.count(counts_);
+      observer_.on_report(entry->sensor.report(entry->sender.text()));
     }
   }
-  sink_.on_report(counts_);
+  observer_.on_report(counts_);
 }
 
 void Reception::tick(HostTime now) {

@@ -37,8 +37,9 @@ public:
   static constexpr std::size_t max_units = 256;
   static constexpr std::size_t max_sensors = 1024;
 
-  // `sink` outlives the reception. REQUIRES: no sensor twice in `wanted`.
-  Reception(std::vector<SensorSettings> wanted, SampleSink& sink);
+  // `observer` and the sinks outlive the reception. REQUIRES: no sensor twice in `wanted`, each with
+  // a sink.
+  Reception(std::vector<WantedSensor> wanted, ReceptionObserver& observer);
 
   void take(std::span<const std::uint8_t> datagram, Sender sender, HostTime now);
   void add_too_long() { ++counts_.too_long; }
@@ -68,7 +69,7 @@ private:
   void take_rejected();
   void report();
 
-  SampleSink& sink_;
+  ReceptionObserver& observer_;
   std::unordered_map<std::uint32_t, std::unique_ptr<Entry>> sensors_;
   std::map<Sender, Unit> units_;
   ReceptionCounts counts_;

@@ -1,5 +1,6 @@
 #include "drivers/smartup/sensor.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/smartup/sensor_id.hpp"
@@ -14,8 +15,8 @@ constexpr std::uint64_t max_beginning = 16; // samples of one sensor in one data
 constexpr std::int64_t pause_of_sensor_ns = 2 * second_ns;
 constexpr std::int64_t pause_in_steps = 10;
 constexpr double tick_of_unit_s = 1.0 / 108e6;
-constexpr double u_gps_pulse_s =
-    100e-9; // of the GPS second pulse, common to all stamps; not in the unit's own figure
+// Of the GPS second pulse, common to all stamps; not in the unit's own figure.
+constexpr double u_gps_pulse_s = 100e-9;
 
 // The unit sends four standard uncertainties.
 std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
@@ -24,9 +25,12 @@ std::uint32_t standard_uncertainty_ns(std::uint32_t sent) {
 
 } // namespace
 
-Sensor::Sensor(std::uint32_t sensor, std::optional<SensorSettings> settings, SampleSink& sink)
-    : sensor_(sensor), settings_(std::move(settings)), sink_(sink),
-      blocks_(settings_ ? settings_->block_ns : SensorSettings{}.block_ns) {}
+Sensor::Sensor(std::uint32_t sensor)
+    : sensor_(sensor), sink_(nullptr), blocks_(SensorSettings{}.block_ns) {}
+
+Sensor::Sensor(WantedSensor wanted)
+    : sensor_(wanted.settings.sensor), settings_(std::move(wanted.settings)), sink_(wanted.sink),
+      blocks_(settings_->block_ns) {}
 
 void Sensor::give_sync_to(Sensor& owner) {
   sync_of_ = &owner;
@@ -74,7 +78,10 @@ void Sensor::begin_numbering(HostTime now) {
 
 void Sensor::announce_new_session() {
   if (session_has_blocks_) {
-    sink_.on_new_session(sensor_);
+    sink_->warn("sensor " + sensor_text(sensor_) +
+                ": a new session begins, the unit has restarted the numbering or sends other "
+                "channels");
+    sink_->begin_session();
   }
   session_has_blocks_ = false;
 }
@@ -171,7 +178,7 @@ void Sensor::hand_over(std::optional<SampleBlock> block) {
     return;
   }
   session_has_blocks_ = true;
-  sink_.on_block(sensor_, std::move(*block));
+  sink_->take(std::move(*block));
 }
 
 void Sensor::take(const DescriptionMessage& message, HostTime now) {
@@ -179,10 +186,8 @@ void Sensor::take(const DescriptionMessage& message, HostTime now) {
     return;
   }
   description_changed_ = true;
-  for (auto& warning : declared_.warnings()) {
-    if (warned_.insert(warning).second) {
-      sink_.on_warning(sensor_, warning);
-    }
+  for (const std::string& warning : declared_.warnings()) {
+    warn_once(warning);
   }
   if (sync_of_ != nullptr) {
     sync_of_->description_changed_ = true;
@@ -191,8 +196,21 @@ void Sensor::take(const DescriptionMessage& message, HostTime now) {
   describe(now);
 }
 
-// Says what is known as soon as it is whole, or when waiting for the rest has taken too long; later
-// whenever it changes.
+// To those that get this sensor's samples.
+void Sensor::warn_once(const std::string& sentence) {
+  if (!warned_.insert(sentence).second) {
+    return;
+  }
+  const std::string text = "sensor " + sensor_text(sensor_) + ": " + sentence;
+  for (SampleSink* sink : {sink_, sync_of_ != nullptr ? sync_of_->sink_ : nullptr}) {
+    if (sink != nullptr) {
+      sink->warn(text);
+    }
+  }
+}
+
+// Hands on what is known as soon as it is whole, or when waiting for the rest has taken too long;
+// later whenever it changes.
 void Sensor::describe(HostTime now) {
   if (!settings_ || !description_changed_ || blocks_.columns() == Columns{}) {
     return;
@@ -205,7 +223,18 @@ void Sensor::describe(HostTime now) {
   }
   described_ = true;
   description_changed_ = false;
-  sink_.on_description(sensor_, description());
+  const SourceDescription known = description();
+  check_names(known);
+  sink_->describe(known);
+}
+
+void Sensor::check_names(const SourceDescription& description) {
+  for (const auto& [device_name, ours] : settings_->naming.names) {
+    if (std::ranges::count(description.channels, ours, &ChannelDescription::name) == 0) {
+      warn_once("channel " + device_name + " is to be called '" + ours +
+                "', but the sensor sends no such channel");
+    }
+  }
 }
 
 SourceDescription Sensor::description() const {
@@ -248,6 +277,12 @@ void Sensor::finish(HostTime now) {
   join_.release();
   drain_join(now);
   hand_over(blocks_.flush());
+}
+
+void Sensor::count(const ReceptionCounts& reception) const {
+  if (sink_ != nullptr) {
+    sink_->count(sample_counts(counts_, reception));
+  }
 }
 
 SensorReport Sensor::report(const std::string& sender) const {

@@ -1,10 +1,11 @@
 // One sensor of a SmartUp Unit: its numbering, its stamps, its description and its blocks, with an
 // account of every sample.
 //
-// A sensor that nobody wants (no settings) is accounted for and described, but its samples go
-// nowhere. A sync sensor hands its samples to the sensor that it belongs to. The unit keeps its
-// last, partly filled datagram over a pause: samples at the very beginning of a numbering that are
-// followed by a jump in time or by a new numbering are stale; they are counted and not handed on.
+// A sensor that nobody wants (no settings, no sink) is accounted for, but its samples go nowhere. A
+// sync sensor hands its samples to the sensor that it belongs to. The unit keeps its last, partly
+// filled datagram over a pause: samples at the very beginning of a numbering that are followed by a
+// jump in time or by a new numbering are stale; they are counted and not handed on.
+//
 // One thread at a time; never fails.
 #pragma once
 
@@ -14,10 +15,11 @@
 #include <set>
 #include <string>
 
+#include "drivers/sample_sink.hpp"
 #include "drivers/smartup/block_assembly.hpp"
 #include "drivers/smartup/description.hpp"
+#include "drivers/smartup/reception_observer.hpp"
 #include "drivers/smartup/sample_numbering.hpp"
-#include "drivers/smartup/sample_sink.hpp"
 #include "drivers/smartup/stamp_check.hpp"
 #include "drivers/smartup/sync_join.hpp"
 
@@ -31,10 +33,16 @@ struct SensorSettings {
   std::int64_t block_ns = 50'000'000;
 };
 
+struct WantedSensor {
+  SensorSettings settings;
+  SampleSink* sink = nullptr; // outlives the receiver
+};
+
 class Sensor {
 public:
-  // `settings` absent: accounted for only. `sink` outlives the sensor.
-  Sensor(std::uint32_t sensor, std::optional<SensorSettings> settings, SampleSink& sink);
+  // One that is accounted for only.
+  explicit Sensor(std::uint32_t sensor);
+  explicit Sensor(WantedSensor wanted);
 
   // This sensor carries the sync of `owner`, which outlives it.
   void give_sync_to(Sensor& owner);
@@ -50,6 +58,8 @@ public:
   void tick(HostTime now);
   // Hands over everything: reception ends.
   void finish(HostTime now);
+  // To its own sink. `reception` is of its address.
+  void count(const ReceptionCounts& reception) const;
 
   [[nodiscard]] SensorReport report(const std::string& sender) const;
 
@@ -70,11 +80,13 @@ private:
   void hand_over(std::optional<SampleBlock> block);
   void announce_new_session();
   void describe(HostTime now);
+  void check_names(const SourceDescription& description);
+  void warn_once(const std::string& sentence);
   [[nodiscard]] SourceDescription description() const;
 
   const std::uint32_t sensor_;
   const std::optional<SensorSettings> settings_;
-  SampleSink& sink_;
+  SampleSink* const sink_; // set together with the settings
   Sensor* sync_of_ = nullptr;
   Sensor* sync_ = nullptr;
 

@@ -12,8 +12,10 @@ namespace {
 
 Error named(const SourceSettings& settings, const drivers::Error& error) {
   ErrorCode code = ErrorCode::device;
-  if (settings.driver == SourceDriver::file) {
+  if (settings.is<FileSourceSettings>()) {
     code = ErrorCode::bad_file;
+  } else if (error.code == drivers::ErrorCode::invalid_setting) {
+    code = ErrorCode::bad_argument;
   } else if (error.code == drivers::ErrorCode::refused ||
              error.code == drivers::ErrorCode::timeout) {
     code = ErrorCode::no_source;
@@ -21,7 +23,7 @@ Error named(const SourceSettings& settings, const drivers::Error& error) {
   return {code, fmt::format("source '{}': {}", settings.name, error.message)};
 }
 
-Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver,
+Expected<drivers::SourceDescription> describe(drivers::SampleSource& driver,
                                               const SourceSettings& settings,
                                               const std::stop_token& stop) {
   const std::stop_callback stop_driver(stop, [&driver] { driver.stop(); });
@@ -36,92 +38,30 @@ Expected<drivers::SourceDescription> describe(drivers::acs::AcsDriver& driver,
   return *description;
 }
 
-// The names of the bench file over those of the instrument. A file does this itself.
-Expected<void> rename_channels(const SourceSettings& settings,
-                               drivers::SourceDescription& description) {
-  if (settings.driver == SourceDriver::file) {
-    return {};
-  }
-  auto& channels = description.channels;
-  for (const auto& [device_name, name] : settings.channels) {
-    const auto found = std::ranges::find(channels, device_name, &drivers::ChannelDescription::name);
-    if (found == channels.end()) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("source '{}': the instrument at {} has no channel '{}'",
-                              settings.name, settings.address, device_name));
-    }
-    found->name = name;
-  }
-  for (const auto& [name, unit] : settings.units) {
-    const auto found = std::ranges::find(channels, name, &drivers::ChannelDescription::name);
-    if (found == channels.end()) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("source '{}': a unit is given for '{}', which is no channel of it",
-                              settings.name, name));
-    }
-    found->unit = unit;
-  }
-  return {};
-}
-
-class PublishingSink : public drivers::acs::BlockSink {
-public:
-  PublishingSink(const SourceSettings& settings, SourcePublisher& publisher, std::stop_token stop)
-      : settings_(settings), publisher_(publisher), stop_(std::move(stop)) {}
-
-  void begin_session(const drivers::SourceDescription& description) override {
-    publisher_.start_session();
-    next_sample_.reset();
-    drivers::SourceDescription renamed = description;
-    if (const auto done = rename_channels(settings_, renamed); !done) {
-      publisher_.say(done.error().message); // an instrument that came back with other channels: who
-                                            // needs them will miss them
-    }
-    publisher_.describe(std::move(renamed));
-  }
-
-  void take(drivers::SampleBlock block) override {
-    if (next_sample_ && block.first_sample > *next_sample_) {
-      counts_.lost_in_device += block.first_sample - *next_sample_;
-    }
-    next_sample_ = block.first_sample + block.samples;
-    counts_.received += block.samples;
-    publisher_.offer_waiting(std::move(block), stop_);
-    publisher_.report(counts_);
-  }
-
-private:
-  const SourceSettings& settings_;
-  SourcePublisher& publisher_;
-  std::stop_token stop_;
-  SourceCounts counts_;
-  std::optional<std::uint64_t> next_sample_;
-};
-
 } // namespace
 
-Expected<std::unique_ptr<drivers::acs::AcsDriver>> make_driver(const SourceSettings& settings) {
-  if (settings.driver == SourceDriver::socket) {
-    drivers::acs::SocketSettings socket;
-    socket.address = settings.address;
-    return std::make_unique<drivers::acs::SocketAcs>(std::move(socket));
+Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSettings& settings) {
+  if (const auto* socket = settings.as<SocketSourceSettings>()) {
+    return std::make_unique<drivers::acs::SocketAcs>(drivers::acs::SocketSettings{
+        .address = socket->address, .channels = settings.channels, .units = settings.units});
   }
-  drivers::acs::FileSettings file;
-  file.path = settings.path;
-  file.speed = settings.play_speed;
+  const auto& played = std::get<FileSourceSettings>(settings.driver);
+  drivers::files::FileSettings file;
+  file.path = played.path;
+  file.speed = played.play_speed;
   file.channels = settings.channels;
   file.units = settings.units;
   file.time_base = settings.time_base;
-  if (settings.sample_rate_hz) {
-    file.sample_rate = drivers::acs::sample_rate_from_hz(*settings.sample_rate_hz);
+  if (played.sample_rate_hz) {
+    file.sample_rate = drivers::sample_rate_from_hz(*played.sample_rate_hz);
     if (!file.sample_rate) {
       return fail(ErrorCode::bad_argument,
-                  fmt::format("source '{}': sample_rate_hz = {} cannot be; write a rate between "
-                              "1e-6 and 1e9 Hz with at most nine decimals",
-                              settings.name, *settings.sample_rate_hz));
+                  fmt::format("source '{}': invalid sample_rate_hz = {}: must be between 1e-6 and "
+                              "1e9 Hz with at most nine decimals",
+                              settings.name, *played.sample_rate_hz));
     }
   }
-  return std::make_unique<drivers::acs::FileSource>(std::move(file));
+  return std::make_unique<drivers::files::FileSource>(std::move(file));
 }
 
 SourceKind kind_of(const MethodSettings& method, const std::string& source) {
@@ -131,6 +71,15 @@ SourceKind kind_of(const MethodSettings& method, const std::string& source) {
   const bool of_sensor = std::ranges::any_of(
       method.dut, [&](const ChannelName& channel) { return channel.source == source; });
   return source == method.sync_dau.source || of_sensor ? SourceKind::dau : SourceKind::acs;
+}
+
+SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings) {
+  return {.bench = bench.bench,
+          .source = settings.name,
+          .kind = kind_of(bench.method, settings.name),
+          .silent_after =
+              settings.is<FileSourceSettings>() ? std::chrono::seconds(0) : std::chrono::seconds(2),
+          .when_full = WhenFull::wait};
 }
 
 Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
@@ -143,16 +92,13 @@ Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
   if (!description) {
     return fail(description.error());
   }
-  if (auto renamed = rename_channels(settings, *description); !renamed) {
-    return fail(renamed.error());
-  }
   return PlayedSource(settings, std::move(*driver), std::move(*description));
 }
 
 Expected<void> PlayedSource::run(SourcePublisher& publisher, const std::stop_token& stop) {
   publisher.describe(description_);
-  auto done = settings_.driver == SourceDriver::file ? play_for_every_run(publisher, stop)
-                                                     : play(publisher, stop);
+  auto done = settings_.is<FileSourceSettings>() ? play_for_every_run(publisher, stop)
+                                                 : play(publisher, stop);
   if (!done) {
     publisher.fail(done.error().message);
   }
@@ -160,9 +106,8 @@ Expected<void> PlayedSource::run(SourcePublisher& publisher, const std::stop_tok
 }
 
 Expected<void> PlayedSource::play(SourcePublisher& publisher, const std::stop_token& stop) {
-  PublishingSink sink(settings_, publisher, stop);
   const std::stop_callback stop_driver(stop, [this] { driver_->stop(); });
-  if (auto played = driver_->run(sink); !played) {
+  if (auto played = driver_->run(publisher); !played) {
     return fail(named(settings_, played.error()));
   }
   publisher.end();
@@ -175,7 +120,7 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
     if (auto played = play(publisher, stop); !played || stop.stop_requested()) {
       return played;
     }
-    // A fresh reader and session for the next run, so that what is said before it belongs to it.
+    // A fresh reader and session for the next run, so that answers before it belong to it.
     auto driver = make_driver(settings_);
     if (!driver) {
       return fail(driver.error());
@@ -183,9 +128,9 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
     driver_ = std::move(*driver);
     if (auto described = describe(*driver_, settings_, stop); !described) {
       return stop.stop_requested() ? Expected<void>()
-                                   : fail(described.error()); // a stop is no failure
+                                   : fail(described.error()); // a stop is not a failure
     }
-    publisher.start_session();
+    publisher.begin_session();
   }
   return {};
 }

@@ -3,14 +3,15 @@
 //
 // An instrument's stream is published as it comes. A file waits until a measurement of its bench is
 // RUNNING, is played, ends its stream, and waits for the next one. Both wait for room in the
-// publisher's ring instead of losing samples. prepare() from one thread; run() in a thread of the
-// source's own.
+// publisher's ring instead of losing samples (options_of).
+//
+// Threads: prepare() from one thread; run() in a thread of the source's own.
 #pragma once
 
 #include <memory>
 #include <stop_token>
 
-#include "drivers/acs/acs_driver.hpp"
+#include "drivers/sample_source.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"
 #include "services/source/source_publisher.hpp"
@@ -31,7 +32,7 @@ public:
   [[nodiscard]] const SourceSettings& settings() const { return settings_; }
 
 private:
-  PlayedSource(SourceSettings settings, std::unique_ptr<drivers::acs::AcsDriver> driver,
+  PlayedSource(SourceSettings settings, std::unique_ptr<drivers::SampleSource> driver,
                drivers::SourceDescription description)
       : settings_(std::move(settings)), driver_(std::move(driver)),
         description_(std::move(description)) {}
@@ -39,17 +40,20 @@ private:
   Expected<void> play_for_every_run(SourcePublisher& publisher, const std::stop_token& stop);
 
   SourceSettings settings_;
-  std::unique_ptr<drivers::acs::AcsDriver> driver_;
+  std::unique_ptr<drivers::SampleSource> driver_;
   drivers::SourceDescription description_;
 };
 
 // The driver of a source of a bench file whose driver is "socket" or "file", not opened yet. Fails
-// (bad_argument) with settings that cannot be.
-[[nodiscard]] Expected<std::unique_ptr<drivers::acs::AcsDriver>>
+// (bad_argument) with invalid settings.
+[[nodiscard]] Expected<std::unique_ptr<drivers::SampleSource>>
 make_driver(const SourceSettings& settings);
 
 // DAU for the source of the role sync_dau (and of the sensor's channels where there is no such
 // role), ACS for the others.
 [[nodiscard]] SourceKind kind_of(const MethodSettings& method, const std::string& source);
+
+// Where such a source publishes, and that it waits for room.
+[[nodiscard]] SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings);
 
 } // namespace dyncal::services::acs

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "services/contract/sample_topic.hpp"
+#include "services/contract/source_kind.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -59,7 +59,7 @@ Expected<void> SourceStreams::describe(Stream& stream, const wire::SourceDescrip
     return accepted;
   }
   stream.described = true;
-  stream.triggered = bus::is_triggered(description.kind());
+  stream.triggered = is_triggered(from_wire(description.kind()));
   return stream.triggered ? open_reader(record_readers_, description.kind())
                           : open_reader(block_readers_, description.kind());
 }
@@ -70,7 +70,7 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
   if (readers.contains(kind)) {
     return {};
   }
-  auto reader = participant_.reader<Message>(bus::sample_topic(kind), bus::Profile::samples, bench_,
+  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)), bus::Profile::samples, bench_,
                                              wake_up_);
   if (!reader) {
     return fail(reader.error());

@@ -1,22 +1,22 @@
-// The bench file: one TOML file that says what a bench consists of, what is excited, how it is
+// The bench file: one TOML file that describes what a bench consists of, what is excited, how it is
 // evaluated, with which corrections and uncertainties. The same file serves the source programs,
 // `dyncal run` and `dyncal analyse`.
 //
-// Whatever cannot be meant is refused here, with file, line and key: unknown keys (with the nearest
-// known one), wrong types, values that are not possible, units that are not D-SI, roles that name
-// no source, a file that a correction needs and that is not there. Units are in the keys: _s, _hz,
-// _rad, _ns; `level` is in m/s^2 (or the reference's unit). Any thread; a BenchFile is plain data.
+// Whatever is not valid is refused here, with file, line and key: unknown keys (with the nearest
+// known one), wrong types, impossible values, units that are not D-SI, roles that name no source, a
+// file that a correction needs and that does not exist. Units are in the keys: _s, _hz, _rad, _ns;
+// `level` is in m/s^2 (or the reference's unit).
+//
+// Any thread; a BenchFile is plain data.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "drivers/can/sensor_settings.hpp"
-#include "drivers/sample_block.hpp"
+#include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/error.hpp"
 
@@ -39,49 +39,15 @@ struct ExcitationSettings {
       false; // evaluate each record as a whole: one step, nothing searched, nothing left out
 };
 
+enum class GeneratorDriver { none, by_hand, scpi };
+
 struct GeneratorSettings {
-  std::string driver; // "scpi", "by-hand" or "none"
+  GeneratorDriver driver = GeneratorDriver::none;
   std::string address;
   double level_per_volt = 1.0;               // m/s^2 per V
   std::optional<double> level_tolerance_rel; // closed loop on the reference's amplitude
   std::optional<double> maximum_voltage_v;   // zero to peak
   std::optional<double> maximum_level_m_s2;
-};
-
-enum class SourceDriver { smartup, socket, file, can, oscilloscope, series };
-
-struct CanSourceSettings {
-  std::string interface_name;
-  std::filesystem::path log;           // absolute; a candump log instead of an interface
-  std::filesystem::path dbc;           // absolute
-  drivers::can::SensorSettings sensor; // its channels and units are those of the source
-  std::optional<double> restart_after_bus_off_s;
-};
-
-struct OscilloscopeSourceSettings {
-  std::string family;         // of drivers/dso/scope_commands.hpp; empty: by its identity
-  int sync_input = 1;         // sees sync and triggers
-  double sync_range_v = 20.0; // peak to peak
-  double trigger_level_v = 0.0;
-};
-
-struct SourceSettings {
-  std::string name;
-  SourceDriver driver = SourceDriver::file;
-  std::string listen;                  // smartup
-  std::optional<std::uint32_t> sensor; // smartup
-  std::optional<std::uint32_t>
-      sync_sensor;            // smartup: sensor id that carries the sync ADC of later firmware
-  std::string address;        // socket, oscilloscope, series
-  std::filesystem::path path; // file; series: the folder; absolute
-  double play_speed = 0.0;    // file, log of can: times real time; 0: at once
-  std::optional<double> sample_rate_hz;        // file without a time column
-  std::optional<CanSourceSettings> can;        // can
-  OscilloscopeSourceSettings oscilloscope;     // oscilloscope
-  std::map<std::string, std::string> channels; // device's name -> ours
-  std::map<std::string, std::string> units;    // our name -> D-SI
-  drivers::TimeBase time_base = drivers::TimeBase::utc;
-  std::string where; // "bench.toml:21", for messages
 };
 
 enum class EvaluationMethod { analogue, sample_timestamping, series_timestamping, absolute_time };

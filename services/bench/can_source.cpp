@@ -1,17 +1,15 @@
 #include "services/bench/can_source.hpp"
 
-#include <charconv>
 #include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "services/bench/file_source.hpp"
+
 namespace dyncal::services {
 
 namespace {
-
-using drivers::can::StampPoint;
-using drivers::can::TimeSource;
 
 double positive(TomlTable& table, const std::string& key, const std::string& unit) {
   const auto value = table.optional_number(key, unit);
@@ -29,19 +27,24 @@ std::optional<double> uncertainty(TomlTable& table, const std::string& key) {
   return value;
 }
 
-std::optional<TimeSource> read_time_source(TomlTable& table) {
-  const std::string word = table.one_of(
+std::optional<CanTimeSource> read_time_source(TomlTable& table) {
+  const std::string name = table.one_of(
       "time_source",
       {"best", "canopen-sync", "payload-time", "counter", "hardware-stamp", "kernel-stamp"},
       "best");
-  for (const TimeSource source :
-       {TimeSource::canopen_sync, TimeSource::payload_time, TimeSource::counter,
-        TimeSource::hardware_stamp, TimeSource::kernel_stamp}) {
-    if (word == drivers::can::to_string(source)) {
-      return source;
-    }
+  if (name == "canopen-sync") {
+    return CanTimeSource::canopen_sync;
   }
-  return std::nullopt;
+  if (name == "payload-time") {
+    return CanTimeSource::payload_time;
+  }
+  if (name == "counter") {
+    return CanTimeSource::counter;
+  }
+  if (name == "hardware-stamp") {
+    return CanTimeSource::hardware_stamp;
+  }
+  return name == "kernel-stamp" ? std::optional(CanTimeSource::kernel_stamp) : std::nullopt;
 }
 
 std::filesystem::path read_file_name(TomlTable& table, const std::string& key,
@@ -57,46 +60,49 @@ std::filesystem::path read_file_name(TomlTable& table, const std::string& key,
   return path;
 }
 
-StampPoint read_stamp_point(TomlTable& table) {
-  const std::string word = table.one_of("hardware_stamp_point",
+CanStampPoint read_stamp_point(TomlTable& table) {
+  const std::string name = table.one_of("hardware_stamp_point",
                                         {"start-of-frame", "end-of-frame", "unknown"}, "unknown");
-  if (word == "start-of-frame") {
-    return StampPoint::start_of_frame;
+  if (name == "start-of-frame") {
+    return CanStampPoint::start_of_frame;
   }
-  return word == "end-of-frame" ? StampPoint::end_of_frame : StampPoint::unknown;
+  return name == "end-of-frame" ? CanStampPoint::end_of_frame : CanStampPoint::unknown;
+}
+
+// A positive number, or nothing when the key is not there.
+std::optional<double> optional_positive(TomlTable& table, const std::string& key) {
+  const double value = positive(table, key, "seconds");
+  return value > 0.0 ? std::optional(value) : std::nullopt;
 }
 
 } // namespace
 
-void read_can_source(TomlTable& table, const std::filesystem::path& folder,
-                     SourceSettings& source) {
-  source.driver = SourceDriver::can;
-  CanSourceSettings& can = source.can.emplace();
+CanSourceSettings read_can_source(TomlTable& table, const std::filesystem::path& folder) {
+  CanSourceSettings can;
   can.log = read_file_name(table, "log", table.text("log"), folder);
   can.interface_name = can.log.empty() ? table.required_text("interface") : table.text("interface");
   can.dbc = read_file_name(table, "dbc", table.required_text("dbc"), folder);
-  drivers::can::SensorSettings& sensor = can.sensor;
-  sensor.messages = table.texts("messages");
-  sensor.time_source = read_time_source(table);
-  sensor.counter = table.text("counter");
-  sensor.time_field = table.text("time_field");
-  sensor.time_field_tick_s = positive(table, "time_field_tick_s", "seconds");
-  sensor.nominal_rate_hz = positive(table, "nominal_rate_hz", "Hz");
-  sensor.bit_rates.nominal_per_s = positive(table, "bit_rate_per_s", "bit/s");
-  sensor.bit_rates.data_per_s = positive(table, "data_bit_rate_per_s", "bit/s");
-  sensor.sync_id = static_cast<std::uint32_t>(table.whole_number("sync_id", 0x80, 0));
-  sensor.hardware_stamp_point = read_stamp_point(table);
-  if (const double tick_s = positive(table, "hardware_tick_s", "seconds"); tick_s > 0.0) {
-    sensor.hardware_tick_s = tick_s;
+  can.messages = table.texts("messages");
+  can.time_source = read_time_source(table);
+  can.counter = table.text("counter");
+  can.time_field = table.text("time_field");
+  can.time_field_tick_s = positive(table, "time_field_tick_s", "seconds");
+  can.nominal_rate_hz = positive(table, "nominal_rate_hz", "Hz");
+  can.bit_rate_per_s = positive(table, "bit_rate_per_s", "bit/s");
+  can.data_bit_rate_per_s = positive(table, "data_bit_rate_per_s", "bit/s");
+  can.sync_id = static_cast<std::uint32_t>(table.whole_number("sync_id", 0x80, 0));
+  can.hardware_stamp_point = read_stamp_point(table);
+  can.hardware_tick_s = optional_positive(table, "hardware_tick_s");
+  can.correct_frame_duration = table.yes_no("frame_duration_correction", true);
+  can.bus_is_shared = table.yes_no("bus_is_shared", true);
+  can.latency_s = table.number("latency_s", 0.0, "seconds");
+  can.u_latency_s = uncertainty(table, "u_latency_s");
+  can.u_utc_s = uncertainty(table, "u_utc_s");
+  can.restart_after_bus_off_s = optional_positive(table, "restart_after_bus_off_s");
+  if (!can.log.empty()) {
+    can.play_speed = read_play_speed(table);
   }
-  sensor.correct_frame_duration = table.yes_no("frame_duration_correction", true);
-  sensor.bus_is_shared = table.yes_no("bus_is_shared", true);
-  sensor.latency_s = table.number("latency_s", 0.0, "seconds");
-  sensor.u_latency_s = uncertainty(table, "u_latency_s");
-  sensor.u_utc_s = uncertainty(table, "u_utc_s");
-  if (const double after_s = positive(table, "restart_after_bus_off_s", "seconds"); after_s > 0.0) {
-    can.restart_after_bus_off_s = after_s;
-  }
+  return can;
 }
 
 } // namespace dyncal::services

@@ -2,12 +2,24 @@
 
 namespace dyncal::services {
 
+namespace {
+
+GeneratorDriver read_driver(TomlTable& table) {
+  const std::string name = table.one_of("driver", {"scpi", "by-hand", "none"}, "");
+  if (name == "scpi") {
+    return GeneratorDriver::scpi;
+  }
+  return name == "by-hand" ? GeneratorDriver::by_hand : GeneratorDriver::none;
+}
+
+} // namespace
+
 GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& excitation) {
   GeneratorSettings generator;
-  generator.driver = table.one_of("driver", {"scpi", "by-hand", "none"}, "");
+  generator.driver = read_driver(table);
   generator.level_per_volt = table.number("level_per_volt", 1.0, "m/s^2 per V");
-  generator.address =
-      generator.driver == "scpi" ? table.required_text("address") : table.text("address");
+  generator.address = generator.driver == GeneratorDriver::scpi ? table.required_text("address")
+                                                                : table.text("address");
   if (generator.level_per_volt <= 0.0) {
     table.refuse("level_per_volt", "must be positive, in m/s^2 per V");
   }
@@ -20,7 +32,7 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   read_limit("level_tolerance_rel", "parts of the level", generator.level_tolerance_rel);
   read_limit("maximum_voltage_v", "V, zero to peak", generator.maximum_voltage_v);
   read_limit("maximum_level_m_s2", "m/s^2", generator.maximum_level_m_s2);
-  if (generator.level_tolerance_rel && generator.driver != "scpi") {
+  if (generator.level_tolerance_rel && generator.driver != GeneratorDriver::scpi) {
     table.refuse(
         "level_tolerance_rel",
         "needs driver = \"scpi\": a level is only brought to its value in time by an instrument");

@@ -4,13 +4,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "drivers/can/bus/log_source.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"
 #include "drivers/can/dbc/dbc.hpp"
-#include "drivers/can/time/system_clock.hpp"
 #include "services/can/can_status.hpp"
+#include "services/can/stream_settings.hpp"
 
 namespace dyncal::services::can {
 
@@ -18,7 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using drivers::can::BusEvent;
-using drivers::can::LinkChange;
 using drivers::can::ReadState;
 
 constexpr auto wait_limit = std::chrono::milliseconds(50);
@@ -34,35 +32,11 @@ Error named(const std::string& source, const drivers::Error& error) {
           fmt::format("source '{}': {}", source, error.message)};
 }
 
-class PublisherSink : public drivers::can::SampleSink {
-public:
-  // `patient`: frames that can wait do so while the publisher has no room; what a live bus says is
-  // counted there as dropped.
-  PublisherSink(SourcePublisher& publisher, bool patient, std::stop_token stop)
-      : publisher_(publisher), patient_(patient), stop_(std::move(stop)) {}
-  void describe(const drivers::SourceDescription& description) override {
-    publisher_.describe(description);
-  }
-  void restart() override { publisher_.start_session(); }
-  void take(drivers::SampleBlock block) override {
-    if (patient_) {
-      publisher_.offer_waiting(std::move(block), stop_);
-    } else {
-      publisher_.offer(std::move(block));
-    }
-  }
-
-private:
-  SourcePublisher& publisher_;
-  bool patient_;
-  std::stop_token stop_;
-};
-
 std::unique_ptr<drivers::can::FrameSource> open_interface(const CanSourceSettings& can) {
   drivers::can::SocketCanSettings socket;
   socket.interface_name = can.interface_name;
-  socket.bit_rate_per_s = static_cast<std::uint32_t>(can.sensor.bit_rates.nominal_per_s);
-  socket.data_bit_rate_per_s = static_cast<std::uint32_t>(can.sensor.bit_rates.data_per_s);
+  socket.bit_rate_per_s = static_cast<std::uint32_t>(can.bit_rate_per_s);
+  socket.data_bit_rate_per_s = static_cast<std::uint32_t>(can.data_bit_rate_per_s);
   if (can.restart_after_bus_off_s) {
     socket.restart_after_bus_off =
         std::chrono::milliseconds(static_cast<std::int64_t>(*can.restart_after_bus_off_s * 1e3));
@@ -72,23 +46,25 @@ std::unique_ptr<drivers::can::FrameSource> open_interface(const CanSourceSetting
 
 } // namespace
 
-std::unique_ptr<drivers::can::FrameSource> make_frame_source(const SourceSettings& settings) {
-  const CanSourceSettings& can = *settings.can;
+std::unique_ptr<drivers::can::FrameSource> make_frame_source(const CanSourceSettings& can) {
   if (can.log.empty()) {
     return open_interface(can);
   }
-  return std::make_unique<drivers::can::LogSource>(can.log, can.interface_name,
-                                                   settings.play_speed);
+  return std::make_unique<drivers::can::LogSource>(can.log, can.interface_name, can.play_speed);
+}
+
+SourceOptions options_of(const std::string& bench, const SourceSettings& settings) {
+  const bool log = !std::get<CanSourceSettings>(settings.driver).log.empty();
+  return {.bench = bench,
+          .source = settings.name,
+          .kind = SourceKind::can,
+          .silent_after = log ? std::chrono::seconds(0) : std::chrono::seconds(2),
+          .when_full = log ? WhenFull::wait : WhenFull::drop};
 }
 
 Expected<CanSource> CanSource::prepare(const SourceSettings& settings,
                                        MakeFrameSource make_frames) {
   CanSource source(settings, std::move(make_frames));
-  drivers::can::SensorSettings& sensor = source.settings_.can->sensor;
-  // This host's clock says nothing of the one that stamped a log.
-  if (!settings.can->log.empty() && !sensor.u_utc_s) {
-    sensor.u_utc_s = drivers::can::u_undisciplined_clock_s();
-  }
   if (auto opened = source.open(); !opened) {
     return fail(opened.error());
   }
@@ -97,30 +73,28 @@ Expected<CanSource> CanSource::prepare(const SourceSettings& settings,
 
 // A fresh reader of the frames and of the sensor's numbering.
 Expected<void> CanSource::open() {
-  const CanSourceSettings& can = *settings_.can;
-  auto dbc = drivers::can::read_dbc_file(can.dbc);
+  auto dbc = drivers::can::read_dbc_file(can_.dbc);
   if (!dbc) {
-    return fail(named(settings_.name, dbc.error()));
+    return fail(named(name_, dbc.error()));
   }
   warnings_ = dbc->warnings;
-  auto stream = drivers::can::SensorStream::create(can.sensor, std::move(*dbc));
+  auto stream = drivers::can::SensorStream::create(stream_, std::move(*dbc));
   if (!stream) {
-    return fail(named(settings_.name, stream.error()));
+    return fail(named(name_, stream.error()));
   }
-  stream_ = std::move(*stream);
-  frames_ = make_frames_(settings_);
-  auto link = frames_->open(stream_->filters());
+  sensor_ = std::move(*stream);
+  frames_ = make_frames_(can_);
+  auto link = frames_->open(sensor_->filters());
   if (!link) {
-    return fail(named(settings_.name, link.error()));
+    return fail(named(name_, link.error()));
   }
   link_ = std::move(*link);
   return {};
 }
 
 Expected<void> CanSource::run(SourcePublisher& publisher, const std::stop_token& stop) {
-  auto done = begin(publisher, stop).and_then([&] {
-    return settings_.can->log.empty() ? receive(publisher, stop)
-                                      : play_for_every_run(publisher, stop);
+  auto done = begin(publisher).and_then([&] {
+    return can_.log.empty() ? receive(publisher, stop) : play_for_every_run(publisher, stop);
   });
   if (!done) {
     publisher.fail(done.error().message);
@@ -128,10 +102,9 @@ Expected<void> CanSource::run(SourcePublisher& publisher, const std::stop_token&
   return done;
 }
 
-Expected<void> CanSource::begin(SourcePublisher& publisher, const std::stop_token& stop) {
-  PublisherSink sink(publisher, false, stop);
-  return stream_->begin(link_, sink).map_error([&](const drivers::Error& error) {
-    return named(settings_.name, error);
+Expected<void> CanSource::begin(SourcePublisher& publisher) {
+  return sensor_->begin(link_, publisher).map_error([&](const drivers::Error& error) {
+    return named(name_, error);
   });
 }
 
@@ -141,8 +114,8 @@ Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher,
     if (auto played = receive(publisher, stop); !played || stop.stop_requested()) {
       return played;
     }
-    publisher.start_session(); // what is said before the next run belongs to it
-    if (auto opened = open().and_then([&] { return begin(publisher, stop); }); !opened) {
+    publisher.begin_session(); // answers before the next run belong to it
+    if (auto opened = open().and_then([&] { return begin(publisher); }); !opened) {
       return opened;
     }
   }
@@ -150,12 +123,11 @@ Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher,
 }
 
 Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_token& stop) {
-  PublisherSink sink(publisher, !settings_.can->log.empty(), stop);
   const std::stop_callback on_stop(stop, [this] { frames_->stop(); });
   const auto begin = Clock::now();
-  const auto tell = [&] {
-    publisher.report(to_counts(*stream_));
-    publisher.say(to_message(*stream_, Clock::now() - begin));
+  const auto report = [&] {
+    sensor_->count(publisher);
+    publisher.set_message(to_message(*sensor_, Clock::now() - begin));
   };
   std::vector<BusEvent> events;
   bool ended = false;
@@ -163,28 +135,24 @@ Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_to
     events.clear();
     const auto read = frames_->read(events, wait_limit);
     if (!read) {
-      return fail(named(settings_.name, read.error()));
+      return fail(named(name_, read.error()));
     }
     ended = *read == ReadState::ended;
     for (const BusEvent& event : events) {
-      if (const auto* change = std::get_if<LinkChange>(&event);
-          change != nullptr && !change->what.empty()) {
-        spdlog::warn("source {}: {}", settings_.name, change->what);
-      }
-      if (auto taken = stream_->take(event, sink); !taken) {
-        return fail(named(settings_.name, taken.error()));
+      if (auto taken = sensor_->take(event, publisher); !taken) {
+        return fail(named(name_, taken.error()));
       }
     }
     if (events.empty()) {
-      stream_->flush(sink);
+      sensor_->flush(publisher);
     }
     if (const auto now = Clock::now(); now >= next_report) {
-      tell();
+      report();
       next_report = now + report_interval;
     }
   }
-  stream_->finish(sink);
-  tell();
+  sensor_->finish(publisher);
+  report();
   publisher.end();
   return {};
 }

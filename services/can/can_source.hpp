@@ -1,10 +1,11 @@
 // One source of a bench file whose driver is "can": from its settings to its publisher.
 //
-// prepare() reads the DBC file and opens the interface or the log, so that what is wrong is said
-// before anything is published. run() in a thread of the source's own, until `stop` or a failure
-// that waiting cannot mend; interruptions of the link are survived, counted and said in the status.
-// A log waits until a measurement of its bench is RUNNING, is played, ends its stream and waits for
-// the next one.
+// prepare() reads the DBC file and opens the interface or the log, so that errors are reported
+// before anything is published. run() serves it until `stop` or a failure that waiting cannot mend;
+// interruptions of the link are survived, counted and reported in the status. A log waits until a
+// measurement of its bench is RUNNING, is played, ends its stream and waits for the next one.
+//
+// Threads: prepare() from one thread; run() in a thread of the source's own.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,8 @@
 
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_stream.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/source_settings.hpp"
+#include "services/can/stream_settings.hpp"
 #include "services/error.hpp"
 #include "services/source/source_publisher.hpp"
 
@@ -23,14 +25,19 @@ namespace dyncal::services::can {
 
 // Where the frames of a source come from: its interface or its log.
 [[nodiscard]] std::unique_ptr<drivers::can::FrameSource>
-make_frame_source(const SourceSettings& settings);
+make_frame_source(const CanSourceSettings& settings);
+
+// Where such a source publishes. A log waits for room; what a live bus delivers is dropped and
+// counted when there is none. REQUIRES: its driver is "can".
+[[nodiscard]] SourceOptions options_of(const std::string& bench, const SourceSettings& settings);
 
 class CanSource {
 public:
   using MakeFrameSource =
-      std::function<std::unique_ptr<drivers::can::FrameSource>(const SourceSettings&)>;
+      std::function<std::unique_ptr<drivers::can::FrameSource>(const CanSourceSettings&)>;
 
-  // Fails (bad_file, bad_argument, device) with a sentence that names the source.
+  // Fails (bad_file, bad_argument, device) with a sentence that names the source. REQUIRES: its
+  // driver is "can".
   [[nodiscard]] static Expected<CanSource> prepare(const SourceSettings& settings,
                                                    MakeFrameSource make_frames = make_frame_source);
 
@@ -41,19 +48,22 @@ public:
   } // of the DBC file
 
 private:
-  CanSource(SourceSettings settings, MakeFrameSource make_frames)
-      : settings_(std::move(settings)), make_frames_(std::move(make_frames)) {}
+  CanSource(const SourceSettings& settings, MakeFrameSource make_frames)
+      : name_(settings.name), can_(std::get<CanSourceSettings>(settings.driver)),
+        stream_(stream_settings(settings)), make_frames_(std::move(make_frames)) {}
 
   [[nodiscard]] Expected<void> open();
-  [[nodiscard]] Expected<void> begin(SourcePublisher& publisher, const std::stop_token& stop);
+  [[nodiscard]] Expected<void> begin(SourcePublisher& publisher);
   [[nodiscard]] Expected<void> receive(SourcePublisher& publisher, const std::stop_token& stop);
   [[nodiscard]] Expected<void> play_for_every_run(SourcePublisher& publisher,
                                                   const std::stop_token& stop);
 
-  SourceSettings settings_;
+  std::string name_;
+  CanSourceSettings can_;
+  drivers::can::StreamSettings stream_;
   MakeFrameSource make_frames_;
   std::unique_ptr<drivers::can::FrameSource> frames_;
-  std::unique_ptr<drivers::can::SensorStream> stream_;
+  std::unique_ptr<drivers::can::SensorStream> sensor_;
   drivers::can::LinkState link_;
   std::vector<std::string> warnings_;
 };

@@ -20,39 +20,6 @@ std::string ids_of(const drivers::can::SensorStream& stream) {
 
 } // namespace
 
-SourceCounts to_counts(const drivers::can::SensorStream& stream) {
-  const drivers::can::SensorCounts counts = stream.counts();
-  SourceCounts published;
-  published.received = counts.samples;
-  published.lost_on_way = counts.lost;
-  published.duplicates = counts.repeated;
-  published.rejected = counts.rejected + counts.incomplete;
-  published.stamps_not_trusted = counts.not_trusted;
-  published.clock_uncertainty_s = stream.u_stamp_s();
-  const auto add = [&](const std::string& name, std::uint64_t value) {
-    if (value > 0) {
-      published.causes.emplace_back(name, value);
-    }
-  };
-  add("frames received", counts.frames);
-  add("frames dropped by the socket", counts.dropped_frames);
-  add("samples of which a frame is missing", counts.incomplete);
-  add("frames without counter, SYNC or known rate", counts.rejected);
-  add("signals beyond the end of a frame", counts.short_frames);
-  add("signals not available or in error", counts.no_value);
-  add("interruptions of the link", counts.interruptions);
-  add("restarts of the sensor", counts.restarts);
-  add("restarts of a clock", counts.clock_restarts);
-  for (const auto& [cause, number] : counts.faults) {
-    add("bus: " + cause, number);
-  }
-  const drivers::can::LinkState& link = stream.link();
-  add("controller restarts", link.restarts);
-  add("transmit error counter", link.transmit_errors.value_or(0));
-  add("receive error counter", link.receive_errors.value_or(0));
-  return published;
-}
-
 std::string to_message(const drivers::can::SensorStream& stream,
                        std::chrono::nanoseconds listened) {
   const drivers::can::LinkState& link = stream.link();
@@ -74,7 +41,7 @@ std::string to_message(const drivers::can::SensorStream& stream,
     return fmt::format("interface '{}' is {}: check bit rate, wiring and termination", link.name,
                        to_string(link.bus));
   }
-  const drivers::can::SensorCounts counts = stream.counts();
+  const drivers::can::StreamCounts counts = stream.counts();
   if (counts.frames == 0 && listened > max_silence) {
     return fmt::format("interface '{}' is up, but none of the sensor's messages has come ({}); "
                        "check the ids of the DBC file, 'messages', "

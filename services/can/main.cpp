@@ -1,17 +1,13 @@
 // dyncal-can BENCH.toml...: publishes the sensors on CAN interfaces of this host.
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "services/bench/bench_file.hpp"
 #include "services/can/can_source.hpp"
-#include "services/program/program.hpp"
+#include "services/program/bench_program.hpp"
 #include "services/source/run_sources.hpp"
-#include "services/version.hpp"
 
 namespace {
 
@@ -20,16 +16,11 @@ using dyncal::fail;
 
 using Sources = std::vector<RunnableSource<can::CanSource>>;
 
-Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions& network) {
+Expected<Sources> prepare(const std::vector<BenchFile>& benches) {
   Sources sources;
-  for (const std::string& file : files) {
-    const auto bench = read_bench_file(file);
-    if (!bench) {
-      return fail(bench.error());
-    }
-    add_network_settings(bench->network, network);
-    for (const SourceSettings& settings : bench->sources) {
-      if (settings.driver != SourceDriver::can) {
+  for (const BenchFile& bench : benches) {
+    for (const SourceSettings& settings : bench.sources) {
+      if (!settings.is<CanSourceSettings>()) {
         continue; // others publish it
       }
       auto source = can::CanSource::prepare(settings);
@@ -40,11 +31,7 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
       for (const std::string& warning : source->warnings()) {
         spdlog::warn("{}", warning);
       }
-      SourceOptions options;
-      options.bench = bench->bench;
-      options.source = settings.name;
-      options.kind = SourceKind::can;
-      sources.push_back({std::move(*source), std::move(options)});
+      sources.push_back({std::move(*source), can::options_of(bench.bench, settings)});
     }
   }
   if (sources.empty()) {
@@ -53,9 +40,9 @@ Expected<Sources> prepare(const std::vector<std::string>& files, NetworkOptions&
   return sources;
 }
 
-Expected<void> run(const std::vector<std::string>& files, NetworkOptions network,
-                   const std::stop_token& stop) {
-  auto sources = prepare(files, network);
+Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
+                     const std::stop_token& stop) {
+  auto sources = prepare(benches);
   if (!sources) {
     return fail(sources.error());
   }
@@ -69,20 +56,11 @@ Expected<void> run(const std::vector<std::string>& files, NetworkOptions network
 } // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Publishes the sources of bench files whose driver is \"can\": sensors on CAN and "
-               "CAN FD interfaces of this host.",
-               "dyncal-can"};
-  app.set_version_flag("--version", build_description());
-  std::vector<std::string> files;
-  NetworkOptions network;
-  app.add_option("BENCH", files, "bench files (TOML)")->required();
-  add_network_options(app, network);
-  CLI11_PARSE(app, argc, argv);
-
-  set_up_log("dyncal-can");
-  const std::stop_token stop = stop_on_signals();
-  if (const auto done = run(files, network, stop); !done) {
-    return report_error(done.error());
-  }
-  return EXIT_SUCCESS;
+  return run_bench_program(
+      argc, argv,
+      {.name = "dyncal-can",
+       .description =
+           "Publishes the sources of bench files whose driver is \"can\": sensors on CAN "
+           "and CAN FD interfaces of this host.",
+       .serve = serve});
 }

@@ -28,17 +28,17 @@ constexpr std::uint64_t session = 1;       // a file is one session; nothing dep
 
 // A file of the bench, read in a thread of its own that waits when it is `blocks_ahead` in front.
 // The thread ends with the file, with a failure, or when the object goes.
-class FileInput : public drivers::acs::BlockSink {
+class FileInput : public drivers::SampleSink {
 public:
   static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings,
                                                    const BenchFile& bench) {
-    if (settings.driver != SourceDriver::file) {
-      return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' is no file; analyse evaluates "
+    if (!settings.is<FileSourceSettings>()) {
+      return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' is not a file; analyse evaluates "
                                                    "files, use 'dyncal run' for live sources",
                                                    settings.where, settings.name));
     }
     SourceSettings at_once = settings;
-    at_once.play_speed = 0.0;
+    std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
     auto driver = acs::make_driver(at_once);
     if (!driver) {
       return fail(driver.error());
@@ -93,10 +93,14 @@ public:
   }
 
 private:
-  explicit FileInput(std::unique_ptr<drivers::acs::AcsDriver> driver)
+  explicit FileInput(std::unique_ptr<drivers::SampleSource> driver)
       : driver_(std::move(driver)) {}
 
-  void begin_session(const drivers::SourceDescription&) override {}
+  // One session, described before it is played; losses show as gaps of the sample numbers.
+  void describe(const drivers::SourceDescription&) override {}
+  void begin_session() override {}
+  void count(const drivers::SampleCounts&) override {}
+  void warn(const std::string&) override {}
 
   void take(drivers::SampleBlock block) override {
     std::unique_lock lock(mutex_);
@@ -129,7 +133,7 @@ private:
     reached_ns_ = last - *first_ns_;
   }
 
-  std::unique_ptr<drivers::acs::AcsDriver> driver_;
+  std::unique_ptr<drivers::SampleSource> driver_;
   SourceOptions options_;
   wire::SourceDescription description_;
   std::uint64_t number_ = 0;
@@ -165,14 +169,14 @@ Expected<void> take_shots(const BenchFile& bench, const std::string& source,
 Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
   Inputs inputs;
   for (const std::string& name : evaluator.recipe().sources()) {
-    const SourceDriver driver = bench.source(name)->driver;
-    if (driver == SourceDriver::oscilloscope || driver == SourceDriver::series) {
+    const SourceSettings& source = *bench.source(name);
+    if (source.is<OscilloscopeSourceSettings>() || source.is<SeriesSourceSettings>()) {
       if (const auto read = take_shots(bench, name, evaluator); !read) {
         return fail(read.error());
       }
       continue;
     }
-    auto input = FileInput::open(*bench.source(name), bench);
+    auto input = FileInput::open(source, bench);
     if (!input) {
       return fail(input.error());
     }

@@ -273,7 +273,7 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
   }
   for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
     const SourceSettings* source = bench.source(role.source);
-    if (source != nullptr && source->driver == SourceDriver::oscilloscope) {
+    if (source != nullptr && source->is<OscilloscopeSourceSettings>()) {
       return fail(refused(
           fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its "
                       "trigger, and the DAU does "
@@ -281,7 +281,7 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
                       bench.path.string(), role.source)));
     }
     const bool may_be_told_by_instrument =
-        source != nullptr && source->driver == SourceDriver::socket;
+        source != nullptr && source->is<SocketSourceSettings>();
     if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
         !may_be_told_by_instrument) {
       return fail(no_time_scale(role.source));
@@ -292,7 +292,7 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
                                     "scatter of the calibration is seen from them",
                                     bench.path.string())));
   }
-  if (sets_amplitude && bench.generator.driver == "none") {
+  if (sets_amplitude && bench.generator.driver == GeneratorDriver::none) {
     return fail(refused(fmt::format("{}: --amplitudes sets the generator, but the bench has none",
                                     bench.path.string())));
   }

@@ -10,10 +10,11 @@ namespace dyncal::services::dau {
 
 namespace {
 
-PlannedSource planned(const BenchFile& bench, const SourceSettings& source) {
+PlannedSource planned(const BenchFile& bench, const SourceSettings& source,
+                      const SmartupSourceSettings& smartup) {
   PlannedSource planned{.bench = bench.bench, .source = source.name, .settings = {}};
-  planned.settings.sensor = *source.sensor;
-  planned.settings.sync_sensor = source.sync_sensor;
+  planned.settings.sensor = smartup.sensor;
+  planned.settings.sync_sensor = smartup.sync_sensor;
   planned.settings.naming = {source.channels, source.units};
   planned.settings.time_base = source.time_base;
   return planned;
@@ -61,12 +62,13 @@ Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFil
   for (const BenchFile& bench : benches) {
     bool any = false;
     for (const SourceSettings& source : bench.sources) {
-      if (source.driver != SourceDriver::smartup) {
+      const auto* smartup = source.as<SmartupSourceSettings>();
+      if (smartup == nullptr) {
         continue;
       }
       any = true;
-      PlannedSource added = planned(bench, source);
-      PlannedEndpoint& endpoint = endpoint_at(endpoints, source.listen);
+      PlannedSource added = planned(bench, source, *smartup);
+      PlannedEndpoint& endpoint = endpoint_at(endpoints, smartup->listen);
       if (added.settings.sync_sensor == added.settings.sensor) {
         return fail(ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same");
       }

@@ -1,9 +1,10 @@
 #include "services/dso/shot_device.hpp"
-#include "services/device_error.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
+
+#include "services/device_error.hpp"
 
 namespace dyncal::services::dso {
 namespace {
@@ -15,13 +16,12 @@ constexpr std::size_t points = 10'000;
 constexpr milliseconds min_trigger_limit{3000};
 constexpr milliseconds series_limit{10'000}; // from the trigger to the end of the series
 
-drivers::dso::OscilloscopeSettings oscilloscope_settings(const SourceSettings& source) {
+drivers::dso::OscilloscopeSettings oscilloscope_settings(const OscilloscopeSourceSettings& source) {
   drivers::dso::OscilloscopeSettings settings;
   settings.address = source.address;
-  settings.family = source.oscilloscope.family;
-  settings.inputs.push_back(
-      {"sync", source.oscilloscope.sync_input, source.oscilloscope.sync_range_v, 0.0});
-  settings.trigger_level_v = source.oscilloscope.trigger_level_v;
+  settings.family = source.family;
+  settings.inputs.push_back({"sync", source.sync_input, source.sync_range_v, 0.0});
+  settings.trigger_level_v = source.trigger_level_v;
   return settings;
 }
 
@@ -32,8 +32,8 @@ drivers::dso::Acquisition acquisition_for(double frequency_hz) {
   return {.before_trigger_s = half_s, .after_trigger_s = half_s, .points = points};
 }
 
-ShotDevice::ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor,
-                       const drivers::StopSignal& stop)
+ShotDevice::ShotDevice(const OscilloscopeSourceSettings& oscilloscope,
+                       const SeriesSourceSettings& sensor, const drivers::StopSignal& stop)
     : oscilloscope_(oscilloscope_settings(oscilloscope), stop),
       sensor_(sensor.path.empty() ? drivers::tss::series_from_socket(sensor.address, stop)
                                   : drivers::tss::series_from_folder(sensor.path, stop)) {}

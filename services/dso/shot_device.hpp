@@ -16,7 +16,7 @@
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series_source.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/source_settings.hpp"
 #include "services/dso/trigger_count.hpp"
 #include "services/error.hpp"
 
@@ -29,9 +29,8 @@ struct ShotPair {
 
 class ShotDevice {
 public:
-  // `oscilloscope` and `sensor` are sources of the bench file with these drivers. `stop` outlives
-  // the device.
-  ShotDevice(const SourceSettings& oscilloscope, const SourceSettings& sensor,
+  // `stop` outlives the device.
+  ShotDevice(const OscilloscopeSourceSettings& oscilloscope, const SeriesSourceSettings& sensor,
              const drivers::StopSignal& stop);
 
   // Connects both, so that they can be described. The sensor's channels are known only with its

@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
+#include <condition_variable>
 #include <csignal>
-#include <memory>
+#include <mutex>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 namespace dyncal::services {
@@ -73,15 +73,6 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
   return bus::Participant::create(participant);
 }
 
-void set_up_log(const std::string& program) {
-  program_name = program;
-  auto logger =
-      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %n %l: %v");
-  logger->flush_on(spdlog::level::info);
-  spdlog::set_default_logger(std::move(logger));
-}
-
 std::stop_token stop_on_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -99,8 +90,17 @@ std::stop_token stop_on_signals() {
   return stop.get_token();
 }
 
+void wait_for_stop(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  stopped.wait(lock, stop, [] { return false; });
+}
+
 int report_error(const Error& error) {
-  fmt::print(stderr, "{}: {}\n", program_name, error.message);
+  finish_log();
+  const std::string& program = spdlog::default_logger()->name();
+  fmt::print(stderr, "{}: {}\n", program.empty() ? "dyncal" : program, error.message);
   return error.code == ErrorCode::interrupted    ? interrupted_status
          : error.code == ErrorCode::bad_argument ? 2
                                                  : 1;

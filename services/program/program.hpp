@@ -9,6 +9,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
+#include "services/program/log.hpp"
 
 namespace CLI {
 class App;
@@ -35,16 +36,16 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 [[nodiscard]] Expected<bus::Participant> join_network(const NetworkOptions& options,
                                                       const std::string& program);
 
-// Lines of time, level and text on standard error.
-void set_up_log(const std::string& program);
-
 // Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called
 // once, before other threads start, since the signals are blocked in all threads and waited for in
 // one of their own, which lasts as long as the process.
 [[nodiscard]] std::stop_token stop_on_signals();
 
-// Prints "PROGRAM: message" on standard error and returns the exit status that belongs to the
-// error.
+// Blocks until `stop` is requested.
+void wait_for_stop(const std::stop_token& stop);
+
+// Finishes the log, prints "PROGRAM: message" on standard error and returns the exit status that
+// belongs to the error.
 [[nodiscard]] int report_error(const Error& error);
 
 } // namespace dyncal::services

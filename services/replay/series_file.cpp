@@ -7,9 +7,12 @@
 namespace dyncal::services {
 namespace {
 
-class Collector : public drivers::acs::BlockSink {
+class Collector : public drivers::SampleSink {
 public:
-  void begin_session(const drivers::SourceDescription& description) override {
+  void begin_session() override {}
+  void count(const drivers::SampleCounts&) override {}
+  void warn(const std::string&) override {}
+  void describe(const drivers::SourceDescription& description) override {
     for (const drivers::ChannelDescription& channel : description.channels) {
       series_.names.push_back(channel.name);
     }
@@ -44,9 +47,9 @@ std::optional<std::size_t> SeriesFile::column(const std::string& name) const {
 }
 
 Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
-  drivers::acs::FileSettings settings;
+  drivers::files::FileSettings settings;
   settings.path = path;
-  drivers::acs::FileSource source(std::move(settings));
+  drivers::files::FileSource source(std::move(settings));
   Collector collector;
   const auto read = source.describe().and_then(
       [&](const drivers::SourceDescription&) { return source.run(collector); });

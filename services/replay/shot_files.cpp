@@ -85,6 +85,15 @@ Expected<drivers::tss::Series> read_file(const std::filesystem::path& path,
   return selected ? std::move(selected) : bad_file(path, selected.error().message);
 }
 
+// Empty for a device.
+std::filesystem::path folder_of_shots(const SourceSettings& source) {
+  if (const auto* oscilloscope = source.as<OscilloscopeSourceSettings>()) {
+    return oscilloscope->path;
+  }
+  const auto* series = source.as<SeriesSourceSettings>();
+  return series != nullptr ? series->path : std::filesystem::path();
+}
+
 wire::SourceDescription describe(const BenchFile& bench, const SourceSettings& source,
                                  wire::SourceKind kind, const drivers::tss::Series& series) {
   wire::SourceDescription description;
@@ -113,12 +122,13 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
                                     const std::string& run) {
   const SourceSettings& source = *bench.source(name); // a role names it: it was checked
   const bool trace = name == bench.method.sync_dau.source;
-  if (source.path.empty()) {
+  const std::filesystem::path folder = folder_of_shots(source);
+  if (folder.empty()) {
     return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' has no path; analyse evaluates "
                                                  "files, use 'dyncal run' for live sources",
                                                  source.where, source.name));
   }
-  const auto files = find_files(source.path);
+  const auto files = find_files(folder);
   if (!files) {
     return fail(files.error());
   }

@@ -11,7 +11,7 @@ namespace dyncal::services {
 Expected<GeneratorConnection> connect_generator(const GeneratorSettings& settings,
                                                 AskOperator ask) {
   GeneratorConnection connection;
-  if (settings.driver == "by-hand") {
+  if (settings.driver == GeneratorDriver::by_hand) {
     connection.generator =
         std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, std::move(ask));
     return connection;

@@ -85,7 +85,7 @@ Expected<void> RunController::open_messages() {
 }
 
 Expected<void> RunController::open_excitation() {
-  if (bench_.generator.driver == "none") {
+  if (bench_.generator.driver == GeneratorDriver::none) {
     return {};
   }
   auto excitation = StepExcitation::open(

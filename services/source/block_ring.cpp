@@ -11,6 +11,10 @@ std::size_t held_bytes(const drivers::SampleBlock& block) {
          block.stamp_uncertainty_ns.capacity() * sizeof(std::uint32_t) + block.flags.capacity();
 }
 
+std::uint64_t size_of(const RingEntry& entry) {
+  return entry.shot ? 1 : entry.block.samples;
+}
+
 bool BlockRing::has_room(const RingEntry& entry) const {
   if (entries_.empty() || entry.block.samples == 0) {
     return true;
@@ -27,7 +31,7 @@ void BlockRing::append(RingEntry entry) {
 bool BlockRing::offer(RingEntry entry) {
   const std::lock_guard lock(mutex_);
   if (!has_room(entry)) {
-    dropped_samples_ += entry.block.samples;
+    dropped_ += size_of(entry);
     return false;
   }
   append(std::move(entry));
@@ -75,9 +79,9 @@ double BlockRing::fill() const {
   return std::clamp(std::max(by_span, by_bytes), 0.0, 1.0);
 }
 
-std::uint64_t BlockRing::dropped_samples() const {
+std::uint64_t BlockRing::dropped() const {
   const std::lock_guard lock(mutex_);
-  return dropped_samples_;
+  return dropped_;
 }
 
 } // namespace dyncal::services

@@ -1,11 +1,13 @@
-// The buffer between the thread that listens to a device and the thread that publishes: write() on
-// the bus may block for seconds, the listener never may.
+// The buffer between the thread that serves a device and the thread that publishes: write() on the
+// bus may block for seconds, the device's thread never may.
 //
 // Bounds: the time between the oldest and the newest entry when they were put in (for a live
-// device: the duration of its data), and the bytes held. Policy when full: the newest block is not
-// taken and its samples are counted; what is already held stays whole, so the gap shows once, as a
-// jump of `first_sample`. Entries keep their order; each belongs to a session and may carry marks
-// (end of the stream) instead of samples. Any number of threads put in, one thread takes out.
+// device: the duration of its data), and the bytes held. Policy when full: the newest entry is not
+// taken and is counted; what is already held stays whole, so the gap shows once, as a jump of
+// `first_sample`.
+//
+// Entries keep their order; each belongs to a session and holds a block of samples, the record of
+// one shot, or the mark that ends the stream. Any number of threads put in, one thread takes out.
 #pragma once
 
 #include <chrono>
@@ -16,6 +18,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string>
 
 #include "drivers/sample_block.hpp"
 
@@ -26,8 +29,19 @@ struct RingLimits {
   std::size_t bytes = std::size_t{256} << 20U;
 };
 
+// What a record that was triggered has besides its samples.
+struct Shot {
+  std::uint64_t number = 0; // of the session, from 1; both records of a shot have the same
+  std::string run;
+  std::uint32_t step = 0;
+  std::int64_t trigger_utc_ns = 0; // of the host's clock
+  double first_sample_s = 0.0; // from the trigger to the first sample
+  double interval_s = 0.0;
+};
+
 struct RingEntry {
-  drivers::SampleBlock block;
+  drivers::SampleBlock block; // of a shot: its values alone
+  std::optional<Shot> shot;   // of a triggered source
   std::uint64_t session = 0;
   bool end_of_stream = false; // no samples; the last entry of its session
   std::chrono::steady_clock::time_point offered{};
@@ -36,23 +50,26 @@ struct RingEntry {
 // Memory that a block holds, as the ring counts it.
 [[nodiscard]] std::size_t held_bytes(const drivers::SampleBlock& block);
 
+// What is lost with an entry: its samples, or one shot.
+[[nodiscard]] std::uint64_t size_of(const RingEntry& entry);
+
 class BlockRing {
 public:
   explicit BlockRing(RingLimits limits) : limits_(limits) {}
 
-  // False when the ring is full: the entry is lost and its samples are counted in
-  // dropped_samples(). Never blocks. A mark without samples is always taken.
+  // Returns false if the ring is full: the entry is lost and counted in dropped(). Never blocks. A
+  // mark without samples is always taken.
   bool offer(RingEntry entry);
 
-  // Waits for room. False when `stop` was requested before there was any: the entry is lost and not
-  // counted.
+  // Waits for room. Returns false if `stop` was requested before there was any: the entry is lost
+  // and not counted.
   bool offer_waiting(RingEntry entry, const std::stop_token& stop);
 
   [[nodiscard]] std::optional<RingEntry> take();
 
   [[nodiscard]] bool empty() const;
-  [[nodiscard]] double fill() const; // 0 empty ... 1 full, the fuller of the two bounds
-  [[nodiscard]] std::uint64_t dropped_samples() const;
+  [[nodiscard]] double fill() const;           // 0 empty ... 1 full, the fuller of the two bounds
+  [[nodiscard]] std::uint64_t dropped() const; // samples, or shots
 
 private:
   [[nodiscard]] bool has_room(const RingEntry& entry) const;
@@ -63,7 +80,7 @@ private:
   std::condition_variable_any room_;
   std::deque<RingEntry> entries_;
   std::size_t bytes_ = 0;
-  std::uint64_t dropped_samples_ = 0;
+  std::uint64_t dropped_ = 0;
 };
 
 } // namespace dyncal::services

@@ -2,23 +2,11 @@
 
 #include <utility>
 
-#include "services/contract/topics.hpp"
+#include "services/contract/source_kind.hpp"
 
 namespace dyncal::services {
 
 namespace {
-
-wire::SourceKind to_contract(SourceKind kind) {
-  switch (kind) {
-  case SourceKind::dau:
-    return wire::SOURCE_DAU;
-  case SourceKind::acs:
-    return wire::SOURCE_ACS;
-  case SourceKind::can:
-    return wire::SOURCE_CAN;
-  }
-  return wire::SOURCE_DAU;
-}
 
 dyncal::wire::StampInstant to_contract(drivers::StampInstant instant) {
   switch (instant) {
@@ -51,18 +39,6 @@ dyncal::wire::ChannelDescription to_contract(const drivers::ChannelDescription& 
 
 } // namespace
 
-const char* sample_topic(SourceKind kind) {
-  switch (kind) {
-  case SourceKind::dau:
-    return bus::topics::dau_samples;
-  case SourceKind::acs:
-    return bus::topics::acs_samples;
-  case SourceKind::can:
-    return bus::topics::can_samples;
-  }
-  return bus::topics::dau_samples;
-}
-
 dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uint64_t session,
                                            const std::string& software,
                                            const drivers::SourceDescription& description) {
@@ -70,7 +46,7 @@ dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uin
   message.bench(source.bench);
   message.source(source.source);
   message.session(session);
-  message.kind(to_contract(source.kind));
+  message.kind(to_wire(source.kind));
   message.device(description.device);
   message.serial(description.serial);
   message.driver(description.driver);
@@ -112,9 +88,29 @@ dyncal::wire::SampleBlock to_message(const SourceOptions& source, std::uint64_t 
   return message;
 }
 
+dyncal::wire::TriggeredRecord to_message(const SourceOptions& source, std::uint64_t session,
+                                         const Shot& shot, drivers::SampleBlock block) {
+  dyncal::wire::TriggeredRecord message;
+  message.bench(source.bench);
+  message.source(source.source);
+  message.session(session);
+  message.shot(shot.number);
+  message.sample_count(static_cast<std::uint32_t>(block.samples));
+  message.channel_count(
+      block.samples == 0 ? 0 : static_cast<std::uint32_t>(block.values.size() / block.samples));
+  message.trigger_utc_ns(shot.trigger_utc_ns);
+  message.first_sample_s(shot.first_sample_s);
+  message.interval_s(shot.interval_s);
+  message.values(std::move(block.values));
+  message.received_utc_ns(block.received_utc_ns);
+  message.run(shot.run);
+  message.step(shot.step);
+  return message;
+}
+
 dyncal::wire::SourceStatus to_message(const SourceOptions& source,
                                       const SourcePublisher::Snapshot& snapshot) {
-  const SourceCounts& counts = snapshot.counts;
+  const drivers::SampleCounts& counts = snapshot.counts;
   dyncal::wire::SourceStatus message;
   message.bench(source.bench);
   message.source(source.source);
@@ -125,10 +121,10 @@ dyncal::wire::SourceStatus to_message(const SourceOptions& source,
   message.duplicates(counts.duplicates);
   message.rejected(counts.rejected);
   message.stamps_not_trusted(counts.stamps_not_trusted);
-  for (const auto& [name, value] : counts.causes) {
+  for (const drivers::NamedCount& cause : counts.causes) {
     dyncal::wire::NamedCount count;
-    count.name(name);
-    count.value(value);
+    count.name(cause.name);
+    count.value(cause.value);
     message.causes().push_back(std::move(count));
   }
   message.clock_uncertainty_s(counts.clock_uncertainty_s);

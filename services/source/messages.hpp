@@ -1,4 +1,4 @@
-// From what drivers say to the messages of the contract (idl/README.md explains every field).
+// From what drivers deliver to the messages of the contract (idl/README.md explains every field).
 // Plain functions, any thread.
 #pragma once
 
@@ -11,9 +11,6 @@
 
 namespace dyncal::services {
 
-// The topic on which a source of this kind publishes its samples.
-[[nodiscard]] const char* sample_topic(SourceKind kind);
-
 [[nodiscard]] dyncal::wire::SourceDescription
 to_message(const SourceOptions& source, std::uint64_t session, const std::string& software,
            const drivers::SourceDescription& description);
@@ -23,6 +20,11 @@ to_message(const SourceOptions& source, std::uint64_t session, const std::string
                                                    std::uint64_t session,
                                                    std::uint64_t block_number,
                                                    drivers::SampleBlock block);
+
+// The record of a shot, or with no samples an empty one; channel_count follows from the values.
+[[nodiscard]] dyncal::wire::TriggeredRecord to_message(const SourceOptions& source,
+                                                       std::uint64_t session, const Shot& shot,
+                                                       drivers::SampleBlock block);
 
 // All fields but the counts of the publishing service itself (rate, buffer, readers, state).
 [[nodiscard]] dyncal::wire::SourceStatus to_message(const SourceOptions& source,

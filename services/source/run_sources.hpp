@@ -34,7 +34,8 @@ template <class Source>
                                          const std::stop_token& stop) {
   const auto service = SourceService::create(participant, {.software = software_version()});
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
-  for (const RunnableSource<Source>& one : sources) {
+  for (RunnableSource<Source>& one : sources) {
+    one.options.stop = stop;
     auto publisher = service->add(one.options);
     if (!publisher) {
       return fail(publisher.error());

@@ -30,8 +30,7 @@ SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePubli
   if (!status) {
     return fail(status.error());
   }
-  auto samples = participant.writer<dyncal::wire::SampleBlock>(
-      sample_topic(options.kind), bus::Profile::samples, options.bench);
+  auto samples = StreamWriter::create(participant, options);
   if (!samples) {
     return fail(samples.error());
   }
@@ -57,8 +56,6 @@ void SourceChannel::answer(const std::string& run) {
 
 void SourceChannel::begin_session(std::uint64_t session) {
   session_ = session;
-  block_number_ = 0;
-  next_sample_ = 0;
   ended_ = false;
   description_due_ = description_.has_value();
 }
@@ -80,21 +77,18 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
   return true;
 }
 
-// Takes the next thing to be written into pending_. False when there is none.
+void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {
+  pending_ = Pending{.size = size_of(entry), .end_of_stream = entry.end_of_stream};
+  writers_.samples->prepare(std::move(entry), answers_run);
+}
+
+// Takes the next thing to be written into pending_. Returns false if there is none.
 bool SourceChannel::next_message() {
   if (auto entry = publisher_->ring().take()) {
     if (entry->session != session_) {
       begin_session(entry->session);
     }
-    if (entry->block.samples > 0) {
-      next_sample_ = entry->block.first_sample;
-    } else {
-      entry->block.first_sample = next_sample_;
-    }
-    next_sample_ += entry->block.samples;
-    pending_ =
-        to_message(publisher_->options(), session_, block_number_++, std::move(entry->block));
-    pending_->end_of_stream(entry->end_of_stream);
+    hold(std::move(*entry), "");
     return true;
   }
   if (const auto session = publisher_->snapshot().session; session != session_) {
@@ -103,11 +97,10 @@ bool SourceChannel::next_message() {
   if (runs_to_answer_.empty() || !description_) {
     return false;
   }
-  drivers::SampleBlock answer;
-  answer.first_sample = next_sample_;
-  answer.received_utc_ns = utc_now_ns();
-  pending_ = to_message(publisher_->options(), session_, block_number_++, std::move(answer));
-  pending_->acknowledged_run(runs_to_answer_.front());
+  RingEntry answer;
+  answer.session = session_;
+  answer.block.received_utc_ns = utc_now_ns();
+  hold(std::move(answer), runs_to_answer_.front());
   runs_to_answer_.pop_front();
   return true;
 }
@@ -120,15 +113,15 @@ bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   if (!write_description(limit)) {
     return false;
   }
-  const auto outcome = writers_.samples.write(*pending_, limit);
+  const auto outcome = writers_.samples->write(limit);
   if (outcome == bus::WriteOutcome::timed_out) {
     return false;
   }
   if (outcome == bus::WriteOutcome::failed) {
     ++failed_writes_;
-    samples_not_written_ += pending_->sample_count();
+    lost_in_writes_ += pending_->size;
   }
-  if (pending_->end_of_stream()) {
+  if (pending_->end_of_stream) {
     ended_ = true;
   }
   pending_.reset();
@@ -165,6 +158,9 @@ dyncal::wire::SourceState SourceChannel::state(const SourcePublisher::Snapshot& 
   if (ended_ && snapshot.stage == SourceStage::ended) {
     return wire::SOURCE_ENDED;
   }
+  if (snapshot.reachable && snapshot.stage != SourceStage::ended) {
+    return *snapshot.reachable ? wire::SOURCE_RUNNING : wire::SOURCE_SILENT;
+  }
   const bool watched =
       snapshot.silent_after > std::chrono::nanoseconds(0) && snapshot.stage != SourceStage::ended;
   if (watched && now - snapshot.last_offer > snapshot.silent_after) {
@@ -192,10 +188,10 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   message.state(state(snapshot, now));
   message.published_utc_ns(utc_now_ns());
   message.rate_hz(rate_hz_);
-  message.dropped_in_service(publisher_->ring().dropped_samples() + samples_not_written_);
+  message.dropped_in_service(publisher_->ring().dropped() + lost_in_writes_);
   message.buffer_fill(publisher_->ring().fill());
   message.matched_readers(
-      static_cast<std::uint32_t>(std::max(0, writers_.samples.matched_readers())));
+      static_cast<std::uint32_t>(std::max(0, writers_.samples->matched_readers())));
   if (failed_writes_ > 0) {
     dyncal::wire::NamedCount failed;
     failed.name("writes refused by the bus");

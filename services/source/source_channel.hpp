@@ -1,5 +1,4 @@
-// The publishing thread's side of one source: its three writers, its place in the stream, and what
-// is due to be written.
+// The publishing thread's side of one source: its three writers and what is due to be written.
 //
 // Everything it does is one short step that may block for `write_limit` at most, so that a reader
 // that hangs on one source does not hold up the others: what could not be written stays and is
@@ -17,13 +16,14 @@
 #include "services/error.hpp"
 #include "services/source/messages.hpp"
 #include "services/source/source_publisher.hpp"
+#include "services/source/stream_writer.hpp"
 
 namespace dyncal::services {
 
 struct SourceWriters {
   bus::Writer<dyncal::wire::SourceDescription> description;
   bus::Writer<dyncal::wire::SourceStatus> status;
-  bus::Writer<dyncal::wire::SampleBlock> samples;
+  std::unique_ptr<StreamWriter> samples;
 };
 
 class SourceChannel {
@@ -38,11 +38,11 @@ public:
 
   [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
 
-  // Somebody arms for this run: an empty block that names it is written as soon as the source has a
-  // description.
+  // Somebody arms for this run: an empty message that names it is written as soon as the source has
+  // a description.
   void answer(const std::string& run);
 
-  // Writes a few of the things that wait. True when there is more to do at once.
+  // Writes a few of the things that wait. Returns true if there is more to do at once.
   bool step(std::chrono::nanoseconds write_limit);
 
   // Blocks are published even if the source never got a description: the service stops.
@@ -56,13 +56,14 @@ public:
                                 std::chrono::nanoseconds write_limit);
 
   void wait_for_acknowledgments(std::chrono::nanoseconds limit) {
-    writers_.samples.wait_for_acknowledgments(limit);
+    writers_.samples->wait_for_acknowledgments(limit);
   }
 
 private:
   bool write_description(std::chrono::nanoseconds limit);
   bool write_next(std::chrono::nanoseconds limit);
   bool next_message();
+  void hold(RingEntry entry, const std::string& answers_run);
   void begin_session(std::uint64_t session);
   void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
   [[nodiscard]] dyncal::wire::SourceState state(const SourcePublisher::Snapshot& snapshot,
@@ -77,12 +78,14 @@ private:
   bool description_due_ = false;
   bool flushing_ = false;
   std::uint64_t session_;
-  std::uint64_t block_number_ = 0; // of the next block of the session
-  std::uint64_t next_sample_ = 0;
   bool ended_ = false; // the end of the session's stream has been written
   std::uint64_t failed_writes_ = 0;
-  std::uint64_t samples_not_written_ = 0;
-  std::optional<dyncal::wire::SampleBlock> pending_;
+  std::uint64_t lost_in_writes_ = 0; // samples, or shots
+  struct Pending {
+    std::uint64_t size = 0; // samples, or one shot
+    bool end_of_stream = false;
+  };
+  std::optional<Pending> pending_; // its message is the stream writer's
   std::deque<std::string> runs_to_answer_;
 
   dyncal::wire::SourceState published_state_ = wire::SOURCE_STARTING;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <spdlog/spdlog.h>
+
 #include "services/bus/bus.hpp"
 #include "services/contract/session_number.hpp"
 
@@ -28,23 +30,23 @@ bool same_description(const drivers::SourceDescription& a, const drivers::Source
 
 SourcePublisher::SourcePublisher(SourceOptions options, std::shared_ptr<bus::WakeUp> wake_up)
     : options_(std::move(options)), wake_up_(std::move(wake_up)), ring_(options_.ring) {
-  state_.session = random_session();
+  state_.session = options_.session != 0 ? options_.session : random_session();
   state_.last_offer = Clock::now();
 }
 
-void SourcePublisher::describe(drivers::SourceDescription description) {
+void SourcePublisher::describe(const drivers::SourceDescription& description) {
   {
     const std::lock_guard lock(mutex_);
     if (description_ && same_description(*description_, description)) {
       return;
     }
-    description_ = std::move(description);
+    description_ = description;
     description_changed_ = true;
   }
   wake_up_->ring();
 }
 
-void SourcePublisher::start_session() {
+void SourcePublisher::begin_session() {
   const std::lock_guard lock(mutex_);
   if (!session_used_) {
     return;
@@ -56,7 +58,7 @@ void SourcePublisher::start_session() {
   gap_count_ = 0;
 }
 
-RingEntry SourcePublisher::next_entry(drivers::SampleBlock block) {
+RingEntry SourcePublisher::next_entry(drivers::SampleBlock block, std::optional<Shot> shot) {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
   if (session_used_) {
@@ -64,22 +66,37 @@ RingEntry SourcePublisher::next_entry(drivers::SampleBlock block) {
   }
   session_used_ = true;
   state_.stage = SourceStage::streaming;
-  state_.offered_samples += block.samples;
+  state_.offered_samples += shot ? 0 : block.samples;
   state_.last_offer = now;
-  return {
-      .block = std::move(block), .session = state_.session, .end_of_stream = false, .offered = now};
+  return {.block = std::move(block),
+          .shot = std::move(shot),
+          .session = state_.session,
+          .end_of_stream = false,
+          .offered = now};
 }
 
-bool SourcePublisher::offer(drivers::SampleBlock block) {
-  const bool taken = ring_.offer(next_entry(std::move(block)));
+void SourcePublisher::take(drivers::SampleBlock block) {
+  RingEntry entry = next_entry(std::move(block), std::nullopt);
+  if (options_.when_full == WhenFull::wait) {
+    ring_.offer_waiting(std::move(entry), options_.stop);
+  } else {
+    ring_.offer(std::move(entry));
+  }
+  wake_up_->ring();
+}
+
+bool SourcePublisher::take_shot(Shot shot, drivers::SampleBlock values) {
+  const bool taken = ring_.offer(next_entry(std::move(values), std::move(shot)));
   wake_up_->ring();
   return taken;
 }
 
-bool SourcePublisher::offer_waiting(drivers::SampleBlock block, const std::stop_token& stop) {
-  const bool taken = ring_.offer_waiting(next_entry(std::move(block)), stop);
-  wake_up_->ring();
-  return taken;
+void SourcePublisher::set_reachable(bool reachable) {
+  {
+    const std::lock_guard lock(mutex_);
+    state_.reachable = reachable;
+  }
+  wake_up_->ring(); // the status is published at once when the state changes
 }
 
 void SourcePublisher::close_stream(SourceStage stage) {
@@ -104,16 +121,20 @@ void SourcePublisher::end() {
 }
 
 void SourcePublisher::fail(std::string message) {
-  say(std::move(message));
+  set_message(std::move(message));
   close_stream(SourceStage::failed);
 }
 
-void SourcePublisher::report(SourceCounts counts) {
+void SourcePublisher::count(const drivers::SampleCounts& counts) {
   const std::lock_guard lock(mutex_);
-  state_.counts = std::move(counts);
+  state_.counts = counts;
 }
 
-void SourcePublisher::say(std::string message) {
+void SourcePublisher::warn(const std::string& sentence) {
+  spdlog::warn("{}/{}: {}", options_.bench, options_.source, sentence);
+}
+
+void SourcePublisher::set_message(std::string message) {
   const std::lock_guard lock(mutex_);
   state_.message = std::move(message);
 }

@@ -1,11 +1,13 @@
-// One source of a bench as its driver sees it: somewhere to put descriptions, blocks and counts,
-// that never makes the driver wait (unless it asks to). What is put here is published by the one
-// publishing thread of SourceService.
+// One source of a bench as its driver sees it: the sink of its samples, descriptions and counts.
+// What is put here is published by the one publishing thread of SourceService.
 //
-// Life of a source: describe(), then offer()... and end(). start_session() begins the next play, or
-// follows a device that has restarted its numbering. Blocks offered before the first describe()
-// wait in the ring until the description is known, so that no reader meets a block whose channels
-// it cannot name.
+// Life of a source: describe(), then take()... and end(). begin_session() begins the next play, or
+// follows a device that has restarted its numbering. Blocks taken before the first describe() wait
+// in the ring until the description is known, so that no reader meets a block whose channels it
+// cannot name.
+//
+// When the ring is full (a network that does not take the samples), a live device loses its newest
+// block, which is counted as dropped_in_service; a file or a TCP stream waits: `WhenFull`.
 //
 // Threads: every function may be called from any thread; calls for one source keep their order only
 // within one thread.
@@ -20,10 +22,10 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "drivers/sample_block.hpp"
+#include "drivers/sample_sink.hpp"
+#include "services/contract/source_kind.hpp"
 #include "services/source/block_ring.hpp"
 
 namespace dyncal::bus {
@@ -32,67 +34,64 @@ class WakeUp;
 
 namespace dyncal::services {
 
-enum class SourceKind { dau, acs, can };
+enum class WhenFull { drop, wait };
 
 struct SourceOptions {
   std::string bench;
   std::string source;
   SourceKind kind = SourceKind::acs;
   // SILENT when no block came for this long, or for four times the usual interval of its blocks if
-  // that is longer. 0: never (files).
+  // that is longer. 0: never (files, and devices that are asked for their records).
   std::chrono::nanoseconds silent_after = std::chrono::seconds(2);
   RingLimits ring = {};
-};
-
-// Since the program started, as the driver accounts for it. Samples that the ring had to drop are
-// counted by the publisher itself.
-struct SourceCounts {
-  std::uint64_t received = 0;
-  std::uint64_t lost_in_device = 0;
-  std::uint64_t lost_on_way = 0;
-  std::uint64_t duplicates = 0;
-  std::uint64_t rejected = 0;
-  std::uint64_t stamps_not_trusted = 0;
-  std::vector<std::pair<std::string, std::uint64_t>>
-      causes; // the counts above taken apart, and what concerns no single sample
-  double clock_uncertainty_s = 0.0; // of the device's clock now; 0: not known
+  WhenFull when_full = WhenFull::drop;
+  std::stop_token stop = {}; // once requested, take() waits no longer: its block is lost
+  std::uint64_t session = 0; // the first one; 0: a random number
 };
 
 enum class SourceStage { starting, streaming, ended, failed };
 
-class SourcePublisher {
+class SourcePublisher : public drivers::SampleSink {
 public:
   SourcePublisher(SourceOptions options, std::shared_ptr<bus::WakeUp> wake_up);
 
   [[nodiscard]] const SourceOptions& options() const { return options_; }
 
-  // Known for the first time, or changed. Published when it differs from the last one.
-  void describe(drivers::SourceDescription description);
+  // Published when it differs from the last one.
+  void describe(const drivers::SourceDescription& description) override;
 
-  // Blocks offered from now on belong to a new session (a new random number, blocks counted from
-  // 0), unless the present one is still unused.
-  void start_session();
+  // Blocks taken from now on belong to a new session (a new random number, blocks counted from 0),
+  // unless the present one is still unused.
+  void begin_session() override;
 
-  // Never blocks. False when the block was dropped because the ring is full; its samples are
-  // counted (dropped_in_service).
-  bool offer(drivers::SampleBlock block);
+  // Never blocks, unless the options say so.
+  void take(drivers::SampleBlock block) override;
 
-  // For files: waits while the ring is full. False when `stop` was requested; the block is then
-  // lost.
-  bool offer_waiting(drivers::SampleBlock block, const std::stop_token& stop);
+  // Published with the next status.
+  void count(const drivers::SampleCounts& counts) override;
+
+  // To the log, under the name of the source.
+  void warn(const std::string& sentence) override;
+
+  // Of a triggered source: one shot with its values. Never blocks. Returns false if the ring is
+  // full: the shot is lost and counted.
+  [[nodiscard]] bool take_shot(Shot shot, drivers::SampleBlock values);
+
+  // Of a device that is asked for its records: RUNNING while it can be reached, else SILENT.
+  void set_reachable(bool reachable);
 
   // No more blocks in this session: behind the last one readers get an empty block with
-  // end_of_stream, and the status says ENDED.
+  // end_of_stream, and the status is ENDED.
   void end();
 
   // The source cannot go on: end of the stream, and status FAILED with this sentence.
   void fail(std::string message);
 
-  void report(SourceCounts counts); // published with the next status
-  void say(std::string message);    // sentence of the status; "" when there is nothing to say
+  // The sentence of the status; "" when there is nothing to report.
+  void set_message(std::string message);
 
   // Waits until a measurement of this bench is RUNNING whose run this function has not returned
-  // before, and returns its run. Nothing when `stop` was requested.
+  // before, and returns its run. Returns nothing if `stop` was requested.
   [[nodiscard]] std::optional<std::string> wait_for_run(const std::stop_token& stop);
 
   // The publishing thread's side.
@@ -102,7 +101,8 @@ public:
     std::uint64_t offered_samples = 0;
     std::chrono::steady_clock::time_point last_offer{}; // of the session, or when it began
     std::chrono::nanoseconds silent_after{}; // longer for a source with rare blocks; 0: never
-    SourceCounts counts;
+    std::optional<bool> reachable;           // of a device that is asked for its records
+    drivers::SampleCounts counts;
     std::string message;
   };
   [[nodiscard]] Snapshot snapshot() const;
@@ -111,7 +111,7 @@ public:
   void note_running(const std::vector<std::string>& runs);
 
 private:
-  RingEntry next_entry(drivers::SampleBlock block);
+  RingEntry next_entry(drivers::SampleBlock block, std::optional<Shot> shot);
   [[nodiscard]] std::chrono::nanoseconds usual_gap() const;
   void close_stream(SourceStage stage);
 

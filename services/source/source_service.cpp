@@ -22,7 +22,7 @@ constexpr auto retry_interval = std::chrono::milliseconds(10); // for what could
 constexpr auto acknowledgment_limit = std::chrono::seconds(2);
 constexpr std::size_t max_name = 64; // bound of the keys of the contract
 
-// What the bench says to its sources.
+// What the bench asks of its sources.
 struct BenchReaders {
   bus::Reader<dyncal::wire::Command> command;
   bus::Reader<dyncal::wire::Measurement> measurement;
@@ -152,7 +152,7 @@ void SourceService::Implementation::listen() {
   }
 }
 
-// True when something is left to do at once.
+// Returns true if something is left to do at once.
 bool SourceService::Implementation::step_channels() {
   bool more = false;
   for (auto& channel : channels_) {

@@ -1,16 +1,16 @@
 // What every source program is made of: one publishing thread that carries all sources of a process
 // to the bus, whatever benches they belong to (a bench is a partition).
 //
-// Per source it writes SampleBlocks (DauSamples, AcsSamples or CanSamples), SourceDescription when
-// it is known or changes, and SourceStatus every 500 ms and at once when the state changes. It
-// answers COMMAND_ARM for a described source in its sample stream with an empty block that names
-// the run, behind everything written before: who reads that answer reads what follows. Only this
-// thread calls write(), which may block; a write that times out is tried again until it succeeds or
-// the service stops.
+// Per source it writes its samples (DauSamples, AcsSamples, CanSamples) or records (DsoRecord,
+// TssRecord), SourceDescription when it is known or changes, and SourceStatus every 500 ms and at
+// once when the state changes. It answers COMMAND_ARM for a described source in its stream with an
+// empty message that names the run, behind everything written before: whoever reads that answer
+// reads what follows. Only this thread calls write(), which may block; a write that times out is
+// tried again until it succeeds or the service stops.
 //
 //   auto service = SourceService::create(participant, {"dyncal-dau", software});
 //   auto source = service->add({.bench = "acc-1", .source = "dau", .kind = SourceKind::dau});
-//   service->start();  ... source->offer(block) ...  service->stop();
+//   service->start();  ... source->take(block) ...  service->stop();
 //
 // Threads: create, add, start and stop from one thread; the publishers from any.
 #pragma once
@@ -50,7 +50,7 @@ public:
 
   void start();
 
-  // Ends every stream, publishes what the rings hold as far as stop_limit allows, says ENDED and
+  // Ends every stream, publishes what the rings hold as far as stop_limit allows, reports ENDED and
   // waits for acknowledgments. Idempotent.
   void stop();
 

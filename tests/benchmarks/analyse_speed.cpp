@@ -221,7 +221,7 @@ double reading_s(const Bench& bench, int runs) {
     const auto begin = Clock::now();
     std::ptrdiff_t lines = 0;
     for (const auto& path : bench.files()) {
-      const auto file = drivers::acs::MappedFile::open(path);
+      const auto file = drivers::files::MappedFile::open(path);
       if (!file) {
         throw std::runtime_error(file.error().message);
       }

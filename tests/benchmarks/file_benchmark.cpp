@@ -62,9 +62,12 @@ std::string npy() {
   return text;
 }
 
-class Counter : public acs::BlockSink {
+class Counter : public SampleSink {
 public:
-  void begin_session(const SourceDescription&) override {}
+  void describe(const SourceDescription&) override {}
+  void begin_session() override {}
+  void count(const SampleCounts&) override {}
+  void warn(const std::string&) override {}
   void take(SampleBlock block) override {
     benchmark::DoNotOptimize(block.values.data());
     samples += block.samples;
@@ -73,14 +76,14 @@ public:
 };
 
 void play(benchmark::State& state, const char* extension, std::string (*make)()) {
-  acs::FileSettings settings;
+  files::FileSettings settings;
   settings.path = std::filesystem::temp_directory_path() /
                   ("dyncal_file_benchmark_" + std::to_string(::getpid()) + extension);
   const std::string text = make();
   std::ofstream(settings.path, std::ios::binary) << text;
   for (auto unused : state) {
     (void)unused;
-    acs::FileSource source(settings);
+    files::FileSource source(settings);
     Counter counter;
     if (!source.describe() || !source.run(counter) || counter.samples != rows) {
       std::abort();

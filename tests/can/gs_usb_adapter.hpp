@@ -21,7 +21,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/can/sensor_settings.hpp"
+#include "drivers/can/stream_settings.hpp"
 #include "drivers/can/time/frame_duration.hpp"
 #include "drivers/link/file_descriptor.hpp"
 #include "tests/can/gs_usb_protocol.hpp"

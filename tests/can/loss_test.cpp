@@ -22,7 +22,9 @@ struct Numbers : SampleSink {
   std::uint64_t next = 0;
 
   void describe(const SourceDescription&) override {}
-  void restart() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void begin_session() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void count(const SampleCounts&) override {}
+  void warn(const std::string&) override {}
   void take(SampleBlock block) override {
     missing += samples > 0 ? block.first_sample - next : 0;
     next = block.first_sample + block.samples;
@@ -37,7 +39,7 @@ protected:
     socket.interface_name = "vcan0";
     socket.receive_buffer_bytes = receive_buffer_bytes;
     source.emplace(socket);
-    SensorSettings settings;
+    StreamSettings settings;
     settings.counter = "counter";
     settings.nominal_rate_hz = 2000.0;
     settings.bit_rates.nominal_per_s = 1e6;

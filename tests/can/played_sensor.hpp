@@ -37,12 +37,14 @@ struct Sample {
   std::uint8_t flags = 0;
 };
 
-struct Samples : drivers::can::SampleSink {
+struct Samples : drivers::SampleSink {
   std::vector<Sample> all;
   drivers::SourceDescription description;
 
   void describe(const drivers::SourceDescription& said) override { description = said; }
-  void restart() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void begin_session() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void count(const drivers::SampleCounts&) override {}
+  void warn(const std::string&) override {}
   void take(drivers::SampleBlock block) override {
     for (std::size_t i = 0; i < block.samples; ++i) {
       all.push_back({block.first_sample + i,
@@ -198,7 +200,7 @@ protected:
   GsUsbSettings played;
   std::string timing;
   std::unique_ptr<GsUsbAdapter> adapter;
-  drivers::can::SensorSettings sensor;
+  drivers::can::StreamSettings sensor;
   std::optional<drivers::can::SocketCanSource> source;
   std::unique_ptr<drivers::can::SensorStream> stream;
   Samples samples;

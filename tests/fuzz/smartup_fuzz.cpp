@@ -2,9 +2,9 @@
 // input is a series of datagrams, parted by separator, from two senders in turn. After them the
 // accounts must agree with what was handed on.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -28,52 +28,52 @@ void require(bool condition) {
 
 class CheckingSink : public SampleSink {
 public:
-  void on_description(std::uint32_t sensor, const SourceDescription& description) override {
+  void describe(const SourceDescription& description) override {
     for (const auto& channel : description.channels) {
       require(!channel.name.empty());
     }
-    channels_[sensor] = description.channels.size();
   }
-  void on_warning(std::uint32_t, const std::string& sentence) override {
-    require(!sentence.empty());
-  }
-  void on_new_session(std::uint32_t sensor) override { next_[sensor] = 0; }
-  void on_block(std::uint32_t sensor, SampleBlock block) override {
+  void warn(const std::string& sentence) override { require(!sentence.empty()); }
+  void begin_session() override { next_ = 0; }
+  void count(const SampleCounts& counts) override { counts_ = counts; }
+  void take(SampleBlock block) override {
     require(block.samples > 0 && block.samples <= 4096);
     require(block.stamps_ns.size() == block.samples &&
             block.stamp_uncertainty_ns.size() == block.samples);
     require(block.flags.empty() || block.flags.size() == block.samples);
     require(!block.values.empty() && block.values.size() % block.samples == 0);
-    require(block.first_sample >= next_[sensor]);
-    next_[sensor] = block.first_sample + block.samples;
-    samples_[sensor] += block.samples;
+    require(block.first_sample >= next_);
+    next_ = block.first_sample + block.samples;
+    samples_ += block.samples;
   }
-  void on_report(const SensorReport& report) override { counts_[report.sensor] = report.counts; }
-  void on_report(const ReceptionCounts&) override {}
 
-  void check_accounts() {
-    for (const std::uint32_t sensor : {wanted_id, with_sync_id}) {
-      require(samples_[sensor] == counts_[sensor].received);
-    }
-  }
+  void check_accounts() const { require(samples_ == counts_.received); }
 
 private:
-  std::map<std::uint32_t, std::size_t> channels_;
-  std::map<std::uint32_t, std::uint64_t> next_;
-  std::map<std::uint32_t, std::uint64_t> samples_;
-  std::map<std::uint32_t, SensorCounts> counts_;
+  std::uint64_t next_ = 0;
+  std::uint64_t samples_ = 0;
+  SampleCounts counts_;
+};
+
+class IgnoringObserver : public ReceptionObserver {
+public:
+  void on_report(const SensorReport&) override {}
+  void on_report(const ReceptionCounts&) override {}
 };
 
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  CheckingSink sink;
-  std::vector<SensorSettings> wanted(2);
-  wanted[0].sensor = wanted_id;
-  wanted[0].naming.names = {{"Data_11", "sync"}};
-  wanted[1].sensor = with_sync_id;
-  wanted[1].sync_sensor = sync_id;
-  Reception reception(wanted, sink);
+  std::array<CheckingSink, 2> sinks;
+  IgnoringObserver observer;
+  std::vector<WantedSensor> wanted(2);
+  wanted[0].settings.sensor = wanted_id;
+  wanted[0].settings.naming.names = {{"Data_11", "sync"}};
+  wanted[0].sink = &sinks[0];
+  wanted[1].settings.sensor = with_sync_id;
+  wanted[1].settings.sync_sensor = sync_id;
+  wanted[1].sink = &sinks[1];
+  Reception reception(wanted, observer);
 
   std::span<const std::uint8_t> rest(data, size);
   HostTime now{1, 1};
@@ -91,6 +91,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   reception.finish(now);
-  sink.check_accounts();
+  for (const CheckingSink& sink : sinks) {
+    sink.check_accounts();
+  }
   return 0;
 }

@@ -19,10 +19,9 @@ TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_TRUE(benches.insert(file->bench).second) << file->bench << " is there twice";
     for (const auto& source : file->sources) {
-      if (source.driver != SourceDriver::smartup) {
-        continue;
+      if (const auto* smartup = source.as<SmartupSourceSettings>()) {
+        EXPECT_TRUE(ports.insert(smartup->listen).second) << smartup->listen << " is there twice";
       }
-      EXPECT_TRUE(ports.insert(source.listen).second) << source.listen << " is there twice";
     }
   }
   EXPECT_EQ(benches, (std::set<std::string>{"acc-1", "acc-2", "can-1", "tss-1"}));

@@ -4,13 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/drivers/files/collecting_sink.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/drivers/link/scripted_instrument.hpp"
 
 namespace dyncal::drivers::acs {
 namespace {
 
 using testing::HasSubstr;
+using tests::CollectingSink;
 
 std::string description(const std::string& values, int rate_hz) {
   return R"({"protocol":"dyncal-acs-stream","version":1,"sample_rate_hz":{"numerator":)" +
@@ -112,6 +113,60 @@ TEST(SocketAcs, ShowsSamplesThatTheInstrumentLostAsAGap) {
   ASSERT_TRUE(acs.run(sink));
   ASSERT_EQ(sink.blocks.size(), 2U);
   EXPECT_EQ(sink.blocks[1].first_sample, 15U);
+  EXPECT_EQ(sink.counts.received, 20U);
+  EXPECT_EQ(sink.counts.lost_in_device, 5U);
+}
+
+TEST(SocketAcs, GivesChannelsTheNamesAndUnitsOfTheSettings) {
+  const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
+    client.say(description("int32", 1000) + frame<std::int32_t>(0, 10) + end_of_stream);
+    static_cast<void>(client.hear());
+  });
+  SocketAcs acs({.address = instrument.address(),
+                 .channels = {{"reference", "laser"}},
+                 .units = {{"laser", R"(\metre\second\tothe{-1})"}}});
+  ASSERT_TRUE(acs.describe());
+  CollectingSink sink;
+  ASSERT_TRUE(acs.run(sink));
+  ASSERT_EQ(sink.descriptions.size(), 1U);
+  EXPECT_EQ(sink.descriptions[0].channels[0].name, "laser");
+  EXPECT_EQ(sink.descriptions[0].channels[0].unit, R"(\metre\second\tothe{-1})");
+  EXPECT_EQ(sink.descriptions[0].channels[1].name, "sync");
+}
+
+TEST(SocketAcs, RefusesNamesOfChannelsThatTheInstrumentDoesNotHave) {
+  const ScriptedInstrument instrument([](int, ScriptedInstrument::Client& client) {
+    client.say(description("int32", 1000));
+    static_cast<void>(client.hear());
+  });
+  SocketAcs acs({.address = instrument.address(), .channels = {{"velocity", "laser"}}});
+  const auto described = acs.describe();
+  ASSERT_FALSE(described);
+  EXPECT_EQ(described.error().code, ErrorCode::invalid_setting);
+  EXPECT_THAT(described.error().message, HasSubstr("has no channel 'velocity'"));
+}
+
+TEST(SocketAcs, WarnsOfAnInstrumentThatComesBackWithoutAChannel) {
+  const ScriptedInstrument instrument([](int number, ScriptedInstrument::Client& client) {
+    std::string line = description("int32", 1000);
+    if (number > 0) {
+      line.replace(line.find("reference"), 9, "velocity!");
+    }
+    client.say(line + frame<std::int32_t>(0, 20));
+    if (number > 0) {
+      client.say(end_of_stream);
+      static_cast<void>(client.hear());
+    }
+  });
+  SocketAcs acs({.address = instrument.address(), .channels = {{"reference", "laser"}}});
+  ASSERT_TRUE(acs.describe());
+  CollectingSink sink;
+  ASSERT_TRUE(acs.run(sink));
+  ASSERT_EQ(sink.warnings.size(), 1U);
+  EXPECT_THAT(sink.warnings[0], HasSubstr("has no channel 'reference'"));
+  EXPECT_EQ(sink.counts.causes,
+            (std::vector<NamedCount>{{"reconnections without a channel", 1}}));
+  EXPECT_EQ(sink.descriptions.back().channels[0].name, "velocity!");
 }
 
 TEST(SocketAcs, BeginsANewSessionWhenTheInstrumentIsBack) {
@@ -126,7 +181,10 @@ TEST(SocketAcs, BeginsANewSessionWhenTheInstrumentIsBack) {
   ASSERT_TRUE(acs.describe());
   CollectingSink sink;
   ASSERT_TRUE(acs.run(sink));
-  EXPECT_EQ(sink.sessions.size(), 2U);
+  EXPECT_EQ(sink.sessions_begun_at, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(sink.descriptions.size(), 2U);
+  EXPECT_EQ(sink.counts.received, 40U);
+  EXPECT_EQ(sink.counts.lost_in_device, 0U);
   ASSERT_EQ(sink.blocks.size(), 2U);
   EXPECT_EQ(sink.blocks[0].first_sample, 500U);
   EXPECT_EQ(sink.blocks[1].first_sample, 0U);

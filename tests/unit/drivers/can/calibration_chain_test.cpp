@@ -79,7 +79,9 @@ struct Samples : SampleSink {
   std::vector<double> values;
 
   void describe(const SourceDescription& now) override { description = now; }
-  void restart() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void begin_session() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void count(const SampleCounts&) override {}
+  void warn(const std::string&) override {}
   void take(SampleBlock block) override {
     stamps_ns.insert(stamps_ns.end(), block.stamps_ns.begin(), block.stamps_ns.end());
     values.insert(values.end(), block.values.begin(), block.values.end());
@@ -97,7 +99,7 @@ Outcome calibrate(const Bus& bus, const std::string& frequency_hz, bool correct_
   const auto frequency = *analysis::Frequency::parse(frequency_hz);
   Simulation simulation(bus, truth, frequency.hz());
 
-  SensorSettings settings;
+  StreamSettings settings;
   settings.counter = "counter";
   settings.nominal_rate_hz = 1000.0;
   settings.bit_rates = bus.rates;

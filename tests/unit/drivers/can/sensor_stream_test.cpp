@@ -11,6 +11,7 @@
 #include "drivers/can/bus/candump_log.hpp"
 #include "drivers/can/bus/scripted_source.hpp"
 #include "drivers/can/time/frame_duration.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 
 namespace dyncal::drivers::can {
 namespace {
@@ -24,34 +25,7 @@ const std::string sensor_dbc = "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [
                                "BO_ 292 Second: 8 S\n SG_ y : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n "
                                "SG_ counter : 16|8@1+ (1,0) [0|0] \"\" S\n";
 
-struct Collected : SampleSink {
-  std::vector<SourceDescription> descriptions;
-  std::vector<SampleBlock> blocks;
-  int restarts = 0;
-
-  void describe(const SourceDescription& description) override {
-    descriptions.push_back(description);
-  }
-  void restart() override { ++restarts; }
-  void take(SampleBlock block) override { blocks.push_back(std::move(block)); }
-
-  [[nodiscard]] std::vector<std::uint64_t> numbers() const {
-    std::vector<std::uint64_t> all;
-    for (const SampleBlock& block : blocks) {
-      for (std::size_t i = 0; i < block.samples; ++i) {
-        all.push_back(block.first_sample + i);
-      }
-    }
-    return all;
-  }
-  [[nodiscard]] std::vector<std::int64_t> stamps_ns() const {
-    std::vector<std::int64_t> all;
-    for (const SampleBlock& block : blocks) {
-      all.insert(all.end(), block.stamps_ns.begin(), block.stamps_ns.end());
-    }
-    return all;
-  }
-};
+using Collected = tests::CollectingSink;
 
 CanFrame sample_frame(std::uint32_t id, int value, int counter) {
   CanFrame frame;
@@ -63,8 +37,8 @@ CanFrame sample_frame(std::uint32_t id, int value, int counter) {
   return frame;
 }
 
-SensorSettings one_message() {
-  SensorSettings settings;
+StreamSettings one_message() {
+  StreamSettings settings;
   settings.messages = {"Sample"};
   settings.counter = "counter";
   settings.nominal_rate_hz = 1000;
@@ -73,7 +47,7 @@ SensorSettings one_message() {
   return settings;
 }
 
-std::unique_ptr<SensorStream> stream_of(SensorSettings settings,
+std::unique_ptr<SensorStream> stream_of(StreamSettings settings,
                                         const std::string& dbc = sensor_dbc) {
   auto stream = SensorStream::create(std::move(settings), *parse_dbc(dbc, "sensor.dbc"));
   EXPECT_TRUE(stream) << stream.error().message;
@@ -104,7 +78,7 @@ TEST(SensorStream, StampsTheStartOfFrameOfEverySample) {
     ASSERT_TRUE(stream->take(on_time(k, k % 7), collected));
   }
   stream->finish(collected);
-  const auto stamps = collected.stamps_ns();
+  const auto stamps = collected.stamps_ns;
   ASSERT_EQ(stamps.size(), 3000U);
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     EXPECT_NEAR(static_cast<double>(stamps[k] - epoch_ns), static_cast<double>(k) * 1e6, 2.0);
@@ -117,7 +91,7 @@ TEST(SensorStream, StampsTheStartOfFrameOfEverySample) {
 
 TEST(SensorStream, IsLateByTheFrameDurationWithoutItsCorrection) {
   // Such frames last 112 ... 121 us at 1 Mbit/s.
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.correct_frame_duration = false;
   const auto stream = stream_of(settings);
   Collected collected;
@@ -127,7 +101,7 @@ TEST(SensorStream, IsLateByTheFrameDurationWithoutItsCorrection) {
   }
   stream->finish(collected);
   const double late_s =
-      static_cast<double>(collected.stamps_ns().back() - epoch_ns - 2'999'000'000) * 1e-9;
+      static_cast<double>(collected.stamps_ns.back() - epoch_ns - 2'999'000'000) * 1e-9;
   EXPECT_GT(late_s, 108e-6);
   EXPECT_LT(late_s, 125e-6);
 }
@@ -149,7 +123,7 @@ TEST(SensorStream, NumbersEveryLostSampleByTheCounterAcrossItsRange) {
   }
   stream->finish(collected);
   EXPECT_EQ(stream->counts().lost, 1303U);
-  const auto numbers = collected.numbers();
+  const auto numbers = collected.numbers;
   ASSERT_EQ(numbers.size(), kept);
   EXPECT_EQ(numbers.front(), 0U);
   EXPECT_EQ(numbers.back(), 5999U);
@@ -166,7 +140,7 @@ TEST(SensorStream, LeavesOutWhatFramesWaitForTheBus) {
     ASSERT_TRUE(stream->take(frame, collected));
   }
   stream->finish(collected);
-  const auto stamps = collected.stamps_ns();
+  const auto stamps = collected.stamps_ns;
   double worst_ns = 0.0;
   for (std::size_t k = 2000; k < stamps.size(); ++k) {
     worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k] - epoch_ns) -
@@ -176,7 +150,7 @@ TEST(SensorStream, LeavesOutWhatFramesWaitForTheBus) {
 }
 
 TEST(SensorStream, JoinsFramesByTheirCounterHoweverTheyCome) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.messages = {"Sample", "Second"};
   const auto stream = stream_of(settings);
   Collected collected;
@@ -194,7 +168,7 @@ TEST(SensorStream, JoinsFramesByTheirCounterHoweverTheyCome) {
     }
   }
   stream->finish(collected);
-  const SensorCounts counts = stream->counts();
+  const StreamCounts counts = stream->counts();
   EXPECT_EQ(counts.samples, 1999U);
   EXPECT_EQ(counts.incomplete, 1U);
   EXPECT_EQ(counts.lost, 1U);
@@ -206,7 +180,7 @@ TEST(SensorStream, JoinsFramesByTheirCounterHoweverTheyCome) {
 }
 
 TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.counter.clear();
   settings.hardware_stamp_point = StampPoint::end_of_frame;
   const auto stream = stream_of(settings);
@@ -230,7 +204,7 @@ TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
     send(k, 99'000'000'000);
   }
   stream->finish(collected);
-  const auto stamps = collected.stamps_ns();
+  const auto stamps = collected.stamps_ns;
   ASSERT_EQ(stamps.size(), 10'000U);
   EXPECT_NEAR(static_cast<double>(stamps[4999] - epoch_ns), 4.999e9, 3000.0);
   EXPECT_NEAR(static_cast<double>(stamps[9999] - epoch_ns), 10.999e9, 3000.0);
@@ -240,7 +214,7 @@ TEST(SensorStream, UsesTheAdaptersClockAndRestartsItsLineWithTheLink) {
 }
 
 TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.time_source = TimeSource::hardware_stamp;
   settings.hardware_stamp_point = StampPoint::end_of_frame;
   const auto stream = stream_of(settings);
@@ -259,7 +233,7 @@ TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
     send(k, 0);
   }
   stream->finish(collected);
-  const auto stamps = collected.stamps_ns();
+  const auto stamps = collected.stamps_ns;
   ASSERT_EQ(stamps.size(), 3000U);
   for (int k = 0; k < 3000; ++k) {
     ASSERT_NEAR(static_cast<double>(stamps[static_cast<std::size_t>(k)] - epoch_ns), k * 1e6, 10.0)
@@ -274,7 +248,7 @@ TEST(SensorStream, DoesNotTimeSamplesByAClockThatBeganAfterThem) {
 TEST(SensorStream, TrustsTheLeastDelayOfAnAdapterOnUsbLessThanThatOfAControllerOnTheHost) {
   const auto u_stamp_s = [](const std::string& kind, const std::string& device_bus,
                             std::optional<double> u_latency_s) {
-    SensorSettings settings = one_message();
+    StreamSettings settings = one_message();
     settings.time_base = TimeBase::local;
     settings.bus_is_shared = false;
     settings.u_latency_s = u_latency_s;
@@ -294,7 +268,7 @@ TEST(SensorStream, TrustsTheLeastDelayOfAnAdapterOnUsbLessThanThatOfAControllerO
 }
 
 TEST(SensorStream, TakesTheEndOfTheSyncForTheTimeOfASynchronousSample) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.counter.clear();
   settings.time_source = TimeSource::canopen_sync;
   const auto stream = stream_of(settings);
@@ -313,12 +287,12 @@ TEST(SensorStream, TakesTheEndOfTheSyncForTheTimeOfASynchronousSample) {
   }
   stream->finish(collected);
   EXPECT_EQ(stream->counts().rejected, 1U); // an answer without its SYNC has no time
-  EXPECT_EQ(collected.stamps_ns().back(), epoch_ns + 9'000'000);
+  EXPECT_EQ(collected.stamps_ns.back(), epoch_ns + 9'000'000);
   EXPECT_EQ(collected.descriptions.front().stamp_instant, StampInstant::frame_end);
 }
 
 TEST(SensorStream, CountsWhatTheSocketDroppedAsLostSamples) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.counter.clear();
   settings.nominal_rate_hz = 0.0;
   const auto stream = stream_of(settings);
@@ -333,7 +307,7 @@ TEST(SensorStream, CountsWhatTheSocketDroppedAsLostSamples) {
 }
 
 TEST(SensorStream, BeginsANewSessionWhenTheSensorRestartsItsCounter) {
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   const std::string wide = "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n SG_ "
                            "counter : 16|32@1+ (1,0) [0|0] \"\" S\n";
   const auto stream = stream_of(settings, wide);
@@ -353,17 +327,17 @@ TEST(SensorStream, BeginsANewSessionWhenTheSensorRestartsItsCounter) {
     send(k, static_cast<std::uint32_t>(k - 4000));
   }
   stream->finish(collected);
-  EXPECT_EQ(collected.restarts, 1);
+  EXPECT_EQ(collected.sessions_begun_at.size(), 1U);
   EXPECT_EQ(stream->counts().samples, 6000U);
 }
 
 TEST(SensorStream, RefusesSettingsThatDoNotFitWithOneSentence) {
-  const auto refusal = [](SensorSettings settings) {
+  const auto refusal = [](StreamSettings settings) {
     const auto stream =
         SensorStream::create(std::move(settings), *parse_dbc(sensor_dbc, "sensor.dbc"));
     return stream ? "accepted" : stream.error().message;
   };
-  SensorSettings settings = one_message();
+  StreamSettings settings = one_message();
   settings.messages = {"Nothing"};
   EXPECT_THAT(refusal(settings),
               HasSubstr("sensor.dbc has no message 'Nothing'; it has Sample, Second"));
@@ -393,7 +367,7 @@ TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {
   }
   auto events = read_candump_log(folder / "css-canmod-gps-imu-10hz.log", "can0");
   ASSERT_TRUE(events) << events.error().message;
-  SensorSettings settings;
+  StreamSettings settings;
   settings.messages = {"0x019"};
   settings.nominal_rate_hz = 1.0 / 0.102;
   settings.bit_rates.nominal_per_s = 500e3;
@@ -427,8 +401,8 @@ TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {
   EXPECT_NEAR(sum[2] / samples, 10.0466, 5e-5);
   // Every interval of the log longer than one and a half nominal ones is a gap of the stream, and
   // nothing else is.
-  const auto stamps = collected.stamps_ns();
-  const auto numbers = collected.numbers();
+  const auto stamps = collected.stamps_ns;
+  const auto numbers = collected.numbers;
   std::size_t gaps = 0;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     const bool long_interval = static_cast<double>(stamps[i] - stamps[i - 1]) > 1.5 * 0.102e9;

@@ -10,7 +10,7 @@
 
 #include "tests/unit/drivers/files/file_playing.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 using testing::ElementsAre;
@@ -232,4 +232,4 @@ TEST_F(LargeCsv, SeesStampsThatFallBetweenStretches) {
 }
 
 } // namespace
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 constexpr std::size_t behind = 128; // so that the quick way is taken
@@ -157,4 +157,4 @@ TEST(ReadNumber, AgreesWithFromCharsOnAnyText) {
 }
 
 } // namespace
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

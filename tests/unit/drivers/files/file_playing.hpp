@@ -4,10 +4,12 @@
 #include <string>
 
 #include "drivers/files/file_source.hpp"
-#include "tests/unit/drivers/files/collecting_sink.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
+
+using tests::CollectingSink;
 
 inline FileSettings settings_for(const TemporaryFile& file) {
   FileSettings settings;
@@ -27,4 +29,4 @@ inline std::string problem_of(const FileSettings& settings) {
   return played ? "" : played.error().message;
 }
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -6,7 +6,7 @@
 
 #include "tests/unit/drivers/files/file_playing.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 using testing::ElementsAre;
@@ -28,7 +28,7 @@ TEST(FileSource, PlaysARegularSeriesWithAClock) {
   CollectingSink sink;
   ASSERT_TRUE(source.run(sink));
   ASSERT_EQ(sink.numbers.size(), 10'000U);
-  EXPECT_EQ(sink.sessions.size(), 1U);
+  EXPECT_EQ(sink.sessions_begun_at.size(), 1U);
   for (const SampleBlock& block : sink.blocks) {
     EXPECT_TRUE(block.clock);
     EXPECT_LE(block.samples, 4096U);
@@ -40,6 +40,8 @@ TEST(FileSource, PlaysARegularSeriesWithAClock) {
   }
   EXPECT_EQ(sink.channel(0)[9999], 9999.5);
   EXPECT_EQ(sink.channel(1)[20], -0.02);
+  EXPECT_EQ(sink.counts.received, 10'000U);
+  EXPECT_EQ(sink.counts.lost_in_device, 0U);
 }
 
 TEST(FileSource, KeepsEveryStampOfAnIrregularSeries) {
@@ -166,4 +168,4 @@ TEST(FileSource, StopsInTheMiddleWhenAskedTo) {
 }
 
 } // namespace
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

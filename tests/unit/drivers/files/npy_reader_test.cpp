@@ -8,7 +8,7 @@
 
 #include "tests/unit/drivers/files/file_playing.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
 
 using testing::ElementsAre;
@@ -125,4 +125,4 @@ TEST(NpyReader, SurvivesHeadersCutAnywhere) {
 }
 
 } // namespace
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

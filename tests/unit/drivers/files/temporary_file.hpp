@@ -6,7 +6,7 @@
 #include <string>
 #include <unistd.h>
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 
 class TemporaryFile {
 public:
@@ -28,4 +28,4 @@ private:
   std::filesystem::path path_;
 };
 
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <sndfile.h>
 
-#include "tests/unit/drivers/files/collecting_sink.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"
 
-namespace dyncal::drivers::acs {
+namespace dyncal::drivers::files {
 namespace {
+
+using tests::CollectingSink;
 
 constexpr int frames = 10'000;
 
@@ -79,4 +81,4 @@ TEST(WavReader, SaysThatAFileIsNotWav) {
 }
 
 } // namespace
-} // namespace dyncal::drivers::acs
+} // namespace dyncal::drivers::files

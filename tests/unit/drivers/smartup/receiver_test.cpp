@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
-#include "tests/unit/drivers/smartup/recording_sink.hpp"
+#include "tests/unit/drivers/smartup/recording.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 
 namespace dyncal::drivers::smartup {
@@ -42,10 +42,10 @@ DatagramWriter datagram_from(std::uint32_t first, std::uint32_t sensor = sensor_
   return datagram;
 }
 
-Receiver::Endpoint endpoint(tests::RecordingSink& sink, const std::string& listen = "127.0.0.1:0") {
+Receiver::Endpoint endpoint(tests::Recording& sink, const std::string& listen = "127.0.0.1:0") {
   return {.listen = listen,
-          .wanted = {{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}},
-          .sink = &sink};
+          .wanted = {sink.wanted({.sensor = sensor_id, .sync_sensor = {}, .naming = {}})},
+          .observer = &sink};
 }
 
 TEST(ListenAddress, IsAnAddressAndAPort) {
@@ -64,8 +64,8 @@ TEST(ListenAddress, IsAnAddressAndAPort) {
 }
 
 TEST(Receiver, ReceivesOverUdpFromSeveralUnitsAtSeveralPorts) {
-  tests::RecordingSink first;
-  tests::RecordingSink second;
+  tests::Recording first;
+  tests::Recording second;
   auto receiver = Receiver::create({endpoint(first), endpoint(second)});
   ASSERT_TRUE(receiver) << receiver.error().message;
   (*receiver)->start();
@@ -84,7 +84,7 @@ TEST(Receiver, ReceivesOverUdpFromSeveralUnitsAtSeveralPorts) {
 }
 
 TEST(Receiver, HandsOverASlowSensorsSampleInTime) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
   (*receiver)->start();
@@ -94,7 +94,7 @@ TEST(Receiver, HandsOverASlowSensorsSampleInTime) {
 }
 
 TEST(Receiver, CountsWhatTheKernelHadToDrop) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto small = endpoint(sink);
   small.receive_buffer_bytes = 4096;
   auto receiver = Receiver::create({small});
@@ -118,7 +118,7 @@ TEST(Receiver, CountsWhatTheKernelHadToDrop) {
 }
 
 TEST(Receiver, CountsDatagramsThatNoUnitSends) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
   (*receiver)->start();
@@ -133,7 +133,7 @@ TEST(Receiver, CountsDatagramsThatNoUnitSends) {
 }
 
 TEST(Receiver, SaysWhenAnAddressIsInUse) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
   const auto refused =
@@ -144,21 +144,21 @@ TEST(Receiver, SaysWhenAnAddressIsInUse) {
 }
 
 TEST(Receiver, SaysWhenAnAddressIsNotOfThisHost) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   const auto refused = Receiver::create({endpoint(sink, "192.0.2.1:7654")});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("no such address"));
 }
 
 TEST(Receiver, AsksForALargeBuffer) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
   EXPECT_GE((*receiver)->receive_buffer_bytes(0), 200 * 1024);
 }
 
 TEST(Receiver, StopsAtOnceAndOnlyOnce) {
-  tests::RecordingSink sink;
+  tests::Recording sink;
   auto receiver = Receiver::create({endpoint(sink)});
   ASSERT_TRUE(receiver);
   (*receiver)->stop();

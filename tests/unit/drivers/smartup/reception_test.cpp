@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
-#include "tests/unit/drivers/smartup/recording_sink.hpp"
+#include "tests/unit/drivers/smartup/recording.hpp"
 #include "tests/unit/drivers/smartup/wire_vectors.hpp"
 
 namespace dyncal::drivers::smartup {
@@ -23,7 +23,11 @@ constexpr std::int64_t period_ns = 1'000'000;
 class ReceptionTest : public testing::Test {
 protected:
   void listen(std::vector<SensorSettings> wanted) {
-    reception = std::make_unique<Reception>(std::move(wanted), sink);
+    std::vector<WantedSensor> with_sinks;
+    for (SensorSettings& settings : wanted) {
+      with_sinks.push_back(sink.wanted(std::move(settings)));
+    }
+    reception = std::make_unique<Reception>(std::move(with_sinks), sink);
   }
   void SetUp() override { listen({{.sensor = sensor_id, .sync_sensor = {}, .naming = {}}}); }
 
@@ -68,7 +72,7 @@ protected:
     return sink.reports[sensor].counts;
   }
 
-  tests::RecordingSink sink;
+  tests::Recording sink;
   std::unique_ptr<Reception> reception;
   HostTime now{1'000'000'000, start_ns};
 };
@@ -129,6 +133,12 @@ TEST_F(ReceptionTest, TellsLossInTheUnitFromLossOnTheWay) {
   EXPECT_EQ(counted.lost_on_way, 12U);
   EXPECT_EQ(counted.received + counted.lost_in_unit + counted.lost_on_way, 400U);
   EXPECT_EQ(sink.reception.found_lost, 1U);
+  const SampleCounts& common = sink.counts[sensor_id];
+  EXPECT_EQ(common.received, counted.received);
+  EXPECT_EQ(common.lost_in_device, 1U);
+  EXPECT_EQ(common.lost_on_way, 12U);
+  EXPECT_THAT(common.causes, testing::Contains(NamedCount{"datagrams: found lost", 1}))
+      << "the sink has the newest account of the address too";
 }
 
 TEST_F(ReceptionTest, AGapShowsBetweenBlocks) {

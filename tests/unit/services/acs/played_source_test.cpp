@@ -12,7 +12,7 @@
 namespace dyncal::services::acs {
 namespace {
 
-using drivers::acs::TemporaryFile;
+using drivers::files::TemporaryFile;
 using testing::HasSubstr;
 
 constexpr int test_domain = 71;
@@ -20,8 +20,7 @@ constexpr int test_domain = 71;
 SourceSettings file_settings(const std::filesystem::path& path) {
   SourceSettings settings;
   settings.name = "acs";
-  settings.driver = SourceDriver::file;
-  settings.path = path;
+  settings.driver = FileSourceSettings{.path = path};
   return settings;
 }
 
@@ -45,7 +44,7 @@ TEST(PlayedSource, SaysWhatIsWrongWithItsSettings) {
 
   const TemporaryFile file("played_rate.csv", "a\n1\n");
   SourceSettings rate = file_settings(file.path());
-  rate.sample_rate_hz = -5.0;
+  std::get<FileSourceSettings>(rate.driver).sample_rate_hz = -5.0;
   const auto impossible = PlayedSource::prepare(rate, {});
   ASSERT_FALSE(impossible);
   EXPECT_THAT(impossible.error().message, HasSubstr("sample_rate_hz = -5"));
@@ -54,8 +53,7 @@ TEST(PlayedSource, SaysWhatIsWrongWithItsSettings) {
 TEST(PlayedSource, StopsTryingToReachAnInstrumentWhenAskedTo) {
   SourceSettings settings;
   settings.name = "acs";
-  settings.driver = SourceDriver::socket;
-  settings.address = "127.0.0.1:1";
+  settings.driver = SocketSourceSettings{.address = "127.0.0.1:1"};
   std::stop_source stop;
   stop.request_stop();
   const auto prepared = PlayedSource::prepare(settings, stop.get_token());
@@ -77,12 +75,9 @@ protected:
     options.domain = test_domain;
     participant_.emplace(bus::Participant::create(options).value());
     service_ = SourceService::create(*participant_, {.software = "test"});
-    publisher_ = service_
-                     ->add({.bench = "bench",
-                            .source = "acs",
-                            .kind = SourceKind::acs,
-                            .silent_after = std::chrono::seconds(0)})
-                     .value();
+    BenchFile bench;
+    bench.bench = "bench";
+    publisher_ = service_->add(options_of(bench, file_settings(file_->path()))).value();
     reader_.emplace(participant_
                         ->reader<dyncal::wire::SampleBlock>(
                             bus::topics::acs_samples, bus::Profile::samples, "bench", wake_up_)

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "services/bus/memory/memory_network.hpp"
-#include "services/contract/sample_topic.hpp"
+#include "services/contract/source_kind.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
@@ -32,7 +32,7 @@ public:
                                                   played_bench)
                       .value()),
         samples_(participant_
-                     .writer<wire::SampleBlock>(bus::sample_topic(description.kind()),
+                     .writer<wire::SampleBlock>(services::sample_topic(services::from_wire(description.kind())),
                                                 bus::Profile::samples, played_bench)
                      .value()),
         commands_(participant_

@@ -61,7 +61,8 @@ TEST(BenchFile, GivesWhatTheFileSays) {
   EXPECT_EQ(file->excitation.repetitions, 3);
   EXPECT_DOUBLE_EQ(file->excitation.duration_s, 2.0);
   ASSERT_NE(file->source("dau"), nullptr);
-  EXPECT_EQ(file->source("dau")->sensor, 0xbccb0100U);
+  ASSERT_TRUE(file->source("dau")->is<SmartupSourceSettings>());
+  EXPECT_EQ(file->source("dau")->as<SmartupSourceSettings>()->sensor, 0xbccb0100U);
   EXPECT_EQ(file->source("dau")->channels.at("Data_11"), "sync");
   EXPECT_EQ(file->source("acs")->units.at("reference"), R"(\metre\second\tothe{-2})");
   EXPECT_EQ(file->method.dut.front().text(), "dau/acceleration_z");

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "services/bench/bench_file.hpp"
+
 namespace dyncal::services {
 namespace {
 
-using drivers::can::StampPoint;
-using drivers::can::TimeSource;
 using testing::HasSubstr;
 
 class CanKeys : public testing::Test {
@@ -65,51 +65,53 @@ restart_after_bus_off_s = 0.2
 )");
   ASSERT_TRUE(file) << file.error().message;
   const SourceSettings& source = *file->source("sensor");
-  EXPECT_EQ(source.driver, SourceDriver::can);
-  ASSERT_TRUE(source.can);
-  EXPECT_EQ(source.can->interface_name, "can0");
-  EXPECT_EQ(source.can->dbc, folder / "sensor.dbc");
-  EXPECT_EQ(source.can->restart_after_bus_off_s, 0.2);
-  const drivers::can::SensorSettings& sensor = source.can->sensor;
+  ASSERT_TRUE(source.is<CanSourceSettings>());
+  const auto& sensor = *source.as<CanSourceSettings>();
+  EXPECT_EQ(sensor.interface_name, "can0");
+  EXPECT_EQ(sensor.dbc, folder / "sensor.dbc");
+  EXPECT_EQ(sensor.restart_after_bus_off_s, 0.2);
   EXPECT_EQ(sensor.messages, std::vector<std::string>{"Sample"});
-  EXPECT_EQ(sensor.channels.at("X"), "x");
-  EXPECT_EQ(sensor.units.at("x"), R"(\metre\second\tothe{-2})");
-  EXPECT_EQ(sensor.time_source, TimeSource::counter);
+  EXPECT_EQ(source.channels.at("X"), "x");
+  EXPECT_EQ(source.units.at("x"), R"(\metre\second\tothe{-2})");
+  EXPECT_EQ(sensor.time_source, CanTimeSource::counter);
   EXPECT_EQ(sensor.counter, "SampleCounter");
   EXPECT_DOUBLE_EQ(sensor.nominal_rate_hz, 1000.0);
-  EXPECT_DOUBLE_EQ(sensor.bit_rates.nominal_per_s, 500e3);
-  EXPECT_DOUBLE_EQ(sensor.bit_rates.data_per_s, 2e6);
-  EXPECT_EQ(sensor.hardware_stamp_point, StampPoint::start_of_frame);
-  EXPECT_DOUBLE_EQ(sensor.hardware_tick_s, 25e-9);
+  EXPECT_DOUBLE_EQ(sensor.bit_rate_per_s, 500e3);
+  EXPECT_DOUBLE_EQ(sensor.data_bit_rate_per_s, 2e6);
+  EXPECT_EQ(sensor.hardware_stamp_point, CanStampPoint::start_of_frame);
+  EXPECT_EQ(sensor.hardware_tick_s, 25e-9);
   EXPECT_DOUBLE_EQ(sensor.latency_s, 8e-6);
   EXPECT_EQ(sensor.u_latency_s, 2e-6);
   EXPECT_EQ(sensor.u_utc_s, 1e-7);
   EXPECT_FALSE(sensor.correct_frame_duration);
   EXPECT_FALSE(sensor.bus_is_shared);
   EXPECT_EQ(sensor.sync_id, 129U);
-  EXPECT_EQ(sensor.time_base, drivers::TimeBase::utc);
+  EXPECT_EQ(source.time_base, drivers::TimeBase::utc);
 }
 
 TEST_F(CanKeys, LeaveWhatIsNotSaidToTheDriver) {
   const auto file = bench("interface = \"can0\"\ndbc = \"sensor.dbc\"\ntime_base = \"local\"\n");
   ASSERT_TRUE(file) << file.error().message;
-  const drivers::can::SensorSettings& sensor = file->source("sensor")->can->sensor;
+  const SourceSettings& source = *file->source("sensor");
+  ASSERT_TRUE(source.is<CanSourceSettings>());
+  const auto& sensor = *source.as<CanSourceSettings>();
   EXPECT_FALSE(sensor.time_source);
   EXPECT_FALSE(sensor.u_latency_s);
   EXPECT_FALSE(sensor.u_utc_s);
   EXPECT_TRUE(sensor.correct_frame_duration);
-  EXPECT_EQ(sensor.hardware_stamp_point, StampPoint::unknown);
+  EXPECT_EQ(sensor.hardware_stamp_point, CanStampPoint::unknown);
   EXPECT_EQ(sensor.sync_id, 0x80U);
-  EXPECT_EQ(sensor.time_base, drivers::TimeBase::local);
+  EXPECT_EQ(source.time_base, drivers::TimeBase::local);
 }
 
 TEST_F(CanKeys, TakeALogInPlaceOfAnInterface) {
   const auto file = bench("log = \"drive.log\"\nplay = 10.0\ndbc = \"sensor.dbc\"\n");
   ASSERT_TRUE(file) << file.error().message;
-  const SourceSettings& source = *file->source("sensor");
-  EXPECT_EQ(source.can->log, folder / "drive.log");
-  EXPECT_EQ(source.can->interface_name, "");
-  EXPECT_DOUBLE_EQ(source.play_speed, 10.0);
+  const auto* can = file->source("sensor")->as<CanSourceSettings>();
+  ASSERT_NE(can, nullptr);
+  EXPECT_EQ(can->log, folder / "drive.log");
+  EXPECT_EQ(can->interface_name, "");
+  EXPECT_DOUBLE_EQ(can->play_speed, 10.0);
 }
 
 TEST_F(CanKeys, AreRefusedWithFileLineAndKey) {

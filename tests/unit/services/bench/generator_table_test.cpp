@@ -43,7 +43,7 @@ TEST(GeneratorTable, HoldsToleranceAndLimits) {
 TEST(GeneratorTable, LimitsMayBeAbsent) {
   const auto bench = bench_with("driver = \"by-hand\"\nlevel_per_volt = 50.0\n");
   ASSERT_TRUE(bench) << bench.error().message;
-  EXPECT_EQ(bench->generator.driver, "by-hand");
+  EXPECT_EQ(bench->generator.driver, GeneratorDriver::by_hand);
   EXPECT_FALSE(bench->generator.level_tolerance_rel);
   EXPECT_FALSE(bench->generator.maximum_voltage_v);
 }

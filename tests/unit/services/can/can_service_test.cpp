@@ -12,6 +12,7 @@
 #include "drivers/can/bus/scripted_source.hpp"
 #include "services/can/can_status.hpp"
 #include "services/source/source_service.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/services/source/bench_listener.hpp"
 
 namespace dyncal::services::can {
@@ -59,24 +60,23 @@ protected:
         << "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [-50|50] \"m/s^2\" S\n"
            " SG_ counter : 16|16@1+ (1,0) [0|0] \"\" S\n";
     settings.name = "sensor";
-    settings.driver = SourceDriver::can;
-    CanSourceSettings& can = settings.can.emplace();
+    CanSourceSettings& can = settings.driver.emplace<CanSourceSettings>();
     can.interface_name = "can0";
     can.dbc = folder / "sensor.dbc";
-    can.sensor.counter = "counter";
-    can.sensor.nominal_rate_hz = 1000.0;
-    can.sensor.u_utc_s = 1e-6;
+    can.counter = "counter";
+    can.nominal_rate_hz = 1000.0;
+    can.u_utc_s = 1e-6;
   }
   ~CanService() override { std::filesystem::remove_all(folder); }
 
   // Publishes the events until the source has ended and that was heard.
   void publish(std::vector<BusEvent> events) {
     auto source =
-        CanSource::prepare(settings, [&](const SourceSettings&) -> std::unique_ptr<FrameSource> {
+        CanSource::prepare(settings, [&](const CanSourceSettings&) -> std::unique_ptr<FrameSource> {
           return std::make_unique<ScriptedSource>(can0(), std::move(events));
         });
     ASSERT_TRUE(source) << source.error().message;
-    auto publisher = service->add({.bench = bench, .source = "sensor", .kind = SourceKind::can});
+    auto publisher = service->add(options_of(bench, settings));
     ASSERT_TRUE(publisher) << publisher.error().message;
     service->start();
     ASSERT_TRUE(source->run(**publisher, {}));
@@ -180,12 +180,8 @@ TEST_F(CanService, TellsBusStateErrorCountersDropsAndGapsInTheStatus) {
 
 TEST_F(CanService, SaysWhatIsWrongWithTheLinkInOneSentence) {
   auto dbc = drivers::can::read_dbc_file(folder / "sensor.dbc");
-  const auto stream = *drivers::can::SensorStream::create(settings.can->sensor, *dbc);
-  struct Nowhere : drivers::can::SampleSink {
-    void describe(const drivers::SourceDescription&) override {}
-    void restart() override {}
-    void take(drivers::SampleBlock) override {}
-  } sink;
+  const auto stream = *drivers::can::SensorStream::create(stream_settings(settings), *dbc);
+  tests::CollectingSink sink;
   ASSERT_TRUE(stream->begin(can0(), sink));
   const auto said = [&](auto change) {
     LinkState link = can0();
@@ -208,14 +204,14 @@ TEST_F(CanService, SaysWhatIsWrongWithTheLinkInOneSentence) {
   cut_short.length = 1;
   ASSERT_TRUE(stream->take(cut_short, sink)); // lacks its counter
   EXPECT_EQ(stream->counts().rejected, 1U);
-  EXPECT_EQ(to_counts(*stream).causes.front(),
-            (std::pair<std::string, std::uint64_t>("frames received", 1)));
+  stream->count(sink);
+  EXPECT_EQ(sink.counts.causes.front(), (drivers::NamedCount{"frames received", 1}));
 }
 
 TEST_F(CanService, NamesTheSourceAndWhatIsWrongBeforeAnythingIsPublished) {
   const auto refused = [&](const std::string& dbc) {
     std::ofstream(folder / "sensor.dbc") << dbc;
-    const auto source = CanSource::prepare(settings, [](const SourceSettings&) {
+    const auto source = CanSource::prepare(settings, [](const CanSourceSettings&) {
       return std::make_unique<ScriptedSource>(can0(), std::vector<BusEvent>{});
     });
     return source ? std::string("accepted") : source.error().message;
@@ -230,11 +226,12 @@ TEST_F(CanService, NamesTheSourceAndWhatIsWrongBeforeAnythingIsPublished) {
 }
 
 TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) {
-  settings.can->sensor.counter.clear();
+  auto& can = std::get<CanSourceSettings>(settings.driver);
+  can.counter.clear();
   std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.001000) can0 123#01\n";
-  settings.can->log = folder / "drive.log";
-  settings.can->sensor.bit_rates.nominal_per_s = 500e3;
-  settings.can->sensor.channels = {{"x", "x"}};
+  can.log = folder / "drive.log";
+  can.bit_rate_per_s = 500e3;
+  settings.channels = {{"x", "x"}};
   EXPECT_TRUE(CanSource::prepare(settings));
   std::ofstream(folder / "drive.log") << "(1.000000) can0 124#0102\n";
   EXPECT_THAT(CanSource::prepare(settings).error().message,
@@ -242,12 +239,8 @@ TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) 
   std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.000000) can0 123#012\n";
   EXPECT_THAT(CanSource::prepare(settings).error().message, HasSubstr("drive.log:2"));
   const auto stream = *drivers::can::SensorStream::create(
-      settings.can->sensor, *drivers::can::read_dbc_file(folder / "sensor.dbc"));
-  struct Nowhere : drivers::can::SampleSink {
-    void describe(const drivers::SourceDescription&) override {}
-    void restart() override {}
-    void take(drivers::SampleBlock) override {}
-  } sink;
+      stream_settings(settings), *drivers::can::read_dbc_file(folder / "sensor.dbc"));
+  tests::CollectingSink sink;
   ASSERT_TRUE(stream->begin(can0(), sink));
   CanFrame cut_short = sample(0);
   cut_short.length = 1;
@@ -262,19 +255,15 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
   if (!std::filesystem::exists(data / "css-canmod-gps-imu-10hz.log")) {
     GTEST_SKIP() << "no recorded CAN log in " << data;
   }
-  CanSourceSettings& can = *settings.can;
-  can = {};
+  auto& can = settings.driver.emplace<CanSourceSettings>();
   can.log = data / "css-canmod-gps-imu-10hz.log";
   can.dbc = data / "css-gnss.dbc";
-  can.sensor.messages = {"0x019"};
-  can.sensor.nominal_rate_hz = 1.0 / 0.102;
-  can.sensor.bit_rates.nominal_per_s = 500e3;
+  can.messages = {"0x019"};
+  can.nominal_rate_hz = 1.0 / 0.102;
+  can.bit_rate_per_s = 500e3;
   auto source = CanSource::prepare(settings);
   ASSERT_TRUE(source) << source.error().message;
-  auto publisher = service->add({.bench = bench,
-                                 .source = "sensor",
-                                 .kind = SourceKind::can,
-                                 .silent_after = std::chrono::seconds(0)});
+  auto publisher = service->add(options_of(bench, settings));
   ASSERT_TRUE(publisher);
   service->start();
   std::jthread player(

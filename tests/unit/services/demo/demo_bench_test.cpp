@@ -31,15 +31,15 @@ TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
     EXPECT_EQ(file->excitation.levels_m_s2, preset.levels_m_s2);
     EXPECT_EQ(file->excitation.repetitions, preset.repetitions);
     if (preset.triggered) {
-      EXPECT_EQ(file->source("dso")->address, "127.0.0.1:5555");
-      EXPECT_EQ(file->source("tss")->address, "127.0.0.1:5027");
+      EXPECT_EQ(file->source("dso")->as<OscilloscopeSourceSettings>()->address, "127.0.0.1:5555");
+      EXPECT_EQ(file->source("tss")->as<SeriesSourceSettings>()->address, "127.0.0.1:5027");
       EXPECT_DOUBLE_EQ(file->corrections.dso_delay_s, 236e-9);
       EXPECT_DOUBLE_EQ(file->corrections.u_dso_delay_s, 1e-9);
     } else if (preset.can == DemoPreset::CanLink::none) {
-      EXPECT_EQ(file->source("dau")->listen, "127.0.0.1:7654");
+      EXPECT_EQ(file->source("dau")->as<SmartupSourceSettings>()->listen, "127.0.0.1:7654");
     } else {
-      ASSERT_TRUE(file->source("can")->can);
-      EXPECT_EQ(file->source("can")->can->interface_name, "can0");
+      ASSERT_TRUE(file->source("can")->is<CanSourceSettings>());
+      EXPECT_EQ(file->source("can")->as<CanSourceSettings>()->interface_name, "can0");
       EXPECT_EQ(file->source("dau") == nullptr, preset.can == DemoPreset::CanLink::absolute_time);
     }
     EXPECT_DOUBLE_EQ(file->uncertainty.reference_phase_rad, 2e-3);

@@ -8,7 +8,7 @@ namespace {
 TEST(LevelSettling, IsPlannedOnlyWhereTheLevelIsControlled) {
   BenchFile bench;
   bench.excitation.settling_s = 0.5;
-  bench.generator.driver = "scpi";
+  bench.generator.driver = GeneratorDriver::scpi;
   EXPECT_EQ(planned_settling_s(bench, 10.0, 1), 0.5);
   bench.generator.level_tolerance_rel = 0.01;
   const double one_measurement_s = 0.5 + level_transport_s + level_window_s(10.0) + 0.5;

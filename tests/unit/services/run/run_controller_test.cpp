@@ -36,7 +36,7 @@ protected:
     bench.excitation.levels_m_s2 = {10.0, 10.0};
     bench.excitation.settling_s = 0.5;
     bench.excitation.duration_s = 2.0;
-    bench.generator.driver = "scpi";
+    bench.generator.driver = GeneratorDriver::scpi;
     bench.generator.level_per_volt = 5.0;
     bench.method.reference = {"acs", "reference"};
     bench.method.sync_acs = {"acs", "sync"};
@@ -352,7 +352,7 @@ TEST_F(RunControllerTest, LeavesOutMessagesOfAnotherRunOnTheBench) {
 
 class RunOfFiles : public RunControllerTest {
 protected:
-  RunOfFiles() { bench_.generator.driver = "none"; }
+  RunOfFiles() { bench_.generator.driver = GeneratorDriver::none; }
 };
 
 TEST_F(RunOfFiles, WaitsAsLongAsTheAnalysisIsWell) {

@@ -46,7 +46,7 @@ protected:
     bench.excitation.levels_m_s2 = {10.0};
     bench.excitation.settling_s = settling_s;
     bench.excitation.duration_s = duration_s;
-    bench.generator.driver = "scpi";
+    bench.generator.driver = GeneratorDriver::scpi;
     bench.generator.level_per_volt = 5.0;
     bench.method.reference = {"acs", "reference"};
     return bench;

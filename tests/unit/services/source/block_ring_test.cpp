@@ -41,7 +41,7 @@ TEST(BlockRing, HoldsSixtySecondsOfALiveSourceAndThenDropsTheNewest) {
     taken += ring.offer(entry(static_cast<std::uint64_t>(n), start + n * block)) ? 1 : 0;
   }
   EXPECT_EQ(taken, 60 * 20 + 1);
-  EXPECT_EQ(ring.dropped_samples(), (1400U - 1201U) * 50U);
+  EXPECT_EQ(ring.dropped(), (1400U - 1201U) * 50U);
   EXPECT_DOUBLE_EQ(ring.fill(), 1.0);
   EXPECT_EQ(ring.take()->block.first_sample, 0U);
   EXPECT_TRUE(ring.offer(entry(1400, start + 1201 * block)));
@@ -88,7 +88,7 @@ TEST(BlockRing, AFileWaitsForRoom) {
       std::this_thread::yield();
     }
   }
-  EXPECT_EQ(ring.dropped_samples(), 0U);
+  EXPECT_EQ(ring.dropped(), 0U);
 }
 
 TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
@@ -100,7 +100,7 @@ TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
   stop.request_stop();
   file.join();
   EXPECT_FALSE(taken);
-  EXPECT_EQ(ring.dropped_samples(), 0U);
+  EXPECT_EQ(ring.dropped(), 0U);
 }
 
 } // namespace

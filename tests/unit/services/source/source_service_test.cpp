@@ -68,7 +68,7 @@ TEST_P(SourceServiceTest, PublishesDescriptionStatusAndBlocksInOrder) {
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
   for (std::uint64_t n = 0; n < 100; ++n) {
-    EXPECT_TRUE(source->offer(block_from(n * 50)));
+    source->take(block_from(n * 50));
   }
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") == 5000; }));
 
@@ -96,7 +96,7 @@ TEST_P(SourceServiceTest, PublishesDescriptionStatusAndBlocksInOrder) {
 TEST_P(SourceServiceTest, AnswersArmWithAnEmptyBlockBehindWhatWasWritten) {
   auto source = add();
   source->describe(two_channels());
-  source->offer(block_from(0));
+  source->take(block_from(0));
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-7"));
   const auto answer = std::ranges::find_if(
@@ -108,7 +108,7 @@ TEST_P(SourceServiceTest, AnswersArmWithAnEmptyBlockBehindWhatWasWritten) {
 
 TEST_P(SourceServiceTest, BlocksAndAnswersWaitForTheDescription) {
   auto source = add();
-  source->offer(block_from(0));
+  source->take(block_from(0));
   service->start();
   ASSERT_TRUE(listener.until([&] { return listener.last_status("acs").has_value(); }));
   listener.arm("acs", "run-1");
@@ -135,9 +135,9 @@ TEST_P(SourceServiceTest, ANewSessionHasItsOwnNumberAndDescription) {
   source->describe(two_channels());
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
-  source->offer(block_from(0));
-  source->start_session();
-  source->offer(block_from(0));
+  source->take(block_from(0));
+  source->begin_session();
+  source->take(block_from(0));
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") == 100; }));
   const auto& last = listener.blocks.back();
   EXPECT_EQ(last.block(), 0U);
@@ -151,7 +151,7 @@ TEST_P(SourceServiceTest, SaysWhenASourceIsSilentAndWhenItIsThereAgain) {
   source->describe(two_channels());
   service->start();
   EXPECT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_SILENT); }));
-  source->offer(block_from(0));
+  source->take(block_from(0));
   EXPECT_TRUE(
       listener.until([&] { return listener.last_status("acs")->state() == wire::SOURCE_RUNNING; }));
   EXPECT_TRUE(
@@ -171,7 +171,7 @@ TEST_P(SourceServiceTest, EndsTheStreamInBand) {
   source->describe(two_channels());
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
-  source->offer(block_from(0));
+  source->take(block_from(0));
   source->end();
   ASSERT_TRUE(listener.until([&] { return listener.saw_state("acs", wire::SOURCE_ENDED); }));
   ASSERT_TRUE(listener.until([&] { return listener.blocks.back().end_of_stream(); }));
@@ -195,7 +195,7 @@ TEST_P(SourceServiceTest, StopPublishesWhatIsHeldAndSaysEnded) {
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
   for (std::uint64_t n = 0; n < 200; ++n) {
-    source->offer(block_from(n * 50));
+    source->take(block_from(n * 50));
   }
   service->stop();
   EXPECT_TRUE(listener.until([&] {
@@ -207,15 +207,15 @@ TEST_P(SourceServiceTest, StopPublishesWhatIsHeldAndSaysEnded) {
 TEST_P(SourceServiceTest, PublishesTheCountsOfTheDriver) {
   auto source = add();
   source->describe(two_channels());
-  source->report({.received = 10,
-                  .lost_in_device = 1,
-                  .lost_on_way = 2,
-                  .duplicates = 3,
-                  .rejected = 4,
-                  .stamps_not_trusted = 5,
-                  .causes = {{"late", 6}},
-                  .clock_uncertainty_s = 1e-7});
-  source->say("all is well");
+  source->count({.received = 10,
+                 .lost_in_device = 1,
+                 .lost_on_way = 2,
+                 .duplicates = 3,
+                 .rejected = 4,
+                 .stamps_not_trusted = 5,
+                 .causes = {{"late", 6}},
+                 .clock_uncertainty_s = 1e-7});
+  source->set_message("all is well");
   service->start();
   ASSERT_TRUE(listener.until([&] { return listener.last_status("acs").has_value(); }));
   const auto status = *listener.last_status("acs");
@@ -237,7 +237,7 @@ TEST_P(SourceServiceTest, MeasuresTheRate) {
   std::jthread device([&](const std::stop_token& stop) {
     auto due = std::chrono::steady_clock::now();
     for (std::uint64_t n = 0; !stop.stop_requested(); n += 50) {
-      source->offer(block_from(n));
+      source->take(block_from(n));
       std::this_thread::sleep_until(
           due += std::chrono::milliseconds(50)); // the pace of the device, not a wait for a result
     }
@@ -285,8 +285,8 @@ TEST_P(SourceServiceTest, BenchesAreKeptApart) {
   elsewhere->describe(two_channels());
   service->start();
   ASSERT_TRUE(listener.armed("acs", "run-1"));
-  elsewhere->offer(block_from(0, 10));
-  here->offer(block_from(0));
+  elsewhere->take(block_from(0, 10));
+  here->take(block_from(0));
   ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") > 0; }));
   for (const auto& block : listener.blocks) {
     EXPECT_EQ(block.bench().c_str(), bench_name);

@@ -21,13 +21,15 @@ namespace device = drivers::virtual_bench;
 constexpr std::int64_t origin_ns = 1'763'000'000'000'000'000;
 constexpr double latency_s = 10e-6; // the least that the kernel needs
 
-struct Samples : can::SampleSink {
+struct Samples : drivers::SampleSink {
   drivers::SourceDescription description;
   std::vector<std::int64_t> stamps_ns;
   std::array<std::vector<double>, 3> axes;
 
   void describe(const drivers::SourceDescription& now) override { description = now; }
-  void restart() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void begin_session() override { ADD_FAILURE() << "the sensor did not restart"; }
+  void count(const drivers::SampleCounts&) override {}
+  void warn(const std::string&) override {}
   void take(drivers::SampleBlock block) override {
     stamps_ns.insert(stamps_ns.end(), block.stamps_ns.begin(), block.stamps_ns.end());
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -42,7 +44,7 @@ struct Samples : can::SampleSink {
 std::unique_ptr<can::SensorStream> receiver(const CanSensor& sensor, const CanBusKind& bus,
                                             std::optional<can::TimeSource> time_source,
                                             bool correct) {
-  can::SensorSettings settings;
+  can::StreamSettings settings;
   settings.counter = "counter";
   settings.nominal_rate_hz = CanSensor::nominal_rate_hz;
   settings.bit_rates = bus.rates;

@@ -12,6 +12,7 @@
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/generator/scpi_generator.hpp"
 #include "drivers/virtual_bench/wire/receive_queue.hpp"
+#include "tests/unit/drivers/collecting_sink.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -51,17 +52,6 @@ private:
   std::uint16_t port_ = 0;
   std::vector<std::string> datagrams_;
   std::jthread thread_;
-};
-
-class CollectingSink : public acs::BlockSink {
-public:
-  void begin_session(const SourceDescription& description) override {
-    descriptions.push_back(description);
-  }
-  void take(SampleBlock block) override { blocks.push_back(std::move(block)); }
-
-  std::vector<SourceDescription> descriptions;
-  std::vector<SampleBlock> blocks;
 };
 
 std::stop_token already_stopped() {
@@ -111,7 +101,7 @@ TEST_F(ServedBench, RunsAStepAsFastAsTheConsumersAllow) {
   acs::SocketAcs acs({address(server_->acs_port())});
   const auto description = acs.describe();
   ASSERT_TRUE(description) << description.error().message;
-  CollectingSink sink;
+  tests::CollectingSink sink;
   std::jthread reading([&] { EXPECT_TRUE(acs.run(sink)); });
 
   auto connected = generator::ScpiGenerator::connect(address(server_->generator_port()));

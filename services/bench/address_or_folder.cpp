@@ -1,0 +1,19 @@
+#include "services/bench/address_or_folder.hpp"
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+
+void read_address_or_folder(TomlTable& table, const std::filesystem::path& folder, const char* what,
+                            std::string& address, std::filesystem::path& path) {
+  address = table.text("address");
+  const std::string name = table.text("path");
+  if (address.empty() == name.empty()) {
+    table.refuse("address", fmt::format("or 'path' must be given, one of them: {}", what));
+  }
+  if (!name.empty()) {
+    path = std::filesystem::absolute(folder / name).lexically_normal();
+  }
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,15 @@
+// Keys `address` and `path` of sources of triggered records: a device, or a folder of its files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "services/bench/toml_table.hpp"
+
+namespace dyncal::services {
+
+// One of the two must be given; `what` explains them. `path` becomes absolute from `folder`.
+void read_address_or_folder(TomlTable& table, const std::filesystem::path& folder, const char* what,
+                            std::string& address, std::filesystem::path& path);
+
+} // namespace dyncal::services

@@ -1,0 +1,20 @@
+// The table [corrections] of a bench file: what is known of ADC, trigger and delays beforehand.
+//
+//   adc = { file = "sync-adc.json", channel = "sync", phase_sign = "lag", test_amplitude_vpp = 2 }
+//   reference_delay_s = 0.0
+//   dso_delay = { file = "dso-delay.json" }           as `dyncal calibrate dso-delay` writes it,
+//   dso_delay = { value_s = 236e-9, u_s = 1e-9 }      or by hand
+#pragma once
+
+#include <filesystem>
+
+#include "services/bench/bench_file.hpp"
+#include "services/bench/toml_table.hpp"
+
+namespace dyncal::services {
+
+// Relative paths are resolved from `folder`. What is not valid is refused in the table.
+[[nodiscard]] CorrectionSettings read_corrections(TomlTable table,
+                                                  const std::filesystem::path& folder);
+
+} // namespace dyncal::services

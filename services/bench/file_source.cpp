@@ -1,0 +1,38 @@
+#include "services/bench/file_source.hpp"
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+
+double read_play_speed(TomlTable& table) {
+  const toml::node* play = table.node("play");
+  if (play == nullptr) {
+    return 0.0;
+  }
+  if (play->is_number()) {
+    const double speed = table.number("play", 1.0, "");
+    if (speed <= 0.0) {
+      table.refuse("play", "must be positive: 10.0 plays ten times faster than real time");
+    }
+    return speed;
+  }
+  return table.one_of("play", {"at-once", "real-time"}, "at-once") == "real-time" ? 1.0 : 0.0;
+}
+
+FileSourceSettings read_file_source(TomlTable& table, const std::filesystem::path& folder) {
+  FileSourceSettings file;
+  const std::string path = table.required_text("path");
+  file.path = std::filesystem::absolute(folder / path).lexically_normal();
+  if (!path.empty() && !std::filesystem::is_regular_file(file.path)) {
+    table.refuse(
+        "path", fmt::format("names {}, which does not exist or is not a file", file.path.string()));
+  }
+  file.play_speed = read_play_speed(table);
+  file.sample_rate_hz = table.optional_number("sample_rate_hz", "Hz");
+  if (file.sample_rate_hz && *file.sample_rate_hz <= 0.0) {
+    table.refuse("sample_rate_hz", "must be positive, in Hz");
+  }
+  return file;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,21 @@
+// The keys of [sources.NAME] with driver = "file": a recorded series (drivers/files/README.md).
+//
+//   path = "record.csv"
+//   play = "at-once"         or "real-time", or a factor: 10.0 is ten times faster than real time
+//   sample_rate_hz = 20000   where the file has no time column
+#pragma once
+
+#include <filesystem>
+
+#include "services/bench/source_settings.hpp"
+#include "services/bench/toml_table.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] FileSourceSettings read_file_source(TomlTable& table,
+                                                  const std::filesystem::path& folder);
+
+// The key `play`: times real time; 0: at once.
+[[nodiscard]] double read_play_speed(TomlTable& table);
+
+} // namespace dyncal::services

@@ -1,0 +1,15 @@
+#include "services/bench/series_source.hpp"
+
+#include "services/bench/address_or_folder.hpp"
+
+namespace dyncal::services {
+
+SeriesSourceSettings read_series_source(TomlTable& table, const std::filesystem::path& folder) {
+  SeriesSourceSettings series;
+  read_address_or_folder(table, folder,
+                         "where the sensor sends its series, or the folder it writes them into",
+                         series.address, series.path);
+  return series;
+}
+
+} // namespace dyncal::services

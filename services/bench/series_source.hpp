@@ -1,0 +1,18 @@
+// The keys of [sources.NAME] with driver = "series": a sensor that records a series after every
+// trigger (drivers/tss/README.md).
+//
+//   address = "HOST:PORT"   where the sensor sends its series
+//   path = "series"         instead: the folder it writes them into
+#pragma once
+
+#include <filesystem>
+
+#include "services/bench/source_settings.hpp"
+#include "services/bench/toml_table.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] SeriesSourceSettings read_series_source(TomlTable& table,
+                                                      const std::filesystem::path& folder);
+
+} // namespace dyncal::services

@@ -1,0 +1,16 @@
+// The keys of [sources.NAME] with driver = "socket": the TCP stream of an analogue calibration
+// system (drivers/acs/README.md).
+//
+//   address = "192.168.1.30:5026"
+#pragma once
+
+#include "services/bench/source_settings.hpp"
+#include "services/bench/toml_table.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] inline SocketSourceSettings read_socket_source(TomlTable& table) {
+  return {.address = table.required_text("address")};
+}
+
+} // namespace dyncal::services

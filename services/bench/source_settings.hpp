@@ -1,0 +1,99 @@
+// The tables [sources.NAME] of a bench file: what all sources have in common, and the settings of
+// each driver. Plain data, any thread; nothing here knows a driver's classes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "drivers/sample_block.hpp"
+
+namespace dyncal::services {
+
+struct SmartupSourceSettings { // driver = "smartup"
+  std::string listen;
+  std::uint32_t sensor = 0;
+  std::optional<std::uint32_t> sync_sensor; // carries the sync ADC of later firmware
+};
+
+struct SocketSourceSettings { // driver = "socket"
+  std::string address;
+};
+
+struct FileSourceSettings {             // driver = "file"
+  std::filesystem::path path;           // absolute
+  double play_speed = 0.0;              // times real time; 0: at once
+  std::optional<double> sample_rate_hz{}; // of a file without a time column
+};
+
+// Where the time of a sample on CAN comes from; drivers/can/stream_settings.hpp explains them.
+enum class CanTimeSource { canopen_sync, payload_time, counter, hardware_stamp, kernel_stamp };
+
+enum class CanStampPoint { start_of_frame, end_of_frame, unknown };
+
+struct CanSourceSettings { // driver = "can"
+  std::string interface_name;
+  std::filesystem::path log;                // absolute; a candump log instead of an interface
+  double play_speed = 0.0;                  // of the log, times real time; 0: at once
+  std::filesystem::path dbc;                // absolute
+  std::vector<std::string> messages;        // by name or id; empty: the only one of the DBC file
+  std::optional<CanTimeSource> time_source; // nothing: the best there is
+  std::string counter;
+  std::string time_field;
+  double time_field_tick_s = 0.0; // 0: by the DBC file
+  double nominal_rate_hz = 0.0;   // 0: by the DBC file, or not known
+  double bit_rate_per_s = 0.0;    // 0: what the interface says
+  double data_bit_rate_per_s = 0.0;
+  std::uint32_t sync_id = 0x080;
+  CanStampPoint hardware_stamp_point = CanStampPoint::unknown;
+  std::optional<double> hardware_tick_s;
+  bool correct_frame_duration = true;
+  bool bus_is_shared = true;
+  double latency_s = 0.0;
+  std::optional<double> u_latency_s;
+  std::optional<double> u_utc_s;
+  std::optional<double> restart_after_bus_off_s;
+};
+
+struct OscilloscopeSourceSettings { // driver = "oscilloscope"
+  std::string address;              // or the folder
+  std::filesystem::path path;       // absolute; folder with files of shots
+  std::string family;               // of drivers/dso/scope_commands.hpp; empty: by its identity
+  int sync_input = 1;               // sees sync and triggers
+  double sync_range_v = 20.0;       // peak to peak
+  double trigger_level_v = 0.0;
+};
+
+struct SeriesSourceSettings { // driver = "series"
+  std::string address;        // or the folder
+  std::filesystem::path path; // absolute; folder the series are written into
+};
+
+using DriverSettings =
+    std::variant<SmartupSourceSettings, SocketSourceSettings, FileSourceSettings, CanSourceSettings,
+                 OscilloscopeSourceSettings, SeriesSourceSettings>;
+
+struct SourceSettings {
+  std::string name;
+  DriverSettings driver;
+  std::map<std::string, std::string> channels; // device's name -> ours
+  std::map<std::string, std::string> units;    // our name -> D-SI
+  drivers::TimeBase time_base = drivers::TimeBase::utc;
+  std::string where; // "bench.toml:21", for messages
+
+  // The settings of the driver, nullptr when the source has another one.
+  template <class Driver>
+  [[nodiscard]] const Driver* as() const {
+    return std::get_if<Driver>(&driver);
+  }
+  template <class Driver>
+  [[nodiscard]] bool is() const {
+    return std::holds_alternative<Driver>(driver);
+  }
+};
+
+} // namespace dyncal::services

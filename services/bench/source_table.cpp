@@ -1,0 +1,81 @@
+#include "services/bench/source_table.hpp"
+
+#include <fmt/format.h>
+
+#include "services/bench/bench_name.hpp"
+#include "services/bench/can_source.hpp"
+#include "services/bench/file_source.hpp"
+#include "services/bench/oscilloscope_source.hpp"
+#include "services/bench/series_source.hpp"
+#include "services/bench/smartup_source.hpp"
+#include "services/bench/socket_source.hpp"
+#include "services/contract/unit.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+DriverSettings read_driver(TomlTable& table, const std::string& driver,
+                           const std::filesystem::path& folder) {
+  if (driver == "smartup") {
+    return read_smartup_source(table);
+  }
+  if (driver == "socket") {
+    return read_socket_source(table);
+  }
+  if (driver == "can") {
+    return read_can_source(table, folder);
+  }
+  if (driver == "oscilloscope") {
+    return read_oscilloscope_source(table, folder);
+  }
+  if (driver == "series") {
+    return read_series_source(table, folder);
+  }
+  return driver == "file" ? read_file_source(table, folder) : FileSourceSettings{};
+}
+
+void read_units(TomlTable& table, SourceSettings& source) {
+  for (const auto& [channel, unit] : table.text_map("units")) {
+    if (const auto d_si = to_d_si(unit)) {
+      source.units.emplace(channel, *d_si);
+    } else {
+      table.refuse("units", fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI "
+                                        "nor a known short form such as \"m/s^2\" or \"V\"",
+                                        channel, unit));
+    }
+  }
+}
+
+SourceSettings read_source(TomlTable table, const std::string& name,
+                           const std::filesystem::path& folder) {
+  SourceSettings source;
+  source.name = name;
+  source.where = table.where("driver");
+  const std::string driver =
+      table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
+  source.driver = read_driver(table, driver, folder);
+  source.channels = table.text_map("channels");
+  read_units(table, source);
+  const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
+  source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
+                         ? drivers::TimeBase::utc
+                         : drivers::TimeBase::local;
+  table.finish();
+  return source;
+}
+
+} // namespace
+
+std::vector<SourceSettings> read_sources(TomlTable table, const std::filesystem::path& folder) {
+  std::vector<SourceSettings> sources;
+  for (const std::string& name : table.keys()) {
+    check_name(table, name, name);
+    if (auto inner = table.table(name)) {
+      sources.push_back(read_source(std::move(*inner), name, folder));
+    }
+  }
+  return sources;
+}
+
+} // namespace dyncal::services

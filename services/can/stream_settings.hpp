@@ -1,0 +1,12 @@
+// From the settings of a bench file to those of the driver for CAN. Any thread.
+#pragma once
+
+#include "drivers/can/stream_settings.hpp"
+#include "services/bench/source_settings.hpp"
+
+namespace dyncal::services::can {
+
+// REQUIRES: the driver of the source is "can".
+[[nodiscard]] drivers::can::StreamSettings stream_settings(const SourceSettings& source);
+
+} // namespace dyncal::services::can

@@ -1,0 +1,29 @@
+// A program that serves the bench files on its command line: reads them, joins its network options
+// with theirs, logs by a thread of its own, stops on signals, and ends with one line and an exit
+// status when something went wrong. What it serves is all that such programs differ in.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "services/bench/bench_file.hpp"
+#include "services/error.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+
+struct BenchProgram {
+  std::string name;        // "dyncal-dau"
+  std::string description; // one sentence, for --help
+  // Serves the benches until `stop`; blocks.
+  std::function<Expected<void>(const std::vector<BenchFile>& benches, const NetworkOptions& network,
+                               const std::stop_token& stop)>
+      serve;
+};
+
+// The body of main(). Returns the exit status.
+[[nodiscard]] int run_bench_program(int argc, char** argv, const BenchProgram& program);
+
+} // namespace dyncal::services

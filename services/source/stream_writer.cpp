@@ -1,0 +1,91 @@
+#include "services/source/stream_writer.hpp"
+
+#include <utility>
+
+#include "services/source/messages.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+template <class Message>
+class WriterOf : public StreamWriter {
+public:
+  WriterOf(SourceOptions source, bus::Writer<Message> writer)
+      : source_(std::move(source)), writer_(std::move(writer)) {}
+
+  bus::WriteOutcome write(std::chrono::nanoseconds limit) override {
+    return writer_.write(message_, limit);
+  }
+  void wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
+    writer_.wait_for_acknowledgments(limit);
+  }
+  [[nodiscard]] int matched_readers() const override { return writer_.matched_readers(); }
+
+protected:
+  const SourceOptions source_;
+  Message message_;
+
+private:
+  bus::Writer<Message> writer_;
+};
+
+class BlockWriter : public WriterOf<wire::SampleBlock> {
+public:
+  using WriterOf::WriterOf;
+
+  void prepare(RingEntry entry, const std::string& answers_run) override {
+    if (entry.session != session_) {
+      session_ = entry.session;
+      block_number_ = 0;
+      next_sample_ = 0;
+    }
+    if (entry.block.samples > 0) {
+      next_sample_ = entry.block.first_sample;
+    } else {
+      entry.block.first_sample = next_sample_;
+    }
+    next_sample_ += entry.block.samples;
+    message_ = to_message(source_, session_, block_number_++, std::move(entry.block));
+    message_.end_of_stream(entry.end_of_stream);
+    message_.acknowledged_run(answers_run);
+  }
+
+private:
+  std::uint64_t session_ = 0;
+  std::uint64_t block_number_ = 0; // of the next block of the session
+  std::uint64_t next_sample_ = 0;
+};
+
+class RecordWriter : public WriterOf<wire::TriggeredRecord> {
+public:
+  using WriterOf::WriterOf;
+
+  void prepare(RingEntry entry, const std::string& answers_run) override {
+    message_ =
+        to_message(source_, entry.session, entry.shot.value_or(Shot{}), std::move(entry.block));
+    message_.end_of_stream(entry.end_of_stream);
+    message_.acknowledged_run(answers_run);
+  }
+};
+
+template <class Kind, class Message>
+Expected<std::unique_ptr<StreamWriter>> open(bus::Participant& participant,
+                                             const SourceOptions& source) {
+  auto writer =
+      participant.writer<Message>(sample_topic(source.kind), bus::Profile::samples, source.bench);
+  if (!writer) {
+    return fail(writer.error());
+  }
+  return std::make_unique<Kind>(source, std::move(*writer));
+}
+
+} // namespace
+
+Expected<std::unique_ptr<StreamWriter>> StreamWriter::create(bus::Participant& participant,
+                                                             const SourceOptions& source) {
+  return is_triggered(source.kind) ? open<RecordWriter, wire::TriggeredRecord>(participant, source)
+                                   : open<BlockWriter, wire::SampleBlock>(participant, source);
+}
+
+} // namespace dyncal::services

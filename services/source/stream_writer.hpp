@@ -1,0 +1,30 @@
+// The samples of one source on the bus: SampleBlocks numbered within their session, or the
+// TriggeredRecords of a source that records after a trigger. An empty message carries a mark: the
+// end of the stream, or the run that somebody arms for. Used by the publishing thread alone.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "services/bus/bus.hpp"
+#include "services/error.hpp"
+#include "services/source/source_publisher.hpp"
+
+namespace dyncal::services {
+
+class StreamWriter {
+public:
+  // Fails (network) when the bus refuses.
+  [[nodiscard]] static Expected<std::unique_ptr<StreamWriter>> create(bus::Participant& participant,
+                                                                      const SourceOptions& source);
+  virtual ~StreamWriter() = default;
+
+  // Makes the next message out of an entry of the ring; write() tries to hand it over.
+  virtual void prepare(RingEntry entry, const std::string& answers_run) = 0;
+  [[nodiscard]] virtual bus::WriteOutcome write(std::chrono::nanoseconds limit) = 0;
+  virtual void wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
+  [[nodiscard]] virtual int matched_readers() const = 0;
+};
+
+} // namespace dyncal::services
