@@ -157,8 +157,8 @@ public:
     if (descriptor < 0) {
       return fail(cannot_listen(endpoint.listen, errno));
     }
-    auto opened =
-        std::unique_ptr<Socket>(new Socket(descriptor, std::move(endpoint.wanted), *endpoint.observer));
+    auto opened = std::unique_ptr<Socket>(
+        new Socket(descriptor, std::move(endpoint.wanted), *endpoint.observer));
     const int wanted = endpoint.receive_buffer_bytes;
     const int on = 1;
     // The first needs a privilege and passes the system's limit, the second is capped by it.

@@ -33,10 +33,10 @@ struct ListenAddress {
 class Receiver {
 public:
   struct Endpoint {
-    std::string listen;                  // address and port
-    std::vector<WantedSensor> wanted;    // no sensor twice
+    std::string listen;                    // address and port
+    std::vector<WantedSensor> wanted;      // no sensor twice
     ReceptionObserver* observer = nullptr; // outlives the receiver
-    int receive_buffer_bytes = 32 << 20; // asked for; the system may give less
+    int receive_buffer_bytes = 32 << 20;   // asked for; the system may give less
   };
 
   // Opens the sockets. Fails (invalid_setting) on a bad address, (refused) when it is in use, not

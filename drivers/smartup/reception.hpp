@@ -37,8 +37,8 @@ public:
   static constexpr std::size_t max_units = 256;
   static constexpr std::size_t max_sensors = 1024;
 
-  // `observer` and the sinks outlive the reception. REQUIRES: no sensor twice in `wanted`, each with
-  // a sink.
+  // `observer` and the sinks outlive the reception. REQUIRES: no sensor twice in `wanted`, each
+  // with a sink.
   Reception(std::vector<WantedSensor> wanted, ReceptionObserver& observer);
 
   void take(std::span<const std::uint8_t> datagram, Sender sender, HostTime now);

@@ -24,9 +24,9 @@ struct SocketSourceSettings { // driver = "socket"
   std::string address;
 };
 
-struct FileSourceSettings {             // driver = "file"
-  std::filesystem::path path;           // absolute
-  double play_speed = 0.0;              // times real time; 0: at once
+struct FileSourceSettings {               // driver = "file"
+  std::filesystem::path path;             // absolute
+  double play_speed = 0.0;                // times real time; 0: at once
   std::optional<double> sample_rate_hz{}; // of a file without a time column
 };
 

@@ -33,9 +33,10 @@ public:
   static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings,
                                                    const BenchFile& bench) {
     if (!settings.is<FileSourceSettings>()) {
-      return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' is not a file; analyse evaluates "
-                                                   "files, use 'dyncal run' for live sources",
-                                                   settings.where, settings.name));
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: source '{}' is not a file; analyse evaluates "
+                              "files, use 'dyncal run' for live sources",
+                              settings.where, settings.name));
     }
     SourceSettings at_once = settings;
     std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
@@ -93,8 +94,7 @@ public:
   }
 
 private:
-  explicit FileInput(std::unique_ptr<drivers::SampleSource> driver)
-      : driver_(std::move(driver)) {}
+  explicit FileInput(std::unique_ptr<drivers::SampleSource> driver) : driver_(std::move(driver)) {}
 
   // One session, described before it is played; losses show as gaps of the sample numbers.
   void describe(const drivers::SourceDescription&) override {}

@@ -280,8 +280,7 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
                       "not stamp that; calibrate the ADC against a system that stamps in UTC",
                       bench.path.string(), role.source)));
     }
-    const bool may_be_told_by_instrument =
-        source != nullptr && source->is<SocketSourceSettings>();
+    const bool may_be_told_by_instrument = source != nullptr && source->is<SocketSourceSettings>();
     if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
         !may_be_told_by_instrument) {
       return fail(no_time_scale(role.source));

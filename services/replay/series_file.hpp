@@ -1,5 +1,5 @@
 // A recorded series as a whole in memory, for commands that look at one file: stamps and columns of
-// a CSV, NumPy or WAV file. drivers/acs/README.md has the format. Any thread.
+// a CSV, NumPy or WAV file. drivers/files/README.md has the format. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -164,8 +164,7 @@ TEST(SocketAcs, WarnsOfAnInstrumentThatComesBackWithoutAChannel) {
   ASSERT_TRUE(acs.run(sink));
   ASSERT_EQ(sink.warnings.size(), 1U);
   EXPECT_THAT(sink.warnings[0], HasSubstr("has no channel 'reference'"));
-  EXPECT_EQ(sink.counts.causes,
-            (std::vector<NamedCount>{{"reconnections without a channel", 1}}));
+  EXPECT_EQ(sink.counts.causes, (std::vector<NamedCount>{{"reconnections without a channel", 1}}));
   EXPECT_EQ(sink.descriptions.back().channels[0].name, "velocity!");
 }
 

@@ -17,10 +17,10 @@ TEST(SensorCounts, EveryCountIsInTheCommonAccount) {
     expected.insert(next++);
   };
   SensorCounts sensor;
-  for (auto* count : {&sensor.received, &sensor.lost_in_unit, &sensor.lost_on_way,
-                      &sensor.duplicates, &sensor.late, &sensor.stale, &sensor.restarts,
-                      &sensor.other_sender, &sensor.new_columns, &sensor.without_sync,
-                      &sensor.stamps_not_trusted}) {
+  for (auto* count :
+       {&sensor.received, &sensor.lost_in_unit, &sensor.lost_on_way, &sensor.duplicates,
+        &sensor.late, &sensor.stale, &sensor.restarts, &sensor.other_sender, &sensor.new_columns,
+        &sensor.without_sync, &sensor.stamps_not_trusted}) {
     set(*count);
   }
   ReceptionCounts reception;
