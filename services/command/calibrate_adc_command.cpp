@@ -217,10 +217,10 @@ void print(const Measurements& measurements) {
 
 Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
                      const std::string& run, const Measurements& measurements) {
-  const SourceSettings* unit = bench.source(bench.method.sync_dau.source);
+  const auto* unit = bench.source(bench.method.sync_dau.source)->as<SmartupSourceSettings>();
   AdcFileHead head;
   head.channel = command.channel;
-  head.board = unit->sensor.value_or(0) & 0xffff0000U;
+  head.board = unit == nullptr ? 0 : unit->sensor & 0xffff0000U;
   head.date = utc_text(utc_now_ns());
   head.remarks = {{"Bench", bench.bench},
                   {"Run", run},
