@@ -8,7 +8,7 @@ namespace {
 class SystemClock final : public Clock {
 public:
   Instant now() override { return std::chrono::steady_clock::now(); }
-  std::int64_t utc_now_ns() override { return services::utc_now_ns(); }
+  std::int64_t utc_now_ns() override { return dyncal::utc_now_ns(); }
   bool wait(WakeUp& wake_up, Instant deadline) override { return wake_up.wait_until(deadline); }
 };
 

@@ -8,6 +8,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "drivers/utc_clock.hpp"
+#include "services/contract/session_number.hpp"
 #include "services/contract/topics.hpp"
 #include "services/dso/series_channels.hpp"
 

@@ -14,6 +14,11 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
+// The commands of these tests are numbered by the name of their run.
+std::uint32_t number_of(const wire::Command& command) {
+  return static_cast<std::uint32_t>(std::stoul(command.run()));
+}
+
 class MemoryNetworkTest : public testing::Test {
 protected:
   SteppedClock clock_;
@@ -33,12 +38,13 @@ protected:
   static wire::Command command(std::uint32_t step, const std::string& target = "dau") {
     wire::Command command;
     command.target(target);
-    command.step(step);
+    command.run(std::to_string(step));
     return command;
   }
   static std::vector<std::uint32_t> take(Reader<wire::Command>& reader) {
     std::vector<std::uint32_t> steps;
-    reader.take([&](const wire::Command& one, const SampleInfo&) { steps.push_back(one.step()); });
+    reader.take(
+        [&](const wire::Command& one, const SampleInfo&) { steps.push_back(number_of(one)); });
     return steps;
   }
   bool rang() { return bell_->wait_until(Clock::Instant::min()); }
@@ -48,7 +54,7 @@ TEST_F(MemoryNetworkTest, LosesWhatARuleNames) {
   auto writer = this->writer();
   auto reader = this->reader();
   network_.lose([](const MessageInTransit& message) {
-    return message.receiver == "receiver" && message.as<wire::Command>().step() == 2;
+    return message.receiver == "receiver" && number_of(message.as<wire::Command>()) == 2;
   });
   for (const std::uint32_t step : {1U, 2U, 3U}) {
     EXPECT_EQ(writer.write(command(step)), WriteOutcome::written);
@@ -169,7 +175,7 @@ TEST_F(MemoryNetworkTest, CarriesMessagesBetweenThreads) {
   const auto deadline = std::chrono::steady_clock::now() + 60s;
   while ((next["first"] < messages || next["second"] < messages) && bell_->wait_until(deadline)) {
     reader.take([&](const wire::Command& one, const SampleInfo&) {
-      EXPECT_EQ(one.step(), next[one.target().to_string()]++);
+      EXPECT_EQ(number_of(one), next[one.target().to_string()]++);
     });
   }
   EXPECT_EQ(next["first"], messages);

@@ -75,7 +75,7 @@ TEST_F(Publisher, NothingThatADriverCountsIsLostOnTheWayToTheStatus) {
   const wire::SourceStatus status = to_message(publisher.options(), publisher.snapshot());
   EXPECT_EQ(status.received(), 1U);
   EXPECT_EQ(status.lost_in_device(), 2U);
-  EXPECT_EQ(status.lost_on_way(), 3U);
+  EXPECT_EQ(status.lost_in_transit(), 3U);
   EXPECT_EQ(status.duplicates(), 4U);
   EXPECT_EQ(status.rejected(), 5U);
   EXPECT_EQ(status.stamps_not_trusted(), 6U);
