@@ -70,8 +70,8 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
   if (readers.contains(kind)) {
     return {};
   }
-  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)), bus::Profile::samples, bench_,
-                                             wake_up_);
+  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)), bus::Profile::samples,
+                                             bench_, wake_up_);
   if (!reader) {
     return fail(reader.error());
   }

@@ -35,7 +35,7 @@ struct Shot {
   std::string run;
   std::uint32_t step = 0;
   std::int64_t trigger_utc_ns = 0; // of the host's clock
-  double first_sample_s = 0.0; // from the trigger to the first sample
+  double first_sample_s = 0.0;     // from the trigger to the first sample
   double interval_s = 0.0;
 };
 

@@ -38,7 +38,7 @@ FLOORS = {
         ["."],
         ["contract", "report/figures"],
         ["bench", "bus"],
-        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "evaluation/method", "program"],
+        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "program"],
         ["evaluation", "source"],
         ["run"],
         ["report"],
@@ -47,6 +47,8 @@ FLOORS = {
         ["command"],
     ],
 }
+# Folders that still count as one room with another, since they include each other both ways.
+ONE_ROOM = {"evaluation/method": "evaluation"}
 # What a tree may include of others: rooms, or a whole tree.
 BETWEEN_TREES = {
     "analysis": [],
@@ -78,7 +80,8 @@ def files():
 def room_in_tree(path):
     """Tree and room of a file's path."""
     tree, *folders = path.split("/")[:-1]
-    return tree, "/".join(folders) or "."
+    room = "/".join(folders) or "."
+    return tree, ONE_ROOM.get(room, room)
 
 
 def floor(tree, room):

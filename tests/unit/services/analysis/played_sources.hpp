@@ -32,8 +32,9 @@ public:
                                                   played_bench)
                       .value()),
         samples_(participant_
-                     .writer<wire::SampleBlock>(services::sample_topic(services::from_wire(description.kind())),
-                                                bus::Profile::samples, played_bench)
+                     .writer<wire::SampleBlock>(
+                         services::sample_topic(services::from_wire(description.kind())),
+                         bus::Profile::samples, played_bench)
                      .value()),
         commands_(participant_
                       .reader<wire::Command>(bus::topics::command, bus::Profile::command,
