@@ -143,6 +143,50 @@ Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock&
   return budget;
 }
 
+Expected<std::vector<TriggerPhase>> fit_triggers(const SeriesStampingInput& input,
+                                                 const Frequency& frequency) {
+  std::vector<TriggerPhase> triggers;
+  for (std::size_t j = 0; j < input.shots.size(); ++j) {
+    const auto trigger = fit_trigger(input.shots[j], frequency);
+    if (!trigger) {
+      return fail(of_shot(j, "oscilloscope", trigger.error()));
+    }
+    triggers.push_back(*trigger);
+  }
+  return triggers;
+}
+
+// What every channel of the sensor is evaluated with.
+struct ShotEvaluation {
+  const SeriesStampingInput& input;
+  const Frequency& apparent_frequency;
+  const std::vector<std::int64_t>& stamps;
+  const std::vector<TriggerPhase>& triggers;
+  std::complex<double> link; // the reference's phasor against sync, and the way to sample 0
+  double u_start_rad = 0.0;
+  const Budget& common;
+};
+
+Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std::size_t c) {
+  const auto fits = fit_sine_beside_disturbances(shots.apparent_frequency, 0, shots.stamps,
+                                                 shots_of_channel(shots.input, c));
+  if (!fits) {
+    return fail(of_channel(shots.input.channels[c], fits.error()));
+  }
+  SeriesChannelResult channel{shots.input.channels[c], {}, {}};
+  for (std::size_t j = 0; j < fits->size(); ++j) {
+    channel.shots.push_back(shot_result((*fits)[j].fit, shots.triggers[j],
+                                        shots.input.correct_trigger_phase, shots.link,
+                                        shots.u_start_rad, shots.common));
+  }
+  const auto mean = mean_of_repetitions(channel.shots);
+  if (!mean) {
+    return fail(mean.error());
+  }
+  channel.mean = *mean;
+  return channel;
+}
+
 } // namespace
 
 Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input) {
@@ -162,15 +206,10 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const ChannelFit& sync = acs->pilot.result;
   const double w = sync.frequency.angular();
 
-  std::vector<TriggerPhase> triggers;
-  for (std::size_t j = 0; j < input.shots.size(); ++j) {
-    const auto trigger = fit_trigger(input.shots[j], sync.frequency);
-    if (!trigger) {
-      return fail(of_shot(j, "oscilloscope", trigger.error()));
-    }
-    triggers.push_back(*trigger);
+  const auto triggers = fit_triggers(input, sync.frequency);
+  if (!triggers) {
+    return fail(triggers.error());
   }
-
   const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
   const std::vector<std::int64_t> stamps =
       axis.stamps_ns(input.shots.front().series.front().size());
@@ -194,27 +233,18 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *
                                           pilot->u_frequency_hz);
   SeriesStampingResult result{reference.result, sync, {}, {}, *rate, common.rows(), {}};
-  for (const TriggerPhase& trigger : triggers) {
+  for (const TriggerPhase& trigger : *triggers) {
     result.trigger_phase_rad.push_back(std::arg(trigger.sync));
     result.u_trigger_phase_rad.push_back(trigger.u_rad);
   }
+  const ShotEvaluation shots{input, pilot->frequency,          stamps, *triggers,
+                             link,  w * input.start_scatter_s, common};
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
-    const auto fits =
-        fit_sine_beside_disturbances(pilot->frequency, 0, stamps, shots_of_channel(input, c));
-    if (!fits) {
-      return fail(of_channel(input.channels[c], fits.error()));
+    auto channel = evaluate_channel(shots, c);
+    if (!channel) {
+      return fail(channel.error());
     }
-    SeriesChannelResult channel{input.channels[c], {}, {}};
-    for (std::size_t j = 0; j < fits->size(); ++j) {
-      channel.shots.push_back(shot_result((*fits)[j].fit, triggers[j], input.correct_trigger_phase,
-                                          link, w * input.start_scatter_s, common));
-    }
-    const auto mean = mean_of_repetitions(channel.shots);
-    if (!mean) {
-      return fail(mean.error());
-    }
-    channel.mean = *mean;
-    result.channels.push_back(std::move(channel));
+    result.channels.push_back(std::move(*channel));
   }
   return result;
 }

@@ -10,6 +10,23 @@ namespace {
 
 constexpr double min_reciprocal_condition = 1e-6;
 
+// Of element (i, j) of the response: row j of the inverse, with what row i leaves of each
+// excitation's uncertainties.
+double variance_of_element(std::span<const TriaxialExcitation> excitations,
+                           const Eigen::Matrix3cd& h, const Eigen::MatrixXcd& inverse,
+                           Eigen::Index i, Eigen::Index j) {
+  double variance = 0.0;
+  for (Eigen::Index k = 0; k < inverse.rows(); ++k) {
+    const TriaxialExcitation& excitation = excitations[static_cast<std::size_t>(k)];
+    double one = std::pow(excitation.u_sensor[static_cast<std::size_t>(i)], 2);
+    for (Eigen::Index l = 0; l < 3; ++l) {
+      one += std::norm(h(i, l)) * std::pow(excitation.u_reference[static_cast<std::size_t>(l)], 2);
+    }
+    variance += std::norm(inverse(k, j)) * one;
+  }
+  return variance;
+}
+
 } // namespace
 
 Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation> excitations) {
@@ -44,16 +61,7 @@ Expected<TriaxialResponse> evaluate_triaxial(std::span<const TriaxialExcitation>
 
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
-      double variance = 0.0;
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const TriaxialExcitation& excitation = excitations[static_cast<std::size_t>(k)];
-        double one = std::pow(excitation.u_sensor[static_cast<std::size_t>(i)], 2);
-        for (Eigen::Index l = 0; l < 3; ++l) {
-          one +=
-              std::norm(h(i, l)) * std::pow(excitation.u_reference[static_cast<std::size_t>(l)], 2);
-        }
-        variance += std::norm(inverse(k, j)) * one;
-      }
+      const double variance = variance_of_element(excitations, h, inverse, i, j);
       result.h[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = h(i, j);
       result.u[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = std::sqrt(variance);
     }

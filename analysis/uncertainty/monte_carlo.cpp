@@ -162,6 +162,27 @@ private:
   bool stable_ = false;
 };
 
+// One batch of draws; whether every output is stable after it.
+Expected<bool> draw_batch(Draws& draws, const MeasurementModel& model,
+                          std::vector<Trials>& trials) {
+  std::vector<double> values(trials.size());
+  for (std::size_t i = 0; i < batch; ++i) {
+    model(draws.next(), values);
+    for (std::size_t output = 0; output < trials.size(); ++output) {
+      if (!std::isfinite(values[output])) {
+        return fail(ErrorCode::not_finite,
+                    "the measurement model gave no number for a drawn set of inputs");
+      }
+      trials[output].add(values[output]);
+    }
+  }
+  bool stable = true;
+  for (Trials& one : trials) {
+    stable = one.close_batch() && stable;
+  }
+  return stable;
+}
+
 } // namespace
 
 Expected<std::vector<MonteCarloResult>>
@@ -173,23 +194,12 @@ propagate_distributions(std::span<const InputQuantity> inputs,
     return fail(draws.error());
   }
   std::vector<Trials> trials(outputs, Trials(settings.probability));
-  std::vector<double> values(outputs);
   for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
-    for (std::size_t i = 0; i < batch; ++i) {
-      model(draws->next(), values);
-      for (std::size_t output = 0; output < outputs; ++output) {
-        if (!std::isfinite(values[output])) {
-          return fail(ErrorCode::not_finite,
-                      "the measurement model gave no number for a drawn set of inputs");
-        }
-        trials[output].add(values[output]);
-      }
+    const auto stable = draw_batch(*draws, model, trials);
+    if (!stable) {
+      return fail(stable.error());
     }
-    bool stable = true;
-    for (Trials& one : trials) {
-      stable = one.close_batch() && stable;
-    }
-    if (stable) {
+    if (*stable) {
       break;
     }
   }

@@ -283,6 +283,7 @@ inline void add_turned(double turn_sine, double turn_cosine, Lanes s, Lanes c, L
   total_c = total_c + fused_less(s, ts, c * tc);
 }
 
+// NOLINTNEXTLINE(readability-function-size): the kernel table calls it with plain pointers
 std::size_t fit_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
                         const SampleGrid& grid, const double* const* values, std::size_t channels,
                         const Parameters* start, DesignSums& sums, ResidualSums* residual_sums) {

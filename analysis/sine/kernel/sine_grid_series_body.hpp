@@ -173,6 +173,7 @@ inline void grid_series_residuals(const double* const* values, const GridPlace& 
   }
 }
 
+// NOLINTNEXTLINE(readability-function-size): the kernel table calls it with plain pointers
 std::size_t series_on_grid(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
                            const SampleGrid& grid, const double* const* values,
                            std::size_t channels, const Parameters* start, DesignSums& design,

@@ -144,8 +144,9 @@ void DbcParser::new_symbols() {
 
 void DbcParser::nodes() {
   scanner_.character(':');
-  while (scanner_.same_line() && scanner_.name())
-    ;
+  while (scanner_.same_line() && scanner_.name()) {
+    // the names themselves are not used
+  }
 }
 
 void DbcParser::message() {
