@@ -8,7 +8,7 @@
 #include "services/command/calibrate_dso_delay_command.hpp"
 #include "services/command/calibrate_time_command.hpp"
 
-namespace CLI {
+namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 

@@ -18,7 +18,7 @@ struct Topic {
   // A topic stands for its name where DDS is given one.
   operator std::string() const { return name; }           // NOLINT(google-explicit-constructor)
   constexpr operator const char*() const { return name; } // NOLINT(google-explicit-constructor)
-  friend bool operator==(const std::string& name, const Topic& topic) { return name == topic.name; }
+  friend bool operator==(const std::string& text, const Topic& topic) { return text == topic.name; }
 };
 
 namespace topics {

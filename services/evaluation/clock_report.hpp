@@ -33,7 +33,6 @@ private:
   std::string source_;
   std::optional<std::string> temperature_channel_;
   std::optional<std::size_t> temperature_column_;
-  double nominal_rate_hz_ = 0.0;
   bus::SampleContinuity continuity_;
   std::optional<analysis::SampleClock> clock_;
 };

@@ -19,6 +19,36 @@ Expected<ChannelName> role(const std::string& what, const std::string& text) {
       refused(fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", what, text)));
 }
 
+Expected<void> check_roles(const Recipe& recipe) {
+  if (recipe.without_sync() && recipe.dut.empty()) {
+    return fail(refused("the recipe names no channel under calibration, which a method "
+                        "without sync needs: give \"dut\""));
+  }
+  if (recipe.reference.source != recipe.sync_acs.source) {
+    return fail(refused("the recipe's reference and sync_acs are of different sources, "
+                        "but they must share a clock"));
+  }
+  if (recipe.sync_dau.source == recipe.sync_acs.source) {
+    return fail(refused("the recipe's sync_acs and sync_dau are of the same source; "
+                        "sample time stamping links two clocks"));
+  }
+  if (recipe.method == wire::METHOD_ANALOGUE &&
+      recipe.dut_sources() != std::vector{recipe.reference.source}) {
+    return fail(refused("the recipe's channels under calibration must be of the source "
+                        "of the reference: the analogue method "
+                        "compares channels of one system"));
+  }
+  const bool beside = recipe.stamped_apart();
+  for (const ChannelName& name : recipe.dut) {
+    const bool of_dau = name.source == recipe.sync_dau.source;
+    if (recipe.method == wire::METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
+      return fail(refused("the recipe's channels under calibration must be either all of "
+                          "the source of sync_dau or none of them"));
+    }
+  }
+  return {};
+}
+
 Expected<void> parse_roles(const wire::Measurement& measurement, Recipe& recipe) {
   const bool by_series = recipe.method == wire::METHOD_SERIES_TIMESTAMPING;
   const std::vector<std::pair<const char*, std::pair<const std::string*, ChannelName*>>> roles{
@@ -57,33 +87,7 @@ Expected<void> parse_roles(const wire::Measurement& measurement, Recipe& recipe)
   if (without_sync) {
     recipe.sync_dau = {};
   }
-  if (without_sync && recipe.dut.empty()) {
-    return fail(refused("the recipe names no channel under calibration, which a method "
-                        "without sync needs: give \"dut\""));
-  }
-  if (recipe.reference.source != recipe.sync_acs.source) {
-    return fail(refused("the recipe's reference and sync_acs are of different sources, "
-                        "but they must share a clock"));
-  }
-  if (recipe.sync_dau.source == recipe.sync_acs.source) {
-    return fail(refused("the recipe's sync_acs and sync_dau are of the same source; "
-                        "sample time stamping links two clocks"));
-  }
-  if (recipe.method == wire::METHOD_ANALOGUE &&
-      recipe.dut_sources() != std::vector{recipe.reference.source}) {
-    return fail(refused("the recipe's channels under calibration must be of the source "
-                        "of the reference: the analogue method "
-                        "compares channels of one system"));
-  }
-  const bool beside = recipe.stamped_apart();
-  for (const ChannelName& name : recipe.dut) {
-    const bool of_dau = name.source == recipe.sync_dau.source;
-    if (recipe.method == wire::METHOD_SAMPLE_TIMESTAMPING && of_dau == beside) {
-      return fail(refused("the recipe's channels under calibration must be either all of "
-                          "the source of sync_dau or none of them"));
-    }
-  }
-  return {};
+  return check_roles(recipe);
 }
 
 Expected<void> parse_steps(const wire::Measurement& measurement, Recipe& recipe) {

@@ -345,9 +345,10 @@ std::vector<wire::CalibrationResult> RunEvaluator::evaluate_triggered_step(const
   if (broken_off_.contains(next_step_)) {
     flags.emplace_back("excitation broken off");
   }
-  SeriesStepOutput evaluated =
-      evaluate_series_step(recipe_, step, acs, *stretch, *records_.at(recipe_.sync_dau.source),
-                           sensor, shots_.of_step(step.step), start_, std::move(flags));
+  SeriesStepOutput evaluated = evaluate_series_step(
+      recipe_, step,
+      {acs, *stretch, *records_.at(recipe_.sync_dau.source), sensor, shots_.of_step(step.step)},
+      start_, std::move(flags));
   start_ = evaluated.start;
   if (evaluated.rate) {
     rates_.push_back(*evaluated.rate);

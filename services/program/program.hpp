@@ -11,7 +11,7 @@
 #include "services/error.hpp"
 #include "services/program/log.hpp"
 
-namespace CLI {
+namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 

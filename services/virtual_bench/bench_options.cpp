@@ -37,8 +37,7 @@ tl::unexpected<Error> refuse(std::string message) {
   return fail(ErrorCode::bad_argument, std::move(message));
 }
 
-void add_options(CLI::App& app, Words& words, BenchOptions& options) {
-  const auto probability = CLI::Range(0.0, 1.0);
+void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--preset", words.preset,
                  fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))
       ->capture_default_str();
@@ -70,6 +69,9 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--truth", options.truth_file, "write what is true to this file");
   app.add_option("--adc-file", options.adc_file,
                  "write the calibration of the sync ADC to this file");
+}
+
+void add_can_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--can", options.can_interface,
                  "put a sensor with CAN output on this interface; all instruments then keep the "
                  "UTC of this host, in real time");
@@ -81,6 +83,9 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
       ->check(CLI::Range(0.0, 0.8));
   app.add_option("--dbc-file", options.dbc_file,
                  "write the DBC file of the sensor with CAN output to this file");
+}
+
+void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")
       ->delimiter(',');
   app.add_option("--levels", words.levels,
@@ -98,20 +103,23 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
       ->check(CLI::PositiveNumber);
   app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel,
                  "standard uncertainty, relative")
-      ->check(probability);
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--reference-phase-rad", options.bench.reference_phase_rad,
                  "standard uncertainty in rad")
-      ->check(probability);
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--sensor", words.sensor, "id of the sensor in the unit")->capture_default_str();
+}
+
+void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_flag("--ticks", options.server.with_ticks, "send time_ticks, as units do since 2021-07");
   app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")
-      ->check(probability);
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--duplicate", options.server.path.duplicate,
                  "probability that a datagram comes twice")
-      ->check(probability);
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--reorder", options.server.path.reorder,
                  "probability that a datagram comes after the next one")
-      ->check(probability);
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option(
       "--fault", words.faults,
       fmt::format("NAME=PROBABILITY per sample: {}", fmt::join(device::fault_names(), ", ")));
@@ -119,6 +127,9 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
                  "most datagrams in a second of this host")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+}
+
+void add_recording_options(CLI::App& app, BenchOptions& options) {
   app.add_option("--record-csv", options.record_folder,
                  "write acs.csv and dau.csv into this folder instead of opening sockets");
   app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")
@@ -129,6 +140,14 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
       ->check(CLI::PositiveNumber);
   app.add_flag("--exit-with-parent", options.exit_with_parent,
                "end when the process that started this one ends");
+}
+
+void add_options(CLI::App& app, Words& words, BenchOptions& options) {
+  add_instrument_options(app, words, options);
+  add_can_options(app, words, options);
+  add_model_options(app, words, options);
+  add_path_options(app, words, options);
+  add_recording_options(app, options);
 }
 
 template <class Number>

@@ -5,9 +5,10 @@
 
 Without --all and files: what has changed since the branch left its upstream (on main without an
 upstream: since the commit before), committed or not; a changed header is read through the source of
-its name, else through one that includes it. DYNCAL_TIDY=all in the environment means --all.
+its name, else through one that includes it. DYNCAL_TIDY=all in the environment means --all: every
+source but those of tests.
 
-All sources, or more than 40, are held against the checks of CHEAP only: reading a source with all
+More than 40 sources are held against the checks of CHEAP only: reading a source with all
 checks takes four times as long.
 """
 
@@ -105,7 +106,8 @@ def main():
     chosen = options.files
     if not chosen:
         every = options.all or os.environ.get("DYNCAL_TIDY") == "all"
-        chosen = sources if every else changed(sources)
+        programs = [source for source in sources if not source.startswith("tests/")]
+        chosen = programs if every else changed(sources)
     checks = options.checks or (CHEAP if len(chosen) > MANY else None)
 
     findings = set()

@@ -40,21 +40,21 @@ struct SerType : ddsi_sertype {
 
   // Keys seen so far, to tell from an MD5 whose instance has ended.
   void remember(const KeyHash& hash, const Key& key) {
-    const std::lock_guard lock(mutex);
-    if (known_keys.size() >= max_known_keys) {
-      known_keys.clear();
+    const std::lock_guard lock(mutex_);
+    if (known_keys_.size() >= max_known_keys) {
+      known_keys_.clear();
     }
-    known_keys.try_emplace(hash, key);
+    known_keys_.try_emplace(hash, key);
   }
   std::optional<Key> recall(const KeyHash& hash) {
-    const std::lock_guard lock(mutex);
-    const auto known = known_keys.find(hash);
-    return known == known_keys.end() ? std::nullopt : std::optional(known->second);
+    const std::lock_guard lock(mutex_);
+    const auto known = known_keys_.find(hash);
+    return known == known_keys_.end() ? std::nullopt : std::optional(known->second);
   }
 
 private:
-  std::mutex mutex;
-  std::map<KeyHash, Key> known_keys;
+  std::mutex mutex_;
+  std::map<KeyHash, Key> known_keys_;
 };
 
 struct SerData : ddsi_serdata {

@@ -202,11 +202,10 @@ void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots,
 } // namespace
 
 SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& step,
-                                      const SourceRecord& acs, const StretchOfTime& acs_stretch,
-                                      const SourceRecord& oscilloscope, const SourceRecord& sensor,
-                                      const std::vector<ShotRecord::Shot>& all_shots,
+                                      const SeriesStepRecords& records,
                                       analysis::StartKind start_so_far,
                                       std::vector<std::string> flags) {
+  const auto& [acs, acs_stretch, oscilloscope, sensor, all_shots] = records;
   if (all_shots.empty()) {
     return without_result(recipe, step, start_so_far,
                           fmt::format("no shot of {} and {} was triggered in this step",

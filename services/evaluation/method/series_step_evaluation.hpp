@@ -28,10 +28,18 @@ struct SeriesStepOutput {
   analysis::StartKind start = analysis::StartKind::undecided; // for the steps that follow
 };
 
-[[nodiscard]] SeriesStepOutput
-evaluate_series_step(const Recipe& recipe, const RecipeStep& step, const SourceRecord& acs,
-                     const StretchOfTime& acs_stretch, const SourceRecord& oscilloscope,
-                     const SourceRecord& sensor, const std::vector<ShotRecord::Shot>& shots,
-                     analysis::StartKind start_so_far, std::vector<std::string> flags);
+// What the sources have recorded of one step.
+struct SeriesStepRecords {
+  const SourceRecord& acs;
+  const StretchOfTime& acs_stretch;
+  const SourceRecord& oscilloscope;
+  const SourceRecord& sensor;
+  const std::vector<ShotRecord::Shot>& shots;
+};
+
+[[nodiscard]] SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& step,
+                                                    const SeriesStepRecords& records,
+                                                    analysis::StartKind start_so_far,
+                                                    std::vector<std::string> flags);
 
 } // namespace dyncal::services
