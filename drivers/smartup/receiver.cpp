@@ -7,12 +7,12 @@
 #include <cstring>
 #include <netinet/in.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <utility>
+
+#include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers::smartup {
 
@@ -153,12 +153,13 @@ public:
     if (!listen) {
       return fail(listen.error());
     }
-    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    if (descriptor < 0) {
+    FileDescriptor owner(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    const int descriptor = owner.number();
+    if (!owner.is_open()) {
       return fail(cannot_listen(endpoint.listen, errno));
     }
     auto opened = std::unique_ptr<Socket>(
-        new Socket(descriptor, std::move(endpoint.wanted), *endpoint.observer));
+        new Socket(std::move(owner), std::move(endpoint.wanted), *endpoint.observer));
     const int wanted = endpoint.receive_buffer_bytes;
     const int on = 1;
     // The first needs a privilege and passes the system's limit, the second is capped by it.
@@ -173,23 +174,22 @@ public:
     return opened;
   }
 
-  ~Socket() { close(descriptor_); }
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
-  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] int descriptor() const { return descriptor_.number(); }
 
   [[nodiscard]] std::uint16_t port() const {
     sockaddr_in address{};
     socklen_t length = sizeof address;
-    return getsockname(descriptor_, generic(address), &length) == 0 ? ntohs(address.sin_port)
-                                                                    : std::uint16_t{0};
+    return getsockname(descriptor(), generic(address), &length) == 0 ? ntohs(address.sin_port)
+                                                                     : std::uint16_t{0};
   }
 
   [[nodiscard]] int receive_buffer_bytes() const {
     int bytes = 0;
     socklen_t length = sizeof bytes;
-    return getsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &bytes, &length) == 0 ? bytes : 0;
+    return getsockopt(descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, &length) == 0 ? bytes : 0;
   }
 
   // Everything that waits in the socket; how many datagrams that were.
@@ -198,7 +198,7 @@ public:
     std::size_t count = batch_size;
     // Bounded, so that a flood at this socket cannot starve the others and the stop.
     for (int round = 0; round < rounds && count == batch_size; ++round) {
-      count = batch.receive(descriptor_);
+      count = batch.receive(descriptor());
       const HostTime now = host_time();
       for (std::size_t i = 0; i < count; ++i) {
         take(batch, i, now);
@@ -213,8 +213,8 @@ public:
 private:
   static constexpr int rounds = 64;
 
-  Socket(int descriptor, std::vector<WantedSensor> wanted, ReceptionObserver& observer)
-      : descriptor_(descriptor), reception_(std::move(wanted), observer) {}
+  Socket(FileDescriptor descriptor, std::vector<WantedSensor> wanted, ReceptionObserver& observer)
+      : descriptor_(std::move(descriptor)), reception_(std::move(wanted), observer) {}
 
   void take(Batch& batch, std::size_t i, HostTime now) {
     if (const auto dropped = batch.dropped(i)) {
@@ -229,7 +229,7 @@ private:
     }
   }
 
-  const int descriptor_;
+  const FileDescriptor descriptor_;
   Reception reception_;
   std::uint32_t last_dropped_ = 0;
   std::uint64_t dropped_ = 0;
@@ -246,19 +246,11 @@ Expected<std::unique_ptr<Receiver>> Receiver::create(std::vector<Endpoint> endpo
     }
     receiver->sockets_.push_back(std::move(*opened));
   }
-  receiver->stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (receiver->stop_event_ < 0) {
-    return fail(ErrorCode::refused,
-                std::string("cannot make an event to stop the receiver: ") + std::strerror(errno));
-  }
   return receiver;
 }
 
 Receiver::~Receiver() {
   stop();
-  if (stop_event_ >= 0) {
-    close(stop_event_);
-  }
 }
 
 std::uint16_t Receiver::port(std::size_t endpoint) const {
@@ -279,15 +271,13 @@ void Receiver::stop() {
   if (!thread_.joinable()) {
     return;
   }
-  const std::uint64_t one = 1;
-  // Only fails when the counter is full, and then the event is set.
-  [[maybe_unused]] const auto written = write(stop_event_, &one, sizeof one);
+  stop_.raise();
   thread_.join();
 }
 
 void Receiver::run() {
   Batch batch;
-  std::vector<pollfd> events{{stop_event_, POLLIN, 0}};
+  std::vector<pollfd> events{{stop_.descriptor(), POLLIN, 0}};
   for (const auto& socket : sockets_) {
     events.push_back({socket->descriptor(), POLLIN, 0});
   }
@@ -306,7 +296,7 @@ void Receiver::run() {
       next_tick_ns = now.monotonic_ns + tick_ms * std::int64_t{1'000'000};
     }
     if (received >= rest_worthwhile) {
-      poll(events.data(), 1, rest_ms); // the stop event alone
+      poll(events.data(), 1, rest_ms); // the stop alone
     }
     if ((events[0].revents & POLLIN) != 0) {
       break;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "drivers/error.hpp"
+#include "drivers/link/stop_signal.hpp"
 #include "drivers/smartup/reception.hpp"
 
 namespace dyncal::drivers::smartup {
@@ -62,7 +63,7 @@ private:
   void run();
 
   std::vector<std::unique_ptr<Socket>> sockets_;
-  int stop_event_ = -1;
+  StopSignal stop_;
   std::thread thread_;
 };
 
