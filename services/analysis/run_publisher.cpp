@@ -3,6 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include "services/contract/topics.hpp"
+#include "services/evaluation/result/clock_report_message.hpp"
+#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -62,21 +65,21 @@ void RunPublisher::publish(const RunState& state) {
   write(writers_.status, status, write_limit);
 }
 
-void RunPublisher::publish(const EvaluationOutput& output) {
-  for (const wire::CalibrationResult& result : output.results) {
-    if (!result.valid()) {
-      spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step(),
-                   result.channel().c_str(), result.problem());
+void RunPublisher::publish(const Recipe& recipe, const EvaluationOutput& output) {
+  for (const StepResult& result : output.results) {
+    if (!result.valid) {
+      spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step, result.channel,
+                   result.problem);
     }
-    write(writers_.result, result, write_limit);
+    write(writers_.result, to_message(recipe, result), write_limit);
     ++results_;
   }
-  for (const wire::TransferFunction& function : output.transfer_functions) {
-    write(writers_.transfer_function, function, write_limit);
+  for (const TransferFunction& function : output.transfer_functions) {
+    write(writers_.transfer_function, to_message(recipe, function), write_limit);
     ++transfer_functions_;
   }
-  for (const wire::SampleClockReport& report : output.clock_reports) {
-    write(writers_.clock_report, report, write_limit);
+  for (const ClockReport& report : output.clock_reports) {
+    write(writers_.clock_report, to_message(recipe, report), write_limit);
     ++clock_reports_;
   }
 }

@@ -42,7 +42,7 @@ public:
 
   void ask_for_answer(const std::string& source);
   void publish(const RunState& state);
-  void publish(const EvaluationOutput& output);
+  void publish(const Recipe& recipe, const EvaluationOutput& output);
   [[nodiscard]] std::uint64_t results() const { return results_; }
 
 private:

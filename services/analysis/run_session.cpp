@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "services/evaluation/recipe/recipe_message.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -68,7 +70,7 @@ void RunSession::update(const wire::Measurement& measurement) {
 void RunSession::announce(const wire::Excitation& excitation) {
   excited_by_steps_ = true;
   if (evaluator_) {
-    evaluator_->announce(excitation);
+    evaluator_->announce(from_message(excitation));
   }
 }
 
@@ -132,7 +134,7 @@ void RunSession::evaluate(Instant now) {
   if (!output.results.empty()) {
     last_progress_ = now;
   }
-  publisher_.publish(output);
+  publisher_.publish(evaluator_->recipe(), output);
   if (evaluator_->finished()) {
     finish();
   } else {

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "services/contract/source_block.hpp"
+#include "services/contract/source_description.hpp"
 #include "services/contract/source_kind.hpp"
+#include "services/contract/triggered_record.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -55,7 +58,9 @@ Expected<void> SourceStreams::describe(Stream& stream, const wire::SourceDescrip
   if (same_session) {
     return {}; // what its samples mean was known from the beginning
   }
-  if (auto accepted = evaluator.describe(description); !accepted) {
+  if (auto accepted =
+          evaluator.describe(description.source().to_string(), from_message(description));
+      !accepted) {
     return accepted;
   }
   stream.described = true;
@@ -100,9 +105,21 @@ void SourceStreams::take(bus::Reader<Message>& reader, Instant now, RunEvaluator
     if (stream.answered) {
       stream.last_sent = now;
       stream.ended = message.end_of_stream();
-      evaluator.add(message);
+      hand_over(found->first, message, evaluator);
     }
   });
+}
+
+void SourceStreams::hand_over(const std::string& source, const wire::SampleBlock& block,
+                              RunEvaluator& evaluator) const {
+  evaluator.add(source, view_block(block));
+}
+
+void SourceStreams::hand_over(const std::string& source, const wire::TriggeredRecord& record,
+                              RunEvaluator& evaluator) const {
+  if (record.run() == run_) {
+    evaluator.add(source, from_message(record));
+  }
 }
 
 void SourceStreams::close_readers() {

@@ -56,6 +56,10 @@ private:
 
   [[nodiscard]] Expected<void> describe(Stream& stream, const wire::SourceDescription& description,
                                         RunEvaluator& evaluator);
+  void hand_over(const std::string& source, const wire::SampleBlock& block,
+                 RunEvaluator& evaluator) const;
+  void hand_over(const std::string& source, const wire::TriggeredRecord& record,
+                 RunEvaluator& evaluator) const;
   template <class Message>
   [[nodiscard]] Expected<void>
   open_reader(std::map<wire::SourceKind, bus::Reader<Message>>& readers, wire::SourceKind kind);

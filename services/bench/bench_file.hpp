@@ -18,6 +18,7 @@
 
 #include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
+#include "services/contract/evaluation_method.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
@@ -49,8 +50,6 @@ struct GeneratorSettings {
   std::optional<double> maximum_voltage_v;   // zero to peak
   std::optional<double> maximum_level_m_s2;
 };
-
-enum class EvaluationMethod { analogue, sample_timestamping, series_timestamping, absolute_time };
 
 struct MethodSettings {
   EvaluationMethod kind = EvaluationMethod::sample_timestamping;

@@ -86,14 +86,19 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   return {};
 }
 
-analysis::SyncPhasor phasor_of(const wire::SineFit& fit) {
-  return {fit.frequency_hz(), fit.u_frequency_hz(), fit.phase_origin_ns(), fit.sine(),
-          fit.cosine(),       fit.u_sine(),         fit.u_cosine()};
+analysis::SyncPhasor phasor_of(const analysis::ChannelFit& fit) {
+  return {fit.frequency.hz(),
+          fit.u_frequency_hz,
+          fit.phase_origin_ns,
+          fit.fit.sine,
+          fit.fit.cosine,
+          std::sqrt(fit.fit.covariance[0]),
+          std::sqrt(fit.fit.covariance[3])};
 }
 
-const wire::SineFit* fit_of(const wire::CalibrationResult& result, const ChannelName& channel) {
-  for (const wire::SineFit& fit : result.fits()) {
-    if (fit.channel() == channel.text()) {
+const analysis::ChannelFit* fit_of(const StepResult& result, const ChannelName& channel) {
+  for (const analysis::ChannelFit& fit : result.fits) {
+    if (fit.channel == channel.text()) {
       return &fit;
     }
   }
@@ -103,10 +108,10 @@ const wire::SineFit* fit_of(const wire::CalibrationResult& result, const Channel
 Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench,
                                        const RunOutcome& outcome) {
   Measurements measurements;
-  for (const wire::CalibrationResult& result : outcome.results) {
-    const wire::SineFit* acs = fit_of(result, bench.method.sync_acs);
-    const wire::SineFit* dau = fit_of(result, bench.method.sync_dau);
-    if (!result.valid() || acs == nullptr || dau == nullptr) {
+  for (const StepResult& result : outcome.results) {
+    const analysis::ChannelFit* acs = fit_of(result, bench.method.sync_acs);
+    const analysis::ChannelFit* dau = fit_of(result, bench.method.sync_dau);
+    if (!result.valid || acs == nullptr || dau == nullptr) {
       continue;
     }
     const auto compared =
@@ -116,12 +121,12 @@ Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const
                                     .acs_gain_rel = command.u_acs_gain_rel});
     if (!compared) {
       return fail(ErrorCode::no_result,
-                  fmt::format("step {}, {} Hz: {}", result.step(), result.frequency_text_hz(),
+                  fmt::format("step {}, {} Hz: {}", result.step, result.frequency_text_hz,
                               compared.error().message));
     }
     measurements.push_back(compared->point);
     measurements.back().frequency_hz =
-        result.frequency_hz(); // what was asked for; the clocks see it a little off
+        result.frequency_hz; // what was asked for; the clocks see it a little off
   }
   return measurements;
 }
@@ -176,12 +181,11 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   if (!measurements) {
     return measurements;
   }
-  if (measurements->size() < outcome->measurement.steps().size()) {
+  if (measurements->size() < outcome->planned_steps) {
     return fail(
         ErrorCode::no_result,
         fmt::format("{} of {} steps have no result; the analysis service says why (dyncal watch)",
-                    outcome->measurement.steps().size() - measurements->size(),
-                    outcome->measurement.steps().size()));
+                    outcome->planned_steps - measurements->size(), outcome->planned_steps));
   }
   if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
     return fail(named.error());

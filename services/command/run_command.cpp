@@ -1,33 +1,16 @@
 #include "services/command/run_command.hpp"
 
-#include <algorithm>
 #include <array>
 #include <ctime>
-#include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
-#include "services/report/run_figures.hpp"
-#include "services/report/run_report.hpp"
+#include "services/report/show_outcome.hpp"
 
 namespace dyncal::services {
-namespace {
-
-std::size_t steps_with_a_result(const RunOutcome& outcome) {
-  std::set<std::uint32_t> steps;
-  for (const wire::CalibrationResult& result : outcome.results) {
-    if (result.valid()) {
-      steps.insert(result.step());
-    }
-  }
-  return steps.size();
-}
-
-} // namespace
 
 std::string run_from_time() {
   const std::int64_t now_ms = utc_now_ns() / 1'000'000;
@@ -44,28 +27,6 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
     return std::vector<analysis::AdcCalibrationPoint>{};
   }
   return read_adc_file(*bench.corrections.adc);
-}
-
-Expected<void> show_outcome(const RunOutcome& outcome,
-                            const std::optional<std::filesystem::path>& json,
-                            const std::optional<std::filesystem::path>& figures) {
-  fmt::print("bench {}, run {}{}\n", outcome.measurement.bench().c_str(),
-             outcome.measurement.run().c_str(), result_table(outcome));
-  if (json) {
-    if (const auto written = write_json(*json, result_json(outcome)); !written) {
-      return fail(written.error());
-    }
-  }
-  if (figures) {
-    const auto written = write_figures(outcome, *figures);
-    if (!written) {
-      return fail(written.error());
-    }
-    for (const std::filesystem::path& path : *written) {
-      fmt::print("wrote {}\n", path.string());
-    }
-  }
-  return {};
 }
 
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
@@ -99,25 +60,8 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
 }
 
 int conclude(const RunOutcome& outcome) {
-  const std::size_t steps = outcome.measurement.steps().size();
-  const std::size_t measured = steps_with_a_result(outcome);
-  if (outcome.interrupted) {
-    return report_error(
-        {ErrorCode::interrupted,
-         fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept",
-                     measured, steps)});
-  }
-  if (!outcome.problem.empty()) {
-    return report_error(
-        {ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
-                                           outcome.problem, measured, steps)});
-  }
-  if (measured < steps) {
-    return report_error({ErrorCode::no_result,
-                         fmt::format("{} of {} steps have no result; the reasons are listed above",
-                                     steps - measured, steps)});
-  }
-  return 0;
+  const auto complete = check_complete(outcome);
+  return complete ? 0 : report_error(complete.error());
 }
 
 } // namespace dyncal::services

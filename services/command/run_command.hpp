@@ -34,11 +34,6 @@ struct RunCommand {
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
 read_adc_calibration(const BenchFile& bench);
 
-// Prints the table and writes the files asked for.
-[[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome,
-                                          const std::optional<std::filesystem::path>& json,
-                                          const std::optional<std::filesystem::path>& figures);
-
 // The exit status and, unless 0, one line on standard error.
 [[nodiscard]] int conclude(const RunOutcome& outcome);
 

@@ -2,61 +2,61 @@
 
 #include <algorithm>
 
-namespace dyncal::bus {
+namespace dyncal::services {
 
-ContinuityFinding SampleContinuity::add(const wire::SampleBlock& block) {
-  const auto [position, inserted] =
-      streams_.try_emplace({block.bench().to_string(), block.source().to_string()});
-  Stream& stream = position->second;
+void SampleContinuity::begin_session(const SourceBlock& block, ContinuityFinding& finding) {
+  finding.first = !heard_;
+  finding.new_session = heard_;
+  // A session begins with block 0; only who heard the source before can have missed its beginning.
+  next_block_ = heard_ ? 0 : block.number;
+  session_ = block.session;
+  heard_ = true;
+  sample_known_ = false;
+  pending_samples_ = 0;
+  ++counts_.sessions;
+}
 
+ContinuityFinding SampleContinuity::add(const SourceBlock& block, BlockUse use) {
   ContinuityFinding finding;
-  finding.first = inserted;
-  if (inserted || block.session() != stream.session) {
-    finding.new_session = !inserted;
-    stream.session = block.session();
-    stream.sample_known = false;
-    // A session begins with block 0; only who heard the source before can have missed its
-    // beginning.
-    stream.next_block = inserted ? block.block() : 0;
-    ++stream.counts.sessions;
+  if (!heard_ || block.session != session_) {
+    begin_session(block, finding);
   }
-
-  if (block.block() < stream.next_block) {
+  if (block.number < next_block_) {
     finding.duplicate = true;
-    ++stream.counts.duplicates;
+    ++counts_.duplicates;
     return finding;
   }
-  finding.missing_blocks = block.block() - stream.next_block;
-  stream.next_block = block.block() + 1;
-  stream.counts.missing_blocks += finding.missing_blocks;
-  ++stream.counts.blocks;
-  if (block.sample_count() > 0) {
-    count_samples(stream, block, finding);
+  finding.missing_blocks = block.number - next_block_;
+  next_block_ = block.number + 1;
+  counts_.missing_blocks += finding.missing_blocks;
+  ++counts_.blocks;
+  if (use == BlockUse::unusable) {
+    ++counts_.unusable_blocks;
+    pending_samples_ += block.samples;
+  } else if (block.samples > 0) {
+    count_samples(block, finding);
   }
   return finding;
 }
 
-void SampleContinuity::count_samples(Stream& stream, const wire::SampleBlock& block,
-                                     ContinuityFinding& finding) {
-  const std::uint64_t begin = block.first_sample();
-  const std::uint64_t end = begin + block.sample_count();
-  if (stream.sample_known && begin > stream.next_sample) {
-    finding.missing_samples = begin - stream.next_sample;
+void SampleContinuity::count_samples(const SourceBlock& block, ContinuityFinding& finding) {
+  const std::uint64_t begin = block.first_sample;
+  const std::uint64_t end = begin + block.samples;
+  if (!sample_known_) {
+    finding.missing_samples = pending_samples_; // no number before them tells better
+  } else if (begin > next_sample_) {
+    finding.missing_samples = begin - next_sample_;
+  } else {
+    finding.repeated_samples = std::min(end, next_sample_) - begin;
   }
-  if (stream.sample_known && begin < stream.next_sample) {
-    finding.repeated_samples = std::min(end, stream.next_sample) - begin;
-  }
-  stream.next_sample = stream.sample_known ? std::max(end, stream.next_sample) : end;
-  stream.sample_known = true;
-  stream.counts.samples += block.sample_count();
-  stream.counts.missing_samples += finding.missing_samples;
-  stream.counts.repeated_samples += finding.repeated_samples;
+  finding.unusable_samples = std::min(pending_samples_, finding.missing_samples);
+  next_sample_ = sample_known_ ? std::max(end, next_sample_) : end;
+  sample_known_ = true;
+  pending_samples_ = 0;
+  counts_.samples += block.samples;
+  counts_.missing_samples += finding.missing_samples;
+  counts_.unusable_samples += finding.unusable_samples;
+  counts_.repeated_samples += finding.repeated_samples;
 }
 
-ContinuityCounts SampleContinuity::counts(const std::string& bench,
-                                          const std::string& source) const {
-  const auto stream = streams_.find({bench, source});
-  return stream == streams_.end() ? ContinuityCounts{} : stream->second.counts;
-}
-
-} // namespace dyncal::bus
+} // namespace dyncal::services

@@ -45,15 +45,15 @@ Expected<Truth> read_truth(const std::filesystem::path& path) {
   }
 }
 
-const wire::TransferPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth,
-                                          std::string& channel) {
-  for (const wire::TransferFunction& function : outcome.transfer_functions) {
-    channel = function.channel().to_string();
+const FrequencyPoint* measured_point(const RunOutcome& outcome, const TruePoint& truth,
+                                     std::string& channel) {
+  for (const TransferFunction& function : outcome.transfer_functions) {
+    channel = function.channel;
     if (channel.substr(channel.find('/') + 1) != truth.channel) {
       continue;
     }
-    for (const wire::TransferPoint& point : function.points()) {
-      if (point.frequency_text_hz() == truth.frequency_text_hz) {
+    for (const FrequencyPoint& point : function.points) {
+      if (point.frequency_text_hz == truth.frequency_text_hz) {
         return &point;
       }
     }
@@ -81,7 +81,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
   TruthCheck check;
   for (const TruePoint& point : truth->points) {
     std::string channel;
-    const wire::TransferPoint* measured = measured_point(outcome, point, channel);
+    const FrequencyPoint* measured = measured_point(outcome, point, channel);
     if (measured == nullptr) {
       if (outcome.interrupted) {
         continue; // not every frequency was reached
@@ -90,17 +90,17 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
                                                     point.channel, point.frequency_text_hz));
     }
     const double phase_rad =
-        std::remainder(measured->phase_rad() - point.phase_rad, 2.0 * std::numbers::pi);
-    compare(check, measured->magnitude() - point.magnitude, measured->u_magnitude(),
+        std::remainder(measured->mean.phase_rad - point.phase_rad, 2.0 * std::numbers::pi);
+    compare(check, measured->mean.magnitude - point.magnitude, measured->mean.u_magnitude,
             fmt::format("{}, {} Hz, magnitude", channel, point.frequency_text_hz));
-    compare(check, phase_rad, measured->u_phase_rad(),
+    compare(check, phase_rad, measured->mean.u_phase_rad,
             fmt::format("{}, {} Hz, phase", channel, point.frequency_text_hz));
   }
-  for (const wire::SampleClockReport& report : outcome.clock_reports) {
-    if (report.interval_count() ==
+  for (const ClockReport& report : outcome.clock_reports) {
+    if (report.clock.intervals ==
         0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
-      compare(check, report.mean_interval_s() - truth->mean_interval_s, report.u_mean_interval_s(),
-              fmt::format("{}, sample interval", report.source().c_str()));
+      compare(check, report.clock.mean_interval_s - truth->mean_interval_s,
+              report.clock.u_mean_interval_s, fmt::format("{}, sample interval", report.source));
     }
   }
   return check;

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "services/error.hpp"
-#include "services/run/run_controller.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {
 

@@ -21,7 +21,7 @@ void EvaluationQueue::begin(Evaluation evaluation) {
   under_way_.push_back(std::async(std::launch::async, std::move(evaluation)));
 }
 
-std::vector<wire::CalibrationResult> EvaluationQueue::take_finished() {
+std::vector<StepResult> EvaluationQueue::take_finished() {
   while (!under_way_.empty() &&
          under_way_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     finish_oldest();
@@ -29,7 +29,7 @@ std::vector<wire::CalibrationResult> EvaluationQueue::take_finished() {
   return std::exchange(finished_, {});
 }
 
-std::vector<wire::CalibrationResult> EvaluationQueue::take_all() {
+std::vector<StepResult> EvaluationQueue::take_all() {
   while (!under_way_.empty()) {
     finish_oldest();
   }
@@ -41,7 +41,7 @@ void EvaluationQueue::finish_oldest() {
   under_way_.pop_front();
 }
 
-void EvaluationQueue::keep(std::vector<wire::CalibrationResult> results) {
+void EvaluationQueue::keep(std::vector<StepResult> results) {
   finished_.insert(finished_.end(), std::make_move_iterator(results.begin()),
                    std::make_move_iterator(results.end()));
 }

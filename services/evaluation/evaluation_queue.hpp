@@ -7,18 +7,15 @@
 
 #include <cstddef>
 #include <deque>
-#include <functional>
 #include <future>
 #include <vector>
 
-#include "idl/dyncal.h"
+#include "services/evaluation/method/method.hpp"
 
 namespace dyncal::services {
 
 class EvaluationQueue {
 public:
-  using Evaluation = std::function<std::vector<wire::CalibrationResult>()>;
-
   // `at_once` 0: in the caller's thread.
   explicit EvaluationQueue(std::size_t at_once) : at_once_(at_once) {}
 
@@ -29,17 +26,17 @@ public:
   void make_room();
   void begin(Evaluation evaluation);
   // Of all evaluations before the first one that is still under way.
-  [[nodiscard]] std::vector<wire::CalibrationResult> take_finished();
+  [[nodiscard]] std::vector<StepResult> take_finished();
   // Of all; waits for them.
-  [[nodiscard]] std::vector<wire::CalibrationResult> take_all();
+  [[nodiscard]] std::vector<StepResult> take_all();
 
 private:
   void finish_oldest();
-  void keep(std::vector<wire::CalibrationResult> results);
+  void keep(std::vector<StepResult> results);
 
   std::size_t at_once_;
-  std::deque<std::future<std::vector<wire::CalibrationResult>>> under_way_;
-  std::vector<wire::CalibrationResult> finished_;
+  std::deque<std::future<std::vector<StepResult>>> under_way_;
+  std::vector<StepResult> finished_;
 };
 
 } // namespace dyncal::services

@@ -3,60 +3,61 @@
 //
 // Fed with descriptions, blocks and announcements in any order of arrival between sources; gives
 // results as soon as the samples of a step have come from every source, and the run's transfer
-// functions and sample clock report at its end. A step is given up, with a result that says why,
-// when its excitation was announced as over and two seconds of later samples show nothing of it in
-// a source, when a source has ended without it, or when the run is over. The same samples give the
-// same results bit for bit. Belongs to one thread.
+// functions and sample clock report at its end. A step is given up, with a result that names the
+// reason, when its excitation was announced as over and two seconds of later samples show nothing
+// of it in a source, when a source has ended without it, or when the run is over. The same samples
+// give the same results bit for bit.
+//
+// What depends on the method is asked of it (method/method.hpp). Belongs to one thread.
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "idl/dyncal.h"
 #include "services/error.hpp"
-#include "services/evaluation/clock_report.hpp"
+#include "services/evaluation/clock_report_builder.hpp"
 #include "services/evaluation/evaluation_queue.hpp"
-#include "services/evaluation/method/apart_step_evaluation.hpp"
-#include "services/evaluation/method/series_step_evaluation.hpp"
-#include "services/evaluation/method/shot_record.hpp"
-#include "services/evaluation/recipe.hpp"
-#include "services/evaluation/source_record.hpp"
-#include "services/evaluation/step_search.hpp"
+#include "services/evaluation/method/method.hpp"
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/transfer_summary.hpp"
 
 namespace dyncal::services {
 
 struct EvaluationOutput {
-  std::vector<wire::CalibrationResult> results;
-  std::vector<wire::TransferFunction> transfer_functions; // at the end of the run
-  std::vector<wire::SampleClockReport> clock_reports;     // at the end of the run
+  std::vector<StepResult> results;
+  std::vector<TransferFunction> transfer_functions; // at the end of the run
+  std::vector<ClockReport> clock_reports;           // at the end of the run
+};
+
+struct EvaluationLimits {
+  // So many steps are evaluated in threads of their own, from copies of their samples, while the
+  // caller's goes on to take samples; 0: in the caller's. The results are the same.
+  std::size_t evaluations_at_once = 0;
+  std::size_t samples_of_a_source = SourceRecord::default_capacity; // held; see source_record.hpp
 };
 
 class RunEvaluator {
 public:
-  // `evaluations_at_once` > 0: so many steps are evaluated in threads of their own, from copies of
-  // their samples, while this one goes on to take samples; 0: in this one. The results are the
-  // same.
-  explicit RunEvaluator(Recipe recipe, std::size_t evaluations_at_once = 0);
+  explicit RunEvaluator(Recipe recipe, const EvaluationLimits& limits = {});
   ~RunEvaluator();
   RunEvaluator(const RunEvaluator&) = delete;
   RunEvaluator& operator=(const RunEvaluator&) = delete;
 
-  [[nodiscard]] const Recipe& recipe() const { return recipe_; }
+  [[nodiscard]] const Recipe& recipe() const { return *recipe_; }
 
-  // Fails (no_source) with the channels there are when the source lacks one that the recipe needs.
-  Expected<void> describe(const wire::SourceDescription& description);
+  // Fails (no_source) with the channels there are when the source lacks one that the recipe needs,
+  // and when its time scale does not fit those of others.
+  Expected<void> describe(const std::string& source, drivers::SourceDescription description);
   // Sources of the recipe that have not described themselves yet.
-  [[nodiscard]] std::vector<std::string> undescribed() const;
+  [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
 
-  void add(const wire::SampleBlock& block);
-  // Series time stamping: of the oscilloscope or of the sensor, by its source.
-  void add(const wire::TriggeredRecord& record);
-  void announce(const wire::Excitation& excitation);
+  void add(const std::string& source, const SourceBlock& block);
+  // Of an instrument that records after a trigger, by its source.
+  void add(const std::string& source, TriggeredRecord record);
+  void announce(const StepAnnouncement& announcement);
   // No excitation comes any more: the run is done, or was broken off after the steps announced so
   // far.
   void end_of_excitation(bool aborted);
@@ -69,61 +70,21 @@ public:
   void finish_now();
 
 private:
-  [[nodiscard]] SourceRecord* record(const std::string& source);
-  [[nodiscard]] std::size_t steps_expected() const;
-  [[nodiscard]] bool over_in(const SourceRecord& source, std::size_t step) const;
-  void follow(StepSearch& search, const SourceRecord& source);
+  [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
+  void keep_needed_channels(SourceRecord& source) const;
+  [[nodiscard]] bool is_evaluated(std::uint32_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
-  [[nodiscard]] bool by_series() const {
-    return recipe_.method == wire::METHOD_SERIES_TIMESTAMPING;
-  }
-  [[nodiscard]] bool by_absolute_time() const {
-    return recipe_.method == wire::METHOD_ABSOLUTE_TIME;
-  }
-  [[nodiscard]] bool ready_to_evaluate(std::size_t step) const;
-  [[nodiscard]] bool shots_are_there(std::size_t step) const;
-  // Sensors with stamps of their own: whether the samples of the step's stretch have come.
-  [[nodiscard]] bool sensors_are_there(std::size_t step) const;
-  // Which search finds the sensors' stretches.
-  [[nodiscard]] const StepSearch& search_of_sensors() const {
-    return recipe_.without_sync() ? *acs_search_ : *dau_search_;
-  }
-  [[nodiscard]] std::vector<ChannelName> channels_needed() const;
-  void keep_only_what_is_needed(SourceRecord& source) const;
-  void take_results(std::vector<wire::CalibrationResult> results, EvaluationOutput& output);
-  // The next step by its method. What is evaluated in another thread looks at nothing that changes.
-  [[nodiscard]] EvaluationQueue::Evaluation evaluation_by_method(const RecipeStep& step);
-  [[nodiscard]] EvaluationQueue::Evaluation analogue_evaluation(const RecipeStep& step) const;
-  [[nodiscard]] EvaluationQueue::Evaluation stamped_evaluation(const RecipeStep& step) const;
-  [[nodiscard]] EvaluationQueue::Evaluation apart_evaluation(const RecipeStep& step) const;
-  [[nodiscard]] std::vector<wire::CalibrationResult>
-  evaluate_triggered_step(const RecipeStep& step);
-  // The source's record, or a copy of that part of it when it is evaluated in another thread.
-  [[nodiscard]] std::shared_ptr<const SourceRecord> samples_of(const std::string& source,
-                                                               const StretchOfTime& stretch) const;
-  void forget_what_is_evaluated();
+  void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   void finish(EvaluationOutput& output);
 
-  Recipe recipe_;
-  std::map<std::string, std::unique_ptr<SourceRecord>> records_;
-  std::unique_ptr<StepSearch> acs_search_;
-  std::unique_ptr<StepSearch> dau_search_;
-  ClockReportBuilder clock_;
+  std::shared_ptr<const Recipe> recipe_;
+  std::unique_ptr<Method> method_;
+  RunRecords records_;
+  std::optional<ClockReportBuilder> clock_;
   TransferSummary summary_;
   std::size_t next_step_ = 0; // not evaluated yet
-  std::map<std::size_t, std::int64_t>
-      over_utc_ns_; // host time at which the excitation of a step was over
-  ShotRecord shots_;
-  analysis::StartKind start_ =
-      analysis::StartKind::undecided;             // of the series, as far as the steps so far tell
-  std::vector<analysis::NominalFrequency> rates_; // of the sensor, one a step
-  std::set<std::size_t> broken_off_;              // steps whose excitation was aborted
-  std::size_t steps_announced_ = 0;
-  bool excitation_done_ = false;
-  bool excitation_aborted_ = false;
-  bool finish_now_ = false;
   bool finished_ = false;
-  EvaluationQueue evaluations_; // the last member, for it waits for those that look at the others
+  EvaluationQueue evaluations_; // the last member: it waits for those that look at the others
 };
 
 } // namespace dyncal::services

@@ -2,34 +2,43 @@
 // frequency, scatter, unwrapped phase, group delay with intercept and covariance
 // (analysis/method/repetitions.hpp, analysis/response/group_delay.hpp).
 //
-// Belongs to one thread; the recipe must outlive it.
+// Belongs to one thread; recipe and method must outlive it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "idl/dyncal.h"
-#include "services/evaluation/recipe.hpp"
+#include "services/evaluation/method/method.hpp"
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/result/step_result.hpp"
+#include "services/evaluation/result/transfer_function.hpp"
 
 namespace dyncal::services {
 
 class TransferSummary {
 public:
-  explicit TransferSummary(const Recipe& recipe) : recipe_(recipe) {}
+  TransferSummary(const Recipe& recipe, const Method& method) : recipe_(recipe), method_(method) {}
 
-  // A result with the key of an earlier one takes its place.
-  void add(const wire::CalibrationResult& result);
+  // A result of the same channel, step and repetition as an earlier one takes its place.
+  void add(const StepResult& result);
 
   // One for every channel that has at least one valid result.
-  [[nodiscard]] std::vector<wire::TransferFunction> transfer_functions() const;
+  [[nodiscard]] std::vector<TransferFunction> transfer_functions() const;
 
 private:
   using StepKey = std::pair<std::uint32_t, std::uint32_t>; // step, repetition
+  using ChannelResults = std::map<StepKey, StepResult>;
+
+  [[nodiscard]] TransferFunction function_of(const std::string& channel) const;
+  void add_group_delay(const ChannelResults& results, TransferFunction& function) const;
 
   const Recipe& recipe_;
+  const Method& method_;
   std::vector<std::string> channels_; // in the order of their first result
-  std::map<std::string, std::map<StepKey, wire::CalibrationResult>> results_;
+  std::map<std::string, ChannelResults> results_;
 };
 
 } // namespace dyncal::services

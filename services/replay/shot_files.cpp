@@ -12,8 +12,7 @@
 
 #include "drivers/tss/series.hpp"
 #include "services/dso/series_channels.hpp"
-#include "services/evaluation/method/shot_record.hpp"
-#include "services/version.hpp"
+#include "services/evaluation/record/shot_record.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -94,32 +93,39 @@ std::filesystem::path folder_of_shots(const SourceSettings& source) {
   return series != nullptr ? series->path : std::filesystem::path();
 }
 
-wire::SourceDescription describe(const BenchFile& bench, const SourceSettings& source,
-                                 wire::SourceKind kind, const drivers::tss::Series& series) {
-  wire::SourceDescription description;
-  description.bench(bench.bench);
-  description.source(source.name);
-  description.session(session);
-  description.kind(kind);
-  description.device(series.device);
-  description.serial(series.serial);
-  description.driver("files of shots");
-  description.software(software_version());
-  description.nominal_rate_hz(series.nominal_rate_hz);
+drivers::SourceDescription describe(const SourceSettings& source,
+                                    const drivers::tss::Series& series) {
+  drivers::SourceDescription description;
+  description.device = series.device;
+  description.serial = series.serial;
+  description.driver = "files of shots";
+  description.nominal_rate_hz = series.nominal_rate_hz;
   for (const drivers::ChannelDescription& one : series.channels) {
-    wire::ChannelDescription channel;
-    channel.name(one.name);
     const auto unit = source.units.find(one.name);
-    channel.unit(unit == source.units.end() ? one.unit : unit->second);
-    description.channels().push_back(std::move(channel));
+    drivers::ChannelDescription channel;
+    channel.name = one.name;
+    channel.unit = unit == source.units.end() ? one.unit : unit->second;
+    description.channels.push_back(std::move(channel));
   }
   return description;
 }
 
+TriggeredRecord record_of(const StepAndShot& number, drivers::tss::Series series) {
+  return {.session = session,
+          // Shots are numbered within their step in files, and within the session in records.
+          .shot = (std::uint64_t{number.first} << 32U) | number.second,
+          .step = number.first,
+          .samples = series.samples,
+          .channels = series.channels.size(),
+          .trigger_utc_ns = 0,
+          .first_sample_s = series.first_sample_s,
+          .interval_s = 1.0 / series.nominal_rate_hz,
+          .values = std::move(series.values)};
+}
+
 } // namespace
 
-Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name,
-                                    const std::string& run) {
+Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name) {
   const SourceSettings& source = *bench.source(name); // a role names it: it was checked
   const bool trace = name == bench.method.sync_dau.source;
   const std::filesystem::path folder = folder_of_shots(source);
@@ -143,23 +149,9 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
       return fail(series.error());
     }
     if (result.records.empty()) {
-      result.description =
-          describe(bench, source, trace ? wire::SOURCE_DSO : wire::SOURCE_TSS, *series);
+      result.description = describe(source, *series);
     }
-    wire::TriggeredRecord record;
-    record.bench(bench.bench);
-    record.source(name);
-    record.session(session);
-    record.run(run);
-    record.step(number.first);
-    // Shots are numbered within their step in files, and within the session in records.
-    record.shot((std::uint64_t{number.first} << 32U) | number.second);
-    record.first_sample_s(series->first_sample_s);
-    record.interval_s(1.0 / series->nominal_rate_hz);
-    record.sample_count(static_cast<std::uint32_t>(series->samples));
-    record.channel_count(static_cast<std::uint32_t>(wanted.size()));
-    record.values(std::move(series->values));
-    result.records.push_back(std::move(record));
+    result.records.push_back(record_of(number, std::move(*series)));
   }
   return result;
 }

@@ -3,26 +3,26 @@
 // shot, in the folder `path` of the oscilloscope's source and in that of the sensor's. The
 // oscilloscope's files have its sample rate as nominal_rate_hz and the time of their first sample
 // after the trigger as first_sample_s (negative before it). Fails (bad_file), naming folder or
-// file: no path, not readable, malformed, a channel of the recipe missing, more than ShotRecord
-// holds.
+// file: no path, not readable, malformed, a channel of the recipe missing, more than
+// ShotRecord holds.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "idl/dyncal.h"
+#include "drivers/sample_block.hpp"
 #include "services/bench/bench_file.hpp"
+#include "services/contract/triggered_record.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
 
 struct ShotFiles {
-  wire::SourceDescription description;
-  std::vector<wire::TriggeredRecord> records;
+  drivers::SourceDescription description;
+  std::vector<TriggeredRecord> records;
 };
 
 // Of the source `name`: the oscilloscope's, or the sensor's, by its role in [method].
-[[nodiscard]] Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name,
-                                                  const std::string& run);
+[[nodiscard]] Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name);
 
 } // namespace dyncal::services

@@ -1,6 +1,8 @@
 // The transfer function in a result file of dyncal (the means over repetitions), for commands that
-// go on from results. Points without a value are left out. Fails: bad_file, when the file cannot be
-// read or is no result. Any thread.
+// go on from results.
+//
+// Points without a value are left out. Fails (bad_file) when the file cannot be read or is not a
+// result. Any thread.
 #pragma once
 
 #include <filesystem>

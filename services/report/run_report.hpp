@@ -10,13 +10,13 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/error.hpp"
-#include "services/run/run_controller.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {
 
 // The channel's magnitude is above three times its uncertainty at more than half of the
 // frequencies: it is worth showing.
-[[nodiscard]] bool responds(const wire::TransferFunction& function);
+[[nodiscard]] bool responds(const TransferFunction& function);
 
 // One row per channel and frequency; channels that do not respond are only named.
 [[nodiscard]] std::string result_table(const RunOutcome& outcome);

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "analysis/sine/sine_fit.hpp"
+#include "services/contract/source_block.hpp"
+#include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
 #include "services/run/level_settling.hpp"
 
@@ -54,12 +56,12 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
 void LevelMeter::take(double bench_time_s) {
   descriptions_.take([&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
     if (info.valid && description.source() == reference_.source) {
-      record_.describe(description);
+      record_.describe(from_message(description));
     }
   });
   samples_.take([&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
     if (info.valid && block.source() == reference_.source) {
-      record_.add(block);
+      record_.add(view_block(block));
     }
   });
   if (record_.restarts() != restarts_) {
@@ -94,7 +96,7 @@ std::optional<double> LevelMeter::level_after(double bench_time_s,
   const std::int64_t window_ns = ns(level_window_s(frequency.hz()));
   const std::int64_t begin_ns = stamps.back() - window_ns;
   if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) ||
-      record_.lost_between(begin_ns, stamps.back()) > 0) {
+      record_.lost_in({begin_ns, stamps.back()}).all() > 0) {
     return std::nullopt;
   }
   const auto place = [&](std::int64_t stamp_ns) {

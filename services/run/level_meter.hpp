@@ -23,7 +23,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/evaluation/source_record.hpp"
+#include "services/evaluation/record/source_record.hpp"
 
 namespace dyncal::services {
 

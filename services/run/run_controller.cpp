@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/run/run_plan.hpp"
 
 namespace dyncal::services {
@@ -27,8 +28,13 @@ RunController::RunController(RunEnvironment environment, const BenchFile& bench,
 Expected<RunOutcome>
 RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
                        const std::stop_token& stop) {
-  outcome_ = {};
-  outcome_.measurement = plan_measurement(bench_, run_, clock_.utc_now_ns(), adc_calibration);
+  const auto recipe = plan_recipe(bench_, run_, adc_calibration);
+  if (!recipe) {
+    return fail(recipe.error());
+  }
+  measurement_ = to_message(*recipe);
+  measurement_.planned_utc_ns(clock_.utc_now_ns());
+  outcome_ = outcome_of(*recipe);
   if (const auto ready = open_messages().and_then([&] { return open_excitation(); }); !ready) {
     return fail(ready.error());
   }
@@ -43,7 +49,7 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   if (!excited) {
     outcome_.problem = excited.error().message;
   }
-  outcome_.measurement.message(outcome_.interrupted ? "interrupted by the user" : outcome_.problem);
+  measurement_.message(outcome_.interrupted ? "interrupted by the user" : outcome_.problem);
   const auto state = final_state(excited.has_value());
   if (excitation_ || state == wire::MEASUREMENT_ABORTED) {
     set_state(state); // recorded files go on RUNNING until the analysis has seen their end
@@ -64,15 +70,14 @@ wire::MeasurementState RunController::final_state(bool excited) const {
 }
 
 void RunController::sort_outcome() {
-  const auto key = [](const wire::CalibrationResult& result) {
-    return std::tuple(result.step(), result.repetition(), result.channel().to_string());
+  const auto key = [](const StepResult& result) {
+    return std::tie(result.step, result.repetition, result.channel);
   };
   std::stable_sort(outcome_.results.begin(), outcome_.results.end(),
                    [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  std::sort(outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
-            [](const wire::TransferFunction& a, const wire::TransferFunction& b) {
-              return a.channel().to_string() < b.channel().to_string();
-            });
+  std::sort(
+      outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
+      [](const TransferFunction& a, const TransferFunction& b) { return a.channel < b.channel; });
 }
 
 Expected<void> RunController::open_messages() {
@@ -89,7 +94,7 @@ Expected<void> RunController::open_excitation() {
     return {};
   }
   auto excitation = StepExcitation::open(
-      environment_, bench_, outcome_.measurement, wake_up_,
+      environment_, bench_, measurement_, wake_up_,
       {.announce = [this](const wire::PlannedStep& step,
                           wire::ExcitationState state) { messages_->announce(step, state); },
        .show = [this](const std::string& phase) { show(phase); },
@@ -142,7 +147,7 @@ Expected<void> RunController::excite(const std::stop_token& stop) {
   }
   first_step_began_ = clock_.now();
   Expected<void> excited = excitation_->begin();
-  for (const wire::PlannedStep& step : outcome_.measurement.steps()) {
+  for (const wire::PlannedStep& step : measurement_.steps()) {
     if (!excited || stop.stop_requested()) {
       break;
     }
@@ -183,14 +188,14 @@ bool RunController::everything_has_come() const {
 Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   const bool already_stopped = stop.stop_requested();
   const auto plays_files = [&] {
-    return !excitation_ && outcome_.measurement.state() == wire::MEASUREMENT_RUNNING;
+    return !excitation_ && measurement_.state() == wire::MEASUREMENT_RUNNING;
   };
   Instant deadline = clock_.now() + results_limit;
   std::size_t results_before = outcome_.results.size();
   while (!everything_has_come()) {
     follow("evaluating");
     if (!already_stopped && stop.stop_requested() &&
-        outcome_.measurement.state() != wire::MEASUREMENT_ABORTED) {
+        measurement_.state() != wire::MEASUREMENT_ABORTED) {
       set_state(wire::MEASUREMENT_ABORTED);
     }
     const bool failed = messages_->analysis()->health() == wire::HEALTH_FAILED;
@@ -220,14 +225,14 @@ void RunController::follow(const std::string& phase) {
 }
 
 void RunController::set_state(wire::MeasurementState state) {
-  outcome_.measurement.state(state);
-  messages_->publish(outcome_.measurement);
+  measurement_.state(state);
+  messages_->publish(measurement_);
   measurement_published_ = clock_.now();
 }
 
 void RunController::repeat_measurement() {
   if (clock_.now() - measurement_published_ > alive_interval) {
-    set_state(outcome_.measurement.state());
+    set_state(measurement_.state());
   }
 }
 
@@ -235,11 +240,11 @@ void RunController::show(const std::string& phase, const std::string& request) {
   RunProgress progress;
   progress.request = request;
   progress.step = step_;
-  progress.steps = outcome_.measurement.steps().size();
+  progress.steps = measurement_.steps().size();
   progress.phase = phase;
   progress.results = outcome_.results.size();
   if (step_ > 0 && step_ <= progress.steps) {
-    progress.frequency_hz = outcome_.measurement.steps()[step_ - 1].frequency_text_hz();
+    progress.frequency_hz = measurement_.steps()[step_ - 1].frequency_text_hz();
   }
   if (step_ > 1) {
     const double per_step_s =

@@ -20,8 +20,8 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/bench/bench_file.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 #include "services/run/run_messages.hpp"
-#include "services/run/run_outcome.hpp"
 #include "services/run/step_excitation.hpp"
 
 namespace dyncal::services {
@@ -84,6 +84,7 @@ private:
   ShowProgress show_progress_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::optional<RunMessages> messages_;
+  wire::Measurement measurement_;
   RunOutcome outcome_;
   Instant measurement_published_;
   std::size_t step_ = 0;

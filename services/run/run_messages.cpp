@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #include "services/contract/topics.hpp"
+#include "services/evaluation/result/clock_report_message.hpp"
+#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/transfer_function_message.hpp"
 
 namespace dyncal::services {
 
@@ -50,31 +53,32 @@ void RunMessages::wait_for_acknowledgments(std::chrono::nanoseconds limit) {
   endpoints_.measurement.wait_for_acknowledgments(limit);
 }
 
-template <class Message, class SameKey>
-void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Message>& all,
+template <class Message, class Result, class SameKey>
+void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
                               SameKey same_key) {
   reader.take([&](const Message& message, const bus::SampleInfo& info) {
     if (!info.valid || message.run().to_string() != run_) {
       return;
     }
+    Result result = from_message(message);
     const auto known = std::find_if(all.begin(), all.end(),
-                                    [&](const Message& other) { return same_key(other, message); });
+                                    [&](const Result& other) { return same_key(other, result); });
     if (known == all.end()) {
-      all.push_back(message);
+      all.push_back(std::move(result));
     } else {
-      *known = message;
+      *known = std::move(result);
     }
   });
 }
 
 void RunMessages::take(RunOutcome& outcome) {
   take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
-    return a.step() == b.step() && a.repetition() == b.repetition() && a.channel() == b.channel();
+    return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
   });
   take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
-              [](const auto& a, const auto& b) { return a.channel() == b.channel(); });
+              [](const auto& a, const auto& b) { return a.channel == b.channel; });
   take_newest(endpoints_.clock_reports, outcome.clock_reports,
-              [](const auto& a, const auto& b) { return a.source() == b.source(); });
+              [](const auto& a, const auto& b) { return a.source == b.source; });
   endpoints_.status.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
     if (info.valid && status.run().to_string() == run_) {
       analysis_ = status;

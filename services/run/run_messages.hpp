@@ -10,12 +10,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "idl/dyncal.h"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/error.hpp"
-#include "services/run/run_outcome.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {
 
@@ -50,8 +51,8 @@ private:
   RunMessages(bus::Clock& clock, std::string bench, std::string run, Endpoints endpoints)
       : clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
         endpoints_(std::move(endpoints)) {}
-  template <class Message, class SameKey>
-  void take_newest(bus::Reader<Message>& reader, std::vector<Message>& all, SameKey same_key);
+  template <class Message, class Result, class SameKey>
+  void take_newest(bus::Reader<Message>& reader, std::vector<Result>& all, SameKey same_key);
 
   bus::Clock* clock_;
   std::string bench_;

@@ -29,36 +29,54 @@ void BlockRing::append(RingEntry entry) {
 }
 
 bool BlockRing::offer(RingEntry entry) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (!has_room(entry)) {
     dropped_ += size_of(entry);
     return false;
   }
   append(std::move(entry));
+  lock.unlock();
+  changed_.notify_all();
   return true;
 }
 
 bool BlockRing::offer_waiting(RingEntry entry, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  if (!room_.wait(lock, stop, [&] { return has_room(entry); })) {
+  if (!changed_.wait(lock, stop, [&] { return has_room(entry); })) {
     return false;
   }
   append(std::move(entry));
+  lock.unlock();
+  changed_.notify_all();
   return true;
 }
 
+RingEntry BlockRing::take_oldest() {
+  RingEntry entry = std::move(entries_.front());
+  entries_.pop_front();
+  bytes_ -= held_bytes(entry.block);
+  return entry;
+}
+
 std::optional<RingEntry> BlockRing::take() {
-  std::optional<RingEntry> entry;
-  {
-    const std::lock_guard lock(mutex_);
-    if (entries_.empty()) {
-      return std::nullopt;
-    }
-    entry = std::move(entries_.front());
-    entries_.pop_front();
-    bytes_ -= held_bytes(entry->block);
+  std::unique_lock lock(mutex_);
+  if (entries_.empty()) {
+    return std::nullopt;
   }
-  room_.notify_all();
+  RingEntry entry = take_oldest();
+  lock.unlock();
+  changed_.notify_all();
+  return entry;
+}
+
+std::optional<RingEntry> BlockRing::take_waiting(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait(lock, stop, [&] { return !entries_.empty(); })) {
+    return std::nullopt;
+  }
+  RingEntry entry = take_oldest();
+  lock.unlock();
+  changed_.notify_all();
   return entry;
 }
 

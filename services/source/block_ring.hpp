@@ -66,6 +66,8 @@ public:
   bool offer_waiting(RingEntry entry, const std::stop_token& stop);
 
   [[nodiscard]] std::optional<RingEntry> take();
+  // Waits for an entry. Nothing if `stop` was requested before there was one.
+  [[nodiscard]] std::optional<RingEntry> take_waiting(const std::stop_token& stop);
 
   [[nodiscard]] bool empty() const;
   [[nodiscard]] double fill() const;           // 0 empty ... 1 full, the fuller of the two bounds
@@ -74,10 +76,11 @@ public:
 private:
   [[nodiscard]] bool has_room(const RingEntry& entry) const;
   void append(RingEntry entry);
+  RingEntry take_oldest();
 
   const RingLimits limits_;
   mutable std::mutex mutex_;
-  std::condition_variable_any room_;
+  std::condition_variable_any changed_;
   std::deque<RingEntry> entries_;
   std::size_t bytes_ = 0;
   std::uint64_t dropped_ = 0;

@@ -10,10 +10,12 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <thread>
 
 #include "services/bus/bus.hpp"
 #include "services/contract/sample_continuity.hpp"
+#include "services/contract/source_block.hpp"
 #include "services/contract/topics.hpp"
 
 namespace {
@@ -123,7 +125,7 @@ int write_stream(bus::Participant& participant, const Options& options) {
 int read_stream(bus::Participant& participant) {
   auto bell = std::make_shared<bus::WakeUp>();
   auto reader = participant.reader(bus::topics::dau_samples, "*", bell).value();
-  bus::SampleContinuity continuity;
+  std::map<std::string, services::SampleContinuity> continuity; // by source
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
@@ -131,7 +133,7 @@ int read_stream(bus::Participant& participant) {
     if (!info.valid) {
       return;
     }
-    const auto finding = continuity.add(block);
+    const auto finding = continuity[block.source().to_string()].add(services::view_block(block));
     if (finding.first) {
       begun_late += block.block();
     }
@@ -158,7 +160,7 @@ int read_stream(bus::Participant& participant) {
   std::uint64_t blocks = 0;
   std::uint64_t lost = begun_late;
   for (const std::string& source : source_names()) {
-    const auto counts = continuity.counts(bench, source);
+    const services::ContinuityCounts& counts = continuity[source].counts();
     blocks += counts.blocks;
     lost += counts.missing_blocks + counts.duplicates;
   }

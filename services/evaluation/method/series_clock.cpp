@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/version.hpp"
-
 namespace dyncal::services {
 
-wire::SampleClockReport series_clock_report(const Recipe& recipe, const std::string& sensor,
-                                            std::span<const analysis::NominalFrequency> rates) {
+ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel,
+                                std::span<const analysis::NominalFrequency> rates) {
   double weights = 0.0;
   double sum = 0.0;
   const auto weight_of = [](const analysis::NominalFrequency& rate) {
@@ -26,16 +24,13 @@ wire::SampleClockReport series_clock_report(const Recipe& recipe, const std::str
   const double birge =
       rates.size() > 1 ? std::sqrt(chi_square / static_cast<double>(rates.size() - 1)) : 1.0;
   const double u_rel =
-      std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, recipe.u_acs_rate_rel);
-  wire::SampleClockReport report;
-  report.bench(recipe.bench);
-  report.run(recipe.run);
-  report.source(sensor);
-  report.nominal_rate_hz(rates.front().real_rate_hz / rates.front().lambda);
-  report.mean_rate_hz(mean_hz);
-  report.mean_interval_s(1.0 / mean_hz);
-  report.u_mean_interval_s(u_rel / mean_hz);
-  report.software(software_version());
+      std::hypot(std::max(1.0, birge) / std::sqrt(weights) / mean_hz, u_acs_rate_rel);
+  ClockReport report;
+  report.source = sensor;
+  report.clock.nominal_rate_hz = rates.front().real_rate_hz / rates.front().lambda;
+  report.clock.mean_rate_hz = mean_hz;
+  report.clock.mean_interval_s = 1.0 / mean_hz;
+  report.clock.u_mean_interval_s = u_rel / mean_hz;
   return report;
 }
 

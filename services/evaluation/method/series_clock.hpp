@@ -10,14 +10,12 @@
 #include <string>
 
 #include "analysis/method/nominal_frequency.hpp"
-#include "idl/dyncal.h"
-#include "services/evaluation/recipe.hpp"
+#include "services/evaluation/result/clock_report.hpp"
 
 namespace dyncal::services {
 
-// REQUIRES: at least one rate.
-[[nodiscard]] wire::SampleClockReport
-series_clock_report(const Recipe& recipe, const std::string& sensor,
-                    std::span<const analysis::NominalFrequency> rates);
+// `u_acs_rate_rel`: of the ACS's clock. REQUIRES: at least one rate.
+[[nodiscard]] ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel,
+                                              std::span<const analysis::NominalFrequency> rates);
 
 } // namespace dyncal::services

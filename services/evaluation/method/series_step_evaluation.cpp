@@ -10,18 +10,14 @@
 
 #include "analysis/method/series_stamping.hpp"
 #include "services/contract/digest.hpp"
+#include "services/evaluation/method/step_results.hpp"
 
 namespace dyncal::services {
 namespace {
 
-SeriesStepOutput without_result(const Recipe& recipe, const RecipeStep& step,
-                                analysis::StartKind start, const std::string& problem) {
-  SeriesStepOutput output{{}, std::nullopt, start};
-  for (const ChannelName& channel : recipe.dut) {
-    output.results.push_back(result_head(recipe, step, channel.text()));
-    output.results.back().problem(problem);
-  }
-  return output;
+SeriesStepOutput without_result(const SeriesStepInput& input, const std::string& problem) {
+  return {results_without_value(input.task.step(), input.task.recipe->dut(), problem), std::nullopt,
+          input.start_so_far};
 }
 
 // Shots whose series have the length and the rate that most have, and whose records have the
@@ -29,11 +25,11 @@ SeriesStepOutput without_result(const Recipe& recipe, const RecipeStep& step,
 std::vector<ShotRecord::Shot> of_usual_length(const std::vector<ShotRecord::Shot>& shots,
                                               std::size_t series_channels,
                                               std::size_t trace_channels,
-                                              std::vector<std::string>& flags) {
+                                              std::vector<Flag>& flags) {
   const auto form = [](const ShotRecord::Shot& shot) {
-    return std::pair(shot.series->sample_count(), shot.series->interval_s());
+    return std::pair(shot.series->samples, shot.series->interval_s);
   };
-  std::map<std::pair<std::uint32_t, double>, std::size_t> forms;
+  std::map<std::pair<std::size_t, double>, std::size_t> forms;
   for (const ShotRecord::Shot& shot : shots) {
     ++forms[form(shot)];
   }
@@ -41,14 +37,15 @@ std::vector<ShotRecord::Shot> of_usual_length(const std::vector<ShotRecord::Shot
       forms.begin(), forms.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::vector<ShotRecord::Shot> chosen;
   for (const ShotRecord::Shot& shot : shots) {
-    if (form(shot) == usual->first && shot.series->channel_count() >= series_channels &&
-        shot.trace->channel_count() >= trace_channels) {
+    if (form(shot) == usual->first && shot.series->channels >= series_channels &&
+        shot.trace->channels >= trace_channels) {
       chosen.push_back(shot);
     }
   }
   if (chosen.size() < shots.size()) {
-    flags.push_back(fmt::format("{} shots of another length, rate or number of channels left out",
-                                shots.size() - chosen.size()));
+    flags.push_back(
+        {ResultFlag::shots_left_out, fmt::format("{} {}", shots.size() - chosen.size(),
+                                                 to_string(ResultFlag::shots_left_out))});
   }
   return chosen;
 }
@@ -60,27 +57,28 @@ std::string digest_of(const StepSamples& acs, const std::vector<ShotRecord::Shot
     digest.add(column.data(), column.size() * sizeof(double));
   }
   for (const ShotRecord::Shot& shot : shots) {
-    for (const wire::TriggeredRecord* record : {shot.trace, shot.series}) {
-      const std::array axis{record->first_sample_s(), record->interval_s()};
+    for (const TriggeredRecord* record : {shot.trace, shot.series}) {
+      const std::array axis{record->first_sample_s, record->interval_s};
       digest.add(axis.data(), sizeof(axis));
-      digest.add(record->values().data(), record->values().size() * sizeof(double));
+      digest.add(record->values.data(), record->values.size() * sizeof(double));
     }
   }
   return digest.hex();
 }
 
-wire::SourceSamples shots_message(const SourceRecord& source,
-                                  const std::vector<ShotRecord::Shot>& shots, bool series) {
-  wire::SourceSamples samples;
-  samples.source(source.source());
-  std::uint64_t used = 0;
+SourceSamples summary_of(const SourceRecord& source, const std::vector<ShotRecord::Shot>& shots,
+                         const TriggeredRecord* ShotRecord::Shot::*record,
+                         const ShotRecord::Loss& loss) {
+  SourceSamples summary;
+  summary.source = source.source();
   for (const ShotRecord::Shot& shot : shots) {
-    used += series ? shot.series->sample_count() : shot.trace->sample_count();
+    summary.used += (shot.*record)->samples;
   }
-  samples.used(used);
-  samples.first_stamp_ns(shots.front().trace->trigger_utc_ns());
-  samples.last_stamp_ns(shots.back().trace->trigger_utc_ns());
-  return samples;
+  summary.unusable = loss.unusable_samples;
+  summary.overflowed = loss.overflowed_samples;
+  summary.first_stamp_ns = shots.front().trace->trigger_utc_ns;
+  summary.last_stamp_ns = shots.back().trace->trigger_utc_ns;
+  return summary;
 }
 
 // When each shot's series began, relative to their mean, from the phase of its H.
@@ -117,37 +115,38 @@ std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResu
 
 // What the evaluation needs of the shots; the spans are those of the records.
 void add_shots(const std::vector<ShotRecord::Shot>& shots, std::size_t sync,
-               const std::vector<std::size_t>& places, analysis::SeriesStampingInput& input) {
-  input.nominal_rate_hz = 1.0 / shots.front().series->interval_s();
+               const std::vector<std::size_t>& columns, analysis::SeriesStampingInput& input) {
+  input.nominal_rate_hz = 1.0 / shots.front().series->interval_s;
   for (const ShotRecord::Shot& shot : shots) {
     analysis::SeriesShot one{
-        shot.trace->first_sample_s(), shot.trace->interval_s(), channel_of(*shot.trace, sync), {}};
-    for (const std::size_t place : places) {
-      one.series.push_back(channel_of(*shot.series, place));
+        shot.trace->first_sample_s, shot.trace->interval_s, shot.trace->channel(sync), {}};
+    for (const std::size_t column : columns) {
+      one.series.push_back(shot.series->channel(column));
     }
     input.shots.push_back(std::move(one));
   }
 }
 
 void add_corrections(const Recipe& recipe, analysis::SeriesStampingInput& input) {
+  const auto& roles = std::get<SeriesRoles>(recipe.roles);
   input.frequency_search_rel = recipe.frequency_search_rel;
-  input.dso_delay_s = recipe.dso_delay_s;
-  input.u_dso_delay_s = recipe.u_dso_delay_s;
+  input.dso_delay_s = roles.dso_delay_s;
+  input.u_dso_delay_s = roles.u_dso_delay_s;
   input.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
   input.reference_phase_rad = recipe.systematic.reference_phase_rad;
   input.acs_delay_s = recipe.systematic.acs_delay_s;
   input.reference_delay_s = recipe.reference_delay_s;
-  input.correct_trigger_phase = recipe.trigger_phase_correction;
+  input.correct_trigger_phase = roles.trigger_phase_correction;
 }
 
-struct Judged {
+struct EvaluatedSeries {
   analysis::SeriesStampingResult result;
   analysis::StartLatency start;
 };
 
-// Evaluates, judges the start, and evaluates again when that must be corrected.
-analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& input,
-                                              analysis::StartKind start_so_far) {
+// Evaluates, decides how the series start, and evaluates again when that must be corrected.
+analysis::Expected<EvaluatedSeries> evaluate_series(analysis::SeriesStampingInput& input,
+                                                    analysis::StartKind start_so_far) {
   auto evaluated = analysis::evaluate_series_stamping(input);
   if (!evaluated) {
     return fail(evaluated.error());
@@ -163,97 +162,127 @@ analysis::Expected<Judged> evaluate_and_judge(analysis::SeriesStampingInput& inp
     evaluated = analysis::evaluate_series_stamping(input);
   }
   return evaluated.map([&](analysis::SeriesStampingResult& result) {
-    return Judged{std::move(result), start};
+    return EvaluatedSeries{std::move(result), start};
   });
 }
 
-void add_numbers(const Recipe& recipe, const Judged& judged,
-                 const analysis::SeriesChannelResult& channel, wire::CalibrationResult& result) {
-  result.valid(true);
-  result.magnitude(channel.mean.magnitude);
-  result.u_magnitude(channel.mean.u_magnitude);
-  result.phase_rad(channel.mean.phase_rad);
-  result.u_phase_rad(channel.mean.u_phase_rad);
-  const analysis::NominalFrequency& rate = judged.result.rate;
-  result.sample_rate_hz(rate.real_rate_hz);
-  result.u_sample_rate_hz(
-      std::hypot(rate.u_real_rate_hz, recipe.u_acs_rate_rel * rate.real_rate_hz));
-  result.series_start(analysis::to_string(judged.start.kind));
-  result.series_start_scatter_s(judged.start.scatter_s);
-  result.fits().push_back(fit_message(judged.result.reference));
-  result.fits().push_back(fit_message(judged.result.sync_acs));
-  add_budget(budget_of(judged.result, channel), result);
+void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
+               const analysis::SeriesChannelResult& channel, StepResult& result) {
+  result.valid = true;
+  result.magnitude = channel.mean.magnitude;
+  result.u_magnitude = channel.mean.u_magnitude;
+  result.phase_rad = channel.mean.phase_rad;
+  result.u_phase_rad = channel.mean.u_phase_rad;
+  const analysis::NominalFrequency& rate = evaluated.result.rate;
+  result.series = SeriesFinding{
+      rate.real_rate_hz, std::hypot(rate.u_real_rate_hz, roles.u_acs_rate_rel * rate.real_rate_hz),
+      to_string(evaluated.start.kind), evaluated.start.scatter_s};
+  result.fits = {evaluated.result.reference, evaluated.result.sync_acs};
+  result.budget = budget_of(evaluated.result, channel);
 }
 
 // What a reader of the result should know of its shots.
-void add_flags(const Recipe& recipe, const Judged& judged, std::size_t shots,
-               std::vector<std::string>& flags) {
-  if (shots < recipe.shots) {
-    flags.push_back(fmt::format("{} of {} shots", shots, recipe.shots));
+void add_flags(const SeriesStepInput& input, const EvaluatedSeries& evaluated, std::size_t shots,
+               std::vector<Flag>& flags) {
+  const auto& roles = std::get<SeriesRoles>(input.task.recipe->roles);
+  if (shots < roles.shots) {
+    flags.push_back({ResultFlag::shots_missing, fmt::format("{} of {} {}", shots, roles.shots,
+                                                            to_string(ResultFlag::shots_missing))});
   }
-  if (judged.start.kind == analysis::StartKind::undecided) {
-    flags.push_back(fmt::format("start of the series: {}", analysis::to_string(judged.start.kind)));
+  if (input.lost.traces.records > 0) {
+    flags.push_back(flag_of_source(ResultFlag::records_lost, input.oscilloscope.source()));
   }
-  if (!recipe.trigger_phase_correction) {
-    flags.emplace_back("the phase of the trigger is not corrected");
+  if (input.lost.series.records > 0) {
+    flags.push_back(flag_of_source(ResultFlag::records_lost, input.sensor.source()));
   }
+  if (evaluated.start.kind == analysis::StartKind::undecided) {
+    flags.push_back(flag_with_reason(ResultFlag::start_undecided, to_string(evaluated.start.kind)));
+  }
+  if (!roles.trigger_phase_correction) {
+    flags.push_back(make_flag(ResultFlag::trigger_phase_not_corrected));
+  }
+}
+
+std::vector<std::size_t> columns_of(const SourceRecord& sensor,
+                                    const std::vector<ChannelName>& dut) {
+  std::vector<std::size_t> columns;
+  for (const ChannelName& channel : dut) {
+    columns.push_back(*sensor.channel(channel.channel));
+  }
+  return columns;
+}
+
+analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChannels& acs,
+                                       const std::vector<ShotRecord::Shot>& shots, std::size_t sync,
+                                       const std::vector<std::size_t>& columns) {
+  // The quantisation of the ACS is not a row of this method's budget.
+  analysis::ChannelSamples reference = acs.channel(0);
+  analysis::ChannelSamples sync_acs = acs.channel(1);
+  reference.resolution = 0.0;
+  sync_acs.resolution = 0.0;
+  analysis::SeriesStampingInput input{.frequency = task.step().frequency,
+                                      .acs_stamps_ns = acs.stamps_ns(),
+                                      .reference = reference,
+                                      .sync_acs = sync_acs};
+  add_corrections(*task.recipe, input);
+  for (const ChannelName& channel : task.recipe->dut()) {
+    input.channels.push_back(channel.text());
+  }
+  add_shots(shots, sync, columns, input);
+  return input;
+}
+
+std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedChannels& acs,
+                                   const std::vector<ShotRecord::Shot>& shots,
+                                   const EvaluatedSeries& evaluated,
+                                   const std::vector<Flag>& flags) {
+  const auto& roles = std::get<SeriesRoles>(input.task.recipe->roles);
+  const StepTask task{input.task.recipe, input.task.index, flags};
+  const StepInput made_of{
+      .dut = roles.dut,
+      .units = {},
+      .samples = {acs.summary(),
+                  summary_of(input.oscilloscope, shots, &ShotRecord::Shot::trace,
+                             input.lost.traces),
+                  summary_of(input.sensor, shots, &ShotRecord::Shot::series, input.lost.series)},
+      .data_sha256 = digest_of(acs.samples(), shots)};
+  std::vector<StepResult> results;
+  for (std::size_t i = 0; i < roles.dut.size(); ++i) {
+    StepResult result = result_head(task.step(), roles.dut[i]);
+    add_value(roles, evaluated, evaluated.result.channels[i], result);
+    const std::size_t column = *input.sensor.channel(roles.dut[i].channel);
+    result.unit = ratio_unit(acs.unit(0), input.sensor.description().channels[column].unit);
+    add_input(task, made_of, result);
+    results.push_back(std::move(result));
+  }
+  return results;
 }
 
 } // namespace
 
-SeriesStepOutput evaluate_series_step(const Recipe& recipe, const RecipeStep& step,
-                                      const SeriesStepRecords& records,
-                                      analysis::StartKind start_so_far,
-                                      std::vector<std::string> flags) {
-  const auto& [acs, acs_stretch, oscilloscope, sensor, all_shots] = records;
-  if (all_shots.empty()) {
-    return without_result(recipe, step, start_so_far,
-                          fmt::format("no shot of {} and {} was triggered in this step",
-                                      oscilloscope.source(), sensor.source()));
+SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
+  const auto& roles = std::get<SeriesRoles>(step.task.recipe->roles);
+  if (step.shots.empty()) {
+    return without_result(step, fmt::format("no shot of {} and {} was triggered in this step",
+                                            step.oscilloscope.source(), step.sensor.source()));
   }
-  const StepSamples acs_samples =
-      cut(acs, acs_stretch,
-          {*acs.channel(recipe.reference.channel), *acs.channel(recipe.sync_acs.channel)});
-  analysis::SeriesStampingInput input{
-      .frequency = step.frequency,
-      .acs_stamps_ns = acs_samples.stamps_ns,
-      .reference = {recipe.reference.text(), acs_samples.columns[0], 0.0},
-      .sync_acs = {recipe.sync_acs.text(), acs_samples.columns[1], 0.0}};
-  add_corrections(recipe, input);
-  std::vector<std::size_t> places;
-  for (const ChannelName& channel : recipe.dut) {
-    input.channels.push_back(channel.text());
-    places.push_back(*sensor.channel(channel.channel));
-  }
-  const std::size_t sync = *oscilloscope.channel(recipe.sync_dau.channel);
-  const auto shots = of_usual_length(all_shots, *std::max_element(places.begin(), places.end()) + 1,
-                                     sync + 1, flags);
+  const SelectedChannels acs(step.acs, {roles.reference, roles.sync_acs});
+  const std::vector<std::size_t> columns = columns_of(step.sensor, roles.dut);
+  const std::size_t sync = *step.oscilloscope.channel(roles.sync_dso.channel);
+  std::vector<Flag> flags = step.task.flags;
+  const auto shots = of_usual_length(
+      step.shots, *std::max_element(columns.begin(), columns.end()) + 1, sync + 1, flags);
   if (shots.empty()) {
-    return without_result(recipe, step, start_so_far,
-                          "the records of the shots lack a channel that was described");
+    return without_result(step, "the records of the shots lack a channel that was described");
   }
-  add_shots(shots, sync, places, input);
-  auto judged = evaluate_and_judge(input, start_so_far);
-  if (!judged) {
-    return without_result(recipe, step, start_so_far, judged.error().message);
+  analysis::SeriesStampingInput input = input_of(step.task, acs, shots, sync, columns);
+  const auto evaluated = evaluate_series(input, step.start_so_far);
+  if (!evaluated) {
+    return without_result(step, evaluated.error().message);
   }
-  add_flags(recipe, *judged, shots.size(), flags);
-
-  SeriesStepOutput output{{}, judged->result.rate, judged->start.kind};
-  const std::string data_sha256 = digest_of(acs_samples, shots);
-  for (std::size_t i = 0; i < recipe.dut.size(); ++i) {
-    wire::CalibrationResult result = result_head(recipe, step, recipe.dut[i].text());
-    add_numbers(recipe, *judged, judged->result.channels[i], result);
-    result.unit(ratio_unit(acs, recipe.reference.channel, sensor, recipe.dut[i].channel));
-    result.samples().push_back(samples_message(acs, acs_samples, acs_stretch));
-    result.samples().push_back(shots_message(oscilloscope, shots, false));
-    result.samples().push_back(shots_message(sensor, shots, true));
-    result.lost(result.samples()[0].lost());
-    result.flags() = flags;
-    result.data_sha256(data_sha256);
-    output.results.push_back(std::move(result));
-  }
-  return output;
+  add_flags(step, *evaluated, shots.size(), flags);
+  return {results_of(step, acs, shots, *evaluated, flags), evaluated->result.rate,
+          evaluated->start.kind};
 }
 
 } // namespace dyncal::services

@@ -12,6 +12,11 @@
 
 namespace dyncal::services::figures {
 
+struct FigureTitle {
+  std::string title{};
+  std::string subtitle{}; // may be empty
+};
+
 struct Figure {
   std::string name; // of the files, without their endings
   std::string svg;

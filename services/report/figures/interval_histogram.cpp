@@ -26,44 +26,44 @@ struct Histogram {
   std::uint64_t outside = 0;
 };
 
-Histogram merged(const IntervalHistogramData& data) {
+Histogram merge_bins(const analysis::SampleClockStatistics& clock) {
   Histogram histogram;
   std::vector<WeightedInterval> weighted;
-  for (const auto& c : data.counts) {
+  for (const auto& c : clock.histogram) {
     weighted.push_back({c.interval_ns, static_cast<double>(c.count)});
   }
   const RegularIntervals regular(std::move(weighted));
 
-  std::vector<IntervalCount> kept;
-  for (const auto& c : data.counts) {
+  std::vector<analysis::IntervalHistogramBin> regular_bins;
+  for (const auto& c : clock.histogram) {
     histogram.total += c.count;
     if (regular.contain(c.interval_ns)) {
       if (c.count > 0) {
-        kept.push_back(c);
+        regular_bins.push_back(c);
       }
     } else {
       histogram.outside += c.count;
     }
   }
-  if (kept.empty()) {
+  if (regular_bins.empty()) {
     return histogram;
   }
-  std::sort(kept.begin(), kept.end(),
+  std::sort(regular_bins.begin(), regular_bins.end(),
             [](const auto& a, const auto& b) { return a.interval_ns < b.interval_ns; });
-  const auto& first = kept.front();
-  const double span_ns = kept.back().interval_ns - first.interval_ns;
-  const double tick_ns = 1e9 * data.tick_s;
+  const auto& first = regular_bins.front();
+  const double span_ns = regular_bins.back().interval_ns - first.interval_ns;
+  const double tick_ns = 1e9 * clock.tick_s;
   if (tick_ns > 0) {
-    const auto ticks = kept.back().interval_ticks - first.interval_ticks + 1;
+    const auto ticks = regular_bins.back().ticks - first.ticks + 1;
     histogram.ticks_per_bin = std::max<std::int64_t>(1, (ticks + max_bins - 1) / max_bins);
     histogram.bin_ns = static_cast<double>(histogram.ticks_per_bin) * tick_ns;
   } else {
     histogram.bin_ns = span_ns > 0 ? span_ns / (max_bins - 1) : 1.0;
   }
   std::map<std::int64_t, std::uint64_t> bins;
-  for (const auto& c : kept) {
+  for (const auto& c : regular_bins) {
     const auto bin = histogram.ticks_per_bin > 0
-                         ? (c.interval_ticks - first.interval_ticks) / histogram.ticks_per_bin
+                         ? (c.ticks - first.ticks) / histogram.ticks_per_bin
                          : std::llround((c.interval_ns - first.interval_ns) / histogram.bin_ns);
     bins[bin] += c.count;
   }
@@ -100,13 +100,13 @@ std::string duration(double seconds) {
   return fmt::format("{:.4g} ms", 1e3 * seconds);
 }
 
-std::string subtitle(const IntervalHistogramData& data, const Histogram& histogram) {
+std::string subtitle_of(const analysis::SampleClockStatistics& clock, const Histogram& histogram) {
   if (histogram.total == 0) {
     return "no intervals";
   }
   auto text = fmt::format("{} intervals, mean {:.3f} µs, sd {}, spread {}",
-                          grouped(histogram.total), 1e6 * data.mean_interval_s, duration(data.sd_s),
-                          duration(data.maximum_s - data.minimum_s));
+                          grouped(histogram.total), 1e6 * clock.mean_interval_s,
+                          duration(clock.sd_s), duration(clock.maximum_s - clock.minimum_s));
   if (histogram.bars.empty()) {
     return text;
   }
@@ -122,20 +122,22 @@ std::string subtitle(const IntervalHistogramData& data, const Histogram& histogr
   return text;
 }
 
-std::string csv_of(const IntervalHistogramData& data) {
-  auto csv = csv_comment(data.title) + csv_comment("tick " + csv_number(data.tick_s) + " s");
+std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
+  auto csv = csv_comment(title.title) + csv_comment("tick " + csv_number(clock.tick_s) + " s");
   csv += "interval_ticks,interval_ns,count\n";
-  for (const auto& c : data.counts) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", c.interval_ticks,
-                   csv_number(c.interval_ns), c.count);
+  for (const auto& c : clock.histogram) {
+    fmt::format_to(std::back_inserter(csv), "{},{},{}\n", c.ticks, csv_number(c.interval_ns),
+                   c.count);
   }
   return csv;
 }
 
 } // namespace
 
-Figure interval_histogram_figure(const IntervalHistogramData& data, const std::string& name) {
-  const auto histogram = merged(data);
+Figure interval_histogram_figure(const FigureTitle& title,
+                                 const analysis::SampleClockStatistics& clock,
+                                 const std::string& name) {
+  const auto histogram = merge_bins(clock);
   Panel panel;
   panel.x_label = "sample interval in µs";
   panel.y_label = "count per bin";
@@ -151,9 +153,10 @@ Figure interval_histogram_figure(const IntervalHistogramData& data, const std::s
   panel.y_range = counts;
 
   Svg svg(width, height);
-  const double top = draw_header(svg, data.title, subtitle(data, histogram), {&panel}, left, right);
+  const double top =
+      draw_header(svg, title.title, subtitle_of(clock, histogram), {&panel}, left, right);
   draw(svg, panel, {left, top, right - left, height - top - 58});
-  return {name, svg.finish(), csv_of(data)};
+  return {name, svg.finish(), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

@@ -15,17 +15,18 @@ constexpr double height = 500;
 constexpr double left = 92;
 constexpr double right = width - 24;
 
-std::string csv_of(const IntervalOverTemperatureData& data) {
+std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
   auto csv =
-      csv_comment(data.title) +
+      csv_comment(title.title) +
       csv_comment("kind: one interval, or mean and standard deviation of a bin of temperature");
   csv += "kind,temperature_degc,interval_ns,sd_interval_ns,count\n";
-  for (std::size_t i = 0; i < std::min(data.temperature_degc.size(), data.interval_ns.size());
-       ++i) {
+  for (std::size_t i = 0;
+       i < std::min(clock.scatter_temperature_degc.size(), clock.scatter_interval_ns.size()); ++i) {
     fmt::format_to(std::back_inserter(csv), "interval,{},{},,1\n",
-                   csv_number(data.temperature_degc[i]), csv_number(data.interval_ns[i]));
+                   csv_number(clock.scatter_temperature_degc[i]),
+                   csv_number(clock.scatter_interval_ns[i]));
   }
-  for (const auto& bin : data.bins) {
+  for (const auto& bin : clock.over_temperature) {
     fmt::format_to(std::back_inserter(csv), "bin,{},{},{},{}\n", csv_number(bin.temperature_degc),
                    csv_number(bin.mean_interval_ns), csv_number(bin.sd_interval_ns), bin.count);
   }
@@ -34,12 +35,14 @@ std::string csv_of(const IntervalOverTemperatureData& data) {
 
 } // namespace
 
-Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
+Figure interval_over_temperature_figure(const FigureTitle& title,
+                                        const analysis::SampleClockStatistics& clock,
                                         const std::string& name) {
-  const auto singles = std::min(data.temperature_degc.size(), data.interval_ns.size());
+  const auto singles =
+      std::min(clock.scatter_temperature_degc.size(), clock.scatter_interval_ns.size());
   std::vector<WeightedInterval> weighted;
   for (std::size_t i = 0; i < singles; ++i) {
-    weighted.push_back({data.interval_ns[i], 1});
+    weighted.push_back({clock.scatter_interval_ns[i], 1});
   }
   const RegularIntervals regular(std::move(weighted));
 
@@ -49,8 +52,9 @@ Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
   panel.dots_label = "single intervals";
   std::size_t outside = 0;
   for (std::size_t i = 0; i < singles; ++i) {
-    if (regular.contain(data.interval_ns[i])) {
-      panel.dots.push_back({data.temperature_degc[i], 1e-3 * data.interval_ns[i]});
+    if (regular.contain(clock.scatter_interval_ns[i])) {
+      panel.dots.push_back(
+          {clock.scatter_temperature_degc[i], 1e-3 * clock.scatter_interval_ns[i]});
     } else {
       ++outside;
     }
@@ -60,7 +64,7 @@ Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
                .marker = Marker::circle,
                .radius = 3.5,
                .joined = true};
-  for (const auto& bin : data.bins) {
+  for (const auto& bin : clock.over_temperature) {
     if (bin.count > 0) {
       means.points.push_back(
           {bin.temperature_degc, 1e-3 * bin.mean_interval_ns, 1e-3 * bin.sd_interval_ns});
@@ -70,15 +74,15 @@ Figure interval_over_temperature_figure(const IntervalOverTemperatureData& data,
             [](const auto& a, const auto& b) { return a.x < b.x; });
   panel.series.push_back(std::move(means));
 
-  auto subtitle = data.subtitle;
+  auto subtitle = title.subtitle;
   if (outside > 0) {
     subtitle += fmt::format("{}{} beyond the axis (lost or doubled samples)",
                             subtitle.empty() ? "" : "; ", outside);
   }
   Svg svg(width, height);
-  const double top = draw_header(svg, data.title, subtitle, {&panel}, left, right);
+  const double top = draw_header(svg, title.title, subtitle, {&panel}, left, right);
   draw(svg, panel, {left, top, right - left, height - top - 58});
-  return {name, svg.finish(), csv_of(data)};
+  return {name, svg.finish(), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

@@ -15,20 +15,21 @@ constexpr double panel_height = 230;
 constexpr double left = 92;
 constexpr double right = width - 24;
 
-RegularIntervals regular_intervals(const IntervalOverTimeData& data) {
+RegularIntervals regular_intervals(const analysis::SampleClockStatistics& clock) {
   std::vector<WeightedInterval> weighted;
-  for (const auto& bucket : data.overview) {
+  for (const auto& bucket : clock.over_time) {
     weighted.push_back({bucket.mean_ns, 1});
   }
   if (weighted.empty()) {
-    for (const double interval_ns : data.close_up_ns) {
+    for (const double interval_ns : clock.close_up_ns) {
       weighted.push_back({interval_ns, 1});
     }
   }
   return RegularIntervals(std::move(weighted));
 }
 
-Panel overview_panel(const IntervalOverTimeData& data, const RegularIntervals& regular) {
+Panel overview_panel(const analysis::SampleClockStatistics& clock,
+                     const RegularIntervals& regular) {
   Panel panel;
   panel.x_label = "time in s";
   panel.y_label = "sample interval in µs";
@@ -36,7 +37,7 @@ Panel overview_panel(const IntervalOverTimeData& data, const RegularIntervals& r
   panel.fills_x = true;
   Series means{.label = "mean", .colour = "#222222", .joined = true, .line_width = 1};
   Range intervals;
-  for (const auto& bucket : data.overview) {
+  for (const auto& bucket : clock.over_time) {
     panel.band.push_back({bucket.time_s, 1e-3 * bucket.minimum_ns, 1e-3 * bucket.maximum_ns});
     means.points.push_back({bucket.time_s, 1e-3 * bucket.mean_ns});
     for (const double interval_ns : {bucket.minimum_ns, bucket.mean_ns, bucket.maximum_ns}) {
@@ -50,7 +51,8 @@ Panel overview_panel(const IntervalOverTimeData& data, const RegularIntervals& r
   return panel;
 }
 
-Panel close_up_panel(const IntervalOverTimeData& data, const RegularIntervals& regular) {
+Panel close_up_panel(const analysis::SampleClockStatistics& clock,
+                     const RegularIntervals& regular) {
   Panel panel;
   panel.x_label = "time in s";
   panel.y_label = "sample interval in µs";
@@ -61,8 +63,8 @@ Panel close_up_panel(const IntervalOverTimeData& data, const RegularIntervals& r
                 .joined = true};
   series.line_width = 0.9;
   Range intervals;
-  double time_s = data.close_up_first_time_s;
-  for (const double interval_ns : data.close_up_ns) {
+  double time_s = clock.close_up_first_time_s;
+  for (const double interval_ns : clock.close_up_ns) {
     series.points.push_back({time_s, 1e-3 * interval_ns});
     if (regular.contain(interval_ns)) {
       intervals.include(1e-3 * interval_ns);
@@ -74,17 +76,18 @@ Panel close_up_panel(const IntervalOverTimeData& data, const RegularIntervals& r
   return panel;
 }
 
-std::string csv_of(const IntervalOverTimeData& data) {
-  auto csv = csv_comment(data.title) + csv_comment("kind: smallest, mean and largest interval of a "
-                                                   "stretch, or one interval of the close-up");
+std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
+  auto csv =
+      csv_comment(title.title) + csv_comment("kind: smallest, mean and largest interval of a "
+                                             "stretch, or one interval of the close-up");
   csv += "kind,time_s,minimum_ns,mean_ns,maximum_ns\n";
-  for (const auto& bucket : data.overview) {
+  for (const auto& bucket : clock.over_time) {
     fmt::format_to(std::back_inserter(csv), "overview,{},{},{},{}\n", csv_number(bucket.time_s),
                    csv_number(bucket.minimum_ns), csv_number(bucket.mean_ns),
                    csv_number(bucket.maximum_ns));
   }
-  double time_s = data.close_up_first_time_s;
-  for (const double interval_ns : data.close_up_ns) {
+  double time_s = clock.close_up_first_time_s;
+  for (const double interval_ns : clock.close_up_ns) {
     const auto interval = csv_number(interval_ns);
     fmt::format_to(std::back_inserter(csv), "close-up,{},{},{},{}\n", csv_number(time_s), interval,
                    interval, interval);
@@ -93,34 +96,37 @@ std::string csv_of(const IntervalOverTimeData& data) {
   return csv;
 }
 
-std::string subtitle_of(const IntervalOverTimeData& data, const RegularIntervals& regular) {
+std::string subtitle_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock,
+                        const RegularIntervals& regular) {
   const auto outside =
-      std::count_if(data.overview.begin(), data.overview.end(), [&](const auto& bucket) {
+      std::count_if(clock.over_time.begin(), clock.over_time.end(), [&](const auto& bucket) {
         return !regular.contain(bucket.minimum_ns) || !regular.contain(bucket.maximum_ns);
       });
   if (outside == 0) {
-    return data.subtitle;
+    return title.subtitle;
   }
   return fmt::format(
       "{}{}intervals beyond the axis (lost or doubled samples) in {} of {} stretches",
-      data.subtitle, data.subtitle.empty() ? "" : "; ", outside, data.overview.size());
+      title.subtitle, title.subtitle.empty() ? "" : "; ", outside, clock.over_time.size());
 }
 
 } // namespace
 
-Figure interval_over_time_figure(const IntervalOverTimeData& data, const std::string& name) {
-  const auto regular = regular_intervals(data);
-  const auto overview = overview_panel(data, regular);
-  const auto close_up = close_up_panel(data, regular);
+Figure interval_over_time_figure(const FigureTitle& title,
+                                 const analysis::SampleClockStatistics& clock,
+                                 const std::string& name) {
+  const auto regular = regular_intervals(clock);
+  const auto overview = overview_panel(clock, regular);
+  const auto close_up = close_up_panel(clock, regular);
   constexpr double header_room = 100;
   constexpr double between = 62;
   Svg svg(width, header_room + 2 * panel_height + between + 58);
-  const double top =
-      draw_header(svg, data.title, subtitle_of(data, regular), {&overview, &close_up}, left, right);
+  const double top = draw_header(svg, title.title, subtitle_of(title, clock, regular),
+                                 {&overview, &close_up}, left, right);
   const double height = panel_height + (header_room - top) / 2;
   draw(svg, overview, {left, top, right - left, height});
   draw(svg, close_up, {left, top + height + between, right - left, height});
-  return {name, svg.finish(), csv_of(data)};
+  return {name, svg.finish(), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

@@ -19,17 +19,18 @@ constexpr double left = 92;
 constexpr double right = width - 24;
 constexpr double panel_height = 270;
 
-using Quantity = Point (*)(const TransferPoint&);
+using Quantity = Point (*)(const ValueOverFrequency&);
 
-Point magnitude(const TransferPoint& point) {
-  return {point.frequency_hz, point.magnitude, point.u_magnitude};
+Point magnitude(const ValueOverFrequency& point) {
+  return {point.frequency_hz, point.value.magnitude, point.value.u_magnitude};
 }
-Point phase(const TransferPoint& point) {
-  return {point.frequency_hz, point.phase_rad, point.u_phase_rad};
+Point phase(const ValueOverFrequency& point) {
+  return {point.frequency_hz, point.value.phase_rad, point.value.u_phase_rad};
 }
 
 // The phase plus as many whole turns as bring it next to the mean of the same frequency.
-TransferPoint in_turn_of_mean(TransferPoint point, const std::vector<TransferPoint>& mean) {
+ValueOverFrequency in_turn_of_mean(ValueOverFrequency point,
+                                   const std::vector<ValueOverFrequency>& mean) {
   const auto same = std::find_if(mean.begin(), mean.end(), [&](const auto& m) {
     return std::abs(m.frequency_hz - point.frequency_hz) <= 1e-6 * m.frequency_hz;
   });
@@ -37,7 +38,8 @@ TransferPoint in_turn_of_mean(TransferPoint point, const std::vector<TransferPoi
     return point;
   }
   constexpr double turn = 2 * std::numbers::pi;
-  point.phase_rad += turn * std::round((same->phase_rad - point.phase_rad) / turn);
+  point.value.phase_rad +=
+      turn * std::round((same->value.phase_rad - point.value.phase_rad) / turn);
   return point;
 }
 
@@ -72,12 +74,12 @@ Series mean_series(const TransferFunctionData& data, Quantity quantity) {
 }
 
 // The straight line of the phase, which the logarithmic axis bends.
-Series group_delay_series(const TransferFunctionData& data, const GroupDelay& delay) {
+Series group_delay_series(const TransferFunctionData& data, const analysis::GroupDelay& delay) {
   Range frequencies(Scale::logarithmic);
   for (const auto& point : data.mean) {
     frequencies.include(point.frequency_hz);
   }
-  Series series{.label = fmt::format("group delay {:.4g} ms", 1e3 * delay.value_s),
+  Series series{.label = fmt::format("group delay {:.4g} ms", 1e3 * delay.delay_s),
                 .colour = "#999999",
                 .joined = true,
                 .dashes = "6 4"};
@@ -86,7 +88,7 @@ Series group_delay_series(const TransferFunctionData& data, const GroupDelay& de
     const double frequency = frequencies.low() * std::pow(frequencies.high() / frequencies.low(),
                                                           static_cast<double>(i) / steps);
     series.points.push_back(
-        {frequency, delay.intercept_rad - 2 * std::numbers::pi * frequency * delay.value_s});
+        {frequency, delay.intercept_rad - 2 * std::numbers::pi * frequency * delay.delay_s});
   }
   return series;
 }
@@ -183,14 +185,15 @@ std::string csv_of(const TransferFunctionData& data) {
                                  unit));
   if (data.group_delay) {
     csv += csv_comment(fmt::format(
-        "group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->value_s),
-        csv_number(data.group_delay->u_s), csv_number(data.group_delay->intercept_rad)));
+        "group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->delay_s),
+        csv_number(data.group_delay->u_delay_s), csv_number(data.group_delay->intercept_rad)));
   }
   csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad\n";
-  const auto add = [&](const std::string& repetition, const TransferPoint& p) {
+  const auto add = [&](const std::string& repetition, const ValueOverFrequency& p) {
     fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{}\n", repetition,
-                   csv_number(p.frequency_hz), csv_number(p.magnitude), csv_number(p.u_magnitude),
-                   csv_number(p.phase_rad), csv_number(p.u_phase_rad));
+                   csv_number(p.frequency_hz), csv_number(p.value.magnitude),
+                   csv_number(p.value.u_magnitude), csv_number(p.value.phase_rad),
+                   csv_number(p.value.u_phase_rad));
   };
   for (const auto& [repetition, point] : data.repetitions) {
     add(std::to_string(repetition), point);

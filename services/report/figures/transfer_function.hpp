@@ -13,27 +13,20 @@
 #include <string>
 #include <vector>
 
+#include "analysis/response/comparison.hpp"
+#include "analysis/response/group_delay.hpp"
 #include "services/report/figures/figure.hpp"
 
 namespace dyncal::services::figures {
 
-struct TransferPoint {
-  double frequency_hz;
-  double magnitude;
-  double u_magnitude; // standard uncertainty, in the unit of the magnitude
-  double phase_rad;
-  double u_phase_rad;
+struct ValueOverFrequency {
+  double frequency_hz = 0.0;
+  analysis::ComparedResult value{}; // with standard uncertainties
 };
 
 struct RepetitionPoint {
-  std::uint32_t repetition;
-  TransferPoint point;
-};
-
-struct GroupDelay {
-  double value_s;
-  double u_s;
-  double intercept_rad; // of the line: phase = intercept - 2 pi frequency delay
+  std::uint32_t repetition = 0;
+  ValueOverFrequency point{};
 };
 
 struct TransferFunctionData {
@@ -41,8 +34,8 @@ struct TransferFunctionData {
   std::string subtitle{}; // e.g. run and date; may be empty
   std::string unit{};     // of the magnitude; empty or "1" for none
   std::vector<RepetitionPoint> repetitions{};
-  std::vector<TransferPoint> mean{}; // unwrapped phase
-  std::optional<GroupDelay> group_delay{};
+  std::vector<ValueOverFrequency> mean{}; // unwrapped phase
+  std::optional<analysis::GroupDelay> group_delay{};
 };
 
 [[nodiscard]] Figure transfer_function_figure(const TransferFunctionData& data,

@@ -2,18 +2,16 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::bus {
+namespace dyncal::services {
 namespace {
 
-wire::SampleBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
-                           std::uint32_t samples, const char* source = "dau") {
-  wire::SampleBlock block;
-  block.bench("acc-1");
-  block.source(source);
-  block.session(session);
-  block.block(number);
-  block.first_sample(first_sample);
-  block.sample_count(samples);
+SourceBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
+                     std::size_t samples) {
+  SourceBlock block;
+  block.session = session;
+  block.number = number;
+  block.first_sample = first_sample;
+  block.samples = samples;
   return block;
 }
 
@@ -23,7 +21,7 @@ TEST(SampleContinuity, FindsNothingInAnUnbrokenStream) {
   for (std::uint64_t i = 1; i < 100; ++i) {
     EXPECT_TRUE(continuity.add(block_of(7, i, 1000 + 50 * i, 50)).continuous());
   }
-  const ContinuityCounts counts = continuity.counts("acc-1", "dau");
+  const ContinuityCounts counts = continuity.counts();
   EXPECT_EQ(counts.blocks, 100U);
   EXPECT_EQ(counts.samples, 5000U);
   EXPECT_EQ(counts.sessions, 1U);
@@ -71,8 +69,8 @@ TEST(SampleContinuity, FindsDuplicatesAndLeavesThemOutOfTheCounts) {
   EXPECT_TRUE(continuity.add(block_of(7, 1, 50, 50)).duplicate);
   EXPECT_TRUE(continuity.add(block_of(7, 0, 0, 50)).duplicate);
   EXPECT_TRUE(continuity.add(block_of(7, 2, 100, 50)).continuous());
-  EXPECT_EQ(continuity.counts("acc-1", "dau").duplicates, 2U);
-  EXPECT_EQ(continuity.counts("acc-1", "dau").samples, 150U);
+  EXPECT_EQ(continuity.counts().duplicates, 2U);
+  EXPECT_EQ(continuity.counts().samples, 150U);
 }
 
 TEST(SampleContinuity, FindsSamplesThatCameTwiceInDifferentBlocks) {
@@ -91,16 +89,36 @@ TEST(SampleContinuity, StartsAnewWithASessionAndMissesItsFirstBlocks) {
   const ContinuityFinding late = continuity.add(block_of(9, 2, 100, 50));
   EXPECT_TRUE(late.new_session);
   EXPECT_EQ(late.missing_blocks, 2U);
-  EXPECT_EQ(continuity.counts("acc-1", "dau").sessions, 3U);
+  EXPECT_EQ(continuity.counts().sessions, 3U);
 }
 
-TEST(SampleContinuity, KeepsSourcesApart) {
+TEST(SampleContinuity, CountsSamplesOfAnUnusableBlockAsMissing) {
   SampleContinuity continuity;
-  continuity.add(block_of(7, 0, 0, 50, "dau"));
-  EXPECT_TRUE(continuity.add(block_of(3, 9, 0, 50, "acs")).first);
-  EXPECT_TRUE(continuity.add(block_of(7, 1, 50, 50, "dau")).continuous());
-  EXPECT_EQ(continuity.counts("acc-1", "tss").blocks, 0U);
+  continuity.add(block_of(7, 0, 0, 50));
+  EXPECT_EQ(continuity.add(block_of(7, 1, 50, 50), BlockUse::unusable).missing_samples, 0U);
+  EXPECT_EQ(continuity.pending_samples(), 50U);
+  const ContinuityFinding finding = continuity.add(block_of(7, 2, 100, 50));
+  EXPECT_EQ(finding.missing_blocks, 0U);
+  EXPECT_EQ(finding.missing_samples, 50U);
+  EXPECT_EQ(finding.unusable_samples, 50U);
+  EXPECT_EQ(continuity.pending_samples(), 0U);
+  EXPECT_EQ(continuity.counts().unusable_blocks, 1U);
+}
+
+TEST(SampleContinuity, BelievesTheNumbersOfSamplesMoreThanAnUnusableBlock) {
+  SampleContinuity continuity;
+  continuity.add(block_of(7, 0, 0, 50));
+  continuity.add(block_of(7, 1, 50, 4'000'000'000), BlockUse::unusable);
+  const ContinuityFinding finding = continuity.add(block_of(7, 2, 60, 50));
+  EXPECT_EQ(finding.missing_samples, 10U);
+  EXPECT_EQ(finding.unusable_samples, 10U);
+}
+
+TEST(SampleContinuity, CountsAnUnusableFirstBlockAsItTells) {
+  SampleContinuity continuity;
+  continuity.add(block_of(7, 0, 0, 50), BlockUse::unusable);
+  EXPECT_EQ(continuity.add(block_of(7, 1, 50, 50)).missing_samples, 50U);
 }
 
 } // namespace
-} // namespace dyncal::bus
+} // namespace dyncal::services

@@ -19,15 +19,15 @@ const char* const one_point =
     R"({"transfer_function": [{"channel": "acceleration_z", "frequency_text_hz": "40", "frequency_hz": 40, "magnitude": 1.0, "phase_rad": 3.1}]})";
 
 RunOutcome outcome(double magnitude, double phase_rad) {
-  wire::TransferPoint point;
-  point.frequency_text_hz("40");
-  point.magnitude(magnitude);
-  point.u_magnitude(0.01);
-  point.phase_rad(phase_rad);
-  point.u_phase_rad(0.01);
-  wire::TransferFunction function;
-  function.channel("dau/acceleration_z");
-  function.points().push_back(point);
+  FrequencyPoint point;
+  point.frequency_text_hz = "40";
+  point.mean.magnitude = magnitude;
+  point.mean.u_magnitude = 0.01;
+  point.mean.phase_rad = phase_rad;
+  point.mean.u_phase_rad = 0.01;
+  TransferFunction function;
+  function.channel = "dau/acceleration_z";
+  function.points.push_back(point);
   RunOutcome run;
   run.transfer_functions.push_back(function);
   return run;

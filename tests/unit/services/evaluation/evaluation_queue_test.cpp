@@ -9,9 +9,9 @@
 namespace dyncal::services {
 namespace {
 
-std::vector<wire::CalibrationResult> result_of_step(std::uint32_t step) {
-  wire::CalibrationResult result;
-  result.step(step);
+std::vector<StepResult> result_of_step(std::uint32_t step) {
+  StepResult result;
+  result.step = step;
   return {result};
 }
 
@@ -42,7 +42,7 @@ TEST(EvaluationQueue, GivesResultsInTheOrderInWhichTheyWereBegun) {
   const auto results = queue.take_all();
   ASSERT_EQ(results.size(), 3U);
   for (std::uint32_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(results[i].step(), i + 1);
+    EXPECT_EQ(results[i].step, i + 1);
   }
 }
 

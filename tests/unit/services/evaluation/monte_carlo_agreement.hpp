@@ -5,21 +5,21 @@
 
 #include <gtest/gtest.h>
 
-#include "idl/dyncal.h"
+#include "services/evaluation/result/step_result.hpp"
 
 namespace dyncal::tests {
 
-inline void expect_drawing_agrees(const std::vector<wire::CalibrationResult>& results,
+inline void expect_drawing_agrees(const std::vector<services::StepResult>& results,
                                   std::size_t expected_results) {
   ASSERT_EQ(results.size(), expected_results);
-  for (const wire::CalibrationResult& result : results) {
-    ASSERT_TRUE(result.valid()) << result.problem();
-    ASSERT_EQ(result.monte_carlo().size(), 1U);
-    const wire::MonteCarloCheck& check = result.monte_carlo().front();
-    EXPECT_NEAR(check.u_magnitude() / result.u_magnitude(), 1.0, 0.05);
-    EXPECT_NEAR(check.u_phase_rad() / result.u_phase_rad(), 1.0, 0.05);
-    EXPECT_LT(check.phase_low_rad(), result.phase_rad());
-    EXPECT_GT(check.phase_high_rad(), result.phase_rad());
+  for (const services::StepResult& result : results) {
+    ASSERT_TRUE(result.valid) << result.problem;
+    ASSERT_TRUE(result.monte_carlo);
+    const analysis::TransferCheck& drawn = *result.monte_carlo;
+    EXPECT_NEAR(drawn.magnitude.u / result.u_magnitude, 1.0, 0.05);
+    EXPECT_NEAR(drawn.phase_rad.u / result.u_phase_rad, 1.0, 0.05);
+    EXPECT_LT(drawn.phase_rad.low, result.phase_rad);
+    EXPECT_GT(drawn.phase_rad.high, result.phase_rad);
   }
 }
 

@@ -1,7 +1,5 @@
 #include "services/report/run_report.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -12,58 +10,54 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-wire::TransferFunction function(const std::string& channel, double magnitude) {
-  wire::TransferFunction one;
-  one.channel(channel);
-  one.unit(R"(\one)");
+TransferFunction function(const std::string& channel, double magnitude) {
+  TransferFunction one;
+  one.channel = channel;
+  one.unit = R"(\one)";
   for (const char* text : {"10", "20"}) {
-    wire::TransferPoint point;
-    point.frequency_text_hz(text);
-    point.frequency_hz(std::stod(text));
-    point.magnitude(magnitude);
-    point.u_magnitude(1e-3);
-    point.phase_rad(-0.5);
-    point.u_phase_rad(2e-3);
-    point.repetitions(3);
-    one.points().push_back(point);
+    FrequencyPoint point;
+    point.frequency_text_hz = text;
+    point.frequency_hz = std::stod(text);
+    point.mean.magnitude = magnitude;
+    point.mean.u_magnitude = 1e-3;
+    point.mean.phase_rad = -0.5;
+    point.mean.u_phase_rad = 2e-3;
+    point.mean.repetitions = 3;
+    one.points.push_back(point);
   }
-  one.group_delay_valid(true);
-  one.group_delay_s(8.1e-3);
-  one.u_group_delay_s(1e-6);
+  one.group_delay.emplace();
+  one.group_delay->delay_s = 8.1e-3;
+  one.group_delay->u_delay_s = 1e-6;
   return one;
 }
 
 RunOutcome outcome() {
   RunOutcome one;
-  one.measurement.bench("acc-1");
-  one.measurement.run("r1");
-  one.measurement.method(wire::METHOD_SAMPLE_TIMESTAMPING);
+  one.bench = "acc-1";
+  one.run = "r1";
+  one.planned_steps = 2;
   one.analysis_dds = "fastdds";
-  wire::CalibrationResult result;
-  result.channel("dau/acceleration_z");
-  result.step(1);
-  result.frequency_hz(10.0);
-  result.frequency_text_hz("10");
-  result.level_m_s2(2.75);
-  result.repetition(1);
-  result.valid(true);
-  result.magnitude(1.0);
-  wire::SourceSamples samples;
-  samples.source("dau");
-  samples.used(3010);
-  result.samples().push_back(samples);
+  StepResult result;
+  result.channel = "dau/acceleration_z";
+  result.step = 1;
+  result.frequency_hz = 10.0;
+  result.frequency_text_hz = "10";
+  result.level_m_s2 = 2.75;
+  result.repetition = 1;
+  result.valid = true;
+  result.magnitude = 1.0;
+  result.samples = {{.source = "dau", .used = 3010}};
   one.results.push_back(result);
-  result.valid(false);
-  result.step(2);
-  result.frequency_text_hz("20");
-  result.problem("no steady sine");
+  result.valid = false;
+  result.step = 2;
+  result.frequency_text_hz = "20";
+  result.problem = "no steady sine";
   one.results.push_back(result);
   one.transfer_functions = {function("dau/acceleration_z", 1.0),
                             function("dau/angular_velocity_x", 1e-4)};
-  wire::SampleClockReport clock;
-  clock.source("dau");
-  clock.mean_interval_s(996.96e-6);
-  clock.interval_count(1000);
+  ClockReport clock{.source = "dau", .clock = {}};
+  clock.clock.mean_interval_s = 996.96e-6;
+  clock.clock.intervals = 1000;
   one.clock_reports.push_back(clock);
   return one;
 }
@@ -87,15 +81,11 @@ TEST(RunReport, JsonHasTheFormOthersRead) {
 // JSON cannot represent infinity, and 0 would say the contrary.
 TEST(RunReport, InfiniteDegreesOfFreedomAreNull) {
   RunOutcome one = outcome();
-  wire::BudgetContribution row;
-  row.kind(wire::CONTRIBUTION_REFERENCE);
-  row.degrees_of_freedom(std::numeric_limits<double>::infinity());
-  row.u_phase_rad(1e-3);
-  one.results.front().budget().push_back(row);
-  row.kind(wire::CONTRIBUTION_FIT_NOISE);
-  row.subject("the sensor");
-  row.degrees_of_freedom(17.0);
-  one.results.front().budget().push_back(row);
+  one.results.front().budget = {
+      {.kind = analysis::ContributionKind::reference, .u_phase_rad = 1e-3},
+      {.kind = analysis::ContributionKind::fit_noise,
+       .subject = "the sensor",
+       .degrees_of_freedom = 17.0}};
   const auto budget = result_json(one)["points"][0]["budget"];
   ASSERT_EQ(budget.size(), 2u);
   EXPECT_EQ(budget[0]["name"], "reference");

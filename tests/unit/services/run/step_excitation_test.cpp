@@ -10,6 +10,7 @@
 
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/run/level_settling.hpp"
 #include "services/run/run_plan.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
@@ -52,7 +53,7 @@ protected:
     return bench;
   }
   [[nodiscard]] wire::Measurement measurement() const {
-    return plan_measurement(bench_, "r1", 0, {});
+    return to_message(plan_recipe(bench_, "r1", {}).value());
   }
   Expected<std::unique_ptr<StepExcitation>> open() {
     return StepExcitation::open(

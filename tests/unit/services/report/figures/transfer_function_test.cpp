@@ -25,16 +25,25 @@ TransferFunctionData low_pass(std::size_t frequencies) {
   data.title = "acc-1: dau/acceleration_z";
   for (std::size_t i = 0; i < frequencies; ++i) {
     const double frequency_hz = 10 * std::pow(10.0, 0.1 * static_cast<double>(i));
-    const TransferPoint mean{frequency_hz, 1 / std::hypot(1.0, frequency_hz / 180), 1e-3,
-                             -2 * std::numbers::pi * frequency_hz * delay_s, 2e-3};
+    const ValueOverFrequency mean{frequency_hz,
+                                  {1 / std::hypot(1.0, frequency_hz / 180), 1e-3,
+                                   -2 * std::numbers::pi * frequency_hz * delay_s, 2e-3}};
     data.mean.push_back(mean);
     for (std::uint32_t repetition = 1; repetition <= 3; ++repetition) {
       auto point = mean;
-      point.phase_rad = std::remainder(mean.phase_rad, 2 * std::numbers::pi);
+      point.value.phase_rad = std::remainder(mean.value.phase_rad, 2 * std::numbers::pi);
       data.repetitions.push_back({repetition, point});
     }
   }
   return data;
+}
+
+analysis::GroupDelay line_of(double value_s, double intercept_rad) {
+  analysis::GroupDelay line;
+  line.delay_s = value_s;
+  line.u_delay_s = 1e-6;
+  line.intercept_rad = intercept_rad;
+  return line;
 }
 
 std::size_t lines_without_comments(const std::string& csv) {
@@ -65,7 +74,7 @@ TEST(TransferFunctionFigure, DrawsWrappedRepetitionsInTheTurnOfTheMean) {
   const auto data = low_pass(14);
   auto unwrapped = data;
   for (std::size_t i = 0; i < data.repetitions.size(); ++i) {
-    unwrapped.repetitions[i].point.phase_rad = data.mean[i / 3].phase_rad;
+    unwrapped.repetitions[i].point.value.phase_rad = data.mean[i / 3].value.phase_rad;
   }
   EXPECT_EQ(transfer_function_figure(data, "tf").svg,
             transfer_function_figure(unwrapped, "tf").svg);
@@ -74,7 +83,7 @@ TEST(TransferFunctionFigure, DrawsWrappedRepetitionsInTheTurnOfTheMean) {
 TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
   auto data = low_pass(14);
   data.unit = "(rad/s)/(m/s²)";
-  data.group_delay = GroupDelay{delay_s, 1e-6, 0};
+  data.group_delay = line_of(delay_s, 0.0);
   const auto texts = texts_of(transfer_function_figure(data, "tf").svg);
   for (const auto* text : {"acc-1: dau/acceleration_z", "frequency in Hz",
                            "magnitude in (rad/s)/(m/s²)", "phase (lead) in rad", "#1", "#2", "#3",
@@ -98,9 +107,9 @@ TEST(TransferFunctionFigure, IsDrawnForOnePoint) {
 
 TEST(TransferFunctionFigure, LeavesOutPointsThatAreNoNumbers) {
   auto data = low_pass(4);
-  data.mean[2].magnitude = std::numeric_limits<double>::quiet_NaN();
-  data.repetitions[6].point.magnitude = std::numeric_limits<double>::quiet_NaN();
-  data.repetitions[3].point.phase_rad = std::numeric_limits<double>::infinity();
+  data.mean[2].value.magnitude = std::numeric_limits<double>::quiet_NaN();
+  data.repetitions[6].point.value.magnitude = std::numeric_limits<double>::quiet_NaN();
+  data.repetitions[3].point.value.phase_rad = std::numeric_limits<double>::infinity();
   const auto figure = transfer_function_figure(data, "tf");
   EXPECT_EQ(problem_of(figure.svg), "");
   EXPECT_EQ(count_elements(figure.svg, "circle"), 2U * 4 + 1 - 2);
@@ -109,7 +118,7 @@ TEST(TransferFunctionFigure, LeavesOutPointsThatAreNoNumbers) {
 
 TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
   auto data = low_pass(2);
-  data.group_delay = GroupDelay{delay_s, 1e-6, 0.25};
+  data.group_delay = line_of(delay_s, 0.25);
   const auto csv = transfer_function_figure(data, "tf").csv;
   EXPECT_THAT(csv, HasSubstr("phase: lead, rad"));
   EXPECT_THAT(csv,

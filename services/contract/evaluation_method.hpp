@@ -1,0 +1,28 @@
+// The four ways to link a sensor with digital output to the reference transducer, as bench file,
+// recipe and contract name them.
+//
+// Plain functions, any thread.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace dyncal::services {
+
+enum class EvaluationMethod {
+  analogue,            // sensor and reference are channels of one system
+  sample_timestamping, // every sample of the sensor has a stamp; sync links the two clocks
+  series_timestamping, // the sensor records a series after a trigger, an oscilloscope records sync
+  absolute_time        // sensor and reference are both stamped in UTC
+};
+
+// As the bench file and result files spell it: "sample-timestamping".
+[[nodiscard]] const char* to_string(EvaluationMethod method);
+[[nodiscard]] std::optional<EvaluationMethod> parse_evaluation_method(std::string_view text);
+
+// The steps are found in what the reference's own source records; no other source records sync.
+[[nodiscard]] constexpr bool is_without_sync(EvaluationMethod method) {
+  return method == EvaluationMethod::analogue || method == EvaluationMethod::absolute_time;
+}
+
+} // namespace dyncal::services

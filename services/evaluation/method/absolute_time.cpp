@@ -1,0 +1,111 @@
+#include "services/evaluation/method/absolute_time.hpp"
+
+#include <fmt/format.h>
+#include <iterator>
+
+#include "analysis/method/analogue_comparison.hpp"
+#include "services/evaluation/method/own_clock_sensors.hpp"
+#include "services/evaluation/method/step_results.hpp"
+#include "services/evaluation/method/step_task.hpp"
+
+namespace dyncal::services {
+namespace {
+
+analysis::Expected<EvaluatedStep>
+evaluate_channels(const StepTask& task, const SelectedChannels& acs, const SelectedChannels& dut) {
+  const Recipe& recipe = *task.recipe;
+  if (const auto enough = require_samples(dut); !enough) {
+    return fail(enough.error());
+  }
+  analysis::AbsoluteTimeInput input{.frequency = task.step().frequency};
+  input.frequency_search_rel = recipe.frequency_search_rel;
+  input.reference_stamps_ns = acs.stamps_ns();
+  input.reference = acs.channel(0);
+  input.dut_stamps_ns = dut.stamps_ns();
+  input.dut = dut.channels_from(0);
+  input.channel_delay_s = -recipe.reference_delay_s;
+  input.systematic = {.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel,
+                      .reference_phase_rad = recipe.systematic.reference_phase_rad,
+                      .channel_delay_s = recipe.systematic.acs_delay_s,
+                      .clock_offset_s = u_clock_offset_s(acs, dut),
+                      .stamp_jitter_s = 0.0};
+  return analysis::evaluate_absolute_time(input).map([](const analysis::ComparisonResult& result) {
+    return EvaluatedStep{{result.reference}, result.points};
+  });
+}
+
+std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs_source,
+                                        const SourceInterval& sensor) {
+  const Recipe& recipe = *task.recipe;
+  const SelectedChannels acs(acs_source, {recipe.reference()});
+  const SelectedChannels dut = select_dut(recipe, sensor);
+  // A known delay of the ACS counts for its clock too, which describes no uncertainty of its own.
+  if (recipe.systematic.acs_delay_s <= 0.0) {
+    flag_unknown_clock(acs, task.flags);
+  }
+  flag_unknown_clock(dut, task.flags);
+  return make_results(task,
+                      {.dut = dut_of(recipe, sensor.record->source()),
+                       .units = units_of(acs, dut, 0),
+                       .samples = {acs.summary(), dut.summary()},
+                       .data_sha256 = digest_of({&acs, &dut})},
+                      evaluate_channels(task, acs, dut));
+}
+
+std::vector<StepResult> evaluate(const StepTask& task, const SourceInterval& acs,
+                                 const std::vector<SourceInterval>& sensors) {
+  std::vector<StepResult> results;
+  for (const SourceInterval& sensor : sensors) {
+    auto of_sensor = evaluate_sensor(task, acs, sensor);
+    std::move(of_sensor.begin(), of_sensor.end(), std::back_inserter(results));
+  }
+  return results;
+}
+
+} // namespace
+
+std::vector<SearchedChannel> AbsoluteTime::searches() const {
+  std::vector<std::string> sources = recipe_->dut_sources();
+  sources.insert(sources.begin(), roles_.excitation.source);
+  return {{roles_.excitation, std::move(sources)}};
+}
+
+Expected<void> AbsoluteTime::check_time_scales(const RunRecords& records) const {
+  std::vector<std::string> names = recipe_->dut_sources();
+  names.push_back(roles_.reference.source);
+  for (const std::string& name : names) {
+    const SourceRecord& source = records.of(name);
+    if (source.described() && source.description().time_base == drivers::TimeBase::local) {
+      return fail(
+          ErrorCode::no_source,
+          fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
+                      "UTC; set it to UTC and write time_base = \"utc\", or use a sync signal",
+                      name));
+    }
+  }
+  return {};
+}
+
+bool AbsoluteTime::is_complete(std::size_t step, const RunRecords& records) const {
+  return sensors_have_sent(*recipe_, records, 0, step);
+}
+
+Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records) {
+  const auto interval = records.interval(0, step);
+  if (!interval) {
+    return [results = results_without_value(recipe_->steps[step], roles_.dut,
+                                            no_sine(recipe_->steps[step], roles_.excitation))] {
+      return results;
+    };
+  }
+  SourceInterval acs = records.samples(roles_.reference.source, *interval);
+  std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);
+  std::vector<SourceInterval> all{acs};
+  all.insert(all.end(), sensors.begin(), sensors.end());
+  StepTask task = make_step_task(recipe_, step, records.excitation(), all);
+  return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)] {
+    return evaluate(task, acs, sensors);
+  };
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,80 @@
+#include "services/evaluation/method/analogue.hpp"
+
+#include "analysis/method/analogue_comparison.hpp"
+#include "services/evaluation/method/step_results.hpp"
+#include "services/evaluation/method/step_settling.hpp"
+#include "services/evaluation/method/step_task.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// The reference, then the channels under calibration.
+SelectedChannels select_channels(const AnalogueRoles& roles, SourceInterval source) {
+  std::vector<ChannelName> names{roles.reference};
+  names.insert(names.end(), roles.dut.begin(), roles.dut.end());
+  return {std::move(source), std::move(names)};
+}
+
+void leave_settling_out(StepTask& task, SelectedChannels& channels) {
+  const StepSettling settling =
+      find_settling_of_step(task.step(), task.recipe->frequency_search_rel,
+                            {channels.samples(), 0, {0}}, sensor_columns(channels));
+  if (settling.flag) {
+    task.flags.push_back(*settling.flag);
+  }
+  channels.narrow(
+      without_settling(channels.interval(), settling.settling_s, task.step().duration_s));
+}
+
+analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& channels) {
+  const Recipe& recipe = *task.recipe;
+  analysis::AnalogueInput input{.frequency = task.step().frequency};
+  input.frequency_search_rel = recipe.frequency_search_rel;
+  input.stamps_ns = channels.stamps_ns();
+  input.reference = channels.channel(0);
+  input.dut = channels.channels_from(1);
+  input.channel_delay_s = -recipe.reference_delay_s;
+  input.systematic.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
+  input.systematic.reference_phase_rad = recipe.systematic.reference_phase_rad;
+  input.systematic.channel_delay_s = recipe.systematic.acs_delay_s;
+  return input;
+}
+
+std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
+  const auto& roles = std::get<AnalogueRoles>(task.recipe->roles);
+  SelectedChannels channels = select_channels(roles, std::move(acs));
+  if (task.recipe->settling_from_data) {
+    leave_settling_out(task, channels);
+  }
+  const auto evaluated = analysis::evaluate_analogue(input_of(task, channels))
+                             .map([](const analysis::ComparisonResult& result) {
+                               return EvaluatedStep{{result.reference}, result.points};
+                             });
+  return make_results(task,
+                      {.dut = roles.dut,
+                       .units = units_of(channels, channels, 1),
+                       .samples = {channels.summary()},
+                       .data_sha256 = digest_of({&channels})},
+                      evaluated);
+}
+
+} // namespace
+
+std::vector<SearchedChannel> Analogue::searches() const {
+  return {{roles_.excitation, {roles_.excitation.source}}};
+}
+
+Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
+  const auto interval = records.interval(0, step);
+  if (!interval) {
+    return [results = results_without_value(recipe_->steps[step], roles_.dut,
+                                            no_sine(recipe_->steps[step], roles_.excitation))] {
+      return results;
+    };
+  }
+  SourceInterval acs = records.samples(roles_.reference.source, *interval);
+  StepTask task = make_step_task(recipe_, step, records.excitation(), {acs});
+  return [task = std::move(task), acs = std::move(acs)] { return evaluate(task, acs); };
+}
+
+} // namespace dyncal::services

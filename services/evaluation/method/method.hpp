@@ -1,0 +1,70 @@
+// One of the ways to evaluate a run: what it searches, when a step is complete, and how a step
+// becomes results.
+//
+// There is one implementation a method, and make_method() chooses it by the recipe; nothing else
+// asks which method a run has. RunEvaluator does what is common to all: it takes samples, searches,
+// and evaluates the steps in their order. Steps are indices into the recipe's.
+//
+// Belongs to one thread, but for the evaluation of a step: it is a value that may run in any
+// thread, and looks at nothing that changes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "services/contract/triggered_record.hpp"
+#include "services/error.hpp"
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/run_records.hpp"
+#include "services/evaluation/result/clock_report.hpp"
+#include "services/evaluation/result/step_result.hpp"
+
+namespace dyncal::services {
+
+using Evaluation = std::function<std::vector<StepResult>()>;
+
+class Method {
+public:
+  virtual ~Method() = default;
+  Method(const Method&) = delete;
+  Method& operator=(const Method&) = delete;
+
+  // The channels that the steps are found in, each with the sources to which its intervals apply;
+  // that of the ACS first.
+  [[nodiscard]] virtual std::vector<SearchedChannel> searches() const = 0;
+
+  // Whether sources whose stamps are compared are of one time scale, as far as they have described
+  // themselves. Fails (no_source) with the sources that disagree.
+  [[nodiscard]] virtual Expected<void> check_time_scales(const RunRecords& records) const;
+
+  // A record of `source` that belongs to a step which is not evaluated yet.
+  virtual void add(const std::string& source, TriggeredRecord record);
+
+  // All that the evaluation of the step needs is there, or cannot come any more. REQUIRES: the step
+  // was searched.
+  [[nodiscard]] virtual bool is_complete(std::size_t step, const RunRecords& records) const;
+
+  // REQUIRES: is_complete(step), called once for each step in their order.
+  [[nodiscard]] virtual Evaluation evaluation(std::size_t step, const RunRecords& records) = 0;
+
+  // The source whose stamps tell of the sensor's sample clock; empty where there are none.
+  [[nodiscard]] virtual std::optional<std::string> clock_source() const { return std::nullopt; }
+  // What the evaluated steps themselves tell of it.
+  [[nodiscard]] virtual std::vector<ClockReport> clock_reports() const { return {}; }
+
+  // Standard uncertainty of a delay that this method's link between the clocks adds to all
+  // frequencies alike, s.
+  [[nodiscard]] virtual double u_link_delay_s(std::span<const double> frequencies_hz) const;
+
+protected:
+  Method() = default;
+};
+
+// Of the recipe's method. The recipe does not change any more.
+[[nodiscard]] std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe);
+
+} // namespace dyncal::services

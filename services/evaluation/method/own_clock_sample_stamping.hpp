@@ -1,0 +1,31 @@
+// Sample time stamping of sensors that have stamps of their own: a DAU on their time scale records
+// sync beside them (analysis/method/sample_stamping.hpp).
+//
+// A step that cannot be evaluated gives results that are not valid and name the reason. The same
+// samples give the same bits.
+#pragma once
+
+#include "services/evaluation/method/method.hpp"
+
+namespace dyncal::services {
+
+class OwnClockSampleStamping : public Method {
+public:
+  explicit OwnClockSampleStamping(std::shared_ptr<const Recipe> recipe)
+      : recipe_(std::move(recipe)), roles_(std::get<SampleStampingRoles>(recipe_->roles)) {}
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override;
+  [[nodiscard]] Expected<void> check_time_scales(const RunRecords& records) const override;
+  [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
+  [[nodiscard]] std::optional<std::string> clock_source() const override {
+    return roles_.dut.front().source;
+  }
+  [[nodiscard]] double u_link_delay_s(std::span<const double> frequencies_hz) const override;
+
+private:
+  std::shared_ptr<const Recipe> recipe_;
+  const SampleStampingRoles& roles_;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,77 @@
+#include "services/evaluation/method/selected_channels.hpp"
+
+#include <fmt/format.h>
+
+#include "services/contract/digest.hpp"
+#include "services/contract/unit.hpp"
+
+namespace dyncal::services {
+
+SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelName> names)
+    : source_(std::move(source)), names_(std::move(names)) {
+  for (const ChannelName& name : names_) {
+    columns_.push_back(*record().channel(name.channel));
+  }
+  samples_ = select_samples(record(), interval(), columns_);
+}
+
+void SelectedChannels::narrow(const TimeInterval& interval) {
+  source_.interval = interval;
+  samples_ = select_samples(record(), interval, columns_);
+}
+
+analysis::ChannelSamples SelectedChannels::channel(std::size_t i) const {
+  return {names_[i].text(), samples_.columns[i], description(i).resolution};
+}
+
+std::vector<analysis::ChannelSamples> SelectedChannels::channels_from(std::size_t first) const {
+  std::vector<analysis::ChannelSamples> channels;
+  for (std::size_t i = first; i < size(); ++i) {
+    channels.push_back(channel(i));
+  }
+  return channels;
+}
+
+const std::string& SelectedChannels::unit(std::size_t i) const {
+  return description(i).unit;
+}
+
+SourceSamples SelectedChannels::summary() const {
+  SourceSamples summary;
+  summary.source = record().source();
+  summary.used = samples_.stamps_ns.size();
+  const SampleLoss lost = record().lost_in(interval());
+  summary.lost = lost.missing;
+  summary.unusable = lost.unusable;
+  summary.overflowed = lost.overflowed;
+  summary.not_trusted = samples_.not_trusted;
+  summary.not_measured = samples_.not_measured;
+  if (!samples_.stamps_ns.empty()) {
+    summary.first_stamp_ns = samples_.stamps_ns.front();
+    summary.last_stamp_ns = samples_.stamps_ns.back();
+  }
+  return summary;
+}
+
+std::string digest_of(std::initializer_list<const SelectedChannels*> parts) {
+  Digest digest;
+  for (const SelectedChannels* part : parts) {
+    const StepSamples& samples = part->samples();
+    digest.add(samples.stamps_ns.data(), samples.stamps_ns.size() * sizeof(std::int64_t));
+    for (const auto& column : samples.columns) {
+      digest.add(column.data(), column.size() * sizeof(double));
+    }
+  }
+  return digest.hex();
+}
+
+std::string ratio_unit(const std::string& input, const std::string& output) {
+  if (input == output) {
+    return R"(\one)";
+  }
+  return input.empty() || output.empty()
+             ? ""
+             : fmt::format("({})/({})", short_form(output), short_form(input));
+}
+
+} // namespace dyncal::services

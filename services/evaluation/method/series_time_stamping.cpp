@@ -1,0 +1,67 @@
+#include "services/evaluation/method/series_time_stamping.hpp"
+
+#include "services/evaluation/method/series_clock.hpp"
+#include "services/evaluation/method/series_step_evaluation.hpp"
+#include "services/evaluation/method/step_results.hpp"
+#include "services/evaluation/method/step_task.hpp"
+
+namespace dyncal::services {
+
+std::vector<SearchedChannel> SeriesTimeStamping::searches() const {
+  return {{roles_.sync_acs, {roles_.sync_acs.source}}};
+}
+
+void SeriesTimeStamping::add(const std::string& source, TriggeredRecord record) {
+  if (source == roles_.sync_dso.source) {
+    shots_.add_trace(std::move(record));
+  } else if (source == roles_.dut.front().source) {
+    shots_.add_series(std::move(record));
+  }
+}
+
+bool SeriesTimeStamping::is_complete(std::size_t step, const RunRecords& records) const {
+  const ExcitationProgress& excitation = records.excitation();
+  const bool all_there = excitation.is_announced_over(step) &&
+                         shots_.of_step(recipe_->steps[step].step).size() >= roles_.shots;
+  return all_there || excitation.is_over_in(records.of(roles_.sync_acs.source), step);
+}
+
+Evaluation SeriesTimeStamping::evaluation(std::size_t step, const RunRecords& records) {
+  return [results = evaluate(step, records)] { return results; };
+}
+
+std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const RunRecords& records) {
+  const RecipeStep& planned = recipe_->steps[step];
+  const auto interval = records.interval(0, step);
+  if (!interval) {
+    return results_without_value(planned, roles_.dut, no_sine(planned, roles_.sync_acs));
+  }
+  const SourceInterval acs = records.samples(roles_.sync_acs.source, *interval);
+  SeriesStepOutput evaluated =
+      evaluate_series_step({.task = make_step_task(recipe_, step, records.excitation(), {acs}),
+                            .acs = acs,
+                            .oscilloscope = records.of(roles_.sync_dso.source),
+                            .sensor = records.of(roles_.dut.front().source),
+                            .shots = shots_.of_step(planned.step),
+                            .lost = shots_.lost_in(planned.step),
+                            .start_so_far = start_});
+  start_ = evaluated.start;
+  if (evaluated.rate) {
+    rates_.push_back(*evaluated.rate);
+  }
+  shots_.forget_step(planned.step);
+  return std::move(evaluated.results);
+}
+
+std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {
+  if (rates_.empty()) {
+    return {};
+  }
+  return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates_)};
+}
+
+double SeriesTimeStamping::u_link_delay_s(std::span<const double> /*frequencies_hz*/) const {
+  return roles_.u_dso_delay_s;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,42 @@
+// The sensor records a series after a trigger, and an oscilloscope records sync about it: series
+// time stamping (series_step_evaluation.hpp).
+//
+// A step depends on the one before, for how the series of a sensor start shows in some steps only;
+// so steps are evaluated in the caller's thread. The records of a step are kept until it is
+// evaluated.
+#pragma once
+
+#include <vector>
+
+#include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/start_latency.hpp"
+#include "services/evaluation/method/method.hpp"
+#include "services/evaluation/record/shot_record.hpp"
+
+namespace dyncal::services {
+
+class SeriesTimeStamping : public Method {
+public:
+  explicit SeriesTimeStamping(std::shared_ptr<const Recipe> recipe)
+      : recipe_(std::move(recipe)), roles_(std::get<SeriesRoles>(recipe_->roles)) {}
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override;
+  void add(const std::string& source, TriggeredRecord record) override;
+  // All shots that were planned are there; or none can come any more, which has the same grace as
+  // the samples of the ACS.
+  [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
+  [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
+  [[nodiscard]] double u_link_delay_s(std::span<const double> frequencies_hz) const override;
+
+private:
+  [[nodiscard]] std::vector<StepResult> evaluate(std::size_t step, const RunRecords& records);
+
+  std::shared_ptr<const Recipe> recipe_;
+  const SeriesRoles& roles_;
+  ShotRecord shots_;
+  analysis::StartKind start_ = analysis::StartKind::undecided; // as far as the steps so far tell
+  std::vector<analysis::NominalFrequency> rates_;              // of the sensor, one a step
+};
+
+} // namespace dyncal::services

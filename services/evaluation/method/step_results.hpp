@@ -1,0 +1,52 @@
+// From the evaluated channels of a step to its results: what results of every method have in
+// common. Plain functions, any thread.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/base/error.hpp"
+#include "analysis/method/transfer_point.hpp"
+#include "services/evaluation/method/selected_channels.hpp"
+#include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/result/step_result.hpp"
+
+namespace dyncal::services {
+
+// What the evaluation of a step gives: fits that are common to all channels, and one point a
+// channel.
+struct EvaluatedStep {
+  std::vector<analysis::ChannelFit> common_fits;
+  std::vector<analysis::TransferPoint> points;
+};
+
+// What it was made from.
+struct StepInput {
+  std::vector<ChannelName> dut; // in the order of the points
+  std::vector<std::string> units;
+  std::vector<SourceSamples> samples;
+  std::string data_sha256;
+};
+
+// Everything but the numbers: not valid, magnitude and phase NaN.
+[[nodiscard]] StepResult result_head(const RecipeStep& step, const ChannelName& channel);
+
+// The results of a step without a value.
+[[nodiscard]] std::vector<StepResult> results_without_value(const RecipeStep& step,
+                                                            const std::vector<ChannelName>& dut,
+                                                            const std::string& problem);
+
+// One result a channel: value, fits, budget, what it was made of, and the check by Monte Carlo when
+// the recipe asks for one. Where the evaluation failed: results without a value.
+[[nodiscard]] std::vector<StepResult> make_results(const StepTask& task, const StepInput& input,
+                                                   const analysis::Expected<EvaluatedStep>& step);
+
+// Flags samples that were left out, and adds up what was lost.
+void add_input(const StepTask& task, const StepInput& input, StepResult& result);
+
+// Output per input for every channel of `dut` from `first_dut` on.
+[[nodiscard]] std::vector<std::string> units_of(const SelectedChannels& acs,
+                                                const SelectedChannels& dut, std::size_t first_dut);
+
+} // namespace dyncal::services

@@ -1,0 +1,33 @@
+// One step on its way to be evaluated: the recipe, the step, and the flags that its samples have
+// got so far. A value; any thread.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/run_records.hpp"
+#include "services/evaluation/result/result_flag.hpp"
+
+namespace dyncal::services {
+
+struct StepTask {
+  std::shared_ptr<const Recipe> recipe;
+  std::size_t index = 0;
+  std::vector<Flag> flags{};
+
+  [[nodiscard]] const RecipeStep& step() const { return recipe->steps[index]; }
+};
+
+// With the flags that every method has: samples lost, step shorter than planned, excitation broken
+// off.
+[[nodiscard]] StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
+                                      const ExcitationProgress& excitation,
+                                      const std::vector<SourceInterval>& sources);
+
+// Why a step has no interval in the source of this sync channel.
+[[nodiscard]] std::string no_sine(const RecipeStep& step, const ChannelName& sync);
+
+} // namespace dyncal::services

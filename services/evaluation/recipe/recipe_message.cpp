@@ -1,0 +1,199 @@
+#include "services/evaluation/recipe/recipe_message.hpp"
+
+#include <fmt/format.h>
+
+#include "services/contract/evaluation_method_message.hpp"
+
+namespace dyncal::services {
+namespace {
+
+tl::unexpected<Error> refuse(std::string sentence) {
+  return fail(ErrorCode::bad_argument, std::move(sentence));
+}
+
+std::string text_of(const ChannelName& name) {
+  return name.source.empty() ? std::string() : name.text();
+}
+
+void write_own_part(const AnalogueRoles&, wire::Measurement&) {}
+void write_own_part(const AbsoluteTimeRoles&, wire::Measurement&) {}
+
+void write_own_part(const SampleStampingRoles& roles, wire::Measurement& measurement) {
+  for (const analysis::AdcCalibrationPoint& point : roles.adc_calibration) {
+    wire::AdcCalibrationPoint message;
+    message.frequency_hz(point.frequency_hz);
+    message.test_amplitude_vpp(point.test_amplitude_vpp);
+    message.gain(point.gain);
+    message.phase_lag_rad(point.phase_lag_rad);
+    message.u_gain(point.u_gain);
+    message.u_phase_lag_rad(point.u_phase_lag_rad);
+    measurement.adc_calibration().push_back(message);
+  }
+}
+
+void write_own_part(const SeriesRoles& roles, wire::Measurement& measurement) {
+  measurement.shots(roles.shots);
+  measurement.trigger_phase_correction(roles.trigger_phase_correction);
+  measurement.dso_delay_s(roles.dso_delay_s);
+  measurement.u_dso_delay_s(roles.u_dso_delay_s);
+  measurement.u_acs_rate_rel(roles.u_acs_rate_rel);
+}
+
+void write_steps(const Recipe& recipe, wire::Measurement& measurement) {
+  for (const RecipeStep& step : recipe.steps) {
+    wire::PlannedStep message;
+    message.step(step.step);
+    message.repetition(step.repetition);
+    message.frequency_text_hz(step.frequency_text_hz);
+    message.level_m_s2(step.level_m_s2);
+    message.settling_s(step.settling_s);
+    message.duration_s(step.duration_s);
+    measurement.steps().push_back(message);
+  }
+}
+
+Expected<void> read_role(const char* role, const std::string& text, ChannelName& name) {
+  auto parsed = parse_channel_name(text);
+  if (!parsed) {
+    return refuse(
+        fmt::format("the recipe's {} is \"{}\" but must be \"source/channel\"", role, text));
+  }
+  name = std::move(*parsed);
+  return {};
+}
+
+Expected<RoleNames> read_roles(const wire::Measurement& measurement) {
+  RoleNames roles;
+  const auto method = from_wire(measurement.method());
+  if (!method) {
+    return refuse(fmt::format("the recipe's method has number {}, which this version does not "
+                              "know; update dyncal-analysis",
+                              static_cast<std::uint32_t>(measurement.method())));
+  }
+  roles.method = *method;
+  const bool without_sync = is_without_sync(roles.method);
+  auto read = read_role("reference", measurement.reference(), roles.reference);
+  if (read && !(without_sync && measurement.sync_acs().empty())) {
+    read = read_role("sync_acs", measurement.sync_acs(), roles.sync_acs);
+  }
+  if (read && !without_sync) {
+    const bool by_series = roles.method == EvaluationMethod::series_timestamping;
+    read = by_series ? read_role("sync_dso", measurement.sync_dso(), roles.sync_sensor)
+                     : read_role("sync_dau", measurement.sync_dau(), roles.sync_sensor);
+  }
+  for (const std::string& text : measurement.dut()) {
+    read = read ? read_role("dut", text, roles.dut.emplace_back()) : read;
+  }
+  if (!read) {
+    return fail(read.error());
+  }
+  return roles;
+}
+
+MethodDetails read_details(const wire::Measurement& measurement) {
+  MethodDetails details{.adc_calibration = {},
+                        .shots = measurement.shots(),
+                        .trigger_phase_correction = measurement.trigger_phase_correction(),
+                        .dso_delay_s = measurement.dso_delay_s(),
+                        .u_dso_delay_s = measurement.u_dso_delay_s(),
+                        .u_acs_rate_rel = measurement.u_acs_rate_rel()};
+  for (const wire::AdcCalibrationPoint& point : measurement.adc_calibration()) {
+    details.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
+                                       point.gain(), point.phase_lag_rad(), point.u_gain(),
+                                       point.u_phase_lag_rad()});
+  }
+  return details;
+}
+
+Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) {
+  for (const wire::PlannedStep& planned : measurement.steps()) {
+    const auto frequency = analysis::Frequency::parse(planned.frequency_text_hz());
+    if (!frequency) {
+      return refuse(fmt::format(
+          "step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
+          planned.step(), planned.frequency_text_hz(), planned.settling_s(), planned.duration_s()));
+    }
+    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_text_hz(),
+                            *frequency, planned.level_m_s2(), planned.settling_s(),
+                            planned.duration_s()});
+  }
+  return {};
+}
+
+void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
+  recipe.bench = measurement.bench().to_string();
+  recipe.run = measurement.run().to_string();
+  recipe.whole_record = measurement.whole_record();
+  recipe.settling_from_data = measurement.settling_from_data();
+  recipe.monte_carlo_trials = measurement.monte_carlo_trials();
+  if (measurement.frequency_exact()) {
+    recipe.frequency_search_rel = 0.0;
+  } else if (measurement.frequency_search_rel() > 0.0) {
+    recipe.frequency_search_rel = measurement.frequency_search_rel();
+  }
+  recipe.reference_delay_s = measurement.reference_delay_s();
+  recipe.systematic.reference_magnitude_rel = measurement.u_reference_magnitude_rel();
+  recipe.systematic.reference_phase_rad = measurement.u_reference_phase_rad();
+  recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
+  recipe.text = measurement.recipe();
+  recipe.sha256 = measurement.recipe_sha256();
+}
+
+} // namespace
+
+wire::Measurement to_message(const Recipe& recipe) {
+  const RoleNames roles = role_names(recipe);
+  wire::Measurement measurement;
+  measurement.bench(recipe.bench);
+  measurement.run(recipe.run);
+  measurement.method(to_wire(roles.method));
+  measurement.reference(roles.reference.text());
+  measurement.sync_acs(text_of(roles.sync_acs));
+  const bool by_series = roles.method == EvaluationMethod::series_timestamping;
+  measurement.sync_dau(by_series ? "" : text_of(roles.sync_sensor));
+  measurement.sync_dso(by_series ? text_of(roles.sync_sensor) : "");
+  for (const ChannelName& name : roles.dut) {
+    measurement.dut().push_back(name.text());
+  }
+  if (recipe.temperature) {
+    measurement.temperature(recipe.temperature->text());
+  }
+  write_steps(recipe, measurement);
+  std::visit([&](const auto& own) { write_own_part(own, measurement); }, recipe.roles);
+  measurement.u_reference_magnitude_rel(recipe.systematic.reference_magnitude_rel);
+  measurement.u_reference_phase_rad(recipe.systematic.reference_phase_rad);
+  measurement.u_acs_delay_s(recipe.systematic.acs_delay_s);
+  measurement.frequency_search_rel(recipe.frequency_search_rel);
+  measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
+  measurement.reference_delay_s(recipe.reference_delay_s);
+  measurement.whole_record(recipe.whole_record);
+  measurement.settling_from_data(recipe.settling_from_data);
+  measurement.monte_carlo_trials(recipe.monte_carlo_trials);
+  measurement.recipe(recipe.text);
+  measurement.recipe_sha256(recipe.sha256);
+  return measurement;
+}
+
+Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
+  auto roles = read_roles(measurement);
+  if (!roles) {
+    return fail(roles.error());
+  }
+  Recipe recipe;
+  recipe.roles = make_roles(std::move(*roles), read_details(measurement));
+  if (!measurement.temperature().empty()) {
+    if (const auto read =
+            read_role("temperature", measurement.temperature(), recipe.temperature.emplace());
+        !read) {
+      return fail(read.error());
+    }
+  }
+  read_common_part(measurement, recipe);
+  const auto sound = read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); });
+  if (!sound) {
+    return fail(sound.error());
+  }
+  return recipe;
+}
+
+} // namespace dyncal::services

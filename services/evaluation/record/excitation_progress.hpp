@@ -1,0 +1,64 @@
+// How far the excitation of a run has come, by what is announced and by the host times of samples.
+//
+// A step is over in a source when its excitation was announced as over and the source has sent
+// samples from `grace` later, when the source has ended, or when the run is cut short. Belongs to
+// one thread; the recipe must outlive it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/source_record.hpp"
+
+namespace dyncal::wire {
+class Excitation;
+}
+
+namespace dyncal::services {
+
+struct StepAnnouncement {
+  enum class State { excited, done, aborted };
+  std::uint32_t step = 0; // as the recipe numbers it
+  State state = State::excited;
+  std::int64_t window_begin_utc_ns = 0;
+  std::int64_t window_end_utc_ns = 0; // known when it is over
+};
+
+[[nodiscard]] StepAnnouncement from_message(const wire::Excitation& excitation);
+
+// Steps are indices into the recipe's.
+class ExcitationProgress {
+public:
+  explicit ExcitationProgress(const Recipe& recipe) : recipe_(recipe) {}
+
+  // Passes over a step that the recipe does not have.
+  void announce(const StepAnnouncement& announcement);
+  // No excitation comes any more: the run is done, or was broken off after the steps announced so
+  // far.
+  void end(bool aborted);
+  // Nothing comes any more from any source.
+  void cut_short() { cut_short_ = true; }
+
+  [[nodiscard]] bool ended() const { return ended_; }
+  [[nodiscard]] bool is_cut_short() const { return cut_short_; }
+  [[nodiscard]] std::size_t steps_expected() const;
+  [[nodiscard]] bool is_announced_over(std::size_t step) const {
+    return over_utc_ns_.contains(step);
+  }
+  [[nodiscard]] bool is_broken_off(std::size_t step) const { return broken_off_.contains(step); }
+  [[nodiscard]] bool is_over_in(const SourceRecord& source, std::size_t step) const;
+
+private:
+  const Recipe& recipe_;
+  std::map<std::size_t, std::int64_t> over_utc_ns_; // host time at which the excitation was over
+  std::set<std::size_t> broken_off_;
+  std::size_t steps_announced_ = 0;
+  bool ended_ = false;
+  bool aborted_ = false;
+  bool cut_short_ = false;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,83 @@
+#include "services/evaluation/record/run_records.hpp"
+
+#include <algorithm>
+
+namespace dyncal::services {
+
+RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
+                       std::size_t capacity)
+    : recipe_(recipe), excitation_(recipe) {
+  for (const std::string& source : recipe.sources()) {
+    records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
+  }
+  for (const SearchedChannel& one : searched) {
+    searches_.push_back({one.channel.source, one.sources,
+                         StepSearch(recipe, of(one.channel.source), one.channel.channel)});
+  }
+}
+
+SourceRecord* RunRecords::find(const std::string& source) {
+  const auto found = records_.find(source);
+  return found == records_.end() ? nullptr : found->second.get();
+}
+
+const SourceRecord& RunRecords::of(const std::string& source) const {
+  return *records_.at(source);
+}
+
+std::vector<std::string> RunRecords::undescribed() const {
+  std::vector<std::string> names;
+  for (const auto& [name, source] : records_) {
+    if (!source->described()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+void RunRecords::search() {
+  const std::size_t expected = excitation_.steps_expected();
+  for (std::size_t i = 0; i < searches_.size() && expected > 0; ++i) {
+    StepSearch& steps = searches_[i].steps;
+    const SourceRecord& source = of(searches_[i].source);
+    steps.advance(expected - 1);
+    while (steps.step() < expected && excitation_.is_over_in(source, steps.step())) {
+      steps.give_up_step();
+      steps.advance(expected - 1);
+    }
+  }
+}
+
+bool RunRecords::is_searched(std::size_t step) const {
+  return std::all_of(searches_.begin(), searches_.end(),
+                     [&](const Search& search) { return search.steps.step() > step; });
+}
+
+std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t step) const {
+  return searches_.at(search).steps.interval(step);
+}
+
+SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {
+  const SourceRecord& whole = of(source);
+  if (copies_) {
+    return {std::make_shared<const SourceRecord>(whole.part(interval)), interval};
+  }
+  return {std::shared_ptr<const SourceRecord>(std::shared_ptr<const SourceRecord>(), &whole),
+          interval};
+}
+
+void RunRecords::forget_before_step(std::size_t next_step) {
+  for (const Search& search : searches_) {
+    std::int64_t needed = search.steps.needed_from_ns();
+    for (std::size_t step = next_step; step < search.steps.step(); ++step) {
+      if (const auto interval = search.steps.interval(step)) {
+        needed = std::min(needed, interval->begin_ns);
+      }
+    }
+    for (const std::string& source : search.sources) {
+      records_.at(source)->forget_before(needed);
+    }
+  }
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,81 @@
+// All that the sources of one run have sent, and where in it the steps are.
+//
+// One record a source, and one search for the steps in each channel that the method names: the
+// channel of the ACS first. Samples that no step needs any more are forgotten. Belongs to one
+// thread; the recipe must outlive it.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/excitation_progress.hpp"
+#include "services/evaluation/record/source_record.hpp"
+#include "services/evaluation/record/step_search.hpp"
+#include "services/evaluation/record/time_interval.hpp"
+
+namespace dyncal::services {
+
+// A channel that steps are found in, and the sources whose samples are selected by what it finds.
+struct SearchedChannel {
+  ChannelName channel;
+  std::vector<std::string> sources;
+};
+
+// The samples of one source in one step. Passes into another thread when it holds a copy.
+struct SourceInterval {
+  std::shared_ptr<const SourceRecord> record;
+  TimeInterval interval;
+};
+
+class RunRecords {
+public:
+  // `capacity`: samples that a source's record holds.
+  RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
+             std::size_t capacity = SourceRecord::default_capacity);
+
+  [[nodiscard]] ExcitationProgress& excitation() { return excitation_; }
+  [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
+
+  // Null for a source that is not of the run.
+  [[nodiscard]] SourceRecord* find(const std::string& source);
+  // REQUIRES: a source of the run.
+  [[nodiscard]] const SourceRecord& of(const std::string& source) const;
+  // Sources that have not described themselves yet.
+  [[nodiscard]] std::vector<std::string> undescribed() const;
+
+  // Searches the samples that have come since the last call; passes over steps that are over in the
+  // source and show nothing.
+  void search();
+  // Every search has passed the step.
+  [[nodiscard]] bool is_searched(std::size_t step) const;
+  // Of the step in the clock of one search, in the order of the channels given.
+  [[nodiscard]] std::optional<TimeInterval> interval(std::size_t search, std::size_t step) const;
+
+  // Evaluated in the caller's thread these look at the records themselves, else at copies.
+  void copy_samples(bool copies) { copies_ = copies; }
+  [[nodiscard]] SourceInterval samples(const std::string& source,
+                                       const TimeInterval& interval) const;
+
+  // Steps before `next_step` have been evaluated.
+  void forget_before_step(std::size_t next_step);
+
+private:
+  struct Search {
+    std::string source; // whose channel is searched
+    std::vector<std::string> sources;
+    StepSearch steps;
+  };
+
+  const Recipe& recipe_;
+  ExcitationProgress excitation_;
+  std::map<std::string, std::unique_ptr<SourceRecord>> records_;
+  std::vector<Search> searches_;
+  bool copies_ = false;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,66 @@
+#include "services/evaluation/record/shot_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dyncal::services {
+namespace {
+
+bool is_usable(const TriggeredRecord& record) {
+  const std::size_t expected = record.samples * record.channels;
+  return expected > 0 && record.values.size() == expected && record.interval_s > 0.0 &&
+         std::isfinite(record.first_sample_s) &&
+         std::all_of(record.values.begin(), record.values.end(),
+                     [](double value) { return std::isfinite(value); });
+}
+
+} // namespace
+
+void ShotRecord::add_trace(TriggeredRecord record) {
+  Loss& loss = lost_[record.step].traces;
+  add(traces_, std::move(record), loss);
+}
+
+void ShotRecord::add_series(TriggeredRecord record) {
+  Loss& loss = lost_[record.step].series;
+  add(series_, std::move(record), loss);
+}
+
+void ShotRecord::add(Records& records, TriggeredRecord record, Loss& loss) {
+  if (record.samples == 0 && record.values.empty()) {
+    return; // an answer, or the end of the stream
+  }
+  const bool usable = is_usable(record);
+  if (!usable || records.size() >= capacity) {
+    ++loss.records;
+    (usable ? loss.overflowed_samples : loss.unusable_samples) += record.samples;
+    return;
+  }
+  const Key key{record.session, record.shot};
+  records.insert_or_assign(key, std::move(record));
+}
+
+std::vector<ShotRecord::Shot> ShotRecord::of_step(std::uint32_t step) const {
+  std::vector<Shot> shots;
+  for (const auto& [key, trace] : traces_) {
+    const auto series = series_.find(key);
+    if (trace.step == step && series != series_.end() && series->second.step == step) {
+      shots.push_back({&trace, &series->second});
+    }
+  }
+  return shots;
+}
+
+ShotRecord::Losses ShotRecord::lost_in(std::uint32_t step) const {
+  const auto found = lost_.find(step);
+  return found == lost_.end() ? Losses{} : found->second;
+}
+
+void ShotRecord::forget_step(std::uint32_t step) {
+  const auto of_that_step = [&](const auto& entry) { return entry.second.step == step; };
+  std::erase_if(traces_, of_that_step);
+  std::erase_if(series_, of_that_step);
+  lost_.erase(step);
+}
+
+} // namespace dyncal::services

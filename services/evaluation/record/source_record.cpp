@@ -1,0 +1,268 @@
+#include "services/evaluation/record/source_record.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace dyncal::services {
+namespace {
+
+// Memory is given back once this many forgotten samples lead the buffers.
+constexpr std::size_t forgotten_worth_moving = std::size_t{1} << 16U;
+
+// More losses than this at a time are told apart no further: the oldest two become one.
+constexpr std::size_t max_gaps = std::size_t{1} << 16U;
+
+constexpr std::int64_t beginning_of_time = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t end_of_time = std::numeric_limits<std::int64_t>::max();
+
+SampleLoss sum(const SampleLoss& a, const SampleLoss& b) {
+  return {a.missing + b.missing, a.unusable + b.unusable, a.overflowed + b.overflowed};
+}
+
+} // namespace
+
+void SourceRecord::keep_only(std::set<std::size_t> channels) {
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (!channels.contains(channel)) {
+      columns_[channel] = {};
+    } else if (!keeps(channel)) {
+      columns_[channel].assign(stamps_ns_.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  kept_channels_ = std::move(channels);
+}
+
+std::optional<std::size_t> SourceRecord::channel(const std::string& name) const {
+  if (!description_) {
+    return std::nullopt;
+  }
+  const auto& channels = description_->channels;
+  const auto found =
+      std::find_if(channels.begin(), channels.end(),
+                   [&](const drivers::ChannelDescription& one) { return one.name == name; });
+  return found == channels.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - channels.begin()));
+}
+
+BlockUse SourceRecord::use_of(const SourceBlock& block) const {
+  const bool fits = columns_.empty() || columns_.size() == block.channels;
+  return block.samples == 0 || (block.is_consistent() && fits) ? BlockUse::usable
+                                                               : BlockUse::unusable;
+}
+
+bool SourceRecord::add(const SourceBlock& block) {
+  const BlockUse use = use_of(block);
+  const ContinuityFinding finding = continuity_.add(block, use);
+  if (finding.duplicate) {
+    return false;
+  }
+  if (finding.new_session) {
+    restart();
+  }
+  newest_received_utc_ns_ = std::max(newest_received_utc_ns_, block.received_utc_ns);
+  ended_ = block.end_of_stream;
+  if (use == BlockUse::unusable || block.samples == 0) {
+    return false;
+  }
+  if (finding.missing_samples > 0) {
+    add_gap(gaps_, {newest_ns_.value_or(beginning_of_time),
+                    block.first_stamp_ns(),
+                    {.missing = finding.missing_samples - finding.unusable_samples,
+                     .unusable = finding.unusable_samples}});
+  }
+  append(block);
+  return true;
+}
+
+void SourceRecord::append(const SourceBlock& block) {
+  columns_.resize(block.channels);
+  append_stamps(block);
+  append_stamp_uncertainties(block);
+  if (block.flags.empty()) {
+    flags_.resize(flags_.size() + block.samples, 0);
+  } else {
+    flags_.insert(flags_.end(), block.flags.begin(), block.flags.end());
+  }
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (keeps(channel)) {
+      const auto values = block.values.subspan(channel * block.samples, block.samples);
+      columns_[channel].insert(columns_[channel].end(), values.begin(), values.end());
+    }
+  }
+  newest_ns_ = stamps_ns_.back();
+  drop_overflow();
+}
+
+void SourceRecord::append_stamps(const SourceBlock& block) {
+  if (!block.stamps_ns.empty()) {
+    stamps_ns_.insert(stamps_ns_.end(), block.stamps_ns.begin(), block.stamps_ns.end());
+    return;
+  }
+  const std::int64_t first_ns = block.first_stamp_ns();
+  const std::int64_t interval_ns = block.clock.interval_numerator_ns;
+  const bool whole = block.clock.interval_denominator == 1; // then no division a sample is needed
+  for (std::size_t i = 0; i < block.samples; ++i) {
+    stamps_ns_.push_back(whole ? first_ns + static_cast<std::int64_t>(i) * interval_ns
+                               : block.clock.stamp_ns(block.first_sample + i));
+  }
+}
+
+void SourceRecord::append_stamp_uncertainties(const SourceBlock& block) {
+  if (block.stamp_uncertainty_ns.size() == block.samples) {
+    stamp_uncertainties_ns_.resize(stamps_ns_.size() - block.samples, 0);
+    stamp_uncertainties_ns_.insert(stamp_uncertainties_ns_.end(),
+                                   block.stamp_uncertainty_ns.begin(),
+                                   block.stamp_uncertainty_ns.end());
+  } else if (!stamp_uncertainties_ns_.empty()) {
+    stamp_uncertainties_ns_.resize(stamps_ns_.size(), 0);
+  }
+}
+
+void SourceRecord::drop_overflow() {
+  const auto stamps = stamps_ns();
+  if (stamps.size() <= capacity_) {
+    return;
+  }
+  const std::size_t excess = stamps.size() - capacity_;
+  add_gap(overflow_, {stamps.front() - 1, stamps[excess - 1] + 1, {.overflowed = excess}});
+  overflowed_ += excess;
+  forget(excess);
+}
+
+void SourceRecord::add_gap(std::deque<Gap>& gaps, const Gap& gap) {
+  gaps.push_back(gap);
+  if (gaps.size() > max_gaps) {
+    const Gap oldest = gaps.front();
+    gaps.pop_front();
+    gaps.front().before_ns = oldest.before_ns;
+    gaps.front().loss = sum(gaps.front().loss, oldest.loss);
+  }
+}
+
+void SourceRecord::restart() {
+  ++restarts_;
+  forget(stamps_ns().size());
+  gaps_.clear();
+  overflow_.clear();
+  newest_ns_.reset();
+}
+
+std::span<const double> SourceRecord::column(std::size_t channel) const {
+  return channel < columns_.size() && keeps(channel) ? std::span(columns_[channel]).subspan(first_)
+                                                     : std::span<const double>{};
+}
+
+void SourceRecord::forget_before(std::int64_t stamp_ns) {
+  const auto stamps = stamps_ns();
+  // Stamps of a faulty clock may step back, so the first one that is not earlier ends the search.
+  const auto keep = std::find_if(stamps.begin(), stamps.end(),
+                                 [&](std::int64_t stamp) { return stamp >= stamp_ns; });
+  forget(static_cast<std::size_t>(keep - stamps.begin()));
+  for (std::deque<Gap>* gaps : {&gaps_, &overflow_}) {
+    while (!gaps->empty() && gaps->front().after_ns < stamp_ns) {
+      gaps->pop_front();
+    }
+  }
+}
+
+std::optional<SourceRecord::Gap> SourceRecord::open_gap() const {
+  const std::uint64_t samples = continuity_.pending_samples();
+  return samples == 0
+             ? std::nullopt
+             : std::optional(
+                   Gap{newest_ns_.value_or(beginning_of_time), end_of_time, {.unusable = samples}});
+}
+
+SourceRecord SourceRecord::part(const TimeInterval& interval) const {
+  SourceRecord part(source_, capacity_);
+  part.description_ = description_;
+  part.kept_channels_ = kept_channels_;
+  part.gaps_ = gaps_;
+  part.overflow_ = overflow_;
+  if (const auto open = open_gap()) {
+    part.gaps_.push_back(*open);
+  }
+  part.columns_.resize(columns_.size());
+  const auto inside = [&](std::int64_t stamp) {
+    return stamp >= interval.begin_ns && stamp <= interval.end_ns;
+  };
+  // Stamps of a faulty clock may step back: all that lies between the first one inside and the last
+  // one is taken.
+  const auto stamps = stamps_ns();
+  const auto first = std::find_if(stamps.begin(), stamps.end(), inside);
+  const auto behind =
+      std::find_if(stamps.rbegin(), std::make_reverse_iterator(first), inside).base();
+  const auto begin = static_cast<std::ptrdiff_t>(first_) + (first - stamps.begin());
+  const auto end = begin + (behind - first);
+  const auto take = [&](const auto& from, auto& to) {
+    to.assign(from.begin() + begin, from.begin() + end);
+  };
+  take(stamps_ns_, part.stamps_ns_);
+  take(flags_, part.flags_);
+  if (!stamp_uncertainties_ns_.empty()) {
+    take(stamp_uncertainties_ns_, part.stamp_uncertainties_ns_);
+  }
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (keeps(channel)) {
+      take(columns_[channel], part.columns_[channel]);
+    }
+  }
+  return part;
+}
+
+void SourceRecord::forget(std::size_t samples) {
+  first_ += samples;
+  forgotten_ += samples;
+  if (first_ < forgotten_worth_moving || first_ * 2 < stamps_ns_.size()) {
+    return;
+  }
+  const auto erase = [this](auto& column) {
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_));
+  };
+  erase(stamps_ns_);
+  erase(flags_);
+  if (!stamp_uncertainties_ns_.empty()) {
+    erase(stamp_uncertainties_ns_);
+  }
+  for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
+    if (keeps(channel)) {
+      erase(columns_[channel]);
+    }
+  }
+  first_ = 0;
+}
+
+double SourceRecord::stamp_uncertainty_s(const TimeInterval& interval) const {
+  const auto stamps = stamps_ns();
+  const bool any = !stamp_uncertainties_ns_.empty();
+  const auto uncertainties = std::span(stamp_uncertainties_ns_).subspan(any ? first_ : 0);
+  double sum_ns = 0.0;
+  std::size_t known = 0;
+  for (std::size_t i = 0; any && i < stamps.size(); ++i) {
+    if (stamps[i] >= interval.begin_ns && stamps[i] <= interval.end_ns && uncertainties[i] > 0) {
+      sum_ns += static_cast<double>(uncertainties[i]);
+      ++known;
+    }
+  }
+  const double mean_s = known > 0 ? sum_ns * 1e-9 / static_cast<double>(known) : 0.0;
+  return std::max(mean_s, description().stamp_uncertainty_s);
+}
+
+SampleLoss SourceRecord::lost_in(const TimeInterval& interval) const {
+  SampleLoss lost;
+  const auto count = [&](const Gap& gap) {
+    if (gap.before_ns < interval.end_ns && gap.after_ns > interval.begin_ns) {
+      lost = sum(lost, gap.loss);
+    }
+  };
+  std::for_each(gaps_.begin(), gaps_.end(), count);
+  std::for_each(overflow_.begin(), overflow_.end(), count);
+  if (const auto open = open_gap()) {
+    count(*open);
+  }
+  return lost;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,118 @@
+#include "services/evaluation/record/step_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dyncal::services {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+
+std::int64_t to_ns(double seconds) {
+  return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
+}
+
+} // namespace
+
+StepSearch::StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel)
+    : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)),
+      search_from_ns_(std::numeric_limits<std::int64_t>::min()) {}
+
+void StepSearch::search_step(std::size_t step) {
+  step_ = step;
+  finder_.reset();
+  fed_ = 0;
+}
+
+void StepSearch::advance(std::size_t last_step) {
+  if (record_.restarts() != restarts_) {
+    restarts_ = record_.restarts();
+    search_from_ns_ = std::numeric_limits<std::int64_t>::min();
+    search_step(step_);
+  }
+  if (recipe_.whole_record) {
+    take_whole_record(record_.ended());
+    return;
+  }
+  while (step_ <= last_step && step_ < recipe_.steps.size()) {
+    feed();
+    if (!finder_ || !finder_->ended()) {
+      return;
+    }
+    accept(*finder_->window());
+  }
+}
+
+void StepSearch::take_whole_record(bool complete) {
+  const auto stamps = record_.stamps_ns();
+  if (complete && step_ == 0 && !stamps.empty()) {
+    const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+    found_[0] = {*first, *last};
+    step_ = 1;
+  }
+}
+
+void StepSearch::feed() {
+  const auto channel = record_.channel(sync_channel_);
+  if (!channel) {
+    return;
+  }
+  if (!finder_) {
+    finder_.emplace(recipe_.steps[step_].frequency);
+  }
+  const auto stamps = record_.stamps_ns();
+  const auto flags = record_.flags();
+  const auto sync = record_.column(*channel);
+  const auto good = [&](std::size_t i) { return flags[i] == 0 && stamps[i] >= search_from_ns_; };
+  auto i = static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten());
+  while (i < stamps.size()) {
+    const std::size_t begin = i;
+    while (i < stamps.size() && good(i)) {
+      ++i;
+    }
+    finder_->push(stamps.subspan(begin, i - begin), sync.subspan(begin, i - begin));
+    while (i < stamps.size() && !good(i)) {
+      ++i;
+    }
+  }
+  fed_ = record_.forgotten() + stamps.size();
+  if (record_.ended()) {
+    finder_->finish();
+  }
+}
+
+void StepSearch::accept(const analysis::ExcitationWindow& window) {
+  const RecipeStep& step = recipe_.steps[step_];
+  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
+  const std::int64_t begin = recipe_.settling_from_data ? window.begin_ns : planned_begin;
+  const std::int64_t end = std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1;
+  if (end > begin) {
+    found_[step_] = {begin, end};
+  }
+  search_from_ns_ = window.off_ns;
+  search_step(step_ + 1);
+}
+
+void StepSearch::give_up_step() {
+  if (recipe_.whole_record) {
+    take_whole_record(true);
+    step_ = 1;
+    return;
+  }
+  if (finder_) {
+    finder_->finish();
+    if (const auto window = finder_->window()) {
+      accept(*window);
+      return;
+    }
+  }
+  search_step(step_ + 1);
+}
+
+std::optional<TimeInterval> StepSearch::interval(std::size_t step) const {
+  const auto found = found_.find(step);
+  return found == found_.end() ? std::nullopt : std::optional(found->second);
+}
+
+} // namespace dyncal::services

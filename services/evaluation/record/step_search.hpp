@@ -1,0 +1,61 @@
+// Follows one source through the planned steps: finds in its own clock where each step was excited,
+// from its sync channel alone.
+//
+// With Recipe::whole_record nothing is searched: the one step is the record from its first to its
+// last sample. Steps are searched in the planned order, each from the end of the one before; the
+// search never goes back but when the source was restarted. What it finds depends on the samples
+// only, not on how they came.
+//
+// Belongs to one thread; the record and the recipe must outlive it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "analysis/step/excitation_window.hpp"
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/source_record.hpp"
+#include "services/evaluation/record/time_interval.hpp"
+
+namespace dyncal::services {
+
+class StepSearch {
+public:
+  StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel);
+
+  // Looks at the samples that have come since the last call, as far as `last_step` (an index into
+  // the recipe's steps).
+  void advance(std::size_t last_step);
+
+  // What to evaluate of the step: settling dropped, at most the planned duration; when settling is
+  // found from the data, from the beginning of the excitation. Empty until the step's excitation is
+  // over.
+  [[nodiscard]] std::optional<TimeInterval> interval(std::size_t step) const;
+  // The step whose excitation is searched now.
+  [[nodiscard]] std::size_t step() const { return step_; }
+  // Takes what there is of the step searched, or passes over it when there is nothing; the search
+  // goes on with the next.
+  void give_up_step();
+  // Nothing earlier than this is needed for steps that were not found yet.
+  [[nodiscard]] std::int64_t needed_from_ns() const { return search_from_ns_; }
+
+private:
+  void search_step(std::size_t step);
+  void take_whole_record(bool complete);
+  void feed();
+  void accept(const analysis::ExcitationWindow& window);
+
+  const Recipe& recipe_;
+  const SourceRecord& record_;
+  std::string sync_channel_;
+  std::uint32_t restarts_ = 0;
+  std::size_t step_ = 0;
+  std::int64_t search_from_ns_;
+  std::uint64_t fed_ = 0; // samples of the record, counted from its very first
+  std::optional<analysis::ExcitationWindowFinder> finder_;
+  std::map<std::size_t, TimeInterval> found_;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,49 @@
+// What a reader of a result should know of it beside its numbers: closed set of kinds, and the
+// sentence that results carry.
+//
+// Plain data and functions; any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dyncal::services {
+
+enum class ResultFlag {
+  samples_lost,
+  stamps_not_trusted,  // samples with them were left out
+  values_not_measured, // samples with them were left out
+  shorter_than_planned,
+  clock_uncertainty_unknown,
+  excitation_broken_off,
+  settling_not_found,
+  settles_too_long,
+  shots_missing,
+  shots_left_out,
+  records_lost, // of shots
+  start_undecided,
+  trigger_phase_not_corrected,
+  no_monte_carlo_check,
+  polarity_inverted,
+  from_message // read from the bus, which carries the sentence alone
+};
+
+// The part of the sentence that every flag of the kind has; empty for from_message.
+[[nodiscard]] const char* to_string(ResultFlag flag);
+
+struct Flag {
+  ResultFlag kind = ResultFlag::from_message;
+  std::string sentence;
+
+  friend bool operator==(const Flag&, const Flag&) = default;
+};
+
+// The kind's sentence alone; of one source, "dau: samples lost"; with what only this case knows.
+[[nodiscard]] Flag make_flag(ResultFlag kind);
+[[nodiscard]] Flag flag_of_source(ResultFlag kind, const std::string& source);
+[[nodiscard]] Flag flag_with_reason(ResultFlag kind, const std::string& reason);
+
+[[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Flag>& flags);
+[[nodiscard]] std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences);
+
+} // namespace dyncal::services

@@ -1,0 +1,97 @@
+#include "services/evaluation/result/transfer_function_message.hpp"
+
+#include <complex>
+
+#include "services/contract/evaluation_method_message.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+namespace {
+
+wire::TransferPoint point_message(const FrequencyPoint& point) {
+  wire::TransferPoint message;
+  message.frequency_text_hz(point.frequency_text_hz);
+  message.frequency_hz(point.frequency_hz);
+  message.level_m_s2(point.level_m_s2);
+  message.magnitude(point.mean.magnitude);
+  message.u_magnitude(point.mean.u_magnitude);
+  message.phase_rad(point.mean.phase_rad);
+  message.u_phase_rad(point.mean.u_phase_rad);
+  message.unwrapped_phase_rad(point.unwrapped_phase_rad);
+  message.scatter_magnitude(point.mean.scatter_magnitude);
+  message.scatter_phase_rad(point.mean.scatter_phase_rad);
+  message.repetitions(static_cast<std::uint32_t>(point.mean.repetitions));
+  return message;
+}
+
+FrequencyPoint point_from_message(const wire::TransferPoint& message) {
+  FrequencyPoint point;
+  point.frequency_text_hz = message.frequency_text_hz();
+  point.frequency_hz = message.frequency_hz();
+  point.level_m_s2 = message.level_m_s2();
+  point.mean.h = std::polar(message.magnitude(), message.phase_rad());
+  point.mean.magnitude = message.magnitude();
+  point.mean.u_magnitude = message.u_magnitude();
+  point.mean.phase_rad = message.phase_rad();
+  point.mean.u_phase_rad = message.u_phase_rad();
+  point.mean.scatter_magnitude = message.scatter_magnitude();
+  point.mean.scatter_phase_rad = message.scatter_phase_rad();
+  point.mean.repetitions = message.repetitions();
+  point.unwrapped_phase_rad = message.unwrapped_phase_rad();
+  return point;
+}
+
+} // namespace
+
+wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& function) {
+  wire::TransferFunction message;
+  message.bench(recipe.bench);
+  message.run(recipe.run);
+  message.channel(function.channel);
+  message.method(to_wire(function.method));
+  message.unit(function.unit);
+  for (const FrequencyPoint& point : function.points) {
+    message.points().push_back(point_message(point));
+  }
+  message.group_delay_valid(function.group_delay.has_value());
+  message.group_delay_problem(function.group_delay_problem);
+  if (function.group_delay) {
+    const analysis::GroupDelay& delay = *function.group_delay;
+    message.group_delay_s(delay.delay_s);
+    message.u_group_delay_s(delay.u_delay_s);
+    message.intercept_rad(delay.intercept_rad);
+    message.u_intercept_rad(delay.u_intercept_rad);
+    message.cov_delay_intercept_rad_s(delay.cov_delay_intercept);
+    message.phase_covariance_rad2() = delay.phase_covariance;
+  }
+  message.flags() = sentences_of(function.flags);
+  message.lost(function.lost);
+  message.software(software_version());
+  message.recipe_sha256(recipe.sha256);
+  return message;
+}
+
+TransferFunction from_message(const wire::TransferFunction& message) {
+  TransferFunction function;
+  function.channel = message.channel().to_string();
+  function.method = from_wire(message.method()).value_or(EvaluationMethod::sample_timestamping);
+  function.unit = message.unit();
+  for (const wire::TransferPoint& point : message.points()) {
+    function.points.push_back(point_from_message(point));
+  }
+  if (message.group_delay_valid()) {
+    analysis::GroupDelay& delay = function.group_delay.emplace();
+    delay.delay_s = message.group_delay_s();
+    delay.u_delay_s = message.u_group_delay_s();
+    delay.intercept_rad = message.intercept_rad();
+    delay.u_intercept_rad = message.u_intercept_rad();
+    delay.cov_delay_intercept = message.cov_delay_intercept_rad_s();
+    delay.phase_covariance = message.phase_covariance_rad2();
+  }
+  function.group_delay_problem = message.group_delay_problem();
+  function.flags = flags_from_message(message.flags());
+  function.lost = message.lost();
+  return function;
+}
+
+} // namespace dyncal::services

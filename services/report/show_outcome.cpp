@@ -1,0 +1,69 @@
+#include "services/report/show_outcome.hpp"
+
+#include <cstdint>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "services/report/run_figures.hpp"
+#include "services/report/run_report.hpp"
+
+namespace dyncal::services {
+namespace {
+
+std::size_t steps_with_a_result(const RunOutcome& outcome) {
+  std::set<std::uint32_t> steps;
+  for (const StepResult& result : outcome.results) {
+    if (result.valid) {
+      steps.insert(result.step);
+    }
+  }
+  return steps.size();
+}
+
+} // namespace
+
+Expected<void> show_outcome(const RunOutcome& outcome,
+                            const std::optional<std::filesystem::path>& json,
+                            const std::optional<std::filesystem::path>& figures) {
+  fmt::print("bench {}, run {}{}\n", outcome.bench, outcome.run, result_table(outcome));
+  if (json) {
+    if (const auto written = write_json(*json, result_json(outcome)); !written) {
+      return fail(written.error());
+    }
+  }
+  if (figures) {
+    const auto written = write_figures(outcome, *figures);
+    if (!written) {
+      return fail(written.error());
+    }
+    for (const std::filesystem::path& path : *written) {
+      fmt::print("wrote {}\n", path.string());
+    }
+  }
+  return {};
+}
+
+Expected<void> check_complete(const RunOutcome& outcome) {
+  const std::size_t steps = outcome.planned_steps;
+  const std::size_t measured = steps_with_a_result(outcome);
+  if (outcome.interrupted) {
+    return fail(
+        ErrorCode::interrupted,
+        fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept",
+                    measured, steps));
+  }
+  if (!outcome.problem.empty()) {
+    return fail(ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
+                                                  outcome.problem, measured, steps));
+  }
+  if (measured < steps) {
+    return fail(ErrorCode::no_result,
+                fmt::format("{} of {} steps have no result; the reasons are listed above",
+                            steps - measured, steps));
+  }
+  return {};
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,75 @@
+#include "services/evaluation/recipe/recipe_message.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/evaluation/synthetic_run.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(RecipeMessage, ComesOutOfTheMessageAsItWentIn) {
+  const auto recipe = parse_recipe(tests::SyntheticRun{}.measurement());
+  ASSERT_TRUE(recipe) << recipe.error().message;
+  EXPECT_EQ(recipe->reference().text(), "acs/reference");
+  EXPECT_EQ(recipe->sources(), (std::vector<std::string>{"acs", "dau"}));
+  ASSERT_EQ(recipe->steps.size(), 2U);
+  EXPECT_EQ(recipe->steps[1].frequency_text_hz, "80");
+  EXPECT_DOUBLE_EQ(recipe->steps[1].duration_s, 0.8);
+}
+
+TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  wire::AdcCalibrationPoint point;
+  point.frequency_hz(40.0);
+  point.gain(0.99);
+  measurement.adc_calibration().push_back(point);
+  measurement.temperature("dau/temperature");
+  measurement.u_acs_delay_s(1e-7);
+  measurement.frequency_search_rel(2e-3);
+  const auto recipe = parse_recipe(measurement);
+  ASSERT_TRUE(recipe) << recipe.error().message;
+  EXPECT_TRUE(to_message(*recipe) == measurement);
+}
+
+TEST(RecipeMessage, RefusesAMethodOfALaterVersion) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.method(static_cast<wire::Method>(99));
+  const auto recipe = parse_recipe(measurement);
+  ASSERT_FALSE(recipe);
+  EXPECT_THAT(recipe.error().message, HasSubstr("method has number 99"));
+}
+
+TEST(RecipeMessage, TakesTheSyncOfTheOscilloscopeForSeriesAlone) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_dso("dso/sync");
+  EXPECT_EQ(parse_recipe(measurement)->sources(), (std::vector<std::string>{"acs", "dau"}));
+  measurement.method(wire::METHOD_SERIES_TIMESTAMPING);
+  measurement.dut({"tss/z"});
+  EXPECT_EQ(parse_recipe(measurement)->sources(), (std::vector<std::string>{"acs", "dso", "tss"}));
+  measurement.sync_dso("");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dso is \"\""));
+}
+
+TEST(RecipeMessage, RefusesRolesThatAreNoChannels) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_dau("dau");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dau is \"dau\""));
+}
+
+TEST(RecipeMessage, RefusesReferenceAndSyncOfDifferentClocks) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_acs("other/sync");
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("must share a clock"));
+}
+
+TEST(RecipeMessage, RefusesARunWithoutSteps) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.steps().clear();
+  EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("no excitation steps"));
+}
+
+} // namespace
+} // namespace dyncal::services
