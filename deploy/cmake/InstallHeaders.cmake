@@ -2,8 +2,8 @@
 #
 # Inside the tree a header is included as "analysis/sine/sine_fit.hpp"; installed it is
 # dyncal/analysis/sine/sine_fit.hpp, and its includes are rewritten accordingly. Everything of
-# analysis/ is public but what is listed here; of services/ only the headers listed here and what
-# they include.
+# analysis/ is public but what is listed here; of services/ and drivers/ only the headers listed
+# here and what they include.
 #
 # root: of the source tree; made: folder for what is installed; includedir: where headers go.
 cmake_minimum_required(VERSION 3.25)
@@ -37,7 +37,7 @@ list(FILTER analysis EXCLUDE REGEX ${kernel})
 list(REMOVE_ITEM analysis ${private})
 list(APPEND public ${analysis})
 
-set(own_include "#include \"((analysis|services|idl)/[^\"]+)\"")
+set(own_include "#include \"((analysis|drivers|services|idl)/[^\"]+)\"")
 set(headers)
 while(public)
   list(POP_FRONT public header)

@@ -17,6 +17,7 @@
 #include "services/command/run_command.hpp"
 #include "services/contract/digest.hpp"
 #include "services/contract/topics.hpp"
+#include "services/program/bench_program.hpp"
 
 namespace dyncal::services {
 namespace {

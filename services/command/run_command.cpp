@@ -8,6 +8,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
+#include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
 
 namespace dyncal::services {

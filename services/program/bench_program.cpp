@@ -9,7 +9,6 @@
 #include "services/version.hpp"
 
 namespace dyncal::services {
-
 namespace {
 
 Expected<void> serve(const BenchProgram& program, const std::vector<std::string>& paths,
@@ -27,6 +26,14 @@ Expected<void> serve(const BenchProgram& program, const std::vector<std::string>
 }
 
 } // namespace
+
+void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
+  options.peers.insert(options.peers.end(), bench.peers.begin(), bench.peers.end());
+  options.no_multicast = options.no_multicast || !bench.multicast;
+  if (options.interface_name.empty()) {
+    options.interface_name = bench.interface_name;
+  }
+}
 
 int run_bench_program(int argc, char** argv, const BenchProgram& program) {
   CLI::App app{program.description, program.name};

@@ -1,6 +1,9 @@
 // A program that serves the bench files on its command line: reads them, joins its network options
 // with theirs, logs by a thread of its own, stops on signals, and ends with one line and an exit
 // status when something went wrong. What it serves is all that such programs differ in.
+//
+// A library of its own beside the rest of this room: a program that reads no bench file
+// (dyncal-analysis) links neither this nor the TOML parser.
 #pragma once
 
 #include <functional>
@@ -13,6 +16,10 @@
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
+
+// Adds the bench file's peers to those of the command line; what the command line leaves open is
+// taken from the bench file.
+void add_network_settings(const NetworkSettings& bench, NetworkOptions& options);
 
 struct BenchProgram {
   std::string name;        // "dyncal-dau"

@@ -15,7 +15,6 @@ namespace dyncal::services {
 namespace {
 
 constexpr int interrupted_status = 130; // 128 + SIGINT, as shells report it
-std::string program_name = "dyncal";
 
 // Any name is taken; parse_vendor() judges it, so that the sentence is the same everywhere.
 CLI::Validator vendor_validator() {
@@ -47,14 +46,6 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
   app.add_flag("--no-multicast", options.no_multicast, "find others by --peer alone");
   app.add_option("--interface", options.interface_name,
                  "network interface to use (name or address)");
-}
-
-void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
-  options.peers.insert(options.peers.end(), bench.peers.begin(), bench.peers.end());
-  options.no_multicast = options.no_multicast || !bench.multicast;
-  if (options.interface_name.empty()) {
-    options.interface_name = bench.interface_name;
-  }
 }
 
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
 #include "services/program/log.hpp"
@@ -27,10 +26,6 @@ struct NetworkOptions {
 
 // --dds, --domain, --peer, --no-multicast, --interface
 void add_network_options(CLI::App& app, NetworkOptions& options);
-
-// Peers of the bench file come to those of the command line; what the command line leaves open, the
-// bench file says.
-void add_network_settings(const NetworkSettings& bench, NetworkOptions& options);
 
 // Warnings of the network go to the log.
 [[nodiscard]] Expected<bus::Participant> join_network(const NetworkOptions& options,

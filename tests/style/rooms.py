@@ -39,7 +39,10 @@ FLOORS = {
         ["contract", "report/figures"],
         ["bench", "bus"],
         ["bus/cyclonedds", "bus/fastdds", "bus/memory", "program"],
-        ["evaluation", "source"],
+        ["evaluation/recipe", "source"],
+        ["evaluation/record", "evaluation/result"],
+        ["evaluation/method"],
+        ["evaluation"],
         ["run"],
         ["report"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "virtual_bench"],
@@ -47,8 +50,6 @@ FLOORS = {
         ["command"],
     ],
 }
-# Folders that still count as one room with another, since they include each other both ways.
-ONE_ROOM = {"evaluation/method": "evaluation"}
 # What a tree may include of others: rooms, or a whole tree.
 BETWEEN_TREES = {
     "analysis": [],
@@ -81,7 +82,7 @@ def room_in_tree(path):
     """Tree and room of a file's path."""
     tree, *folders = path.split("/")[:-1]
     room = "/".join(folders) or "."
-    return tree, ONE_ROOM.get(room, room)
+    return tree, room
 
 
 def floor(tree, room):

@@ -6,7 +6,7 @@ namespace dyncal::services {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity)
-    : recipe_(recipe), excitation_(recipe) {
+    : excitation_(recipe) {
   for (const std::string& source : recipe.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }

@@ -71,7 +71,6 @@ private:
     StepSearch steps;
   };
 
-  const Recipe& recipe_;
   ExcitationProgress excitation_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   std::vector<Search> searches_;

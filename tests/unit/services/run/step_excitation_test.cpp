@@ -317,6 +317,7 @@ protected:
 
   ShotsTest() {
     bench_.method.kind = EvaluationMethod::series_timestamping;
+    bench_.method.dut = {{"tss", "acceleration_z"}};
     bench_.method.shots = 3;
   }
   bus::Writer<wire::TriggeredRecord> writer(const char* topic) {
