@@ -85,6 +85,7 @@ void RunSession::work(const KnownSources& sources) {
   }
   if (status_.arm == wire::ARM_ARMED) {
     watch_sources(now);
+    watch_level();
     evaluate(now);
   }
   if (now >= next_status_) {
@@ -126,6 +127,16 @@ void RunSession::watch_sources(Instant now) {
   }
   if (auto lost = streams_->lost_source(now, last_progress_, silence_limit, excited_by_steps_)) {
     report_failure(std::move(*lost));
+  }
+}
+
+// The conductor switches the output off as soon as it hears of it.
+void RunSession::watch_level() {
+  if (measurement_ != wire::MEASUREMENT_RUNNING || status_.health != wire::HEALTH_OK) {
+    return;
+  }
+  if (auto excess = evaluator_->excess_of_level()) {
+    report_failure(std::move(*excess));
   }
 }
 

@@ -66,6 +66,7 @@ private:
   void take_samples(const KnownSources& sources, Instant now);
   void arm(const KnownSources& sources, Instant now);
   void watch_sources(Instant now);
+  void watch_level();
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);

@@ -35,7 +35,8 @@ struct ExcitationSettings {
   int repetitions = 1;
   double settling_s = 1.0;
   double duration_s = 3.0;
-  bool settling_from_data = false; // settling_s is the longest that may be left out
+  double level_deviation_rel = 0.1; // of the measured level from the planned one, without a flag
+  bool settling_from_data = false;  // settling_s is the longest that may be left out
   bool whole_record =
       false; // evaluate each record as a whole: one step, nothing searched, nothing left out
 };

@@ -17,7 +17,14 @@ GeneratorDriver read_driver(TomlTable& table) {
 GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& excitation) {
   GeneratorSettings generator;
   generator.driver = read_driver(table);
-  generator.level_per_volt = table.number("level_per_volt", 1.0, "m/s^2 per V");
+  generator.level_per_volt =
+      table.number("level_per_volt", generator.level_per_volt, "m/s^2 per V");
+  // Never guessed: the exciter is driven too hard by the factor in which it is wrong.
+  if (generator.driver != GeneratorDriver::none && !table.has("level_per_volt")) {
+    table.refuse("level_per_volt",
+                 "is missing: the level at the exciter in m/s^2 for one volt (amplitudes) of the "
+                 "generator, which a measurement with a small voltage shows");
+  }
   generator.address = generator.driver == GeneratorDriver::scpi ? table.required_text("address")
                                                                 : table.text("address");
   if (generator.level_per_volt <= 0.0) {

@@ -108,8 +108,14 @@ void check_roles(TomlTable& table, const MethodSettings& method) {
   if (method.reference.source.empty()) {
     return; // it was refused
   }
-  if (const auto problem = find_role_problem(
-          {method.kind, method.reference, method.sync_acs, method.sync_dau, method.dut})) {
+  const auto problem =
+      find_role_problem({.method = method.kind,
+                         .reference = method.reference,
+                         .sync_acs = method.sync_acs,
+                         .sync_sensor = method.sync_dau,
+                         .dut = method.dut,
+                         .temperature = method.temperature.value_or(ChannelName{})});
+  if (problem) {
     table.refuse(problem->role, problem->sentence);
   }
 }
@@ -122,10 +128,10 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
       "kind", {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}, "");
   method.kind = parse_evaluation_method(kind).value_or(EvaluationMethod::sample_timestamping);
   read_roles(table, sources, method);
-  check_roles(table, method);
   if (table.has("temperature")) {
     method.temperature = read_role(table, "temperature", sources);
   }
+  check_roles(table, method);
   method.frequency_search_rel =
       table.number("frequency_search_rel", method.frequency_search_rel, "parts of the frequency");
   if (method.frequency_search_rel < 0.0 || method.frequency_search_rel > 0.1) {

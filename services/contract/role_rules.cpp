@@ -56,6 +56,32 @@ std::optional<RoleProblem> find_sensor_problem(const RoleNames& roles) {
   return std::nullopt;
 }
 
+// A channel with two roles is measured against itself: its result is a number, and wrong. Where a
+// method needs no sync, the channel that the steps are found in may be the reference.
+std::optional<RoleProblem> find_repeated_channel(const RoleNames& roles) {
+  const bool by_series = roles.method == EvaluationMethod::series_timestamping;
+  std::vector<std::pair<const char*, const ChannelName*>> used{{"reference", &roles.reference}};
+  if (!is_without_sync(roles.method) || roles.sync_acs != roles.reference) {
+    used.emplace_back("sync_acs", &roles.sync_acs);
+  }
+  used.emplace_back(by_series ? "sync_dso" : "sync_dau", &roles.sync_sensor);
+  for (const ChannelName& name : roles.dut) {
+    used.emplace_back("dut", &name);
+  }
+  used.emplace_back("temperature", &roles.temperature);
+  for (auto later = used.begin(); later != used.end(); ++later) {
+    const auto earlier = std::find_if(
+        used.begin(), later, [&](const auto& one) { return *one.second == *later->second; });
+    if (earlier != later && !later->second->source.empty()) {
+      return RoleProblem{
+          later->first, fmt::format("names \"{}\", which is {} already: every role needs a channel "
+                                    "of its own",
+                                    later->second->text(), earlier->first)};
+    }
+  }
+  return std::nullopt;
+}
+
 } // namespace
 
 std::optional<RoleProblem> find_role_problem(const RoleNames& roles) {
@@ -65,7 +91,10 @@ std::optional<RoleProblem> find_role_problem(const RoleNames& roles) {
   if (auto problem = find_sync_problem(roles)) {
     return problem;
   }
-  return find_sensor_problem(roles);
+  if (auto problem = find_sensor_problem(roles)) {
+    return problem;
+  }
+  return find_repeated_channel(roles);
 }
 
 bool has_own_clocks(const std::vector<ChannelName>& dut, const ChannelName& sync_dau) {

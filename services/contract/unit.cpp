@@ -112,4 +112,8 @@ std::string short_form(const std::string& d_si) {
   return d_si;
 }
 
+bool is_acceleration(const std::string& d_si) {
+  return d_si == R"(\metre\second\tothe{-2})";
+}
+
 } // namespace dyncal::services

@@ -15,4 +15,7 @@ namespace dyncal::services {
 // known.
 [[nodiscard]] std::string short_form(const std::string& d_si);
 
+// m/s^2, the unit in which levels are planned.
+[[nodiscard]] bool is_acceleration(const std::string& d_si);
+
 } // namespace dyncal::services

@@ -10,7 +10,7 @@ namespace dyncal::services {
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
-      records_(*recipe_, method_->searches(), limits.samples_of_a_source),
+      records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
       summary_(*recipe_, *method_), evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
@@ -28,6 +28,9 @@ Expected<void> RunEvaluator::describe(const std::string& source,
   }
   record->describe(std::move(description));
   if (auto checked = check_channels(*record); !checked) {
+    return checked;
+  }
+  if (auto checked = check_frequencies(*record); !checked) {
     return checked;
   }
   if (!recipe_->dut().empty()) { // else all channels are under calibration
@@ -49,6 +52,25 @@ Expected<void> RunEvaluator::check_channels(const SourceRecord& source) const {
       return fail(ErrorCode::no_source,
                   fmt::format("source '{}' has no channel '{}'; it has: {}", name.source,
                               name.channel, fmt::join(there, ", ")));
+    }
+  }
+  return {};
+}
+
+// A sine at or above half the sample rate looks like one of another frequency.
+Expected<void> RunEvaluator::check_frequencies(const SourceRecord& source) const {
+  const double rate_hz = source.description().nominal_rate_hz;
+  if (rate_hz <= 0.0) {
+    return {}; // not known before samples come
+  }
+  for (const RecipeStep& step : recipe_->steps) {
+    if (step.frequency.hz() >= 0.5 * rate_hz) {
+      return fail(ErrorCode::no_source,
+                  fmt::format("step {} has {} Hz, but source '{}' takes {:.6g} samples a second, "
+                              "which show frequencies below {:.6g} Hz only: take the step out of "
+                              "the bench file, or set the source to a higher rate",
+                              step.step, step.frequency_text_hz, source.source(), rate_hz,
+                              0.5 * rate_hz));
     }
   }
   return {};
@@ -94,6 +116,12 @@ void RunEvaluator::end_of_excitation(bool aborted) {
 
 void RunEvaluator::finish_now() {
   records_.excitation().cut_short();
+}
+
+std::optional<std::string> RunEvaluator::excess_of_level() {
+  const auto step = records_.excitation().excited_step();
+  return step && !finished_ ? level_watch_.look(records_.of(recipe_->reference().source), *step)
+                            : std::nullopt;
 }
 
 void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutput& output) {

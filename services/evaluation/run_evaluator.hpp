@@ -19,6 +19,7 @@
 #include "services/error.hpp"
 #include "services/evaluation/clock_report_builder.hpp"
 #include "services/evaluation/evaluation_queue.hpp"
+#include "services/evaluation/level_watch.hpp"
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
@@ -49,7 +50,8 @@ public:
   [[nodiscard]] const Recipe& recipe() const { return *recipe_; }
 
   // Fails (no_source) with the channels there are when the source lacks one that the recipe needs,
-  // and when its time scale does not fit those of others.
+  // when a planned frequency is not below half its sample rate, and when its time scale does not
+  // fit those of others.
   Expected<void> describe(const std::string& source, drivers::SourceDescription description);
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
@@ -62,6 +64,10 @@ public:
   // far.
   void end_of_excitation(bool aborted);
 
+  // One sentence when the step that is excited now is driven far above its planned level
+  // (level_watch.hpp): whoever conducts the run must end the excitation.
+  [[nodiscard]] std::optional<std::string> excess_of_level();
+
   // Evaluates what can be evaluated and hands over what is new.
   [[nodiscard]] EvaluationOutput take_output();
   // Everything of this run has been handed over.
@@ -71,6 +77,7 @@ public:
 
 private:
   [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
+  [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;
   [[nodiscard]] bool is_evaluated(std::uint32_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
@@ -81,6 +88,7 @@ private:
   std::unique_ptr<Method> method_;
   RunRecords records_;
   std::optional<ClockReportBuilder> clock_;
+  LevelWatch level_watch_;
   TransferSummary summary_;
   std::size_t next_step_ = 0; // not evaluated yet
   bool finished_ = false;

@@ -8,6 +8,8 @@
 namespace dyncal::services {
 namespace {
 
+constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
+
 analysis::Repetition repetition_of(const StepResult& result) {
   return analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);
 }
@@ -90,6 +92,9 @@ void TransferSummary::add_group_delay(const ChannelResults& results,
   }
   if (delay->polarity_inverted) {
     function.flags.push_back(make_flag(ResultFlag::polarity_inverted));
+  }
+  if (delay->delay_s < -before_excitation * delay->u_delay_s) {
+    function.flags.push_back(make_flag(ResultFlag::answers_before_excitation));
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     function.points[chosen[i]].unwrapped_phase_rad = delay->unwrapped_rad[i];

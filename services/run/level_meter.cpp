@@ -2,35 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "analysis/sine/sine_fit.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/record/channel_level.hpp"
 #include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr std::size_t min_samples = 16; // in half a window
 constexpr double kept_s = 20.0;
 constexpr double max_drift = 1e-4; // of two clocks
 constexpr std::size_t max_samples = std::size_t{1} << 22U;
 
 std::int64_t ns(double seconds) {
   return std::llround(seconds * 1e9);
-}
-
-std::optional<double> amplitude(const analysis::Frequency& frequency,
-                                std::span<const std::int64_t> stamps_ns,
-                                std::span<const double> values) {
-  if (stamps_ns.size() < min_samples) {
-    return std::nullopt;
-  }
-  const auto fit =
-      analysis::fit_sine(frequency, stamps_ns.front(), stamps_ns, std::span(&values, 1));
-  return fit ? std::optional(fit->front().amplitude()) : std::nullopt;
 }
 
 } // namespace
@@ -99,17 +86,10 @@ std::optional<double> LevelMeter::level_after(double bench_time_s,
       record_.lost_in({begin_ns, stamps.back()}).all() > 0) {
     return std::nullopt;
   }
-  const auto place = [&](std::int64_t stamp_ns) {
-    return static_cast<std::size_t>(std::lower_bound(stamps.begin(), stamps.end(), stamp_ns) -
-                                    stamps.begin());
-  };
-  const std::size_t begin = place(begin_ns);
-  const std::size_t middle = place(begin_ns + window_ns / 2);
-  const auto values = record_.column(*channel);
-  const auto whole = amplitude(frequency, stamps.subspan(begin), values.subspan(begin));
-  const auto first = amplitude(frequency, stamps.subspan(begin, middle - begin),
-                               values.subspan(begin, middle - begin));
-  const auto second = amplitude(frequency, stamps.subspan(middle), values.subspan(middle));
+  const std::int64_t middle_ns = begin_ns + window_ns / 2;
+  const auto whole = level_in(record_, *channel, {begin_ns, stamps.back()}, frequency);
+  const auto first = level_in(record_, *channel, {begin_ns, middle_ns - 1}, frequency);
+  const auto second = level_in(record_, *channel, {middle_ns, stamps.back()}, frequency);
   if (!whole || !first || !second || std::abs(*second - *first) > agreement_rel * *whole) {
     return std::nullopt;
   }

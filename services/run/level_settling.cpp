@@ -1,19 +1,13 @@
 #include "services/run/level_settling.hpp"
 
-#include <algorithm>
+#include "services/evaluation/record/channel_level.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr double min_window_s = 0.2;
-constexpr double window_periods = 4.0;
 constexpr double slack_s = 0.5; // to look, to set, and for samples that come late
 
 } // namespace
-
-double level_window_s(double frequency_hz) {
-  return std::max(min_window_s, window_periods / frequency_hz);
-}
 
 int level_corrections(int repetition) {
   return repetition > 1 ? 1 : 3;

@@ -16,9 +16,6 @@ namespace dyncal::services {
 // Longest way of a sample from the instrument to a reader on DDS.
 inline constexpr double level_transport_s = 0.3;
 
-// Of samples that show the amplitude at this frequency.
-[[nodiscard]] double level_window_s(double frequency_hz);
-
 [[nodiscard]] int level_corrections(int repetition);
 
 [[nodiscard]] double planned_settling_s(const BenchFile& bench, double frequency_hz,

@@ -51,6 +51,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.monte_carlo_trials = file.uncertainty.monte_carlo_trials;
   recipe.whole_record = file.excitation.whole_record;
   recipe.frequency_search_rel = file.method.frequency_search_rel;
+  recipe.level_deviation_rel = file.excitation.level_deviation_rel;
   recipe.reference_delay_s = file.corrections.reference_delay_s;
   recipe.systematic.reference_magnitude_rel = file.uncertainty.reference_magnitude_rel;
   recipe.systematic.reference_phase_rad = file.uncertainty.reference_phase_rad;

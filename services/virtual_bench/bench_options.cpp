@@ -98,6 +98,10 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_flag(
       "--sync-is-first-output", options.bench.sync_is_first_output,
       "sync is the output that drives the exciter, not a second one of constant amplitude");
+  app.add_option("--exciter-gain", options.bench.exciter_gain,
+                 "times the acceleration that a volt should give: an amplifier turned up or down")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--thermal-cycle", options.bench.thermal_cycle_s,
                  "seconds for the sensor's warm-up")
       ->check(CLI::PositiveNumber);

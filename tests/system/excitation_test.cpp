@@ -80,16 +80,45 @@ TEST(Excitation, ALevelThatNeedsTooMuchVoltageIsRefusedBeforeTheOutputIsOn) {
                                       "generator.maximum_voltage_v = 0.3"));
 }
 
+// Above the limit of the bench file, although not far above the plan.
 TEST(Excitation, AnExciterThatIsTooLivelyIsSwitchedOff) {
   const auto folder = fresh_folder("excitation-lively");
   LiveBench bench(
       folder, domain,
       settings_with(
-          "level_per_volt = 10.0\nlevel_tolerance_rel = 0.01\nmaximum_level_m_s2 = 30.0\n"));
+          "level_per_volt = 20.0\nlevel_tolerance_rel = 0.01\nmaximum_level_m_s2 = 24.0\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   EXPECT_NE(run.wait(run_limit).value_or(0), 0);
-  EXPECT_THAT(run.errors(), HasSubstr("above generator.maximum_level_m_s2 = 30"));
+  EXPECT_THAT(run.errors(), HasSubstr("above generator.maximum_level_m_s2 = 24"));
   EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+}
+
+// Without a level tolerance and without any limit in the bench file.
+TEST(Excitation, AnAmplifierThatIsTurnedUpStopsTheRunWithinTheFirstStep) {
+  const auto folder = fresh_folder("excitation-turned-up");
+  LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n", "1");
+  settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "50"});
+  LiveBench bench(folder, domain, settings);
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  EXPECT_EQ(run.wait(run_limit).value_or(0), 1);
+  EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: acs/reference shows"));
+  EXPECT_THAT(run.errors(), HasSubstr("where 20 m/s^2 are planned"));
+  EXPECT_THAT(run.errors(), testing::Not(HasSubstr("step 2 of 4")));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+}
+
+TEST(Excitation, ALevelThatIsOffThePlanIsFlagged) {
+  const auto folder = fresh_folder("excitation-off-plan");
+  LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n");
+  settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "1.3"});
+  LiveBench bench(folder, domain, settings);
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
+  const auto result = read_json(folder / "result.json");
+  ASSERT_EQ(result["points"].size(), 3U * 4U);
+  for (const auto& point : result["points"]) {
+    EXPECT_THAT(point["flags"].dump(), HasSubstr("level off plan: 26")) << point;
+  }
 }
 
 class ExcitationKilled : public testing::TestWithParam<int> {};

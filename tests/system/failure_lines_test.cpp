@@ -179,7 +179,8 @@ TEST_F(FailureLine, PortInUse) {
 }
 
 TEST_F(FailureLine, GeneratorThatIsNotThere) {
-  EXPECT_THAT(run_line(bench_text + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"),
+  EXPECT_THAT(run_line(bench_text + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"
+                                    "level_per_volt = 50.0\n"),
               HasSubstr("127.0.0.1:9"));
 }
 

@@ -11,10 +11,10 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 // The day of the paper's publication; benches of different seeds live at different times of it.
 constexpr std::int64_t unit_day_ns = 1'631'836'800 * second_ns;
 
-ExciterModel draw_exciter(std::uint64_t seed) {
-  Random random(seed, "exciter");
+ExciterModel draw_exciter(const BenchSettings& settings) {
+  Random random(settings.seed, "exciter");
   ExciterModel exciter;
-  exciter.acceleration_per_volt = VirtualBench::level_per_volt;
+  exciter.acceleration_per_volt = VirtualBench::level_per_volt * settings.exciter_gain;
   exciter.second_harmonic = std::pow(10.0, random.uniform(-52.0, -42.0) / 20.0);
   exciter.third_harmonic = std::pow(10.0, random.uniform(-60.0, -48.0) / 20.0);
   exciter.second_phase_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -75,7 +75,7 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
 } // namespace
 
 VirtualBench::VirtualBench(const BenchSettings& settings)
-    : settings_(settings), exciter_(draw_exciter(settings.seed)), adc_(draw_adc(settings.seed)),
+    : settings_(settings), exciter_(draw_exciter(settings)), adc_(draw_adc(settings.seed)),
       excitation_(exciter_), acs_(acs_settings(settings)), unit_(unit_settings(settings, adc_)) {}
 
 void VirtualBench::advance_to(double time_s, AcsSamples& acs,

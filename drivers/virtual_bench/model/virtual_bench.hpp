@@ -28,6 +28,7 @@ struct BenchSettings {
   double reference_magnitude_rel = 1e-3; // standard uncertainties that the recipe states
   double reference_phase_rad = 1.7e-3;
   FaultProbabilities faults;
+  double exciter_gain = 1.0;         // times level_per_volt: an amplifier that somebody turned up
   bool acs_utc = false;              // the ACS stamps in UTC too
   bool sync_is_first_output = false; // see acs_instrument.hpp
   // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS

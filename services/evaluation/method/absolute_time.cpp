@@ -46,6 +46,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs
   flag_unknown_clock(dut, task.flags);
   return make_results(task,
                       {.dut = dut_of(recipe, sensor.record->source()),
+                       .reference_unit = acs.unit(0),
                        .units = units_of(acs, dut, 0),
                        .samples = {acs.summary(), dut.summary()},
                        .data_sha256 = digest_of({&acs, &dut})},

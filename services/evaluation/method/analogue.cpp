@@ -52,6 +52,7 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
                              });
   return make_results(task,
                       {.dut = roles.dut,
+                       .reference_unit = channels.unit(0),
                        .units = units_of(channels, channels, 1),
                        .samples = {channels.summary()},
                        .data_sha256 = digest_of({&channels})},

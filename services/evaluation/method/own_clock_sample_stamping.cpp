@@ -64,6 +64,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& source
   return make_results(
       task,
       {.dut = dut_of(*task.recipe, sensor.record->source()),
+       .reference_unit = channels.acs.unit(0),
        .units = units_of(channels.acs, channels.dut, 0),
        .samples = {channels.acs.summary(), channels.sync.summary(), channels.dut.summary()},
        .data_sha256 = digest_of({&channels.acs, &channels.sync, &channels.dut})},

@@ -76,6 +76,7 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
   }
   return make_results(task,
                       {.dut = dut,
+                       .reference_unit = acs.unit(0),
                        .units = units_of(acs, dau, 1),
                        .samples = {acs.summary(), dau.summary()},
                        .data_sha256 = digest_of({&acs, &dau})},

@@ -240,6 +240,7 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
   const StepTask task{input.task.recipe, input.task.index, flags};
   const StepInput made_of{
       .dut = roles.dut,
+      .reference_unit = acs.unit(0),
       .units = {},
       .samples = {acs.summary(),
                   summary_of(input.oscilloscope, shots, &ShotRecord::Shot::trace,

@@ -1,5 +1,6 @@
 #include "services/evaluation/method/step_results.hpp"
 
+#include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 
 namespace dyncal::services {
@@ -48,6 +49,10 @@ void add_input(const StepTask& task, const StepInput& input, StepResult& result)
   result.samples = input.samples;
   result.flags = task.flags;
   result.data_sha256 = input.data_sha256;
+  if (auto flag = find_level_deviation(task.step(), task.recipe->level_deviation_rel,
+                                       result.fits.front(), input.reference_unit)) {
+    result.flags.push_back(std::move(*flag));
+  }
   for (const SourceSamples& samples : input.samples) {
     result.lost += samples.all_lost();
     if (samples.not_trusted > 0) {

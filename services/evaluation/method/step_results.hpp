@@ -24,6 +24,7 @@ struct EvaluatedStep {
 // What it was made from.
 struct StepInput {
   std::vector<ChannelName> dut; // in the order of the points
+  std::string reference_unit;
   std::vector<std::string> units;
   std::vector<SourceSamples> samples;
   std::string data_sha256;
@@ -42,7 +43,8 @@ struct StepInput {
 [[nodiscard]] std::vector<StepResult> make_results(const StepTask& task, const StepInput& input,
                                                    const analysis::Expected<EvaluatedStep>& step);
 
-// Flags samples that were left out, and adds up what was lost.
+// Flags a level that is off the plan and samples that were left out, and adds up what was lost.
+// REQUIRES: the first of the result's fits is that of the reference.
 void add_input(const StepTask& task, const StepInput& input, StepResult& result);
 
 // Output per input for every channel of `dut` from `first_dut` on.

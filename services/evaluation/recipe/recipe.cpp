@@ -85,7 +85,12 @@ const std::vector<ChannelName>& Recipe::dut() const {
 }
 
 RoleNames role_names(const Recipe& recipe) {
-  RoleNames names{recipe.method(), recipe.reference(), {}, {}, recipe.dut()};
+  RoleNames names{.method = recipe.method(),
+                  .reference = recipe.reference(),
+                  .sync_acs = {},
+                  .sync_sensor = {},
+                  .dut = recipe.dut(),
+                  .temperature = recipe.temperature.value_or(ChannelName{})};
   std::visit([&](const auto& roles) { add_links(roles, names); }, recipe.roles);
   return names;
 }

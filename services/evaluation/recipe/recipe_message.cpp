@@ -131,6 +131,9 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   } else if (measurement.frequency_search_rel() > 0.0) {
     recipe.frequency_search_rel = measurement.frequency_search_rel();
   }
+  if (measurement.level_deviation_rel() > 0.0) {
+    recipe.level_deviation_rel = measurement.level_deviation_rel();
+  }
   recipe.reference_delay_s = measurement.reference_delay_s();
   recipe.systematic.reference_magnitude_rel = measurement.u_reference_magnitude_rel();
   recipe.systematic.reference_phase_rad = measurement.u_reference_phase_rad();
@@ -165,6 +168,7 @@ wire::Measurement to_message(const Recipe& recipe) {
   measurement.u_acs_delay_s(recipe.systematic.acs_delay_s);
   measurement.frequency_search_rel(recipe.frequency_search_rel);
   measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
+  measurement.level_deviation_rel(recipe.level_deviation_rel);
   measurement.reference_delay_s(recipe.reference_delay_s);
   measurement.whole_record(recipe.whole_record);
   measurement.settling_from_data(recipe.settling_from_data);

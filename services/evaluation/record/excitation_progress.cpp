@@ -61,6 +61,13 @@ std::size_t ExcitationProgress::steps_expected() const {
   return aborted_ ? std::min(steps_announced_, recipe_.steps.size()) : recipe_.steps.size();
 }
 
+std::optional<std::size_t> ExcitationProgress::excited_step() const {
+  if (steps_announced_ == 0 || ended_ || is_announced_over(steps_announced_ - 1)) {
+    return std::nullopt;
+  }
+  return steps_announced_ - 1;
+}
+
 bool ExcitationProgress::is_over_in(const SourceRecord& source, std::size_t step) const {
   if (cut_short_ || source.ended()) {
     return true;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "services/evaluation/recipe/recipe.hpp"
@@ -48,6 +49,8 @@ public:
   [[nodiscard]] bool is_announced_over(std::size_t step) const {
     return over_utc_ns_.contains(step);
   }
+  // The step that is excited now, by what was announced.
+  [[nodiscard]] std::optional<std::size_t> excited_step() const;
   [[nodiscard]] bool is_broken_off(std::size_t step) const { return broken_off_.contains(step); }
   [[nodiscard]] bool is_over_in(const SourceRecord& source, std::size_t step) const;
 

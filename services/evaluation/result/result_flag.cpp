@@ -19,6 +19,8 @@ const char* to_string(ResultFlag flag) {
     return "nothing is known of the uncertainty of its clock";
   case ResultFlag::excitation_broken_off:
     return "excitation broken off";
+  case ResultFlag::level_off_plan:
+    return "level off plan";
   case ResultFlag::settling_not_found:
     return "settling not found";
   case ResultFlag::settles_too_long:
@@ -37,6 +39,9 @@ const char* to_string(ResultFlag flag) {
     return "no Monte Carlo check";
   case ResultFlag::polarity_inverted:
     return "polarity inverted";
+  case ResultFlag::answers_before_excitation:
+    return "answers before its excitation: its group delay is below 0 by more than three times its "
+           "uncertainty; are the channels of the roles the right ones?";
   case ResultFlag::from_message:
     break;
   }

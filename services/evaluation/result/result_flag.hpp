@@ -16,6 +16,7 @@ enum class ResultFlag {
   shorter_than_planned,
   clock_uncertainty_unknown,
   excitation_broken_off,
+  level_off_plan,
   settling_not_found,
   settles_too_long,
   shots_missing,
@@ -25,6 +26,7 @@ enum class ResultFlag {
   trigger_phase_not_corrected,
   no_monte_carlo_check,
   polarity_inverted,
+  answers_before_excitation,
   from_message // read from the bus, which carries the sentence alone
 };
 

@@ -402,5 +402,47 @@ TEST_F(RunSessionTest, GivesALateJoinerItsStatusAndResults) {
   EXPECT_TRUE(too_late.results().empty());
 }
 
+class RunSessionLevel : public RunSessionTest {
+protected:
+  // Announces the step and sends samples of the reference until the health changes, or the stream
+  // is about to end.
+  wire::HealthState excite_at(double level_m_s2) {
+    const tests::SyntheticRun excited{.steps = {{"40", level_m_s2}}};
+    arm_and_run();
+    wire::Excitation excitation;
+    excitation.bench(tests::played_bench);
+    excitation.run(tests::played_run);
+    excitation.step(1);
+    excitation.state(wire::EXCITATION_SETTLING);
+    session_->announce(excitation);
+    for (const wire::SampleBlock& block : excited.acs_blocks()) {
+      if (block.end_of_stream()) {
+        break;
+      }
+      acs_.send({block});
+      work();
+      if (published_.newest_status().health() != wire::HEALTH_OK) {
+        break;
+      }
+      ++blocks_sent_;
+    }
+    return published_.newest_status().health();
+  }
+  std::size_t blocks_sent_ = 0;
+};
+
+TEST_F(RunSessionLevel, FailsTheRunWhenTheExciterIsDrivenFarAboveThePlan) {
+  EXPECT_EQ(excite_at(500.0), wire::HEALTH_FAILED);
+  EXPECT_THAT(published_.newest_status().message(),
+              HasSubstr("where 10 m/s^2 are planned; the excitation is stopped"));
+  EXPECT_LT(static_cast<double>(blocks_sent_),
+            0.5 * static_cast<double>(synthetic_.acs_blocks().size()));
+}
+
+TEST_F(RunSessionLevel, GoesOnAtTheLevelThatIsPlanned) {
+  EXPECT_EQ(excite_at(10.0), wire::HEALTH_OK);
+  EXPECT_EQ(blocks_sent_, synthetic_.acs_blocks().size() - 1);
+}
+
 } // namespace
 } // namespace dyncal::services

@@ -82,5 +82,35 @@ TEST(RoleRules, SeriesTimeStampingCalibratesOneSensorAtATime) {
   EXPECT_THAT(find_role_problem(roles)->sentence, HasSubstr("one sensor at a time"));
 }
 
+TEST(RoleRules, AChannelHasOneRole) {
+  const auto with = [](auto change) {
+    RoleNames roles = sample_stamping();
+    change(roles);
+    return find_role_problem(roles);
+  };
+  const auto sync_is_reference = with([](RoleNames& r) { r.sync_acs = r.reference; });
+  EXPECT_EQ(role_of(sync_is_reference), "sync_acs");
+  EXPECT_THAT(sync_is_reference->sentence, HasSubstr("\"acs/reference\", which is reference"));
+  EXPECT_EQ(role_of(with([](RoleNames& r) { r.dut = {r.sync_sensor}; })), "dut");
+  EXPECT_EQ(role_of(with([](RoleNames& r) { r.dut.push_back(r.dut.front()); })), "dut");
+  EXPECT_EQ(role_of(with([](RoleNames& r) { r.temperature = r.dut.front(); })), "temperature");
+  EXPECT_EQ(role_of(with([](RoleNames& r) { r.temperature = r.sync_sensor; })), "temperature");
+  EXPECT_EQ(role_of(with([](RoleNames& r) {
+              r.method = EvaluationMethod::analogue;
+              r.sync_sensor = {};
+              r.dut = {r.reference};
+            })),
+            "dut");
+}
+
+TEST(RoleRules, WithoutSyncTheStepsMayBeFoundInTheReference) {
+  RoleNames roles = sample_stamping();
+  roles.method = EvaluationMethod::analogue;
+  roles.sync_sensor = {};
+  roles.sync_acs = roles.reference;
+  roles.dut = {{"acs", "sensor"}};
+  EXPECT_EQ(role_of(find_role_problem(roles)), "none");
+}
+
 } // namespace
 } // namespace dyncal::services

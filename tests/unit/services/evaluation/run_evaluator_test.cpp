@@ -230,6 +230,42 @@ TEST(RunEvaluator, RefusesASourceWithoutTheChannelAndListsThoseItHas) {
             "source 'dau' has no channel 'synch'; it has: acceleration_z, temperature, sync");
 }
 
+TEST(RunEvaluator, RefusesAFrequencyThatTheSourceCannotShow) {
+  const tests::SyntheticRun run{.steps = {{"40"}, {"501.5"}}};
+  RunEvaluator evaluator(*parse_recipe(run.measurement()));
+  wire::SourceDescription dau = run.dau_description();
+  dau.nominal_rate_hz(1003.0);
+  const auto described = tests::describe(evaluator, dau);
+  ASSERT_FALSE(described);
+  EXPECT_THAT(described.error().message,
+              HasSubstr("step 2 has 501.5 Hz, but source 'dau' takes 1003 samples a second"));
+  dau.nominal_rate_hz(1003.1);
+  EXPECT_TRUE(tests::describe(evaluator, dau));
+}
+
+TEST(RunEvaluator, FlagsASensorThatAnswersBeforeItsExcitation) {
+  const auto flags_of = [](double delay_s) {
+    const EvaluationOutput output = evaluate({.delay_s = delay_s});
+    EXPECT_EQ(output.transfer_functions.size(), 1U);
+    return sentences_of(output.transfer_functions.front().flags);
+  };
+  EXPECT_THAT(flags_of(-1.5e-3), testing::ElementsAre(HasSubstr("answers before its excitation")));
+  EXPECT_THAT(flags_of(1.5e-3), testing::IsEmpty());
+  EXPECT_THAT(flags_of(0.0), testing::IsEmpty());
+}
+
+TEST(RunEvaluator, FlagsALevelThatIsOffThePlan) {
+  const EvaluationOutput output =
+      evaluate({.steps = {{"40", 10.9}, {"63", 11.1}, {"80", 8.9}, {"100", 9.1}}});
+  ASSERT_EQ(output.results.size(), 4U);
+  EXPECT_THAT(sentences_of(output.results[0].flags), testing::IsEmpty());
+  EXPECT_THAT(sentences_of(output.results[1].flags),
+              testing::ElementsAre("level off plan: 11.1 m/s^2 in place of 10 m/s^2"));
+  EXPECT_THAT(sentences_of(output.results[2].flags),
+              testing::ElementsAre("level off plan: 8.9 m/s^2 in place of 10 m/s^2"));
+  EXPECT_THAT(sentences_of(output.results[3].flags), testing::IsEmpty());
+}
+
 TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {
   const tests::SyntheticRun run;
   RunEvaluator evaluator(*parse_recipe(run.measurement()));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/evaluation/record/channel_level.hpp"
+
 namespace dyncal::services {
 namespace {
 

@@ -1,0 +1,55 @@
+#include "services/evaluation/level_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "services/contract/unit.hpp"
+#include "services/evaluation/record/channel_level.hpp"
+
+namespace dyncal::services {
+namespace {
+
+double highest_level_m_s2(const Recipe& recipe, const std::string& frequency_text_hz) {
+  double highest = 0.0;
+  for (const RecipeStep& step : recipe.steps) {
+    if (step.frequency_text_hz == frequency_text_hz) {
+      highest = std::max(highest, step.level_m_s2);
+    }
+  }
+  return highest;
+}
+
+} // namespace
+
+std::optional<std::string> LevelWatch::look(const SourceRecord& reference, std::size_t step) {
+  const auto stamps = reference.stamps_ns();
+  if (stamps.empty() || !reference.described()) {
+    return std::nullopt;
+  }
+  const RecipeStep& planned = recipe_.steps[step];
+  const auto window_ns = std::llround(1e9 * level_window_s(planned.frequency.hz()));
+  const std::int64_t newest_ns = stamps.back();
+  if (looked_ns_ && newest_ns >= *looked_ns_ && newest_ns - *looked_ns_ < window_ns) {
+    return std::nullopt;
+  }
+  const auto channel = reference.channel(recipe_.reference().channel);
+  if (!channel || !is_acceleration(reference.description().channels[*channel].unit)) {
+    return std::nullopt;
+  }
+  looked_ns_ = newest_ns;
+  const auto level =
+      level_in(reference, *channel, {newest_ns - window_ns, newest_ns}, planned.frequency);
+  const double planned_m_s2 = highest_level_m_s2(recipe_, planned.frequency_text_hz);
+  if (!level || *level <= max_excess * planned_m_s2) {
+    return std::nullopt;
+  }
+  return fmt::format("step {}, {} Hz: {} shows {:.3g} m/s^2 where {:.3g} m/s^2 are planned; the "
+                     "excitation is stopped. Is generator.level_per_volt right for this exciter, "
+                     "and the gain of the amplifier?",
+                     planned.step, planned.frequency_text_hz, recipe_.reference().text(), *level,
+                     planned_m_s2);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,26 @@
+// The amplitude of a sine of known frequency in part of a channel's record (three-parameter
+// approximation, analysis/sine/sine_fit.hpp), in the unit of the channel: for what is decided while
+// a step is excited, without uncertainty.
+//
+// Plain functions, any thread.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "analysis/base/frequency.hpp"
+#include "services/evaluation/record/source_record.hpp"
+#include "services/evaluation/record/time_interval.hpp"
+
+namespace dyncal::services {
+
+// How many seconds of samples show the amplitude at this frequency: four periods, 0.2 s at least.
+[[nodiscard]] double level_window_s(double frequency_hz);
+
+// Nothing where the interval holds fewer than 16 samples, the record has no such column, or a value
+// is not finite.
+[[nodiscard]] std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
+                                             const TimeInterval& interval,
+                                             const analysis::Frequency& frequency);
+
+} // namespace dyncal::services
