@@ -258,6 +258,22 @@ TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
   ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 0; }));
 }
 
+TEST_P(BusExchange, DestroysAWriterWhileAReaderStillLacksItsSamples) {
+  wire::CalibrationResult result;
+  result.bench(bench_);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const auto reader =
+        this->reader<wire::CalibrationResult>(topics::calibration_result, Profile::results);
+    auto writer =
+        this->writer<wire::CalibrationResult>(topics::calibration_result, Profile::results);
+    for (std::uint32_t step = 0; step < 1000; ++step) {
+      result.step(step);
+      ASSERT_EQ(writer.write(result), WriteOutcome::written);
+    }
+    ASSERT_TRUE(wait_for([&] { return writer.matched_readers() == 1; }));
+  } // the writer first, then the reader
+}
+
 TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
   auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   ASSERT_EQ(writer.write(block(0)), WriteOutcome::written);
