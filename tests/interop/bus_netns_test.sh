@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # The bus between two network namespaces, in every pair of vendors: 2000 blocks of 40 kB at 400 a
 # second from two sources, to a reader that is there from the beginning, one that joins late, and
-# one that is killed in the middle and started again. Each must have every block in order.
+# one that is killed in the middle and started again. Each must have every block in order. Nothing
+# depends on how long a program takes to start: the reader is killed when it has begun to read, and
+# the second half is written when both later readers are there.
 #
 #   bus_netns_test.sh PEER multicast|unicast LOSS_PERCENT [VENDOR...]
 #
@@ -55,7 +57,7 @@ for i in 0 1; do
 done
 # A participant uses the interfaces that are up when it is made.
 for namespace in "$writing" "$reading"; do
-  for ((i = 0; i < 100; i++)); do
+  for ((i = 0; i < 1200; i++)); do
     ip -n "$namespace" -br link show lab | grep -q LOWER_UP && break
     sleep 0.05
   done
@@ -65,14 +67,18 @@ options=(--domain 44)
 [[ $discovery == unicast ]] &&
   options+=(--unicast --peer "${address[0]}" --peer "${address[1]}" --interface lab)
 write() {
-  ip netns exec "$writing" "$peer" write --dds "$1" "${options[@]}" --readers 2 >"$folder/writer" &
+  ip netns exec "$writing" "$peer" write --dds "$1" "${options[@]}" --readers 2 \
+    --readers-at-half 3 >"$folder/writer" &
 }
-read_as() { ip netns exec "$reading" "$peer" read --dds "$1" "${options[@]}" >"$folder/$2" & }
+read_as() { # vendor, name, options
+  ip netns exec "$reading" "$peer" read --dds "$1" "${options[@]}" "${@:3}" >"$folder/$2" &
+}
 
+patience_s=240
 failed=0
 check() { # name, process
-  if wait "$2"; then echo "  $1: $(cat "$folder/$1")"; else
-    echo "  $1: FAILED: $(cat "$folder/$1")"
+  if wait "$2"; then echo "  $1: $(tail -n 1 "$folder/$1")"; else
+    echo "  $1: FAILED: $(tail -n 1 "$folder/$1")"
     failed=1
   fi
 }
@@ -88,18 +94,21 @@ for from in "${vendors[@]}"; do
     echo "$from to $to, $discovery, $loss_percent % of the packets lost"
     rm -f "$folder"/*
     read_as "$to" whole; whole=$!
-    read_as "$to" killed; killed=$!
+    mkfifo "$folder/killed"
+    read_as "$to" killed --until-killed; killed=$!
     write "$from"; writer=$!
-    sleep 2.5
+    if ! read -r -t "$patience_s" <"$folder/killed"; then
+      echo "  killed: FAILED: has not begun to read within $patience_s s"
+      failed=1
+    fi
     kill -9 "$killed" # ip has become the reader: it replaces itself
     wait "$killed" 2>/dev/null || true
     read_as "$to" late; late=$!
-    sleep 0.5
     read_as "$to" again; again=$!
     check whole "$whole"
     check late "$late"
     check again "$again"
-    end_of_writing 60
+    end_of_writing "$patience_s"
     kill "$writer" 2>/dev/null || true
     check writer "$writer"
   done

@@ -1,12 +1,14 @@
 // One end of a stream of sample blocks for bus_netns_test.sh: writes two sources, with the shortest
 // and the longest name there can be, or reads them and says what is missing.
 //
-//   bus_stream_peer write --blocks N --rate HZ --readers N   waits for so many readers, writes,
-//   then waits to be ended (SIGTERM) bus_stream_peer read                                     until
-//   both sources have said that they are at their end
+//   bus_stream_peer write --blocks N --rate HZ --readers N --readers-at-half M
+//     waits for N readers, writes half, waits for M readers, writes the rest, then waits to be
+//     ended (SIGTERM)
+//   bus_stream_peer read [--until-killed]
+//     until both sources have said that they are at their end, or for ever
 //
-// It prints one line of figures. Exit status 0: all written in time, or all read, in order, from
-// block 0 on.
+// A reader prints "begun" once it has a tenth of the blocks; then, and a writer, one line of
+// figures. Exit status 0: all written in time, or all read, in order, from block 0 on.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -26,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* bench = "netns";
 constexpr std::size_t values_per_block = 5000; // 40 kB
-constexpr auto patience = 90s;
+constexpr auto patience = 240s;                // each wait for another process, on a busy machine
 
 struct Options {
   bus::ParticipantOptions participant;
@@ -35,6 +37,8 @@ struct Options {
   std::uint64_t blocks = 2000; // of both sources together
   double rate_hz = 400.0;
   int readers = 1;
+  int readers_at_half = 0;
+  bool until_killed = false;
 };
 
 std::vector<std::string> source_names() {
@@ -76,29 +80,46 @@ void wait_until_ended() {
   sigwait(&signals, &signal);
 }
 
-int write_stream(bus::Participant& participant, const Options& options) {
-  std::vector<bus::Writer<wire::SampleBlock>> writers;
-  for (std::size_t i = 0; i < source_names().size(); ++i) {
-    writers.push_back(participant.writer(bus::topics::dau_samples, bench).value());
-  }
+using Writers = std::vector<bus::Writer<wire::SampleBlock>>;
+
+// The number of readers has no bell.
+bool wait_for_readers(const Writers& writers, int wanted) {
   const auto give_up = Clock::now() + patience;
   for (const auto& writer : writers) {
-    while (writer.matched_readers() < options.readers) {
+    while (writer.matched_readers() < wanted) {
       if (Clock::now() > give_up) {
-        std::printf("only %d of %d readers\n", writer.matched_readers(), options.readers);
-        return 1;
+        std::printf("only %d of %d readers\n", writer.matched_readers(), wanted);
+        return false;
       }
       std::this_thread::sleep_for(5ms);
     }
+  }
+  return true;
+}
+
+int write_stream(bus::Participant& participant, const Options& options) {
+  Writers writers;
+  for (std::size_t i = 0; i < source_names().size(); ++i) {
+    writers.push_back(participant.writer(bus::topics::dau_samples, bench).value());
+  }
+  if (!wait_for_readers(writers, options.readers)) {
+    return 1;
   }
 
   const auto session =
       static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
   const auto names = source_names();
   const std::uint64_t rounds = options.blocks / names.size();
-  const auto begin = Clock::now();
+  auto begin = Clock::now();
   WriteFigures figures;
   for (std::uint64_t i = 0; i < rounds * names.size(); ++i) {
+    if (i == rounds) {
+      const auto waiting = Clock::now();
+      if (!wait_for_readers(writers, options.readers_at_half)) {
+        return 1;
+      }
+      begin += Clock::now() - waiting;
+    }
     std::this_thread::sleep_until(
         begin + std::chrono::duration_cast<Clock::duration>(
                     std::chrono::duration<double>(static_cast<double>(i) / options.rate_hz)));
@@ -122,13 +143,14 @@ int write_stream(bus::Participant& participant, const Options& options) {
   return figures.not_written == 0 && figures.max_write < 60s ? 0 : 1;
 }
 
-int read_stream(bus::Participant& participant) {
+int read_stream(bus::Participant& participant, const Options& options) {
   auto bell = std::make_shared<bus::WakeUp>();
   auto reader = participant.reader(bus::topics::dau_samples, "*", bell).value();
   std::map<std::string, services::SampleContinuity> continuity; // by source
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
+  std::uint64_t taken = 0;
   const auto consume = [&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
     if (!info.valid) {
       return;
@@ -151,9 +173,13 @@ int read_stream(bus::Participant& participant) {
     if (block.end_of_stream()) {
       ++ended;
     }
+    if (++taken == options.blocks / 10) {
+      std::printf("begun\n");
+      std::fflush(stdout);
+    }
   };
   const auto give_up = Clock::now() + patience;
-  while (ended < source_names().size() && Clock::now() < give_up) {
+  while ((ended < source_names().size() || options.until_killed) && Clock::now() < give_up) {
     bell->wait_until(Clock::now() + 100ms);
     reader.take(consume);
   }
@@ -190,7 +216,9 @@ int main(int argc, char** argv) {
   write->add_option("--blocks", options.blocks);
   write->add_option("--rate", options.rate_hz);
   write->add_option("--readers", options.readers);
-  app.add_subcommand("read")->fallthrough();
+  write->add_option("--readers-at-half", options.readers_at_half);
+  auto* read = app.add_subcommand("read")->fallthrough();
+  read->add_flag("--until-killed", options.until_killed);
   CLI11_PARSE(app, argc, argv);
   if (write->parsed()) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -209,5 +237,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", participant.error().message.c_str());
     return 2;
   }
-  return write->parsed() ? write_stream(*participant, options) : read_stream(*participant);
+  return write->parsed() ? write_stream(*participant, options) : read_stream(*participant, options);
 }
