@@ -42,7 +42,7 @@ SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePubli
 SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software,
                              SourceWriters writers)
     : publisher_(std::move(publisher)), software_(std::move(software)),
-      writers_(std::move(writers)), session_(publisher_->snapshot().session) {}
+      writers_(std::move(writers)), session_(publisher_->session()) {}
 
 void SourceChannel::answer(const std::string& run) {
   if (std::ranges::count(runs_to_answer_, run) != 0) {
@@ -84,6 +84,9 @@ void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {
 
 // Takes the next thing to be written into pending_. Returns false if there is none.
 bool SourceChannel::next_message() {
+  // Asked before the ring: if the ring is empty afterwards, nothing of an earlier session is left.
+  // The other way round a block could come between the two, and its session would begin anew.
+  const std::uint64_t newest = publisher_->session();
   if (auto entry = publisher_->ring().take()) {
     if (entry->session != session_) {
       begin_session(entry->session);
@@ -91,8 +94,8 @@ bool SourceChannel::next_message() {
     hold(std::move(*entry), "");
     return true;
   }
-  if (const auto session = publisher_->snapshot().session; session != session_) {
-    begin_session(session);
+  if (newest != session_) {
+    begin_session(newest);
   }
   if (runs_to_answer_.empty() || !description_) {
     return false;

@@ -183,6 +183,11 @@ SourcePublisher::Snapshot SourcePublisher::snapshot() const {
   return snapshot;
 }
 
+std::uint64_t SourcePublisher::session() const {
+  const std::lock_guard lock(mutex_);
+  return state_.session;
+}
+
 std::optional<drivers::SourceDescription> SourcePublisher::take_changed_description() {
   const std::lock_guard lock(mutex_);
   if (!description_changed_) {

@@ -106,6 +106,7 @@ public:
     std::string message;
   };
   [[nodiscard]] Snapshot snapshot() const;
+  [[nodiscard]] std::uint64_t session() const; // of the blocks that are taken from now on
   [[nodiscard]] std::optional<drivers::SourceDescription> take_changed_description();
   [[nodiscard]] BlockRing& ring() { return ring_; }
   void note_running(const std::vector<std::string>& runs);

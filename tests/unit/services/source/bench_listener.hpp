@@ -1,6 +1,7 @@
 // Reads what sources of a bench publish, and speaks to them as a run does. For tests.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -42,7 +43,7 @@ public:
 
   // Reads until the condition holds. False when it does not within the time.
   bool until(const std::function<bool()>& condition,
-             std::chrono::seconds limit = std::chrono::seconds(20)) {
+             std::chrono::seconds limit = std::chrono::seconds(60)) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (true) {
       take();
@@ -98,6 +99,14 @@ public:
       count += source == block.source().c_str() ? block.sample_count() : 0;
     }
     return count;
+  }
+
+  // The block that closes the first stream; nothing if none has come. An answer to a repeated
+  // request may stand behind it.
+  [[nodiscard]] const wire::SampleBlock* end_of_stream() const {
+    const auto end =
+        std::ranges::find_if(blocks, [](const auto& block) { return block.end_of_stream(); });
+    return end == blocks.end() ? nullptr : &*end;
   }
 
   [[nodiscard]] std::optional<wire::SourceStatus> last_status(const std::string& source) const {
