@@ -20,8 +20,11 @@
 #include "drivers/utc_clock.hpp"
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
 #include "tests/temporary_folder.hpp"
+#include "tests/udp_port.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
@@ -33,7 +36,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Load {
   std::string dds = "fastdds";
-  int domain = 62;
+  int domain = tests::own_dds_domain();
   std::string program = DYNCAL_DAU;
   std::uint32_t units = 16;
   std::uint32_t sensors = 4;
@@ -240,13 +243,13 @@ int run(const Load& load) {
   }
   Subscriber subscriber(load, *network);
   const tests::TemporaryFolder folder;
-  const std::uint16_t port = tests::free_udp_port();
+  const std::uint16_t port = tests::own_udp_port();
   std::vector<std::string> arguments{"--dds", load.dds, "--domain", std::to_string(load.domain)};
   for (auto& file : write_benches(load, folder, port)) {
     arguments.push_back(std::move(file));
   }
   tests::ProgramRun program(load.program, arguments, folder.path());
-  const auto ready_by = Clock::now() + std::chrono::seconds(30);
+  const auto ready_by = Clock::now() + tests::patience;
   while (!subscriber.all_ready() && Clock::now() < ready_by) {
     subscriber.take();
   }
@@ -258,8 +261,9 @@ int run(const Load& load) {
   const auto begin = Clock::now();
   std::atomic<std::uint32_t> sent{0};
   std::jthread sender([&] { sent = send_all(load, port); });
-  const auto limit = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                        std::chrono::duration<double>(load.seconds + 20.0));
+  const auto limit =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(load.seconds) + tests::patience);
   const std::uint64_t expected =
       std::uint64_t{static_cast<std::uint32_t>(load.seconds * load.rate_hz)} * load.units *
       load.sensors;
@@ -273,7 +277,7 @@ int run(const Load& load) {
     subscriber.take();
   }
   program.send(SIGTERM);
-  const auto exit = program.wait(std::chrono::seconds(20));
+  const auto exit = program.wait(tests::patience);
 
   fmt::print("{}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds, load.units,
              load.sensors, load.rate_hz, load.channels, load.seconds);

@@ -19,10 +19,6 @@ namespace dyncal::tests {
 
 namespace {
 
-constexpr auto loading_limit =
-    std::chrono::seconds(30); // programs of a guest that has little of the processor
-constexpr auto run_limit = std::chrono::seconds(60);
-
 double phase_difference_rad(const nlohmann::json& a, const nlohmann::json& b) {
   return std::remainder(a["phase_rad"].get<double>() - b["phase_rad"].get<double>(),
                         2 * std::numbers::pi);
@@ -86,8 +82,8 @@ bool starved(const std::string& said) {
   return true;
 }
 
-CanCalibration::CanCalibration(const std::string& test, const Bus& bus, int dds_domain)
-    : bus_(bus), dds_domain_(dds_domain), folder_(fresh_folder(test + "_" + bus.name)) {
+CanCalibration::CanCalibration(const std::string& test, const Bus& bus)
+    : bus_(bus), folder_(fresh_folder(test + "_" + bus.name)) {
   const std::vector<std::pair<std::string, std::string>> options = {
       {"--preset", "mpu9250-ptb"},
       {"--can", "vcan0"},
@@ -108,7 +104,7 @@ CanCalibration::CanCalibration(const std::string& test, const Bus& bus, int dds_
     arguments.push_back(value);
   }
   bench_.emplace("dyncal-virtual-bench", arguments, folder_);
-  EXPECT_TRUE(bench_->wait_for_error_text("ports", loading_limit)) << bench_->errors();
+  EXPECT_TRUE(bench_->wait_for_error_text("ports", patience)) << bench_->errors();
 }
 
 void CanCalibration::add_source(const std::string& name, const std::string& interface_name,
@@ -143,25 +139,23 @@ std::optional<CanCalibration::Points>
 CanCalibration::run(const std::vector<std::string>& channels) {
   write_bench_file(channels);
   const std::string file = folder_ / "bench.toml";
-  Laboratory services(folder_, dds_domain_);
-  ProgramRun& analysis = services.start("dyncal-analysis", {}, "cyclonedds");
+  Laboratory services(folder_);
+  services.start("dyncal-analysis", {}, "cyclonedds");
   ProgramRun& can = services.start("dyncal-can", {file}, "cyclonedds");
-  ProgramRun& acs = services.start("dyncal-acs", {file}, "cyclonedds");
-  EXPECT_TRUE(analysis.wait_for_error_text("analysis ready", loading_limit)) << analysis.errors();
   for (const auto& [name, section] : sources_) {
-    EXPECT_TRUE(can.wait_for_error_text("source " + name, loading_limit)) << can.errors();
+    EXPECT_TRUE(can.wait_for_error_text("source " + name, patience)) << can.errors();
   }
-  EXPECT_TRUE(acs.wait_for_error_text("source acs", loading_limit)) << acs.errors();
+  services.start("dyncal-acs", {file}, "cyclonedds");
   if (testing::Test::HasFailure()) {
     return Points{};
   }
   ProgramRun run("dyncal",
                  {"run", file, "--json", folder_ / "result.json", "--dds", "cyclonedds", "--domain",
-                  std::to_string(dds_domain_)},
+                  std::to_string(own_dds_domain())},
                  folder_);
-  const auto status = run.wait(run_limit);
+  const auto status = run.wait(patience);
   bench_->send(SIGTERM);
-  EXPECT_TRUE(bench_->wait(std::chrono::seconds(10)));
+  EXPECT_TRUE(bench_->wait(patience));
   if (starved(bench_->errors())) {
     return std::nullopt;
   }

@@ -41,7 +41,7 @@ public:
   using Points = std::map<std::pair<std::string, std::string>, nlohmann::json>;
 
   // Starts the virtual bench. A test failure when it does not start.
-  CanCalibration(const std::string& test, const Bus& bus, int dds_domain);
+  CanCalibration(const std::string& test, const Bus& bus);
 
   // A source of the bench file of driver "can" for the virtual bench's sensor; `settings`: further
   // lines of it.
@@ -61,7 +61,6 @@ private:
   void write_bench_file(const std::vector<std::string>& channels) const;
 
   Bus bus_;
-  int dds_domain_;
   VirtualCan wire_{"vcan0"};
   std::filesystem::path folder_;
   std::vector<std::pair<std::string, std::string>> sources_; // name, section

@@ -10,17 +10,18 @@
 
 #include "tests/can/can_calibration.hpp"
 #include "tests/can/kernel_can.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::tests {
 namespace {
 
-constexpr int dds_domain = 72;
 constexpr double limit_in_u = 4.0;
 
 class CanChain : public testing::TestWithParam<Bus> {};
 
 TEST_P(CanChain, MeetsTheTruthWithin4uAndIsWrongByTheFramesDurationWithoutItsCorrection) {
-  CanCalibration calibration("can_chain", GetParam(), dds_domain);
+  CanCalibration calibration("can_chain", GetParam());
   const drivers::can::BitRates& rates = GetParam().rates;
   std::string settings = fmt::format(
       "bit_rate_per_s = {:.0f}\nlatency_s = 10e-6\nu_latency_s = 20e-6\n", rates.nominal_per_s);
@@ -49,9 +50,9 @@ TEST(CanDemo, AgreesWithTheTruthWithSyncSampledBesideTheSensor) {
   const std::filesystem::path folder = fresh_folder("can_demo");
   ProgramRun demo("dyncal",
                   {"demo", "--preset", "can-sync", "--can", "vcan0", "--can-bus", "500k", "--dds",
-                   "cyclonedds", "--domain", "73", "--output", folder},
+                   "cyclonedds", "--domain", std::to_string(own_dds_domain()), "--output", folder},
                   folder);
-  const auto status = demo.wait(std::chrono::seconds(80));
+  const auto status = demo.wait(patience);
   std::ifstream log(folder / "dyncal-virtual-bench.log");
   if (starved({std::istreambuf_iterator<char>(log), {}})) {
     return;

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/can/gs_usb_adapter.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
 
 namespace dyncal::tests {
@@ -16,9 +18,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::MatchesRegex;
-
-constexpr int dds_domain = 75;
-constexpr auto limit = std::chrono::seconds(20);
 
 class CanProgram : public testing::Test {
 protected:
@@ -37,13 +36,14 @@ protected:
                        "[method]\nkind = \"absolute-time\"\nreference = "
                        "\"acs/reference\"\nsync_acs = \"acs/sync\"\ndut = [\"can/x\"]\n",
                        adapter.name(0), settings);
-    return {folder / "bench.toml", "--domain", std::to_string(dds_domain), "--dds", "cyclonedds"};
+    return {folder / "bench.toml", "--domain", std::to_string(own_dds_domain()), "--dds",
+            "cyclonedds"};
   }
 
   // The one line that does not come from the log.
   std::string failure(const std::string& settings) {
     ProgramRun run("dyncal-can", arguments(settings), folder);
-    const auto status = run.wait(limit);
+    const auto status = run.wait(patience);
     EXPECT_TRUE(status) << "dyncal-can has not ended";
     EXPECT_NE(status.value_or(0), 0);
     std::istringstream said(run.errors());
@@ -83,14 +83,14 @@ TEST_F(CanProgram, SaysHowAnInterfaceIsSetUpThatIsDown) {
 TEST_F(CanProgram, GoesOnWhenTheAdapterIsPulledOutAndPluggedIn) {
   adapter.set_up(0, "bitrate 1000000");
   ProgramRun run("dyncal-can", arguments(""), folder);
-  ASSERT_TRUE(run.wait_for_error_text("source can", limit)) << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("source can", patience)) << run.errors();
   adapter.unplug();
-  ASSERT_TRUE(run.wait_for_error_text("interface 'can0' has gone", limit)) << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("interface 'can0' has gone", patience)) << run.errors();
   adapter.plug_in();
   adapter.set_up(0, "bitrate 1000000");
-  ASSERT_TRUE(run.wait_for_error_text("interface 'can0' is up", limit)) << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("interface 'can0' is up", patience)) << run.errors();
   run.send(SIGTERM);
-  EXPECT_EQ(run.wait(limit), 0) << run.errors();
+  EXPECT_EQ(run.wait(patience), 0) << run.errors();
 }
 
 } // namespace

@@ -20,7 +20,6 @@ namespace {
 
 using drivers::can::StampPoint;
 
-constexpr int dds_domain = 74;
 constexpr double limit_in_u = 4.0;
 
 // Puts what is written to the wire on the adapter's bus. The kernel's stamp of a virtual interface
@@ -56,7 +55,7 @@ class HardwareChain : public testing::TestWithParam<Played> {};
 
 TEST_P(HardwareChain, MeetsTheTruthWithin4uAndIsWrongByTheFramesDurationWithoutItsCorrection) {
   const auto& [bus, stamp_point] = GetParam();
-  CanCalibration calibration("hardware_chain", bus, dds_domain);
+  CanCalibration calibration("hardware_chain", bus);
   GsUsbSettings played;
   played.bus = bus.rates;
   played.clock_ppm = 50.0;

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "drivers/can/bus/socketcan_source.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::tests {
 
@@ -95,11 +96,11 @@ inline drivers::can::SocketCanSettings on(const std::string& interface_name) {
   return settings;
 }
 
-// Reads until `enough` or ten seconds have passed; what was read.
+// Reads until `enough`, or until patience ends; what was read.
 inline std::vector<BusEvent>
 read_until(FrameSource& source, const std::function<bool(const std::vector<BusEvent>&)>& enough) {
   std::vector<BusEvent> events;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   while (!enough(events) && std::chrono::steady_clock::now() < deadline) {
     static_cast<void>(source.read(events, std::chrono::milliseconds(20)));
   }

@@ -28,9 +28,9 @@ class LostService : public testing::TestWithParam<Loss> {};
 TEST_P(LostService, EndsTheRunWithOneLineAndKeepsWhatWasMeasured) {
   const auto folder = fresh_folder("lost-" + GetParam().program);
   ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
-  ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", std::chrono::seconds(40))) << demo.errors();
+  ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", patience)) << demo.errors();
   ASSERT_TRUE(demo.send_to_child(GetParam().program, GetParam().signal));
-  const auto status = demo.wait(std::chrono::seconds(15));
+  const auto status = demo.wait(patience);
   ASSERT_TRUE(status) << "still running\n" << demo.errors();
   EXPECT_EQ(*status, 1);
   EXPECT_THAT(demo.errors(), HasSubstr(GetParam().says));

@@ -11,6 +11,8 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -79,18 +81,18 @@ private:
 
 class BusNative : public testing::TestWithParam<std::tuple<Native, Vendor>> {
 protected:
-  static constexpr int domain = 45;
-  const std::string to_native_ = "to-native-" + std::to_string(getpid());
-  const std::string from_native_ = "from-native-" + std::to_string(getpid());
+  const int domain_ = tests::own_dds_domain();
+  const std::string to_native_ = "to-native";
+  const std::string from_native_ = "from-native";
   const Process process_{std::get<0>(GetParam()),
-                         {std::to_string(domain), to_native_, from_native_}};
+                         {std::to_string(domain_), to_native_, from_native_}};
   Participant participant_ = join();
   std::shared_ptr<WakeUp> bell_ = std::make_shared<WakeUp>();
 
-  static Participant join() {
+  [[nodiscard]] Participant join() const {
     ParticipantOptions options;
     options.vendor = std::get<1>(GetParam());
-    options.domain = domain;
+    options.domain = domain_;
     options.name = "native test";
     return Participant::create(options).value();
   }
@@ -105,7 +107,7 @@ protected:
       EXPECT_EQ(writer.write(sample), WriteOutcome::written);
     }
     std::vector<T> echoes;
-    const auto give_up = Clock::now() + 30s;
+    const auto give_up = Clock::now() + tests::patience;
     while (echoes.size() < samples.size() && Clock::now() < give_up) {
       bell_->wait_until(Clock::now() + 50ms);
       reader.take([&](const T& sample, const SampleInfo& info) {
@@ -236,7 +238,7 @@ TEST_P(BusNative, GoesOnAfterAnEnumValueOfALaterVersion) {
   ASSERT_EQ(writer.write(later), WriteOutcome::written);
   ASSERT_EQ(writer.write(last), WriteOutcome::written);
   std::map<std::string, wire::Method> echoes;
-  const auto give_up = Clock::now() + 30s;
+  const auto give_up = Clock::now() + tests::patience;
   while (!echoes.contains("last") && Clock::now() < give_up) {
     bell_->wait_until(Clock::now() + 50ms);
     reader.take([&](const wire::Measurement& echo, const SampleInfo&) {

@@ -98,7 +98,7 @@ dso_delay = { value_s = 236e-9, u_s = 1e-9 }
   int analyse() {
     ProgramRun run("dyncal", {"analyse", folder_ / "bench.toml", "--json", folder_ / "result.json"},
                    folder_);
-    const auto status = run.wait(std::chrono::seconds(30));
+    const auto status = run.wait(patience);
     errors_ = run.errors();
     return status.value_or(-1);
   }

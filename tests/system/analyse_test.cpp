@@ -71,7 +71,7 @@ TEST(Analyse, MeetsTheExactAnswerOfTheSyncLink) {
       "dyncal",
       {"analyse", bench_of_vector(folder, vectors, vector), "--json", folder / "result.json"},
       folder);
-  ASSERT_EQ(run.wait(std::chrono::seconds(30)), 0) << run.output() << run.errors();
+  ASSERT_EQ(run.wait(patience), 0) << run.output() << run.errors();
   const nlohmann::json result = read_json(folder / "result.json");
   ASSERT_EQ(result["points"].size(), 1U);
   const auto& point = result["points"][0];

@@ -14,9 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int domain = 91;
-constexpr std::chrono::seconds run_limit{90};
-
 const LiveBenchSettings utc_bench{.bench_arguments = {"--speed", "max", "--seed", "11",
                                                       "--frequencies", "20,80,200", "--levels",
                                                       "20", "--acs-utc", "--sync-is-first-output"},
@@ -63,10 +60,10 @@ void expect_the_adc_of_the_bench(const nlohmann::json& file, const nlohmann::jso
 
 TEST(CalibrateAdc, FindsTheResponseOfTheAdcAndARunWithItMeetsTheTruth) {
   const auto folder = fresh_folder("calibrate-adc");
-  LiveBench bench(folder, domain, utc_bench);
+  LiveBench bench(folder, utc_bench);
   ProgramRun& calibration = bench.start({"calibrate", "adc", bench.bench_file(), "--amplitudes",
                                          "19.5,1.95", "--output", folder / "adc.json"});
-  ASSERT_EQ(calibration.wait(run_limit), 0) << calibration.errors();
+  ASSERT_EQ(calibration.wait(patience), 0) << calibration.errors();
   EXPECT_THAT(calibration.output(), HasSubstr("adc = { file = \"adc.json\", channel = \"ADC1\", "
                                               "phase_sign = \"lag\", test_amplitude_vpp = 19.5 }"));
   expect_the_adc_of_the_bench(read_json(folder / "adc.json"), bench.truth());
@@ -76,7 +73,7 @@ TEST(CalibrateAdc, FindsTheResponseOfTheAdcAndARunWithItMeetsTheTruth) {
                                "[corrections]\nadc = { file = \"adc.json\", channel = \"ADC1\", "
                                "phase_sign = \"lag\", test_amplitude_vpp = 1.95 }\n[uncertainty]");
   ProgramRun& run = bench.start({"run", corrected, "--json", folder / "result.json"});
-  ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
   std::map<std::pair<std::string, double>, nlohmann::json> measured;
   const nlohmann::json result = read_json(folder / "result.json");
   for (const auto& point : result["transfer_function"]) {
@@ -101,10 +98,10 @@ TEST(CalibrateAdc, ClocksThatShareNothingAreRefused) {
   const auto folder = fresh_folder("calibrate-adc-local");
   LiveBenchSettings settings = utc_bench;
   std::erase(settings.bench_arguments, "--acs-utc");
-  LiveBench bench(folder, domain + 1, settings);
+  LiveBench bench(folder, settings);
   ProgramRun& calibration =
       bench.start({"calibrate", "adc", bench.bench_file(), "--output", folder / "adc.json"});
-  EXPECT_EQ(calibration.wait(std::chrono::seconds(30)), 2) << calibration.errors();
+  EXPECT_EQ(calibration.wait(patience), 2) << calibration.errors();
   EXPECT_THAT(calibration.errors(), HasSubstr("source 'acs' does not stamp in UTC"));
   EXPECT_FALSE(std::filesystem::exists(folder / "adc.json"));
 }
@@ -115,10 +112,10 @@ TEST(CalibrateAdc, AVoltageThatSyncDoesNotFollowIsSeen) {
   std::erase(settings.bench_arguments, "--sync-is-first-output");
   settings.excitation = "frequencies_hz = [\"80\"]\nlevel = 20.0\nrepetitions = 2\nsettling_s = "
                         "0.3\nduration_s = 1.0\n";
-  LiveBench bench(folder, domain, settings);
+  LiveBench bench(folder, settings);
   ProgramRun& calibration = bench.start({"calibrate", "adc", bench.bench_file(), "--amplitudes",
                                          "1.95", "--output", folder / "adc.json"});
-  EXPECT_EQ(calibration.wait(run_limit), 2) << calibration.errors();
+  EXPECT_EQ(calibration.wait(patience), 2) << calibration.errors();
   EXPECT_THAT(calibration.errors(),
               HasSubstr("--amplitudes needs the generator's output itself as sync"));
 }

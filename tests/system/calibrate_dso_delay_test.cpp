@@ -22,7 +22,7 @@ protected:
     std::vector<std::string> arguments{"--preset", "tss", "--ports-file", folder_ / "ports.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     bench_.emplace("dyncal-virtual-bench", arguments, folder_);
-    ASSERT_TRUE(bench_->wait_for_error_text("ports", std::chrono::seconds(10)));
+    ASSERT_TRUE(bench_->wait_for_error_text("ports", patience));
     const auto ports = read_json(folder_ / "ports.json");
     oscilloscope_ = "127.0.0.1:" + ports["dso"].dump();
     generator_ = "127.0.0.1:" + ports["generator"].dump();
@@ -42,7 +42,7 @@ TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
                        {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator",
                         generator_, "--by", GetParam(), "--shots", "25", "--output", file},
                        work);
-  ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
+  ASSERT_EQ(calibrate.wait(patience), 0) << calibrate.errors();
   const auto json = read_json(file);
   EXPECT_NEAR(json["value_s"].get<double>(), 236e-9, 1e-9);
   EXPECT_GT(json["u_s"].get<double>(), 0.1e-9);
@@ -62,7 +62,7 @@ TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
                         generator_, "--by", GetParam(), "--shots", "20", "--output",
                         work / "delay.json"},
                        work);
-  ASSERT_EQ(calibrate.wait(std::chrono::seconds(150)), 0) << calibrate.errors();
+  ASSERT_EQ(calibrate.wait(patience), 0) << calibrate.errors();
   const auto json = read_json(work / "delay.json");
   EXPECT_GT(json["failed_shots"], 0);
   EXPECT_EQ(json["shots"], 20);

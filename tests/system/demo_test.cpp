@@ -10,14 +10,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
 
 namespace dyncal::tests {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr std::chrono::seconds demo_limit{90};
 
 nlohmann::json read_json(const std::filesystem::path& path) {
   std::ifstream stream(path);
@@ -73,8 +72,8 @@ TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
                   {"demo", "--preset", GetParam().preset, "--dds", GetParam().dds, "--output",
                    folder / "files"},
                   folder);
-  const auto status = demo.wait(demo_limit);
-  ASSERT_TRUE(status) << "not ended within " << demo_limit.count() << " s\n" << demo.errors();
+  const auto status = demo.wait(patience);
+  ASSERT_TRUE(status) << "not ended within " << patience.count() << " s\n" << demo.errors();
   EXPECT_EQ(*status, 0) << demo.output() << demo.errors();
 
   const nlohmann::json result = read_json(folder / "files" / "result.json");
@@ -106,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
   const auto folder = fresh_folder("demo-figures");
   ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
-  ASSERT_EQ(demo.wait(demo_limit), 0) << demo.errors();
+  ASSERT_EQ(demo.wait(patience), 0) << demo.errors();
   for (const char* name : {"transfer-function-dau-acceleration_z", "interval-histogram-dau",
                            "interval-over-temperature-dau", "interval-over-time-dau"}) {
     for (const char* ending : {".svg", ".csv"}) {
@@ -126,7 +125,7 @@ TEST(DemoFigures, CountsLostAndDoubledDatagramsAndStillAgreesWithTheTruth) {
                   {"demo", "--repetitions", "1", "--loss", "0.02", "--duplicate", "0.02",
                    "--output", folder / "files"},
                   folder);
-  EXPECT_EQ(demo.wait(demo_limit), 0) << demo.output() << demo.errors();
+  EXPECT_EQ(demo.wait(patience), 0) << demo.output() << demo.errors();
   const nlohmann::json result = read_json(folder / "files" / "result.json");
   ASSERT_FALSE(result.is_discarded());
   std::uint64_t lost = 0;

@@ -15,9 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int domain = 93;
-constexpr std::chrono::seconds run_limit{120};
-
 LiveBenchSettings settings_with(const std::string& generator, const std::string& speed = "max") {
   return {.bench_arguments = {"--speed", speed, "--seed", "12", "--frequencies", "40,200",
                               "--levels", "20"},
@@ -36,11 +33,11 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
   const auto folder = fresh_folder("excitation-level");
   // The bench file is wrong by 60 % about the exciter.
   LiveBench bench(
-      folder, domain,
+      folder,
       settings_with(
           "level_per_volt = 80.0\nlevel_tolerance_rel = 0.005\nmaximum_level_m_s2 = 40.0\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
-  ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const double amplitude_v =
       0.5 * std::stod(bench.ask_generator(":SOURce1:VOLTage?")); // of the last step, 200 Hz
   EXPECT_NEAR(amplitude_v * exciter_response(200.0), 20.0,
@@ -72,10 +69,9 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
 
 TEST(Excitation, ALevelThatNeedsTooMuchVoltageIsRefusedBeforeTheOutputIsOn) {
   const auto folder = fresh_folder("excitation-voltage");
-  LiveBench bench(folder, domain,
-                  settings_with("level_per_volt = 50.0\nmaximum_voltage_v = 0.3\n"));
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\nmaximum_voltage_v = 0.3\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
-  EXPECT_EQ(run.wait(std::chrono::seconds(30)), 2);
+  EXPECT_EQ(run.wait(patience), 2);
   EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: a level of 20 m/s^2 needs 0.4 V, above "
                                       "generator.maximum_voltage_v = 0.3"));
 }
@@ -84,11 +80,11 @@ TEST(Excitation, ALevelThatNeedsTooMuchVoltageIsRefusedBeforeTheOutputIsOn) {
 TEST(Excitation, AnExciterThatIsTooLivelyIsSwitchedOff) {
   const auto folder = fresh_folder("excitation-lively");
   LiveBench bench(
-      folder, domain,
+      folder,
       settings_with(
           "level_per_volt = 20.0\nlevel_tolerance_rel = 0.01\nmaximum_level_m_s2 = 24.0\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
-  EXPECT_NE(run.wait(run_limit).value_or(0), 0);
+  EXPECT_NE(run.wait(patience).value_or(0), 0);
   EXPECT_THAT(run.errors(), HasSubstr("above generator.maximum_level_m_s2 = 24"));
   EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
 }
@@ -98,9 +94,9 @@ TEST(Excitation, AnAmplifierThatIsTurnedUpStopsTheRunWithinTheFirstStep) {
   const auto folder = fresh_folder("excitation-turned-up");
   LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n", "1");
   settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "50"});
-  LiveBench bench(folder, domain, settings);
+  LiveBench bench(folder, settings);
   ProgramRun& run = bench.start({"run", bench.bench_file()});
-  EXPECT_EQ(run.wait(run_limit).value_or(0), 1);
+  EXPECT_EQ(run.wait(patience).value_or(0), 1);
   EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: acs/reference shows"));
   EXPECT_THAT(run.errors(), HasSubstr("where 20 m/s^2 are planned"));
   EXPECT_THAT(run.errors(), testing::Not(HasSubstr("step 2 of 4")));
@@ -111,9 +107,9 @@ TEST(Excitation, ALevelThatIsOffThePlanIsFlagged) {
   const auto folder = fresh_folder("excitation-off-plan");
   LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n");
   settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "1.3"});
-  LiveBench bench(folder, domain, settings);
+  LiveBench bench(folder, settings);
   ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
-  ASSERT_EQ(run.wait(run_limit), 0) << run.errors();
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const auto result = read_json(folder / "result.json");
   ASSERT_EQ(result["points"].size(), 3U * 4U);
   for (const auto& point : result["points"]) {
@@ -125,13 +121,13 @@ class ExcitationKilled : public testing::TestWithParam<int> {};
 
 TEST_P(ExcitationKilled, LeavesTheOutputOff) {
   const auto folder = fresh_folder("excitation-killed-" + std::to_string(GetParam()));
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 50.0\n", "1"));
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
-  ASSERT_TRUE(run.wait_for_error_text("step 1 of 4", std::chrono::seconds(30))) << run.errors();
-  ASSERT_TRUE(bench.wait_for_output("ON", std::chrono::seconds(10)));
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 4", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
   run.send(GetParam());
-  ASSERT_TRUE(run.wait(std::chrono::seconds(30)));
-  EXPECT_TRUE(bench.wait_for_output("OFF", std::chrono::seconds(10)));
+  ASSERT_TRUE(run.wait(patience));
+  EXPECT_TRUE(bench.wait_for_output("OFF"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, ExcitationKilled,
@@ -164,7 +160,7 @@ private:
 
 TEST(Excitation, ByHandFollowsTheOperator) {
   const auto folder = fresh_folder("excitation-by-hand");
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 50.0\n", "1"));
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
   std::ofstream(folder / "hand.toml") << [&] {
     std::ifstream in(bench.bench_file());
     std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -174,32 +170,30 @@ TEST(Excitation, ByHandFollowsTheOperator) {
   }();
   const OperatorLine operator_line;
   ProgramRun& run = bench.start({"run", folder / "hand.toml", "--json", folder / "result.json"});
-  ASSERT_TRUE(run.wait_for_error_text("set sine, 40 Hz, 0.4 V amplitude (0.8 V peak to peak)",
-                                      std::chrono::seconds(30)))
+  ASSERT_TRUE(
+      run.wait_for_error_text("set sine, 40 Hz, 0.4 V amplitude (0.8 V peak to peak)", patience))
       << run.errors();
   for (const char* line : {":SOURce1:FREQuency 40", ":SOURce1:VOLTage 0.8", ":OUTPut1 ON"}) {
     bench.tell_generator(line);
   }
-  ASSERT_TRUE(bench.wait_for_output("ON", std::chrono::seconds(10)));
+  ASSERT_TRUE(bench.wait_for_output("ON"));
   operator_line.confirm();
-  ASSERT_TRUE(run.wait_for_error_text("switch the output off", std::chrono::seconds(60)))
-      << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("switch the output off", patience)) << run.errors();
   bench.tell_generator(":OUTPut1 OFF");
   operator_line.confirm();
-  EXPECT_EQ(run.wait(run_limit), 0) << run.errors();
+  EXPECT_EQ(run.wait(patience), 0) << run.errors();
   EXPECT_EQ(read_json(folder / "result.json")["points"].size(), 3U);
 }
 
 TEST(Excitation, ByHandEndsCleanlyWhenInterrupted) {
   const auto folder = fresh_folder("excitation-by-hand-interrupted");
-  LiveBench bench(folder, domain, settings_with("level_per_volt = 50.0\n", "1"));
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
   const OperatorLine operator_line;
   ProgramRun& run = bench.start(
       {"run", bench.changed_bench_file("hand.toml", "driver = \"scpi\"", "driver = \"by-hand\"")});
-  ASSERT_TRUE(run.wait_for_error_text("switch the output on", std::chrono::seconds(30)))
-      << run.errors();
+  ASSERT_TRUE(run.wait_for_error_text("switch the output on", patience)) << run.errors();
   run.send(SIGINT);
-  EXPECT_EQ(run.wait(std::chrono::seconds(30)), 130) << run.errors();
+  EXPECT_EQ(run.wait(patience), 130) << run.errors();
   EXPECT_THAT(run.errors(), HasSubstr("switch the output off"));
 }
 

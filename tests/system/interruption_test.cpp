@@ -14,9 +14,9 @@ using testing::HasSubstr;
 TEST(Interruption, EndsTheExcitationKeepsWhatWasMeasuredAndSaysSo) {
   const auto folder = fresh_folder("interruption");
   ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
-  ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", std::chrono::seconds(40))) << demo.errors();
+  ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", patience)) << demo.errors();
   demo.send(SIGINT);
-  const auto status = demo.wait(std::chrono::seconds(20));
+  const auto status = demo.wait(patience);
   ASSERT_TRUE(status);
   EXPECT_EQ(*status, 130);
   EXPECT_THAT(demo.errors(), HasSubstr("interrupted: the excitation is off"));

@@ -1,5 +1,6 @@
-// The services of a laboratory for a test: source programs and an analysis service on a DDS domain
-// of the test's own.
+// The services of a laboratory for a test: source programs and an analysis service on the test's
+// own DDS domain. A service that start() returns is there: runs give up soon on one that is still
+// loading.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
 
 namespace dyncal::tests {
@@ -46,7 +49,7 @@ inline std::filesystem::path recorded_bench(const std::filesystem::path& folder,
                      "--duration-per-step",
                      "2.0"},
                     folder);
-  EXPECT_EQ(record.wait(std::chrono::seconds(60)), 0) << record.errors();
+  EXPECT_EQ(record.wait(patience), 0) << record.errors();
   const std::filesystem::path file = folder / "bench.toml";
   std::ofstream(file) << "bench = \"" << bench << R"("
 [excitation]
@@ -80,22 +83,38 @@ reference_phase_rad = 5e-4
 
 class Laboratory {
 public:
-  Laboratory(std::filesystem::path folder, int domain)
-      : folder_(std::move(folder)), domain_(std::to_string(domain)) {}
+  explicit Laboratory(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // Starts a service and returns it; it lives as long as the laboratory.
+  // Starts a program and returns it, a service as soon as it is there; it lives as long as the
+  // laboratory.
   ProgramRun& start(const std::string& program, std::vector<std::string> arguments,
                     const std::string& dds) {
-    arguments.insert(arguments.end(), {"--domain", domain_, "--dds", dds});
+    arguments.insert(arguments.end(), {"--domain", std::to_string(own_dds_domain()), "--dds", dds});
     const std::filesystem::path place =
         folder_ / (program + "-" + std::to_string(services_.size()));
     std::filesystem::create_directories(place);
-    return services_.emplace_back(program, arguments, place);
+    ProgramRun& run = services_.emplace_back(program, arguments, place);
+    if (const std::string ready = line_when_ready(program); !ready.empty()) {
+      EXPECT_TRUE(run.wait_for_error_text(ready, patience)) << program << ": " << run.errors();
+    }
+    return run;
   }
 
 private:
+  static std::string line_when_ready(const std::string& program) {
+    if (program == "dyncal-analysis") {
+      return "analysis ready";
+    }
+    if (program == "dyncal-dau") {
+      return "listening at UDP";
+    }
+    if (program == "dyncal-dso") {
+      return "is ready";
+    }
+    return program == "dyncal" ? "" : ", source ";
+  }
+
   std::filesystem::path folder_;
-  std::string domain_;
   std::list<ProgramRun> services_;
 };
 

@@ -16,20 +16,9 @@
 #include <fmt/format.h>
 
 #include "tests/system/laboratory.hpp"
+#include "tests/udp_port.hpp"
 
 namespace dyncal::tests {
-
-inline int free_udp_port() {
-  const int socket_number = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof(address);
-  bind(socket_number, reinterpret_cast<sockaddr*>(&address), size);
-  getsockname(socket_number, reinterpret_cast<sockaddr*>(&address), &size);
-  close(socket_number);
-  return ntohs(address.sin_port);
-}
 
 struct LiveBenchSettings {
   std::vector<std::string> bench_arguments; // of dyncal-virtual-bench
@@ -41,16 +30,16 @@ struct LiveBenchSettings {
 
 class LiveBench {
 public:
-  LiveBench(const std::filesystem::path& folder, int domain, const LiveBenchSettings& settings)
-      : folder_(folder), domain_(domain), laboratory_(folder, domain) {
-    const std::string dau = fmt::format("127.0.0.1:{}", free_udp_port());
+  LiveBench(const std::filesystem::path& folder, const LiveBenchSettings& settings)
+      : folder_(folder), laboratory_(folder) {
+    const std::string dau = fmt::format("127.0.0.1:{}", own_udp_port());
     std::vector<std::string> arguments{"--preset", "mpu9250-ptb",        "--dau",
                                        dau,        "--ports-file",       folder / "ports.json",
                                        "--truth",  folder / "truth.json"};
     arguments.insert(arguments.end(), settings.bench_arguments.begin(),
                      settings.bench_arguments.end());
     virtual_bench_ = std::make_unique<ProgramRun>("dyncal-virtual-bench", arguments, folder);
-    EXPECT_TRUE(virtual_bench_->wait_for_error_text("datagrams to", std::chrono::seconds(20)))
+    EXPECT_TRUE(virtual_bench_->wait_for_error_text("datagrams to", patience))
         << virtual_bench_->errors();
     const auto ports = read_json(folder / "ports.json");
     generator_port_ = ports["generator"].get<int>();
@@ -87,8 +76,8 @@ public:
     static_cast<void>(ask_generator(command));
   }
   // True as soon as the generator's output is in this state, "ON" or "OFF".
-  [[nodiscard]] bool wait_for_output(const std::string& state, std::chrono::seconds limit) const {
-    const auto deadline = std::chrono::steady_clock::now() + limit;
+  [[nodiscard]] bool wait_for_output(const std::string& state) const {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < deadline) {
       if (ask_generator(":OUTPut1?") == state) {
         return true;
@@ -114,7 +103,7 @@ private:
   void write_bench_file(const LiveBenchSettings& settings, const std::string& dau,
                         int acs_port) const {
     std::ofstream(bench_file())
-        << "bench = \"live-" << domain_ << "\"\n[excitation]\n"
+        << "bench = \"live\"\n[excitation]\n"
         << settings.excitation << "\n[generator]\n"
         << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\n", generator_port_)
         << settings.generator << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
@@ -133,7 +122,6 @@ reference_phase_rad = 1.7e-3
   }
 
   std::filesystem::path folder_;
-  int domain_;
   int generator_port_ = 0;
   std::unique_ptr<ProgramRun> virtual_bench_;
   Laboratory laboratory_;

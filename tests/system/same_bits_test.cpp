@@ -7,27 +7,26 @@ namespace dyncal::tests {
 namespace {
 
 nlohmann::json result_over(const std::filesystem::path& folder, const std::filesystem::path& bench,
-                           const std::string& name, int domain, const std::string& acs,
+                           const std::string& name, const std::string& acs,
                            const std::string& analysis, const std::string& run) {
-  Laboratory laboratory(folder, domain);
+  Laboratory laboratory(folder);
   laboratory.start("dyncal-analysis", {}, analysis);
   laboratory.start("dyncal-acs", {bench}, acs);
   const std::filesystem::path json = folder / (name + ".json");
   ProgramRun& command = laboratory.start("dyncal", {"run", bench, "--json", json}, run);
-  EXPECT_EQ(command.wait(std::chrono::seconds(60)), 0)
-      << name << command.output() << command.errors();
+  EXPECT_EQ(command.wait(patience), 0) << name << command.output() << command.errors();
   return read_json(json);
 }
 
 TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsOverBothAndWithoutANetwork) {
   const auto folder = fresh_folder("same-bits");
   const auto bench = recorded_bench(folder, "files", "3");
-  const auto fast = result_over(folder, bench, "fast", 90, "fastdds", "fastdds", "fastdds");
+  const auto fast = result_over(folder, bench, "fast", "fastdds", "fastdds", "fastdds");
   const auto cyclone =
-      result_over(folder, bench, "cyclone", 91, "cyclonedds", "cyclonedds", "cyclonedds");
-  const auto mixed = result_over(folder, bench, "mixed", 92, "cyclonedds", "fastdds", "cyclonedds");
+      result_over(folder, bench, "cyclone", "cyclonedds", "cyclonedds", "cyclonedds");
+  const auto mixed = result_over(folder, bench, "mixed", "cyclonedds", "fastdds", "cyclonedds");
   ProgramRun analyse("dyncal", {"analyse", bench, "--json", folder / "analyse.json"}, folder);
-  EXPECT_EQ(analyse.wait(std::chrono::seconds(60)), 0) << analyse.errors();
+  EXPECT_EQ(analyse.wait(patience), 0) << analyse.errors();
   const auto without_network = read_json(folder / "analyse.json");
   ASSERT_FALSE(fast.is_discarded() || cyclone.is_discarded() || mixed.is_discarded());
   ASSERT_EQ(fast["points"].size(), 18U);

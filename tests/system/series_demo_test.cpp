@@ -13,7 +13,6 @@
 namespace dyncal::tests {
 namespace {
 
-constexpr std::chrono::seconds demo_limit{90};
 constexpr const char* channel = "tss/acceleration_z";
 
 struct Deviation {
@@ -54,8 +53,8 @@ TEST_P(SeriesDemo, AgreesWithTheTruthInMagnitudePhaseAndSampleRate) {
   ProgramRun demo("dyncal",
                   {"demo", "--preset", "tss", "--dds", GetParam(), "--output", folder / "files"},
                   folder);
-  const auto status = demo.wait(demo_limit);
-  ASSERT_TRUE(status) << "not ended within " << demo_limit.count() << " s\n" << demo.errors();
+  const auto status = demo.wait(patience);
+  ASSERT_TRUE(status) << "not ended within " << patience.count() << " s\n" << demo.errors();
   EXPECT_EQ(*status, 0) << demo.output() << demo.errors();
 
   const nlohmann::json result = read_json(folder / "files" / "result.json");
@@ -95,7 +94,7 @@ TEST(SeriesDemoWithoutCorrection, IsWrongByMoreThanTenMilliradians) {
   ProgramRun demo(
       "dyncal",
       {"demo", "--preset", "tss", "--no-trigger-correction", "--output", folder / "files"}, folder);
-  EXPECT_EQ(demo.wait(demo_limit), 1) << demo.output() << demo.errors();
+  EXPECT_EQ(demo.wait(patience), 1) << demo.output() << demo.errors();
   EXPECT_THAT(demo.errors(), testing::HasSubstr("does not agree with the truth"));
   const nlohmann::json result = read_json(folder / "files" / "result.json");
   const nlohmann::json truth = read_json(folder / "files" / "truth.json");

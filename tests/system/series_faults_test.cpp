@@ -13,17 +13,12 @@ namespace {
 using testing::AnyOf;
 using testing::HasSubstr;
 
-struct Place {
-  std::string name;
-  int domain;
-};
-
 class SeriesFaults : public testing::Test {
 protected:
   // A virtual bench with `options`, the services, and a bench file for a run.
-  void start(const Place& place, const std::vector<std::string>& options) {
-    folder_ = fresh_folder("series-faults-" + place.name);
-    laboratory_.emplace(folder_, place.domain);
+  void start(const std::string& name, const std::vector<std::string>& options) {
+    folder_ = fresh_folder("series-faults-" + name);
+    laboratory_.emplace(folder_);
     std::filesystem::create_directories(folder_ / "bench");
     std::vector<std::string> arguments{"--preset",      "tss",
                                        "--speed",       "8",
@@ -33,7 +28,7 @@ protected:
                                        "--truth",       folder_ / "truth.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     virtual_bench_.emplace("dyncal-virtual-bench", arguments, folder_ / "bench");
-    ASSERT_TRUE(virtual_bench_->wait_for_error_text("ports", std::chrono::seconds(10)));
+    ASSERT_TRUE(virtual_bench_->wait_for_error_text("ports", patience));
     write_bench_file(read_json(folder_ / "ports.json"));
     laboratory_->start("dyncal-analysis", {}, "fastdds");
     laboratory_->start("dyncal-acs", {folder_ / "bench.toml"}, "cyclonedds");
@@ -61,7 +56,7 @@ protected:
   nlohmann::json run() {
     ProgramRun& run = laboratory_->start(
         "dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
-    EXPECT_EQ(run.wait(std::chrono::seconds(120)), 0) << run.errors();
+    EXPECT_EQ(run.wait(patience), 0) << run.errors();
     return read_json(folder_ / "result.json");
   }
 
@@ -82,15 +77,15 @@ protected:
 };
 
 TEST_F(SeriesFaults, ShotsSpoiledByABadLineAreRepeatedUntilTheStepHasAll) {
-  start({"line", 96}, {"--scope-fault", "garbage=0.01", "--scope-fault", "half-answer=0.005",
-                       "--scope-fault", "other-answer=0.01", "--scope-fault", "wrong-length=0.05",
-                       "--scope-fault", "disconnect=0.01", "--scope-pieces", "1500"});
+  start("line", {"--scope-fault", "garbage=0.01", "--scope-fault", "half-answer=0.005",
+                 "--scope-fault", "other-answer=0.01", "--scope-fault", "wrong-length=0.05",
+                 "--scope-fault", "disconnect=0.01", "--scope-pieces", "1500"});
   expect_complete(run());
   EXPECT_THAT(dso_->errors(), HasSubstr("oscilloscope 127.0.0.1:")); // clear lines about it
 }
 
 TEST_F(SeriesFaults, ASensorThatRunsFreeIsNoticedAndCorrected) {
-  start({"free", 97}, {"--tss-free-running"});
+  start("free", {"--tss-free-running"});
   const auto result = run();
   ASSERT_FALSE(result.is_discarded());
   const auto truth = read_json(folder_ / "truth.json");

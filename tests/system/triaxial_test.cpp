@@ -58,13 +58,13 @@ protected:
     arguments.insert(arguments.begin(), "triaxial");
     arguments.emplace_back("--json");
     ProgramRun run("dyncal", arguments, folder);
-    EXPECT_EQ(run.wait(std::chrono::seconds(20)), 0) << run.errors();
+    EXPECT_EQ(run.wait(patience), 0) << run.errors();
     return nlohmann::json::parse(run.output(), nullptr, false);
   }
   std::string error_of(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "triaxial");
     ProgramRun run("dyncal", arguments, folder);
-    EXPECT_NE(run.wait(std::chrono::seconds(20)).value_or(0), 0);
+    EXPECT_NE(run.wait(patience).value_or(0), 0);
     return run.errors();
   }
 };

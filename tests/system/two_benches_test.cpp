@@ -7,8 +7,6 @@
 namespace dyncal::tests {
 namespace {
 
-constexpr int domain = 93;
-
 TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
   const auto folder = fresh_folder("two-benches");
   std::filesystem::create_directories(folder / "a");
@@ -16,7 +14,7 @@ TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
   const auto bench_a = recorded_bench(folder / "a", "bench-a", "5");
   const auto bench_b = recorded_bench(folder / "b", "bench-b", "6");
 
-  Laboratory laboratory(folder, domain);
+  Laboratory laboratory(folder);
   laboratory.start("dyncal-analysis", {}, "fastdds");
   laboratory.start("dyncal-acs", {bench_a}, "fastdds");
   laboratory.start("dyncal-acs", {bench_b}, "cyclonedds");
@@ -25,11 +23,11 @@ TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
     return laboratory.start("dyncal", {"run", bench, "--json", json}, "fastdds");
   };
   ProgramRun& alone = run(bench_a, folder / "alone.json");
-  ASSERT_EQ(alone.wait(std::chrono::seconds(60)), 0) << alone.errors();
+  ASSERT_EQ(alone.wait(patience), 0) << alone.errors();
   ProgramRun& a = run(bench_a, folder / "a.json");
   ProgramRun& b = run(bench_b, folder / "b.json");
-  ASSERT_EQ(a.wait(std::chrono::seconds(60)), 0) << a.errors();
-  ASSERT_EQ(b.wait(std::chrono::seconds(60)), 0) << b.errors();
+  ASSERT_EQ(a.wait(patience), 0) << a.errors();
+  ASSERT_EQ(b.wait(patience), 0) << b.errors();
 
   const auto alone_json = read_json(folder / "alone.json");
   const auto a_json = read_json(folder / "a.json");

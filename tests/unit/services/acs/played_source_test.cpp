@@ -7,6 +7,8 @@
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
 #include "services/source/source_service.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"
 
 namespace dyncal::services::acs {
@@ -14,8 +16,6 @@ namespace {
 
 using drivers::files::TemporaryFile;
 using testing::HasSubstr;
-
-constexpr int test_domain = 71;
 
 SourceSettings file_settings(const std::filesystem::path& path) {
   SourceSettings settings;
@@ -61,7 +61,7 @@ TEST(PlayedSource, StopsTryingToReachAnInstrumentWhenAskedTo) {
   EXPECT_EQ(prepared.error().code, ErrorCode::interrupted);
 }
 
-// A service with one file source on a domain of its own, and what a reader gets of it.
+// A service with one file source, and what a reader gets of it.
 class PlayedFile : public testing::Test {
 protected:
   void SetUp() override {
@@ -72,7 +72,7 @@ protected:
     file_.emplace("played.csv", text);
     bus::ParticipantOptions options;
     options.vendor = bus::vendors_in_this_build().front();
-    options.domain = test_domain;
+    options.domain = tests::own_dds_domain();
     participant_.emplace(bus::Participant::create(options).value());
     service_ = SourceService::create(*participant_, {.software = "test"});
     BenchFile bench;
@@ -104,10 +104,10 @@ protected:
     runs_->write(measurement);
   }
 
-  // Blocks up to the end of the stream, or those that came within ten seconds.
+  // Blocks up to the end of the stream, or those that came in time.
   std::vector<dyncal::wire::SampleBlock> play() {
     std::vector<dyncal::wire::SampleBlock> blocks;
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     bool ended = false;
     while (!ended && std::chrono::steady_clock::now() < deadline) {
       reader_->take([&](const dyncal::wire::SampleBlock& block, const bus::SampleInfo&) {

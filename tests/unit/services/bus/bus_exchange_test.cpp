@@ -58,7 +58,7 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
   for (std::uint64_t i = 0; i < blocks; ++i) {
     EXPECT_EQ(numbers[i], i);
   }
-  EXPECT_TRUE(writer.wait_for_acknowledgments(5s));
+  EXPECT_TRUE(writer.wait_for_acknowledgments(tests::patience));
 }
 
 TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
@@ -283,7 +283,7 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
       ASSERT_EQ(writer.write(block(expected)), WriteOutcome::written);
     }
     bool got = false;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     while (!got) {
       ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
       reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {

@@ -7,11 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "services/bus/bus.hpp"
 #include "services/bus/memory/memory_network.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::bus {
 
@@ -40,10 +41,7 @@ inline std::string pair_name(const testing::TestParamInfo<CarrierPair>& pair) {
 
 class BusPair : public testing::TestWithParam<CarrierPair> {
 protected:
-  static constexpr std::chrono::seconds patience{30};
-
-  // A bench of this process alone: tests may run side by side in one domain.
-  const std::string bench_ = "bus-test-" + std::to_string(getpid());
+  const std::string bench_ = "bus-test";
   MemoryNetwork network_;
   Participant writing_ = join(GetParam().writer);
   std::vector<std::string> warnings_; // of the reading one
@@ -57,7 +55,7 @@ protected:
     }
     ParticipantOptions options;
     options.vendor = *carrier;
-    options.domain = 40 + static_cast<int>(getpid() % 10);
+    options.domain = tests::own_dds_domain();
     options.name = "bus test";
     options.warn = std::move(warn);
     return Participant::create(options).value();
@@ -74,7 +72,8 @@ protected:
 
   // True when the condition came true in time; it is tried whenever something has come.
   template <class Condition>
-  [[nodiscard]] bool wait_for(Condition&& condition, std::chrono::milliseconds limit = patience) {
+  [[nodiscard]] bool wait_for(Condition&& condition,
+                              std::chrono::milliseconds limit = tests::patience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (!condition()) {
       const auto now = std::chrono::steady_clock::now();

@@ -2,10 +2,11 @@
 #include <cstdlib>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -17,7 +18,7 @@ protected:
   static ParticipantOptions options() {
     ParticipantOptions options;
     options.vendor = GetParam();
-    options.domain = 50 + static_cast<int>(getpid() % 8);
+    options.domain = tests::own_dds_domain();
     options.name = "participant test";
     return options;
   }
@@ -65,14 +66,13 @@ TEST_P(BusParticipant, RefusesAWriterForABenchWhoseNameIsTooLongOrAPattern) {
 
 TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
   ParticipantOptions unicast = options();
-  unicast.domain = 58; // its settings differ from those of the other tests
   unicast.multicast = false;
   unicast.interface_name = "lo";
   auto one = Participant::create(unicast);
   ASSERT_TRUE(one) << one.error().message;
   auto two = Participant::create(unicast);
   ASSERT_TRUE(two) << two.error().message;
-  const std::string bench = "participant-test-" + std::to_string(getpid());
+  const std::string bench = "participant-test";
   auto bell = std::make_shared<WakeUp>();
   auto writer = one->writer<wire::Command>(topics::command, Profile::state, bench);
   auto reader = two->reader<wire::Command>(topics::command, Profile::state, bench, bell);
@@ -81,7 +81,7 @@ TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
   command.target("dau");
   ASSERT_EQ(writer->write(command), WriteOutcome::written);
   std::size_t taken = 0;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
   while (taken == 0 && bell->wait_until(deadline)) {
     taken = reader->take([](const wire::Command&, const SampleInfo&) {});
   }

@@ -1,6 +1,4 @@
 // The program itself: datagrams in, DDS out.
-#include <unistd.h>
-
 #include <atomic>
 
 #include <thread>
@@ -10,6 +8,7 @@
 
 #include "tests/system/program_run.hpp"
 #include "tests/temporary_folder.hpp"
+#include "tests/udp_port.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
@@ -23,9 +22,8 @@ using tests::DatagramWriter;
 using tests::ProgramRun;
 using tests::UdpSender;
 
-constexpr int dds_domain = 61;
 constexpr std::uint32_t sensor_id = 0xbccb0100;
-const std::string bench_name = "dau-" + std::to_string(getpid());
+const std::string bench_name = "dau";
 
 // A unit with one MPU9250, three declared channels and the sync ADC, that runs at its real pace
 // until it is destroyed.
@@ -75,7 +73,7 @@ class DauProgram : public testing::TestWithParam<bus::Vendor> {
 protected:
   std::unique_ptr<ProgramRun> start(const std::vector<std::string>& benches) {
     std::vector<std::string> arguments{"--dds", bus::to_string(GetParam()), "--domain",
-                                       std::to_string(dds_domain)};
+                                       std::to_string(tests::own_dds_domain())};
     arguments.insert(arguments.end(), benches.begin(), benches.end());
     return std::make_unique<ProgramRun>("dyncal-dau", arguments, folder.path());
   }
@@ -85,12 +83,12 @@ protected:
   }
 
   tests::TemporaryFolder folder;
-  const std::uint16_t port = tests::free_udp_port();
+  const std::uint16_t port = tests::own_udp_port();
   const std::string listen = "127.0.0.1:" + std::to_string(port);
 };
 
 TEST_P(DauProgram, CarriesAUnitToTheBus) {
-  auto network = tests::participant(GetParam(), dds_domain);
+  auto network = tests::participant(GetParam());
   tests::BenchListener listener(network, bench_name, bus::topics::dau_samples);
   auto program = start({bench_file()});
   SimulatedUnit unit(port);
@@ -132,18 +130,18 @@ TEST_P(DauProgram, CarriesAUnitToTheBus) {
   EXPECT_EQ(listener.last_status("dau")->state(), wire::SOURCE_RUNNING);
 
   program->send(SIGTERM);
-  const auto exit = program->wait(std::chrono::seconds(10));
+  const auto exit = program->wait(tests::patience);
   ASSERT_TRUE(exit);
   EXPECT_EQ(*exit, 0) << program->errors();
   EXPECT_TRUE(listener.until([&] {
-    return listener.blocks.back().end_of_stream() && listener.saw_state("dau", wire::SOURCE_ENDED);
+    return listener.end_of_stream() != nullptr && listener.saw_state("dau", wire::SOURCE_ENDED);
   }));
   EXPECT_THAT(program->errors(), HasSubstr("sensor 0xbccb0100 is there"));
   EXPECT_THAT(program->errors(), HasSubstr("samples lost on the way"));
 }
 
 TEST_P(DauProgram, SaysWhichSensorsComeWhenTheWantedOneDoesNot) {
-  auto network = tests::participant(GetParam(), dds_domain);
+  auto network = tests::participant(GetParam());
   tests::BenchListener listener(network, bench_name, bus::topics::dau_samples);
   auto program = start({bench_file("0x1fe40100")});
   SimulatedUnit unit(port);
@@ -163,7 +161,7 @@ TEST_P(DauProgram, OneProcessServesSeveralBenches) {
       "a.toml", tests::bench_text(bench_name, tests::smartup_source("dau", listen, "0xbccb0100")));
   const auto second_file = folder.write(
       "b.toml", tests::bench_text(second, tests::smartup_source("dau", listen, "0x1fe40100")));
-  auto network = tests::participant(GetParam(), dds_domain);
+  auto network = tests::participant(GetParam());
   tests::BenchListener here(network, bench_name, bus::topics::dau_samples);
   tests::BenchListener there(network, second, bus::topics::dau_samples);
   auto program = start({first_file, second_file});
@@ -178,7 +176,7 @@ protected:
   // Exit status and the only line.
   std::pair<int, std::string> failure_of(const std::vector<std::string>& benches) {
     auto program = start(benches);
-    const auto exit = program->wait(std::chrono::seconds(10));
+    const auto exit = program->wait(tests::patience);
     EXPECT_TRUE(exit) << "it runs: " << program->errors();
     const std::string said = program->errors();
     EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;

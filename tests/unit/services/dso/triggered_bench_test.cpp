@@ -15,6 +15,8 @@
 #include "services/bench/bench_file.hpp"
 #include "services/contract/topics.hpp"
 #include "services/source/source_service.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::services::dso {
 namespace {
@@ -22,9 +24,6 @@ namespace {
 using namespace std::chrono_literals;
 namespace device = drivers::virtual_bench;
 using testing::HasSubstr;
-
-constexpr int domain = 61;
-constexpr auto patience = 30s;
 
 // Both instruments, served from a thread of their own; bench time runs ten times as fast as the
 // host's clock at most.
@@ -146,7 +145,7 @@ shots = {}
 
   template <class Condition>
   [[nodiscard]] bool wait_for(Condition&& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     for (take(); !condition(); take()) {
       if (std::chrono::steady_clock::now() > deadline) {
         return false;
@@ -165,12 +164,12 @@ shots = {}
   static bus::Participant join() {
     bus::ParticipantOptions options;
     options.vendor = bus::vendors_in_this_build().front();
-    options.domain = domain;
+    options.domain = tests::own_dds_domain();
     options.name = "dyncal-dso test";
     return bus::Participant::create(options).value();
   }
 
-  const std::string bench_ = "dso-service-" + std::to_string(getpid());
+  const std::string bench_ = "dso-service";
   std::optional<Instruments> instruments_;
   std::uint16_t scope_port_ = 0;
   std::uint16_t sensor_port_ = 0;

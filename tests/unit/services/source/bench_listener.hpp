@@ -13,13 +13,16 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::tests {
 
-inline bus::Participant participant(bus::Vendor vendor, int domain) {
+// In the test's own domain.
+inline bus::Participant participant(bus::Vendor vendor) {
   bus::ParticipantOptions options;
   options.vendor = vendor;
-  options.domain = domain;
+  options.domain = own_dds_domain();
   options.name = "test";
   auto participant = bus::Participant::create(options);
   EXPECT_TRUE(participant) << participant.error().message;
@@ -42,8 +45,7 @@ public:
                                                          bus::Profile::state, bench_)) {}
 
   // Reads until the condition holds. False when it does not within the time.
-  bool until(const std::function<bool()>& condition,
-             std::chrono::seconds limit = std::chrono::seconds(60)) {
+  bool until(const std::function<bool()>& condition, std::chrono::seconds limit = patience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (true) {
       take();

@@ -1,7 +1,6 @@
 #include "services/source/source_service.hpp"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <thread>
 
@@ -15,10 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int dds_domain = 60;
-
-// Test programs run side by side in one domain: each has benches of its own.
-const std::string bench_name = "acc-" + std::to_string(getpid());
+const std::string bench_name = "acc";
 
 drivers::SampleBlock block_from(std::uint64_t first, std::size_t samples = 50) {
   drivers::SampleBlock block;
@@ -56,8 +52,8 @@ protected:
     return *publisher;
   }
 
-  bus::Participant network = tests::participant(GetParam(), dds_domain);
-  bus::Participant reader_network = tests::participant(GetParam(), dds_domain);
+  bus::Participant network = tests::participant(GetParam());
+  bus::Participant reader_network = tests::participant(GetParam());
   std::unique_ptr<SourceService> service = SourceService::create(network, {.software = "test 1.0"});
   tests::BenchListener listener{reader_network, bench_name, bus::topics::acs_samples};
 };
