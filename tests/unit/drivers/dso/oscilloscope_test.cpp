@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/patience.hpp"
 #include "tests/unit/drivers/dso/answering_instrument.hpp"
 
 namespace dyncal::drivers::dso {
@@ -93,7 +94,7 @@ protected:
     OscilloscopeSettings settings;
     settings.address = instrument_->address();
     settings.inputs = std::move(inputs);
-    settings.answer_limit = milliseconds(400);
+    settings.answer_limit = answer_limit_;
     oscilloscope_ = std::make_unique<Oscilloscope>(settings, stop_);
   }
   Expected<Shot> shoot() {
@@ -102,7 +103,7 @@ protected:
         !ready) {
       return fail(ready.error());
     }
-    return oscilloscope_->acquire(milliseconds(200));
+    return oscilloscope_->acquire(trigger_limit_);
   }
   // The shot fails with this, and the next one succeeds over a new connection.
   void expect_failure_then_recovery(ErrorCode code, const char* words) {
@@ -117,6 +118,8 @@ protected:
     EXPECT_EQ(oscilloscope_->connections(), 2U);
   }
 
+  milliseconds answer_limit_ = tests::patience;
+  milliseconds trigger_limit_ = tests::patience;
   Scope scope_;
   StopSignal stop_;
   std::unique_ptr<AnsweringInstrument> instrument_;
@@ -203,6 +206,7 @@ TEST_F(OscilloscopeTest, ATriggerThatNeverComesIsATimeoutAndTheConnectionStays) 
     scope_.next(":TRIGger:STATus?", {{"WAIT\n"}});
   }
   start();
+  trigger_limit_ = milliseconds(200);
   const auto failed = shoot();
   ASSERT_FALSE(failed.has_value());
   EXPECT_EQ(failed.error().code, ErrorCode::timeout);
@@ -212,6 +216,7 @@ TEST_F(OscilloscopeTest, ATriggerThatNeverComesIsATimeoutAndTheConnectionStays) 
 }
 
 TEST_F(OscilloscopeTest, HalfABlockIsATimeoutAndTheNextShotConnectsAnew) {
+  answer_limit_ = milliseconds(2000);
   start();
   scope_.next(":WAVeform:DATA?", {{Scope::block(1000).substr(0, 300)}});
   expect_failure_then_recovery(ErrorCode::timeout, "does not answer");

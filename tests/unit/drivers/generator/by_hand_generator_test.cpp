@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "tests/patience.hpp"
+
 namespace dyncal::drivers::generator {
 namespace {
 
@@ -55,16 +57,16 @@ TEST_F(ByHand, SaysWhatToSetAndWaitsForTheWord) {
           "12.5 Hz, 0.2 V amplitude (0.4 V peak to peak); switch the output on, then press Enter"));
   EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));
   type("\n");
-  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
   EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(0)));
 }
 
 TEST_F(ByHand, OneLineConfirmsOneRequest) {
   set("10", 0.1);
   type("done\n\n");
-  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
   EXPECT_TRUE(generator_->set_output(false));
-  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
   set("20", 0.1);
   EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));
 }
@@ -74,13 +76,13 @@ TEST_F(ByHand, HalfALineIsNoConfirmationYet) {
   type("do");
   EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));
   type("ne\n");
-  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
 }
 
 TEST_F(ByHand, TheEndOfTheInputIsAnError) {
   set("10", 0.1);
   end_of_input();
-  const auto waited = generator_->wait_for_effect(milliseconds(1000));
+  const auto waited = generator_->wait_for_effect(tests::patience);
   ASSERT_FALSE(waited);
   EXPECT_EQ(waited.error().code, ErrorCode::disconnected);
 }
@@ -100,7 +102,7 @@ TEST_F(ByHand, SaysNothingWhenTheOutputWasNeverOn) {
 TEST_F(ByHand, ANewAmplitudeIsAskedForByItself) {
   set("10", 0.1);
   type("\n");
-  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(1000)));
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
   EXPECT_TRUE(generator_->set_amplitude_v(0.11));
   EXPECT_THAT(shown_.back(), HasSubstr("set 0.11 V amplitude"));
   EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));

@@ -7,6 +7,7 @@
 
 #include "drivers/link/scpi_connection.hpp"
 #include "drivers/link/scpi_transport.hpp"
+#include "tests/patience.hpp"
 #include "tests/unit/drivers/link/vxi11_server.hpp"
 
 namespace dyncal::drivers {
@@ -39,11 +40,11 @@ protected:
 
 TEST_F(Vxi11TransportTest, AsksAndIsAnswered) {
   {
-    auto transport = connect_scpi_transport("vxi11:127.0.0.1", 2000ms, stop_);
+    auto transport = connect_scpi_transport("vxi11:127.0.0.1", tests::patience, stop_);
     ASSERT_TRUE(transport.has_value()) << transport.error().message;
     EXPECT_EQ(server_.links, 1);
-    ASSERT_TRUE((*transport)->send("*IDN?\n", 2000ms).has_value());
-    const auto line = (*transport)->read_line(200, 2000ms);
+    ASSERT_TRUE((*transport)->send("*IDN?\n", tests::patience).has_value());
+    const auto line = (*transport)->read_line(200, tests::patience);
     ASSERT_TRUE(line.has_value()) << line.error().message;
     EXPECT_EQ(*line, "RIGOL TECHNOLOGIES,MSO5072,MS5A,00.01.03");
     EXPECT_FALSE((*transport)->has_unread());
@@ -55,7 +56,8 @@ TEST_F(Vxi11TransportTest, ABlockMayComeInPiecesAndHoldAnyByte) {
   for (std::size_t i = 0; i < block_.size(); ++i) {
     block_[i] = static_cast<char>(i % 251); // line ends too
   }
-  auto connection = ScpiConnection::connect("oscilloscope", "vxi11:127.0.0.1", 2000ms, stop_);
+  auto connection =
+      ScpiConnection::connect("oscilloscope", "vxi11:127.0.0.1", tests::patience, stop_);
   ASSERT_TRUE(connection.has_value()) << connection.error().message;
   const auto block = connection->query_block(":WAVeform:DATA?", 1'000'000);
   ASSERT_TRUE(block.has_value()) << block.error().message;
@@ -64,7 +66,7 @@ TEST_F(Vxi11TransportTest, ABlockMayComeInPiecesAndHoldAnyByte) {
 }
 
 TEST_F(Vxi11TransportTest, NoAnswerIsATimeoutThatNamesTheInstrument) {
-  auto transport = connect_scpi_transport("vxi11:127.0.0.1/inst0", 2000ms, stop_);
+  auto transport = connect_scpi_transport("vxi11:127.0.0.1/inst0", tests::patience, stop_);
   ASSERT_TRUE(transport.has_value());
   ASSERT_TRUE((*transport)->send(":NOTHing?\n", 500ms).has_value());
   const auto line = (*transport)->read_line(200, 500ms);

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/patience.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/recording.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
@@ -22,7 +23,7 @@ using tests::UdpSender;
 constexpr std::uint32_t sensor_id = 0xbccb0100;
 
 bool eventually(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) {
       return false;

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/patience.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace dyncal::drivers::tss {
@@ -69,7 +70,7 @@ protected:
 
 TEST_F(SeriesSocketTest, ASeriesComesWithItsShot) {
   device_.send(wire_form(3));
-  const auto series = source_->next(milliseconds(2000));
+  const auto series = source_->next(tests::patience);
   ASSERT_TRUE(series.has_value()) << series.error().message;
   EXPECT_EQ(series->shot, 3U);
   EXPECT_THAT(series->values, testing::ElementsAre(1.0, 2.0));
@@ -80,32 +81,32 @@ TEST_F(SeriesSocketTest, NoSeriesIsATimeoutAndTheConnectionStays) {
   ASSERT_FALSE(none.has_value());
   EXPECT_EQ(none.error().code, ErrorCode::timeout);
   device_.send(wire_form(1));
-  EXPECT_TRUE(source_->next(milliseconds(2000)).has_value());
+  EXPECT_TRUE(source_->next(tests::patience).has_value());
 }
 
 TEST_F(SeriesSocketTest, WhatWaitsBeforeAShotIsDropped) {
   device_.send(wire_form(1) + wire_form(2));
-  ASSERT_EQ(source_->next(milliseconds(2000))->shot, 1U);
+  ASSERT_EQ(source_->next(tests::patience)->shot, 1U);
   ASSERT_TRUE(source_->discard_pending().has_value());
   device_.send(wire_form(3));
-  EXPECT_EQ(source_->next(milliseconds(2000))->shot, 3U);
+  EXPECT_EQ(source_->next(tests::patience)->shot, 3U);
 }
 
 TEST_F(SeriesSocketTest, ABlockOfAnotherLengthThanAnnouncedIsMalformedAndTheNextCallConnectsAnew) {
   device_.send(wire_form(1, 3));
-  const auto failed = source_->next(milliseconds(2000));
+  const auto failed = source_->next(tests::patience);
   ASSERT_FALSE(failed.has_value());
   EXPECT_EQ(failed.error().code, ErrorCode::malformed);
   EXPECT_THAT(failed.error().message, HasSubstr(device_.address()));
   connect();
   device_.send(wire_form(2));
-  EXPECT_TRUE(source_->next(milliseconds(2000)).has_value());
+  EXPECT_TRUE(source_->next(tests::patience).has_value());
 }
 
 TEST_F(SeriesSocketTest, ACablePulledInTheMiddleIsADisconnection) {
   device_.send(wire_form(1).substr(0, 130));
   device_.hang_up();
-  const auto failed = source_->next(milliseconds(2000));
+  const auto failed = source_->next(tests::patience);
   ASSERT_FALSE(failed.has_value());
   EXPECT_EQ(failed.error().code, ErrorCode::disconnected);
 }
@@ -129,7 +130,7 @@ TEST_F(SeriesFolderTest, OnlyFilesThatAppearAfterwardsAreSeries) {
   ASSERT_TRUE(source->discard_pending().has_value());
   EXPECT_EQ(source->next(milliseconds(1)).error().code, ErrorCode::timeout);
   write("2.csv", 2);
-  EXPECT_EQ(source->next(milliseconds(2000))->shot, 2U);
+  EXPECT_EQ(source->next(tests::patience)->shot, 2U);
   EXPECT_EQ(source->next(milliseconds(1)).error().code, ErrorCode::timeout);
 }
 

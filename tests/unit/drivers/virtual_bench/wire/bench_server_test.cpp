@@ -12,6 +12,7 @@
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/generator/scpi_generator.hpp"
 #include "drivers/virtual_bench/wire/receive_queue.hpp"
+#include "tests/patience.hpp"
 #include "tests/unit/drivers/collecting_sink.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -156,14 +157,14 @@ TEST_F(ServedBench, WaitsForAClientOfTheStreamThatDoesNotRead) {
   start(1000.0, 1000.0);
   StopSignal never;
   const auto connection =
-      TcpConnection::connect({"127.0.0.1", server_->acs_port()}, std::chrono::seconds(2), never);
+      TcpConnection::connect({"127.0.0.1", server_->acs_port()}, tests::patience, never);
   ASSERT_TRUE(connection);
   auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
   ASSERT_TRUE(generator) << generator.error().message;
   double before_s = -1.0;
   double now_s = (*generator)->clock_now_s().value();
   // Bench time comes to a stand when the sockets' buffers are full.
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
   while (now_s != before_s && std::chrono::steady_clock::now() < deadline) {
     before_s = now_s;
     now_s = (*generator)->wait_until_s(now_s + 0.5, already_stopped()).value();
@@ -177,7 +178,7 @@ TEST_F(ServedBench, WaitsForAReceiverOfTheDatagramsThatDoesNotRead) {
   start(1000.0, 0.0);
   auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
   ASSERT_TRUE(generator) << generator.error().message;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
   std::size_t waiting = 0;
   std::size_t before = 0;
   do {

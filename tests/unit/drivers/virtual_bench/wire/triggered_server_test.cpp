@@ -13,6 +13,7 @@
 
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/tss/series_source.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -40,7 +41,7 @@ protected:
     dso::OscilloscopeSettings scope;
     scope.address = "127.0.0.1:" + std::to_string(server_->scope_port());
     scope.inputs = {{"sync", 1, 20.0, 0.0}, {"trigger", 2, 4.0, 1.5}};
-    scope.answer_limit = milliseconds(500);
+    scope.answer_limit = answer_limit_;
     scope_ = std::make_unique<dso::Oscilloscope>(scope, stop_);
     sensor_ = tss::series_from_socket("127.0.0.1:" + std::to_string(server_->sensor_port()), stop_);
   }
@@ -57,9 +58,11 @@ protected:
         !ready) {
       return fail(ready.error());
     }
-    return scope_->acquire(milliseconds(2000));
+    return scope_->acquire(trigger_limit_);
   }
 
+  milliseconds answer_limit_ = tests::patience;
+  milliseconds trigger_limit_ = tests::patience;
   Excitation excitation_{ExciterModel{}};
   std::unique_ptr<TriggeredServer> server_;
   StopSignal stop_; // not raised: pauses only
@@ -94,7 +97,7 @@ TEST_F(TriggeredServerTest, EveryShotStartsOneSeries) {
   for (std::uint64_t number = 1; number <= 3; ++number) {
     ASSERT_TRUE(sensor_->discard_pending().has_value());
     ASSERT_TRUE(shoot().has_value());
-    const auto series = sensor_->next(milliseconds(3000));
+    const auto series = sensor_->next(tests::patience);
     ASSERT_TRUE(series.has_value()) << series.error().message;
     EXPECT_EQ(series->shot, number);
     EXPECT_EQ(series->samples, 200U);
@@ -111,6 +114,7 @@ TEST_F(TriggeredServerTest, AnswersInPiecesAreWhole) {
 
 TEST_F(TriggeredServerTest, WithoutSyncNothingTriggers) {
   start({}, 0, false);
+  trigger_limit_ = milliseconds(200);
   const auto shot = shoot();
   ASSERT_FALSE(shot.has_value());
   EXPECT_THAT(shot.error().message, HasSubstr("no trigger within"));
@@ -119,7 +123,7 @@ TEST_F(TriggeredServerTest, WithoutSyncNothingTriggers) {
 TEST_F(TriggeredServerTest, AnUnknownCommandIsAnErrorInTheInstrumentsWords) {
   start();
   auto connection =
-      ScpiConnection::connect("oscilloscope", scope_->address(), milliseconds(500), stop_);
+      ScpiConnection::connect("oscilloscope", scope_->address(), tests::patience, stop_);
   ASSERT_TRUE(connection.has_value());
   const auto refused = connection->command(":DISPlay:BEAM ON");
   ASSERT_FALSE(refused.has_value());
@@ -134,6 +138,8 @@ class FaultyScopeTest : public TriggeredServerTest,
                         public testing::WithParamInterface<const char*> {};
 
 TEST_P(FaultyScopeTest, TheDriverSaysSoAndGoesOn) {
+  answer_limit_ = milliseconds(500); // half of a slow answer's delay
+  trigger_limit_ = milliseconds(2000);
   start({{GetParam(), 0.02}});
   int shots = 0;
   int failures = 0;
