@@ -7,6 +7,6 @@
 
 namespace dyncal::tests {
 
-inline constexpr std::chrono::seconds patience{120};
+inline constexpr std::chrono::seconds patience{300};
 
 } // namespace dyncal::tests
