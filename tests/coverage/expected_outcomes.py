@@ -1,0 +1,104 @@
+"""What is expected of every class: the one table that says what `dyncal analyse` gets right today.
+
+A row is a class, what of it is judged, and what is wanted. `fails_at` says what is not mended yet,
+a point of the issue "No silent wrong number" or a finding: such a row must fail, so that the table
+stays true. Who mends it takes `fails_at` out.
+"""
+
+import dataclasses
+
+from judgement import (
+    COVERED,
+    COVERED_NO_FLAG,
+    COVERED_NO_MORE,
+    COVERED_OR_FLAGGED,
+    FLAGGED,
+)
+
+VALUE = ("magnitude", "phase")
+MAGNITUDE = ("magnitude",)
+PHASE = ("phase",)
+MEAN = ("mean magnitude", "mean phase")
+RATE = ("rate",)
+LOSSES = ("losses",)
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    fault_class: str
+    judged: tuple
+    wanted: str
+    fails_at: str = ""  # empty: holds
+
+
+EXPECTED = [
+    Row("clean", VALUE, COVERED_NO_FLAG),
+    Row("clean", RATE, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("clean, analogue", VALUE, COVERED_NO_FLAG),
+    Row("clean, absolute time", VALUE, FLAGGED),  # nothing is known of the clocks
+    Row("clean, series", VALUE, COVERED_NO_FLAG),
+    Row("clean, series", RATE, COVERED),
+    Row("clean, 0.4 Hz", VALUE, COVERED_NO_FLAG),
+    Row("clean, 0.4 Hz, pauses of 0.5 s", VALUE, COVERED, fails_at="search of steps"),
+    Row("clean, resolution of 1 noise", VALUE, COVERED_NO_FLAG),
+    Row("clean, exciter with 3 % harmonics", VALUE, COVERED),
+    Row("clean, hum far from the steps", VALUE, COVERED),
+    Row("clean, sync with 10 % noise", VALUE, COVERED),
+    Row("clean, sensor with as much noise as signal", VALUE, COVERED),
+    Row("clean, regular stamps", VALUE, COVERED_NO_FLAG),
+    Row("clean, regular stamps", RATE, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("clean, hardly any noise", VALUE, COVERED_NO_FLAG),
+    Row("clean, series with hardly any noise", VALUE, COVERED_NO_FLAG),
+    Row("clean, series with hardly any noise", RATE, COVERED, fails_at="point 5"),
+    Row("mean of 1", MEAN, COVERED_NO_FLAG),
+    *(Row(f"mean of {n}", MEAN, COVERED_NO_FLAG, fails_at="point 6") for n in (2, 3, 5, 10)),
+    *(Row(f"mean of {n}, runs scatter", MEAN, COVERED_NO_MORE) for n in (2, 3, 5, 10)),
+    Row("free-running series", VALUE, COVERED, fails_at="point 1"),
+    Row("series with start jitter of 50 us", VALUE, COVERED, fails_at="point 1"),
+    Row("phase of the trigger not corrected", MAGNITUDE, COVERED, fails_at="point 1"),
+    Row("clock of the oscilloscope 25 ppm off", VALUE, COVERED_OR_FLAGGED, fails_at="point 12"),
+    Row("sensor clipped at 0.95 A", VALUE, FLAGGED, fails_at="point 2"),
+    Row("sensor clipped at 0.99 A", VALUE, COVERED_OR_FLAGGED, fails_at="point 2"),
+    Row("gravity on a 4 g axis", VALUE, FLAGGED, fails_at="point 2"),
+    Row("reference clipped at 0.95 A", VALUE, FLAGGED, fails_at="point 2"),
+    Row("50 samples stuck", VALUE, FLAGGED, fails_at="point 2"),
+    Row("level 30 % above plan", VALUE, FLAGGED, fails_at="point 3"),
+    Row("level 50 times the plan", VALUE, FLAGGED, fails_at="point 3"),
+    Row("1 % lost", VALUE, COVERED),
+    Row("1 % lost", LOSSES, COVERED),
+    Row("1 % lost", RATE, COVERED, fails_at="point 4"),
+    Row("1 % lost, no sample numbers", VALUE, COVERED),
+    Row("1 % lost, no sample numbers", LOSSES, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("1 % lost, no sample numbers", RATE, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("10 % lost, no sample numbers", VALUE, COVERED),
+    Row("10 % lost, no sample numbers", LOSSES, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("10 % lost, no sample numbers", RATE, COVERED_OR_FLAGGED, fails_at="point 4"),
+    Row("1 % not measured", VALUE, COVERED),
+    Row("1 % not measured", LOSSES, COVERED_OR_FLAGGED),
+    Row("1 % of the reference not measured", VALUE, COVERED),
+    Row("1 % of the reference not measured", LOSSES, COVERED_OR_FLAGGED),
+    Row("duplicate and backward stamps", VALUE, COVERED, fails_at="point 10"),
+    Row("disordered stamps, no sample numbers", VALUE, COVERED, fails_at="point 10"),
+    Row("drift of 2 % at 0.4 Hz", VALUE, COVERED_OR_FLAGGED, fails_at="point 7"),
+    Row("drift of 0.5 % at 0.4 Hz", VALUE, COVERED_OR_FLAGGED, fails_at="point 7"),
+    Row("resolution of A / 3, no noise", VALUE, COVERED_OR_FLAGGED, fails_at="point 8"),
+    Row("resolution of A / 20, no noise", VALUE, COVERED_OR_FLAGGED, fails_at="point 8"),
+    Row("0.1 % hum at 50 Hz", VALUE, COVERED_OR_FLAGGED, fails_at="point 9"),
+    Row("0.1 % hum beside 50 Hz", VALUE, COVERED_OR_FLAGGED, fails_at="point 9"),
+    Row("0.1 % hum beside 60 Hz", VALUE, COVERED_OR_FLAGGED, fails_at="point 9"),
+    Row("0.5 % hum on sync beside 50 Hz", MAGNITUDE, COVERED, fails_at="point 9"),
+    Row("0.5 % hum on sync beside 50 Hz", PHASE, COVERED_OR_FLAGGED, fails_at="point 9"),
+    Row(
+        "aliased harmonic beside a third of the rate",
+        VALUE,
+        COVERED_OR_FLAGGED,
+        fails_at="point 9",
+    ),
+    Row("sensor upside down", VALUE, COVERED),
+    Row("sensor upside down", MEAN, FLAGGED, fails_at="point 13"),
+    Row("ADC not calibrated", VALUE, COVERED_OR_FLAGGED, fails_at="point 12"),
+    Row("uncertainty of the reference not stated", VALUE, COVERED_OR_FLAGGED, fails_at="point 12"),
+    Row("the reference in the role of sync", VALUE, FLAGGED, fails_at="point 15"),
+    Row("steps above half the sample rate", VALUE, FLAGGED),
+    Row("series, steps above half the sample rate", VALUE, FLAGGED),
+]

@@ -1,0 +1,182 @@
+"""The classes of calibrations that are drawn: clean ones, and one class for each fault.
+
+A class is a bench with some of its settings changed. What is expected of each is in
+expected_outcomes.py.
+"""
+
+from bench_settings import BenchSettings
+
+LOW_FREQUENCIES = {
+    "frequencies": ("0.40", "0.41", "0.42", "0.43"),
+    "duration_s": 7.5,  # three periods
+    "pause_s": 6.0,
+    "acs_rate_hz": 500.0,
+    "sensor_rate_hz": 250.0,
+}
+# What is left of other uncertainties must not hide an error of some 1e-3.
+LITTLE_NOISE = {
+    "sensor_noise_rel": 0.002,
+    "reference_noise_rel": 0.001,
+    "u_reference_magnitude_rel": 1e-4,
+    "u_reference_phase_rad": 1e-4,
+    "u_adc_lag_rad": 3e-5,
+}
+HARDLY_ANY_NOISE = {
+    "generator_error_rel": 2e-4,
+    "acs_rate_error_rel": 0.0,
+    "harmonics_rel": (),
+    "sensor_noise_rel": 1e-5,
+    "reference_noise_rel": 1e-5,
+    "sync_noise_rel": 1e-5,
+    "trace_noise_v": 5e-5,
+    "trace_step_v": 1e-6,
+    "u_reference_magnitude_rel": 3e-7,
+    "u_reference_phase_rad": 3e-7,
+}
+SHORT_ANALOGUE_STEPS = {
+    "method": "analogue",
+    "frequencies": ("12.5", "20", "31.5", "50", "80", "125"),
+    "acs_rate_hz": 1000.0,
+    "duration_s": 0.5,
+    "u_reference_magnitude_rel": 1e-4,
+    "u_reference_phase_rad": 1e-4,
+}
+SERIES = {
+    "method": "series-timestamping",
+    "frequencies": ("20", "40", "80", "125", "160", "200"),
+    "duration_s": 0.6,
+}
+RUN_SCATTER_REL = 2e-3  # three times what the fit knows of one short analogue step
+
+# Beside the mains, where 1 / T is 0.67 Hz.
+AT_50_HZ = ("49.97", "49.98", "49.99", "50.00", "50.01", "50.02")
+BESIDE_50_HZ = ("49.7", "49.8", "49.9", "50.1", "50.2", "50.3")
+BESIDE_60_HZ = ("59.7", "59.8", "59.9", "60.1", "60.2", "60.3")
+
+
+def bench(*parts, **more):
+    settings = {}
+    for part in parts:
+        settings.update(part)
+    return BenchSettings(**{**settings, **more})
+
+
+CLASSES = {
+    # Clean, or as clean as benches are.
+    "clean": bench(),
+    "clean, analogue": bench(method="analogue"),
+    "clean, absolute time": bench(method="absolute-time"),
+    "clean, series": bench(SERIES),
+    "clean, 0.4 Hz": bench(LOW_FREQUENCIES),
+    "clean, 0.4 Hz, pauses of 0.5 s": bench(LOW_FREQUENCIES, pause_s=0.5),
+    "clean, resolution of 1 noise": bench(resolution_rel=0.01),
+    "clean, exciter with 3 % harmonics": bench(harmonics_rel=(0.03, 0.02)),
+    "clean, hum far from the steps": bench(sensor_hum_rel=0.001, sync_hum_rel=0.001),
+    "clean, sync with 10 % noise": bench(sync_noise_rel=0.1),
+    "clean, sensor with as much noise as signal": bench(sensor_noise_rel=1.0),
+    "clean, regular stamps": bench(
+        regular_stamps=True, sensor_rate_hz=1000.0, sensor_rate_scatter_rel=0.0
+    ),
+    "clean, hardly any noise": bench(HARDLY_ANY_NOISE, method="analogue"),
+    "clean, series with hardly any noise": bench(SERIES, HARDLY_ANY_NOISE),
+    # Repetitions.
+    **{
+        f"mean of {n}": bench(SHORT_ANALOGUE_STEPS, repetitions=n) for n in (1, 2, 3, 5, 10)
+    },
+    **{
+        f"mean of {n}, runs scatter": bench(
+            SHORT_ANALOGUE_STEPS, repetitions=n, run_scatter_rel=RUN_SCATTER_REL
+        )
+        for n in (2, 3, 5, 10)
+    },
+    # Start of a series.
+    "free-running series": bench(SERIES, start="free-running"),
+    "series with start jitter of 50 us": bench(SERIES, start_jitter_s=50e-6),
+    "phase of the trigger not corrected": bench(
+        SERIES, corrects_trigger_phase=False, trigger_noise_rad=0.1
+    ),
+    "clock of the oscilloscope 25 ppm off": bench(
+        SERIES, LITTLE_NOISE, dso_rate_rel=25e-6, frequencies=("160", "200", "250", "315", "400")
+    ),
+    # Range and level.
+    "sensor clipped at 0.95 A": bench(sensor_range_rel=0.95, sensor_offset_rel=0.0),
+    "sensor clipped at 0.99 A": bench(
+        LITTLE_NOISE, sensor_range_rel=0.99, sensor_offset_rel=0.0
+    ),
+    "gravity on a 4 g axis": bench(
+        gravity=True, level_m_s2=30.0, sensor_range_m_s2=4.0 * 9.80665, sensor_noise_rel=0.002
+    ),
+    "reference clipped at 0.95 A": bench(reference_range_rel=0.95),
+    "50 samples stuck": bench(stuck_samples=50),
+    "level 30 % above plan": bench(level_factor=1.3),
+    "level 50 times the plan": bench(level_factor=50.0),
+    # Losses and order.
+    "1 % lost": bench(lost_rel=0.01),
+    "1 % lost, no sample numbers": bench(lost_rel=0.01, records_sample_numbers=False),
+    "10 % lost, no sample numbers": bench(lost_rel=0.1, records_sample_numbers=False),
+    "1 % not measured": bench(not_measured_rel=0.01),
+    "1 % of the reference not measured": bench(reference_not_measured_rel=0.01),
+    "duplicate and backward stamps": bench(disordered_stamps=4),
+    "disordered stamps, no sample numbers": bench(
+        disordered_stamps=4, records_sample_numbers=False
+    ),
+    # The signal itself.
+    "drift of 2 % at 0.4 Hz": bench(LOW_FREQUENCIES, LITTLE_NOISE, drift_rel=0.02),
+    "drift of 0.5 % at 0.4 Hz": bench(LOW_FREQUENCIES, LITTLE_NOISE, drift_rel=0.005),
+    "resolution of A / 3, no noise": bench(sensor_noise_rel=0.0, resolution_rel=1.0 / 3.0),
+    "resolution of A / 20, no noise": bench(
+        LITTLE_NOISE, sensor_noise_rel=0.0, resolution_rel=1.0 / 20.0
+    ),
+    "0.1 % hum at 50 Hz": bench(LITTLE_NOISE, frequencies=AT_50_HZ, sensor_hum_rel=0.001),
+    "0.1 % hum beside 50 Hz": bench(
+        LITTLE_NOISE, frequencies=BESIDE_50_HZ, sensor_hum_rel=0.001
+    ),
+    "0.1 % hum beside 60 Hz": bench(
+        LITTLE_NOISE, frequencies=BESIDE_60_HZ, sensor_hum_rel=0.001, mains_hz=60.0
+    ),
+    "0.5 % hum on sync beside 50 Hz": bench(frequencies=BESIDE_50_HZ, sync_hum_rel=0.005),
+    "aliased harmonic beside a third of the rate": bench(
+        LITTLE_NOISE,
+        frequencies=("334.20", "334.25", "334.30", "334.40", "334.45", "334.50"),
+        sensor_rate_scatter_rel=2e-5,
+        sensor_harmonics_rel=(0.002,),
+    ),
+    "sensor upside down": bench(sensor_sign=-1.0),
+    # What the bench file does not say, or says wrongly.
+    "ADC not calibrated": bench(
+        LITTLE_NOISE,
+        states_adc_calibration=False,
+        frequencies=("125", "160", "200", "250", "315", "400"),
+    ),
+    "uncertainty of the reference not stated": bench(
+        LITTLE_NOISE,
+        states_reference_uncertainty=False,
+        u_reference_magnitude_rel=1e-3,
+        u_reference_phase_rad=1e-3,
+    ),
+    "the reference in the role of sync": bench(sync_acs_channel="ref"),
+    "steps above half the sample rate": bench(frequencies=("520", "560", "600", "640")),
+    "series, steps above half the sample rate": bench(
+        SERIES, frequencies=("520", "560", "600", "640")
+    ),
+}
+
+# What happens too seldom to be met in few calibrations: these draws of their class, and no others.
+CHOSEN_DRAWS = {
+    # The DAU's record of a step falls in two, and the second part is taken for the next step: met
+    # twice in 600 calibrations.
+    "clean, 0.4 Hz, pauses of 0.5 s": (159, 219),
+}
+# Classes that need more calibrations than others to show what is wrong: so many times the usual.
+MORE_DRAWS = {
+    "clean, series with hardly any noise": 5,
+    "0.5 % hum on sync beside 50 Hz": 5,
+    **{f"mean of {n}": 5 for n in (3, 5, 10)},
+}
+
+
+def draws_of(fault_class, usual):
+    """Numbers of the calibrations that are drawn."""
+    if fault_class in CHOSEN_DRAWS:
+        return CHOSEN_DRAWS[fault_class]
+    return range(usual * MORE_DRAWS.get(fault_class, 1))

@@ -1,0 +1,232 @@
+"""Compares a result of `dyncal analyse` with the truth, and many of these with what is wanted.
+
+A claim is one number that dyncal gave or should have given: its error, its expanded uncertainty at
+95.45 %, and whether a person was warned. Bounds are exact binomial: what happens by chance less
+than once in a thousand on that side is a finding.
+"""
+
+import collections
+import dataclasses
+import math
+
+import numpy as np
+
+PROBABILITY = 0.9545
+FLAGGED_RUNS = 0.99
+# Of clean calibrations 0.99 have no flag, and each has six claims.
+UNFLAGGED_CLAIMS = 0.998
+CHANCE = 1e-3
+# No error of a number that is right is so many U.
+FAR_OFF = 3.0
+# An interval so wide that it always holds the truth says nothing: U against the rms of the errors.
+WIDEST = 12.0
+# Sync is always connected here.
+MISLEADING = "is the sync signal connected"
+# Members of a point that count samples which did not count.
+LOSSES = ("lost", "not_trusted", "not_measured", "out_of_order")
+
+# What is wanted of the claims of a class.
+COVERED_NO_FLAG = "covered, no flag"  # nothing is wrong, and no person is bothered
+COVERED = "covered"  # flags are free
+COVERED_NO_MORE = "covered, no more"  # by as many as stated; for the scatter of repetitions
+COVERED_OR_FLAGGED = "covered or flagged"  # never wrong in silence
+FLAGGED = "flagged"  # a person must know, whatever the number is
+
+
+@dataclasses.dataclass
+class Claim:
+    error: float = math.nan
+    expanded: float = math.nan
+    flagged: bool = False
+    refused: bool = False  # no number, and a reason that does not mislead
+    frequency: str = ""
+
+    @property
+    def warned(self):
+        return self.flagged or self.refused
+
+    @property
+    def covered(self):
+        return abs(self.error) <= self.expanded
+
+    @property
+    def far_off(self):
+        return abs(self.error) > FAR_OFF * self.expanded
+
+
+def expanded_uncertainty(entry, quantity):
+    """U as given, or k u as given, or 2 u of a normal distribution."""
+    if entry.get(f"U_{quantity}") is not None:
+        return entry[f"U_{quantity}"]
+    u = entry.get(f"u_{quantity}")
+    k = entry.get(f"k_{quantity}") or 2.0
+    return math.nan if u is None else k * u
+
+
+def claim_of(entry, quantity, error, flagged, frequency=""):
+    value, expanded = entry.get(quantity), expanded_uncertainty(entry, quantity)
+    if value is None or math.isnan(expanded):  # null: it says that it does not know
+        return Claim(flagged=flagged, refused=True, frequency=frequency)
+    return Claim(error(value), expanded, flagged, frequency=frequency)
+
+
+def phase_error(phase_rad, true_rad):
+    return math.remainder(phase_rad - true_rad, 2.0 * math.pi)
+
+
+def at_frequency(entries, text):
+    return [one for one in entries if math.isclose(one["frequency_hz"], float(text))]
+
+
+def claims_on_values(entries, text, truth, flagged):
+    """Magnitude and phase of each entry; `flagged` tells whether an entry is."""
+    true_magnitude, true_phase = truth.magnitude[text], truth.phase_rad[text]
+    for entry in entries:
+        if entry.get("valid") is False:
+            reason = entry.get("problem", "")
+            refused = Claim(refused=bool(reason) and MISLEADING not in reason)
+            yield "magnitude", refused
+            yield "phase", refused
+            continue
+        flag = flagged(entry)
+        yield "magnitude", claim_of(entry, "magnitude", lambda v: v - true_magnitude, flag, text)
+        yield "phase", claim_of(
+            entry, "phase_rad", lambda v: phase_error(v, true_phase), flag, text
+        )
+
+
+def claims_on_losses(points, text, truth):
+    """Samples that did not arrive or were not measured. Ends of the evaluated part may differ by a
+    frame, and half as many again is no lie; nothing said is one."""
+    for point in points:
+        true = truth.lost[text, point["repetition"]]
+        told = sum(point.get(name) or 0 for name in LOSSES)
+        yield "losses", Claim(told - true, max(5.0, 0.5 * true), bool(point["flags"]))
+
+
+def claims_on_rate(result, truth):
+    if math.isnan(truth.sample_rate_hz):
+        return
+    if not result["sample_clock"]:
+        yield "rate", Claim()
+    for report in result["sample_clock"]:
+        entry = {"rate_hz": report["mean_rate_hz"]}
+        if report["u_mean_interval_s"] is not None:
+            entry["u_rate_hz"] = report["u_mean_interval_s"] * report["mean_rate_hz"] ** 2
+        flagged = bool(report.get("flags"))
+        yield "rate", claim_of(entry, "rate_hz", lambda v: v - truth.sample_rate_hz, flagged)
+
+
+def refusal(truth, reason):
+    """The program gave no result at all: a refusal of every claim, when it gives a reason."""
+    refused = Claim(refused=bool(reason.strip()) and MISLEADING not in reason)
+    claims = [("rate", refused)]
+    for _ in truth.magnitude:
+        claims += [("mean magnitude", refused), ("mean phase", refused)]
+        points = [("magnitude", refused), ("phase", refused), ("losses", refused)]
+        claims += points * truth.repetitions
+    return claims
+
+
+def claims_of(result, truth):
+    """All claims as (what, Claim). What is missing is a claim without a number."""
+    claims = list(claims_on_rate(result, truth))
+    for text in truth.magnitude:
+        points = at_frequency(result["points"], text)
+        means = at_frequency(result["transfer_function"], text)
+        claims += claims_on_values(points, text, truth, lambda point: bool(point["flags"]))
+        of_points = any(point["flags"] for point in points)
+        for what, claim in claims_on_values(
+            means, text, truth, lambda mean: bool(mean.get("flags")) or of_points
+        ):
+            claims.append((f"mean {what}", claim))
+        if truth.lost:
+            claims += claims_on_losses(points, text, truth)
+        for _ in range(truth.repetitions - len(points)):
+            claims += [("magnitude", Claim()), ("phase", Claim())]
+        if not means:
+            refused = Claim(refused=not any(point["valid"] for point in points))
+            claims += [("mean magnitude", refused), ("mean phase", refused)]
+    return claims
+
+
+def at_most(k, n, p):
+    """Probability of at most k out of n."""
+    logs = [
+        math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1)
+        + i * math.log(p) + (n - i) * math.log1p(-p)
+        for i in range(k + 1)
+    ]
+    return math.fsum(map(math.exp, logs))
+
+
+def too_few(k, n, p):
+    return at_most(k, n, p) < CHANCE
+
+
+def too_many(k, n, p):
+    return at_most(n - k, n, 1.0 - p) < CHANCE
+
+
+def least_rms(n):
+    """What the rms of n normal deviates falls below once in a thousand (Wilson and Hilferty)."""
+    return max(0.0, 1.0 - 2.0 / (9.0 * n) - 3.09 * math.sqrt(2.0 / (9.0 * n))) ** 1.5
+
+
+@dataclasses.dataclass
+class Tally:
+    """Claims of one quantity over all draws of a class. `few_repeats`: their intervals come from
+    the scatter of few repetitions, so that a rare error may be many U."""
+
+    claims: list
+    few_repeats: bool = False
+
+    def __post_init__(self):
+        self.numbers = [one for one in self.claims if math.isfinite(one.error)]
+        self.covered = sum(one.covered for one in self.numbers)
+        self.warned = sum(one.warned for one in self.claims)
+        self.silent = [one for one in self.claims if not one.warned]
+        self.silent_covered = sum(one.covered for one in self.silent)
+        self.width = self._width()
+
+    def _width(self):
+        """The usual U of a frequency against its errors (2: as it should be), over all of them."""
+        expanded = collections.defaultdict(list)
+        for one in self.numbers:
+            expanded[one.frequency].append(one.expanded)
+        usual = {frequency: float(np.median(all_of)) for frequency, all_of in expanded.items()}
+        if not usual or min(usual.values()) <= 0.0:
+            return 0.0
+        errors = np.array([one.error / usual[one.frequency] for one in self.numbers])
+        return 1.0 / max(float(np.sqrt(np.mean(errors**2))), 1e-12)
+
+    def finding(self, wanted):
+        """What is wrong in a sentence; empty when nothing is."""
+        n = len(self.claims)
+        if n == 0:
+            return "no claims at all: nothing was judged"
+        if wanted == FLAGGED:
+            enough = not too_few(self.warned, n, FLAGGED_RUNS)
+            return "" if enough else f"{n - self.warned} of {n} carry no flag"
+        if wanted == COVERED_OR_FLAGGED:
+            return self._wrong_among(self.silent, "without a flag ") or self._too_wide(WIDEST)
+        finding = self._wrong_among(self.claims)
+        if finding or wanted == COVERED:
+            return finding or self._too_wide(WIDEST)
+        if too_many(self.covered, n, PROBABILITY):
+            return f"{self.covered} of {n} are covered: u is too large"
+        if wanted == COVERED_NO_MORE:
+            return ""
+        if too_few(n - self.warned, n, UNFLAGGED_CLAIMS):
+            return f"{self.warned} of {n} carry a flag"
+        return self._too_wide(2.0 / least_rms(n))
+
+    def _wrong_among(self, claims, which=""):
+        n, covered = len(claims), sum(one.covered for one in claims)
+        far_off = 0 if self.few_repeats else sum(one.far_off for one in claims)
+        if n and too_few(covered, n, PROBABILITY):
+            return f"{n - covered} of {n} {which}are not covered"
+        return f"{far_off} of {n} {which}are off by more than {FAR_OFF:g} U" if far_off else ""
+
+    def _too_wide(self, widest):
+        return f"U is {self.width:.1f} times the rms of the errors" if self.width > widest else ""
