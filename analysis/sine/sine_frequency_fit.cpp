@@ -34,20 +34,28 @@ double radians_to_hz(const Record& record, double delta) {
   return delta / (3.141592653589793 * record.span_s());
 }
 
+// A channel that noise explains has nearly no say in the frequency. Judged by the solution, not by
+// the start: there, residuals may be larger than the amplitude though the sine is clear.
+bool shows_no_sine(const Solution& channel, double n) {
+  constexpr double significant = 4.0; // standard uncertainties, sqrt(2 rss) / n
+  const double size = std::hypot(channel.p.sine, channel.p.cosine);
+  return size * n < significant * std::sqrt(2.0 * channel.rss);
+}
+
 // What the series left out, in radians: orders of the residual moments from u^2 on, of the design
-// from u^3 on, and its end.
+// from u^3 on, and its end. Residuals count against the amplitude: noise averages out, what the
+// start parameters miss does not.
 double series_error(const FrequencySeriesSums& sums, const FrequencySolution& solution) {
-  double residual =
-      0.0; // against the amplitude: noise averages out, what the start parameters miss does not
+  const double n = solution.matrix.n;
+  double residual = 0.0;
   for (const Solution& channel : solution.channels) {
     const double size = std::hypot(channel.p.sine, channel.p.cosine);
-    const double n = solution.matrix.n;
+    if (!(size > 0.0) || shows_no_sine(channel, n)) {
+      continue;
+    }
     const double left =
         std::sqrt(channel.rss) / n + std::sqrt(std::max(0.0, channel.ee - channel.rss) / n);
-    residual =
-        std::max(residual,
-                 left < size ? left / size
-                             : 0.0); // a channel without the sine does not decide the frequency
+    residual = std::max(residual, left / size);
   }
   const double delta = std::abs(solution.delta);
   const double length = sums.block_half_length;

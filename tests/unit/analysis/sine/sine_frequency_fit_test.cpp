@@ -24,6 +24,10 @@ double span_s(const std::vector<std::int64_t>& stamps) {
   return static_cast<double>(stamps.back() - stamps.front()) * 1e-9;
 }
 
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
+
 TEST(SineFrequencyFit, FindsPureSineToRounding) {
   for (const std::size_t samples : {60U, 400U, 3000U, 9000U, 60'000U}) {
     Signal signal;
@@ -36,6 +40,30 @@ TEST(SineFrequencyFit, FindsPureSineToRounding) {
         << samples;
     EXPECT_NEAR(fit->channels[0].amplitude(), signal.amplitude, 1e-12) << samples;
     EXPECT_NEAR(fit->channels[0].phase_rad(), signal.phase_rad, 1e-11) << samples;
+  }
+}
+
+// The first sample is the start value of the constant, and the start frequency may be nearly right:
+// wherever in the period the record begins, the fit arrives.
+TEST(SineFrequencyFit, DoesNotDependOnWhereTheFirstSampleLies) {
+  for (const std::size_t samples : {60U, 400U, 1000U, 3000U, 8000U}) {
+    const auto stamps = uneven_stamps(samples);
+    for (const double distance_rad : {5e-5, 2e-4, 1e-3, 3e-3, 1e-2}) { // over half the record
+      const double hz = 80.0 + distance_rad / (std::numbers::pi * span_s(stamps));
+      for (int part = 0; part < 16; ++part) {
+        Signal signal;
+        signal.frequency_hz = std::to_string(hz);
+        signal.phase_rad = wrapped(2.0 * std::numbers::pi * part / 16.0);
+        const auto fit = fit_one("80", 1e-4, stamps, values_of(signal, stamps));
+        ASSERT_TRUE(fit) << fit.error().message;
+        EXPECT_NEAR((fit->frequency.hz() - std::stod(signal.frequency_hz)) * 2.0 *
+                        std::numbers::pi * span_s(stamps),
+                    0.0, 1e-11)
+            << samples << ", " << distance_rad << " rad away, part " << part;
+        EXPECT_NEAR(wrapped(fit->channels[0].phase_rad() - signal.phase_rad), 0.0, 1e-11)
+            << samples << ", " << distance_rad << " rad away, part " << part;
+      }
+    }
   }
 }
 
