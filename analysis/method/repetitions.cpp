@@ -1,14 +1,17 @@
 #include "analysis/method/repetitions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "analysis/base/phasor.hpp"
-#include "analysis/uncertainty/coverage.hpp"
+#include "analysis/uncertainty/rice.hpp"
 
 namespace dyncal::analysis {
 namespace {
+
+constexpr double weak_mean = 10.0; // u: below, the phase is not normal any more
 
 bool is_finite(const Repetition& repetition) {
   return std::isfinite(repetition.h.real()) && std::isfinite(repetition.h.imag()) &&
@@ -18,38 +21,104 @@ bool is_finite(const Repetition& repetition) {
          std::isfinite(repetition.u_common_phase_rad);
 }
 
-struct Scatter {               // of one quantity over the repetitions
-  double squares = 0.0;        // sum of squared deviations from the mean
-  double random_squares = 0.0; // sum of squared u of single repetitions
-  double common = 0.0;         // the largest u that all have in common
+// The mean of one frequency before its uncertainty is known. Deviations and noise of the magnitude
+// are relative to the mean's, those of the phase in radians.
+struct Centre {
+  std::complex<double> h;
+  RepeatedQuantity magnitude, phase;
+  double common_magnitude = 0.0;
+  double common_phase = 0.0;
 };
 
-CombinedUncertainty combine(double u_random_mean, double random_freedom, double u_common) {
-  const std::array parts{UncertaintyPart{u_random_mean, random_freedom}, UncertaintyPart{u_common}};
-  CombinedUncertainty result;
-  result.u = std::hypot(u_random_mean, u_common);
-  if (!(result.u > 0.0)) {
-    return result;
-  }
-  result.degrees_of_freedom = effective_degrees_of_freedom(parts);
-  const double by_effective_freedom = coverage_factor(result.degrees_of_freedom);
-  const double by_parts = std::hypot(coverage_factor(random_freedom) * u_random_mean,
-                                     coverage_factor(infinite_degrees_of_freedom) * u_common) /
-                          result.u;
-  result.k = by_effective_freedom + (by_parts - by_effective_freedom) / 3.0;
-  return result;
+// Are the phasors longer than noise alone makes them, by four standard deviations of their mean?
+bool stand_out(double mean_length, double noise, double n) {
+  const double scatter = rice_standard_deviation(0.0, noise) / std::sqrt(n);
+  return mean_length > rice_mean(0.0, noise) + 4.0 * scatter;
 }
 
-// Observed scatter against what the fits expect: the wider interval counts.
-CombinedUncertainty wider(const Scatter& scatter, double n, double u_common) {
-  const CombinedUncertainty expected =
-      combine(std::sqrt(scatter.random_squares) / n, infinite_degrees_of_freedom, u_common);
-  if (n < 2.0) {
-    return expected;
+Centre mean_of_lengths(std::span<const Repetition> repetitions, double noise) {
+  const double n = static_cast<double>(repetitions.size());
+  double length = 0.0;
+  std::complex<double> directions;
+  for (const Repetition& repetition : repetitions) {
+    length += std::abs(repetition.h) / n;
+    directions += unit_phasor(repetition.h) / n;
   }
-  const CombinedUncertainty observed =
-      combine(std::sqrt(scatter.squares / (n - 1.0) / n), n - 1.0, u_common);
-  return observed.u * observed.k > expected.u * expected.k ? observed : expected;
+  const double magnitude = amplitude_of_rice_mean(length, noise);
+  const std::complex<double> direction = unit_phasor(directions);
+  const double closeness = std::max(std::abs(directions), 1e-3); // R
+  Centre centre{magnitude * direction, {}, {}};
+  for (const Repetition& repetition : repetitions) {
+    const std::complex<double> turned = unit_phasor(repetition.h) * std::conj(direction);
+    centre.magnitude.deviations.push_back(std::abs(repetition.h) / length - 1.0);
+    centre.phase.deviations.push_back(turned.imag() / closeness);
+  }
+  return centre;
+}
+
+Centre mean_of_phasors(std::span<const Repetition> repetitions) {
+  Centre centre;
+  for (const Repetition& repetition : repetitions) {
+    centre.h += repetition.h / static_cast<double>(repetitions.size());
+  }
+  const double unit = std::abs(centre.h) > 0.0 ? std::abs(centre.h) : 1.0;
+  for (const Repetition& repetition : repetitions) {
+    const std::complex<double> deviation =
+        (repetition.h - centre.h) * std::conj(unit_phasor(centre.h)) / unit;
+    centre.magnitude.deviations.push_back(deviation.real());
+    centre.phase.deviations.push_back(deviation.imag());
+  }
+  return centre;
+}
+
+// Noise of the phase. A weak phasor by itself states what is known of an angle of which little is
+// known; when the mean tells its amplitude, it is the noise of one component over that.
+double phase_noise(const Repetition& repetition, double noise_over_mean) {
+  constexpr double weak = 10.0;
+  const double snr =
+      repetition.u_random_magnitude_rel > 0.0 ? 1.0 / repetition.u_random_magnitude_rel : 1e12;
+  const double by_itself = phase_standard_uncertainty(snr);
+  if (snr >= weak || repetition.u_random_phase_rad < by_itself) {
+    return repetition.u_random_phase_rad;
+  }
+  return std::hypot(std::sqrt(std::pow(repetition.u_random_phase_rad, 2) - by_itself * by_itself),
+                    std::min(by_itself, noise_over_mean));
+}
+
+Centre centre_of(const RepeatedFrequency& frequency) {
+  const std::vector<Repetition>& repetitions = frequency.repetitions;
+  double squares = 0.0;
+  double length = 0.0;
+  for (const Repetition& repetition : repetitions) {
+    squares += std::norm(repetition.h) * std::pow(repetition.u_random_magnitude_rel, 2);
+    length += std::abs(repetition.h);
+  }
+  const double n = static_cast<double>(repetitions.size());
+  const double noise = std::sqrt(squares / n); // of one component
+  const bool clear = n > 1.0 && stand_out(length / n, noise, n);
+  Centre centre = clear ? mean_of_lengths(repetitions, noise) : mean_of_phasors(repetitions);
+  const double unit = std::abs(centre.h) > 0.0 ? std::abs(centre.h) : 1.0;
+  for (const Repetition& repetition : repetitions) {
+    const double size = std::abs(repetition.h) / unit;
+    centre.magnitude.u.push_back(size * repetition.u_random_magnitude_rel);
+    centre.phase.u.push_back(clear ? phase_noise(repetition, noise / unit)
+                                   : repetition.u_random_phase_rad);
+    centre.common_magnitude =
+        std::max(centre.common_magnitude, size * repetition.u_common_magnitude_rel);
+    centre.common_phase = std::max(centre.common_phase, repetition.u_common_phase_rad);
+  }
+  centre.magnitude.frequency_hz = frequency.frequency_hz;
+  centre.phase.frequency_hz = frequency.frequency_hz;
+  return centre;
+}
+
+double standard_deviation_of(const std::vector<double>& deviations) {
+  if (deviations.size() < 2) {
+    return 0.0;
+  }
+  const double squares =
+      std::inner_product(deviations.begin(), deviations.end(), deviations.begin(), 0.0);
+  return std::sqrt(squares / (static_cast<double>(deviations.size()) - 1.0));
 }
 
 double drawn_magnitude(const Contribution& row) {
@@ -57,8 +126,39 @@ double drawn_magnitude(const Contribution& row) {
                                      row.u_lasting_magnitude_rel * row.u_lasting_magnitude_rel));
 }
 
-double half_interval(const CombinedUncertainty& uncertainty) {
-  return 0.5 * uncertainty.k * uncertainty.u;
+RepetitionMean mean_from(const Centre& centre, const MeanError& magnitude_error,
+                         const MeanError& phase_error) {
+  constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3;
+  RepetitionMean result;
+  result.repetitions = centre.magnitude.deviations.size();
+  result.h = centre.h;
+  result.magnitude = std::abs(centre.h);
+  result.phase_rad = std::arg(centre.h);
+  const double unit = result.magnitude > 0.0 ? result.magnitude : 1.0;
+  result.scatter_magnitude = unit * standard_deviation_of(centre.magnitude.deviations);
+  result.scatter_phase_rad = standard_deviation_of(centre.phase.deviations);
+  result.magnitude_rel = combine(magnitude_error, centre.common_magnitude);
+  result.phase = combine(phase_error, centre.common_phase);
+  result.u_magnitude = 0.5 * unit * result.magnitude_rel.expanded();
+  result.u_phase_rad = std::min(any_phase, 0.5 * result.phase.expanded());
+  result.u_independent_phase_rad = std::min(any_phase, 0.5 * combine(phase_error, 0.0).expanded());
+  if (const double snr = result.u_magnitude > 0.0 ? result.magnitude / result.u_magnitude : 1e12;
+      snr < weak_mean) {
+    const double weak = phase_standard_uncertainty(snr);
+    result.u_phase_rad = std::hypot(weak, centre.common_phase);
+    result.u_independent_phase_rad = weak;
+  }
+  return result;
+}
+
+Expected<void> check(const std::vector<Repetition>& repetitions) {
+  if (repetitions.empty()) {
+    return fail(ErrorCode::invalid_argument, "a mean needs at least one repetition");
+  }
+  if (!std::all_of(repetitions.begin(), repetitions.end(), is_finite)) {
+    return fail(ErrorCode::not_finite, "a repetition has a value that is not a number");
+  }
+  return {};
 }
 
 } // namespace
@@ -80,53 +180,35 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
   return result;
 }
 
-Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions) {
-  if (repetitions.empty()) {
-    return fail(ErrorCode::invalid_argument, "a mean needs at least one repetition");
-  }
-  const double n = static_cast<double>(repetitions.size());
-  RepetitionMean result;
-  result.repetitions = repetitions.size();
-  for (const Repetition& repetition : repetitions) {
-    if (!is_finite(repetition)) {
-      return fail(ErrorCode::not_finite, "a repetition has a value that is not a number");
+std::vector<Expected<RepetitionMean>>
+means_of_repetitions(std::span<const RepeatedFrequency> frequencies) {
+  std::vector<Centre> centres;
+  std::vector<RepeatedQuantity> magnitudes, phases;
+  for (const RepeatedFrequency& frequency : frequencies) {
+    if (check(frequency.repetitions)) {
+      centres.push_back(centre_of(frequency));
+      magnitudes.push_back(centres.back().magnitude);
+      phases.push_back(centres.back().phase);
     }
-    result.h += repetition.h / n;
   }
-  result.magnitude = std::abs(result.h);
-  result.phase_rad = std::arg(result.h);
+  const std::vector<MeanError> magnitude_errors = errors_of_means(magnitudes);
+  const std::vector<MeanError> phase_errors = errors_of_means(phases);
+  std::vector<Expected<RepetitionMean>> means;
+  std::size_t next = 0;
+  for (const RepeatedFrequency& frequency : frequencies) {
+    if (const auto checked = check(frequency.repetitions); !checked) {
+      means.emplace_back(fail(checked.error()));
+    } else {
+      means.emplace_back(mean_from(centres[next], magnitude_errors[next], phase_errors[next]));
+      ++next;
+    }
+  }
+  return means;
+}
 
-  // Uncertainties of single repetitions are relative to their own magnitude, those of the mean to
-  // the mean's.
-  const double unit = result.magnitude > 0.0 ? result.magnitude : 1.0;
-  const std::complex<double> direction = unit_phasor(result.h);
-  Scatter magnitude, phase;
-  for (const Repetition& repetition : repetitions) {
-    const std::complex<double> deviation = (repetition.h - result.h) * std::conj(direction) / unit;
-    const double size = std::abs(repetition.h) / unit;
-    magnitude.squares += deviation.real() * deviation.real();
-    phase.squares += deviation.imag() * deviation.imag();
-    magnitude.random_squares += std::pow(size * repetition.u_random_magnitude_rel, 2);
-    phase.random_squares += std::pow(repetition.u_random_phase_rad, 2);
-    magnitude.common = std::max(magnitude.common, size * repetition.u_common_magnitude_rel);
-    phase.common = std::max(phase.common, repetition.u_common_phase_rad);
-  }
-  if (repetitions.size() > 1) {
-    result.scatter_magnitude = unit * std::sqrt(magnitude.squares / (n - 1.0));
-    result.scatter_phase_rad = std::sqrt(phase.squares / (n - 1.0));
-  }
-  result.magnitude_rel = wider(magnitude, n, magnitude.common);
-  result.phase = wider(phase, n, phase.common);
-  result.u_magnitude = unit * half_interval(result.magnitude_rel);
-  result.u_phase_rad = half_interval(result.phase);
-  result.u_independent_phase_rad = half_interval(wider(phase, n, 0.0));
-  if (const double snr = result.u_magnitude > 0.0 ? result.magnitude / result.u_magnitude : 1e12;
-      snr < 10.0) {
-    const double weak = phase_standard_uncertainty(snr);
-    result.u_phase_rad = std::hypot(weak, phase.common);
-    result.u_independent_phase_rad = weak;
-  }
-  return result;
+Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions) {
+  const RepeatedFrequency one{0.0, {repetitions.begin(), repetitions.end()}};
+  return means_of_repetitions(std::span(&one, 1)).front();
 }
 
 } // namespace dyncal::analysis

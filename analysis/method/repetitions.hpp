@@ -1,29 +1,31 @@
 // One transfer function value from repeated measurements at the same frequency.
 //
-//   H       = sum(H_i) / n                                mean of the phasors
-//   e_i     = H_i / H - 1                                 real part magnitude, imaginary part phase
-//   u_a     = max(s / sqrt(n), rms(u_random) / sqrt(n))   observed, and expected from the fits
-//   u_c^2   = u_a^2 + u_common^2                          U = k u_c at 95.45 %
+//   |H|   = mean of |H_i|, less what noise adds to lengths (rice.hpp)
+//   psi   = arg sum(H_i / |H_i|)                                the circular mean
+//   e_i   = |H_i| / |H| - 1  and  sin(psi_i - psi) / R          R = |sum(H_i / |H_i|)| / n
 //
-// s, the sample standard deviation of e_i, has n - 1 degrees of freedom. What is common to all
-// repetitions (reference, ADC, delays) does not average; of observed and expected the wider
-// interval counts. nu_eff is that of Welch and Satterthwaite.
+// So repetitions whose phase scatters, as shots of a sensor that runs free, keep their magnitude:
+// the length of their mean phasor would be shorter by e^{-s^2 / 2}. Where their lengths do not
+// stand out of what noise alone would give, the mean is that of the phasors.
 //
-// k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a common part of 0.2..0.5 u_a;
-// expanding the parts one by one and adding squares covers up to 98 %. k lies a third of the way
-// between: 94.1..96.5 % for n = 3 and any common part (Monte Carlo), exact without one (k = 4.53
-// for n = 3). `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader
-// applies covers 95.45 % although n is small; u_c, nu_eff and k are given as well. A mean below 10
-// u has the phase uncertainty of phasor.hpp.
+// u of a mean: random_effects.hpp. Every repetition states its own noise (u_random), known with
+// many degrees of freedom; scatter beyond it is found from all repeated frequencies together.
+// What is common to all repetitions (reference, ADC, delays) does not average. `u_magnitude` and
+// `u_phase_rad` are U / 2, so that the factor 2 that every reader applies covers 95.45 % although n
+// is small; u (k = 1), nu_eff and k are in `magnitude_rel` and `phase`. A mean below 10 u has the
+// phase uncertainty of phasor.hpp; none exceeds pi / sqrt(3), that of an angle of which nothing is
+// known.
 //
 // Fails: invalid_argument (no repetition), not_finite. Any thread.
 #pragma once
 
 #include <complex>
 #include <span>
+#include <vector>
 
 #include "analysis/base/error.hpp"
 #include "analysis/uncertainty/contribution.hpp"
+#include "analysis/uncertainty/random_effects.hpp"
 
 namespace dyncal::analysis {
 
@@ -40,12 +42,6 @@ struct Repetition {
 [[nodiscard]] Repetition make_repetition(std::complex<double> h,
                                          std::span<const Contribution> budget);
 
-struct CombinedUncertainty {
-  double u = 0.0;                                          // combined standard uncertainty u_c
-  double degrees_of_freedom = infinite_degrees_of_freedom; // nu_eff
-  double k = 2.0;                                          // at 95.45 %, see above
-};
-
 struct RepetitionMean {
   std::complex<double> h;
   double magnitude = 0.0;
@@ -61,6 +57,17 @@ struct RepetitionMean {
   CombinedUncertainty phase;
 };
 
+struct RepeatedFrequency {
+  double frequency_hz = 0.0;
+  std::vector<Repetition> repetitions;
+};
+
+// Of all frequencies of one channel that were measured in one session: together they say how much
+// runs scatter, which two runs at one frequency cannot. One result for each, in their order.
+[[nodiscard]] std::vector<Expected<RepetitionMean>>
+means_of_repetitions(std::span<const RepeatedFrequency> frequencies);
+
+// Of one frequency by itself.
 [[nodiscard]] Expected<RepetitionMean> mean_of_repetitions(std::span<const Repetition> repetitions);
 
 } // namespace dyncal::analysis

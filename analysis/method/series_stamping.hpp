@@ -14,8 +14,9 @@
 // correction (paper section 2.5), but an error of w_TSS turns theta_0 of all shots alike by
 // u(w_TSS) T / 2. Harmonics and hum are fitted beside the signal (disturbances.hpp). A TSS that
 // runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
-// sqrt(12) (T9). Mean over shots as in repetitions.hpp; tau_DSO and mean l are common to all shots
-// and frequencies. The first of `channels` must be excited.
+// sqrt(12) (T9). Mean over shots as in repetitions.hpp, which keeps the magnitude of shots whose
+// phase scatters; tau_DSO and mean l are common to all shots and frequencies. The first of
+// `channels` must be excited.
 //
 // Fails as channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument (no shot, shots of
 // unequal length). Any thread.

@@ -1,0 +1,156 @@
+#include "analysis/uncertainty/random_effects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::analysis {
+namespace {
+
+// One session: frequencies, runs at each, noise 1, scatter between runs tau.
+struct Session {
+  std::size_t frequencies = 1;
+  std::size_t runs = 2;
+  double tau = 0.0;
+  double u_common = 0.0;
+};
+
+struct Coverage {
+  double part = 0.0;     // of the intervals that contain the truth
+  double quotient = 0.0; // median of U / 2 over the true standard deviation of the mean
+};
+
+Coverage coverage_of(const Session& session, int sessions, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  int covered = 0;
+  std::vector<double> quotients;
+  const double truth =
+      std::hypot(std::hypot(1.0, session.tau) / std::sqrt(static_cast<double>(session.runs)),
+                 session.u_common);
+  for (int s = 0; s < sessions; ++s) {
+    std::vector<RepeatedQuantity> quantities;
+    std::vector<double> errors;
+    for (std::size_t f = 0; f < session.frequencies; ++f) {
+      RepeatedQuantity quantity;
+      quantity.frequency_hz = 10.0 * static_cast<double>(f + 1);
+      double mean = 0.0;
+      for (std::size_t i = 0; i < session.runs; ++i) {
+        quantity.deviations.push_back(std::hypot(1.0, session.tau) * normal(random));
+        quantity.u.push_back(1.0);
+        mean += quantity.deviations.back() / static_cast<double>(session.runs);
+      }
+      errors.push_back(mean + session.u_common * normal(random));
+      quantities.push_back(quantity);
+    }
+    const auto means = errors_of_means(quantities);
+    for (std::size_t f = 0; f < session.frequencies; ++f) {
+      const double expanded = combine(means[f], session.u_common).expanded();
+      covered += std::abs(errors[f]) <= expanded;
+      quotients.push_back(0.5 * expanded / truth);
+    }
+  }
+  std::nth_element(quotients.begin(), quotients.begin() + quotients.size() / 2, quotients.end());
+  return {covered / static_cast<double>(quotients.size()), quotients[quotients.size() / 2]};
+}
+
+int draws() {
+  const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
+  return text ? std::stoi(text) : 1000;
+}
+
+// Three standard deviations of what was drawn beside the bound.
+double slack() {
+  return 3.0 * std::sqrt(0.0455 * 0.9545 / draws());
+}
+
+constexpr std::array scatters{0.0, 0.5, 1.0, 3.0, 10.0};
+
+TEST(RandomEffects, OneRunKeepsItsNoise) {
+  const std::array quantities{RepeatedQuantity{{0.0}, {2.0}, 80.0}};
+  const auto mean = errors_of_means(quantities);
+  EXPECT_NEAR(combine(mean[0], 1.5).expanded(), 2.0 * 2.5, 1e-12);
+  const Coverage coverage = coverage_of({.frequencies = 1, .runs = 1}, 4 * draws(), 1);
+  EXPECT_NEAR(coverage.part, 0.9545, 0.014);
+}
+
+TEST(RandomEffects, AFrequencyByItselfIsCoveredWhateverTheScatter) {
+  for (const std::size_t runs : {2U, 3U, 5U, 10U}) {
+    for (const double tau : scatters) {
+      const Coverage coverage =
+          coverage_of({.frequencies = 1, .runs = runs, .tau = tau}, draws(), 2);
+      EXPECT_GT(coverage.part, 0.935 - slack()) << runs << " runs, tau " << tau;
+    }
+  }
+}
+
+TEST(RandomEffects, EightFrequenciesKnowTheScatter) {
+  for (const std::size_t runs : {2U, 3U, 5U, 10U}) {
+    for (const double tau : scatters) {
+      const Coverage coverage =
+          coverage_of({.frequencies = 8, .runs = runs, .tau = tau}, draws() / 8, 3);
+      const double above = runs < 4 && tau < 1.0 ? 0.03 : 0.014;
+      EXPECT_GT(coverage.part, 0.9545 - 0.014 - slack()) << runs << " runs, tau " << tau;
+      EXPECT_LT(coverage.part, 0.9545 + above + slack()) << runs << " runs, tau " << tau;
+      EXPECT_LT(coverage.quotient, 1.35) << runs << " runs, tau " << tau;
+    }
+  }
+}
+
+TEST(RandomEffects, CommonPartsStayCovered) {
+  for (const double u_common : {0.3, 1.0, 3.0}) {
+    for (const double tau : {0.0, 3.0}) {
+      const Coverage coverage = coverage_of(
+          {.frequencies = 8, .runs = 3, .tau = tau, .u_common = u_common}, draws() / 8, 4);
+      EXPECT_NEAR(coverage.part, 0.9545, 0.02 + slack()) << u_common << ", tau " << tau;
+    }
+  }
+}
+
+TEST(RandomEffects, AFrequencyThatScattersMoreThanTheOthersIsBelieved) {
+  std::vector<RepeatedQuantity> quantities(10, RepeatedQuantity{{-0.5, 0.2, 0.3}, {1, 1, 1}, 10.0});
+  quantities[4].deviations = {-60.0, 10.0, 50.0};
+  const auto means = errors_of_means(quantities);
+  EXPECT_LT(combine(means[0], 0.0).expanded(), 2.0);
+  EXPECT_GT(combine(means[4], 0.0).expanded(), 60.0);
+}
+
+// Scatter that is a time is a phase that rises with the frequency, while the noise stays.
+TEST(RandomEffects, ScatterMayBeATime) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  std::vector<RepeatedQuantity> quantities;
+  for (int f = 0; f < 20; ++f) {
+    RepeatedQuantity quantity{{}, {1.0, 1.0, 1.0}, 10.0 * std::pow(1.3, f)};
+    for (int i = 0; i < 3; ++i) {
+      quantity.deviations.push_back(std::hypot(1.0, 0.01 * quantity.frequency_hz) * normal(random));
+    }
+    quantities.push_back(quantity);
+  }
+  const auto means = errors_of_means(quantities);
+  EXPECT_LT(combine(means[0], 0.0).expanded(), 1.6);
+  EXPECT_NEAR(combine(means[19], 0.0).expanded() / (2.0 * 14.6 / std::sqrt(3.0)), 1.15, 0.4);
+}
+
+TEST(RandomEffects, WithoutAnyNoiseItIsStudentsT) {
+  const std::array quantities{RepeatedQuantity{{-1.0, 0.0, 1.0}, {0.0, 0.0, 0.0}}};
+  const CombinedUncertainty combined = combine(errors_of_means(quantities)[0], 0.0);
+  EXPECT_NEAR(combined.u, 1.0 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(combined.degrees_of_freedom, 2.0, 1e-12);
+  EXPECT_NEAR(combined.k, 4.5265, 1e-3);
+}
+
+TEST(RandomEffects, StatesTheDegreesOfFreedomOfItsInterval) {
+  // Scatter far above the noise: Student's t again.
+  const std::array quantities{RepeatedQuantity{{-300.0, 100.0, 200.0}, {1.0, 1.0, 1.0}}};
+  const CombinedUncertainty combined = combine(errors_of_means(quantities)[0], 0.0);
+  EXPECT_NEAR(combined.degrees_of_freedom, 2.0, 0.1);
+  EXPECT_NEAR(combined.u / (264.6 / std::sqrt(3.0)), 1.0, 0.05);
+}
+
+} // namespace
+} // namespace dyncal::analysis
