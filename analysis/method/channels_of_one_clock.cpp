@@ -6,6 +6,7 @@
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/sine/disturbances.hpp"
+#include "analysis/uncertainty/found_resolution.hpp"
 #include "analysis/uncertainty/quantisation.hpp"
 
 namespace dyncal::analysis {
@@ -99,6 +100,9 @@ Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
          std::move((*fits)[i].values),
          all[i],
          stamps_ns});
+    if (double& resolution = recorded.back().samples.resolution; !(resolution > 0.0)) {
+      resolution = found_resolution(all[i].values);
+    }
   }
   return recorded;
 }

@@ -7,7 +7,8 @@
 //
 //   fit noise     covariance of the fit without the share of white stamp noise s_t, which has rows
 //                 of its own: w^2 A^2 s_t^2 / 2 of s^2
-//   quantisation  quantisation.hpp, where the noise does not hide the steps
+//   quantisation  quantisation.hpp, where the noise does not hide the steps; where nobody stated
+//                 them, they are looked for in the values (found_resolution.hpp)
 //   Rice          u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
 //                 phase is that of phasor.hpp
 //

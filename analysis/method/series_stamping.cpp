@@ -10,6 +10,8 @@
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/equidistant_axis.hpp"
+#include "analysis/uncertainty/found_resolution.hpp"
+#include "analysis/uncertainty/quantisation.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -126,6 +128,18 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool 
   return result;
 }
 
+// Steps of the sensor's converter that its noise does not hide. They err alike in all shots.
+void add_quantisation(Repetition& shot, const SineFit& series, std::span<const double> values,
+                      double samples_per_period) {
+  const QuantisationUncertainty steps = quantisation_uncertainty(
+      series.amplitude(), series.residual_sd(), found_resolution(values), samples_per_period);
+  if (series.amplitude() > 0.0) {
+    shot.u_common_magnitude_rel =
+        std::hypot(shot.u_common_magnitude_rel, steps.u_amplitude / series.amplitude());
+  }
+  shot.u_common_phase_rad = std::hypot(shot.u_common_phase_rad, steps.u_phase_rad);
+}
+
 Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock& acs, double w,
                      double u_phase_apparent) {
   Budget budget;
@@ -173,11 +187,16 @@ Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std:
   if (!fits) {
     return fail(of_channel(shots.input.channels[c], fits.error()));
   }
+  const double duration_s = static_cast<double>(shots.stamps.back() - shots.stamps.front()) * 1e-9;
+  const double samples_per_period = static_cast<double>(shots.stamps.size()) /
+                                    std::max(1.0, shots.apparent_frequency.hz() * duration_s);
   SeriesChannelResult channel{shots.input.channels[c], {}, {}};
   for (std::size_t j = 0; j < fits->size(); ++j) {
     channel.shots.push_back(shot_result((*fits)[j].fit, shots.triggers[j],
                                         shots.input.correct_trigger_phase, shots.link,
                                         shots.u_start_rad, shots.common));
+    add_quantisation(channel.shots.back(), (*fits)[j].fit, shots.input.shots[j].series[c],
+                     samples_per_period);
   }
   const auto mean = mean_of_repetitions(channel.shots);
   if (!mean) {

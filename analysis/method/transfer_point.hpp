@@ -20,7 +20,7 @@ namespace dyncal::analysis {
 struct ChannelSamples {
   std::string name;
   std::span<const double> values;
-  double resolution = 0.0; // one quantisation step; 0: none
+  double resolution = 0.0; // one quantisation step; 0: not stated
 };
 
 struct ChannelFit { // the sine fitted to one recorded channel

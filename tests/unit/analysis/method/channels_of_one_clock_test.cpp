@@ -54,6 +54,23 @@ TEST_F(ChannelsOfOneClockTest, ThePilotGivesAllTheFrequencyAndThePhaseOrigin) {
   EXPECT_EQ(found->others[0].values().data(), sensor.data()); // nothing had to be removed
 }
 
+// Three steps of signal without noise, and nobody said how large a step is.
+TEST_F(ChannelsOfOneClockTest, AStepThatShowsInTheValuesIsInTheBudget) {
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < samples; ++i) {
+    coarse.push_back(
+        std::round(3.0 * std::sin(2.0 * std::numbers::pi * 80.01e-3 * static_cast<double>(i))));
+  }
+  const std::array others{ChannelSamples{"sensor", coarse, 0.0}};
+  const auto found = fit_channels_of_one_clock(nominal, 1e-3, stamps_ns, {"sync", sync}, others);
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  Budget budget;
+  add_sensor_rows(budget, found->others[0], 0.0);
+  const double error_rel = std::abs(found->others[0].amplitude() / 3.0 - 1.0);
+  EXPECT_GT(error_rel, 0.01);
+  EXPECT_GT(2.0 * budget.u_magnitude_rel(), error_rel);
+}
+
 TEST_F(ChannelsOfOneClockTest, APilotWithoutExcitationIsRefusedByName) {
   const auto found = fit_channels_of_one_clock(nominal, 0.0, stamps_ns, {"dau/sync", quiet}, {});
   ASSERT_FALSE(found.has_value());
