@@ -108,13 +108,16 @@ void check_roles(TomlTable& table, const MethodSettings& method) {
   if (method.reference.source.empty()) {
     return; // it was refused
   }
-  const auto problem =
-      find_role_problem({.method = method.kind,
-                         .reference = method.reference,
-                         .sync_acs = method.sync_acs,
-                         .sync_sensor = method.sync_dau,
-                         .dut = method.dut,
-                         .temperature = method.temperature.value_or(ChannelName{})});
+  const RoleNames roles{.method = method.kind,
+                        .reference = method.reference,
+                        .sync_acs = method.sync_acs,
+                        .sync_sensor = method.sync_dau,
+                        .dut = method.dut,
+                        .temperature = method.temperature.value_or(ChannelName{})};
+  auto problem = find_role_problem(roles);
+  if (!problem) {
+    problem = find_repeated_channel(roles);
+  }
   if (problem) {
     table.refuse(problem->role, problem->sentence);
   }

@@ -56,11 +56,22 @@ std::optional<RoleProblem> find_sensor_problem(const RoleNames& roles) {
   return std::nullopt;
 }
 
-// A channel with two roles is measured against itself: its result is a number, and wrong. Where a
-// method needs no sync, the channel that the steps are found in may be the reference.
+} // namespace
+
+std::optional<RoleProblem> find_role_problem(const RoleNames& roles) {
+  if (auto problem = find_missing_sensor(roles)) {
+    return problem;
+  }
+  if (auto problem = find_sync_problem(roles)) {
+    return problem;
+  }
+  return find_sensor_problem(roles);
+}
+
 std::optional<RoleProblem> find_repeated_channel(const RoleNames& roles) {
   const bool by_series = roles.method == EvaluationMethod::series_timestamping;
   std::vector<std::pair<const char*, const ChannelName*>> used{{"reference", &roles.reference}};
+  // Without sync, the channel that the steps are found in may be the reference.
   if (!is_without_sync(roles.method) || roles.sync_acs != roles.reference) {
     used.emplace_back("sync_acs", &roles.sync_acs);
   }
@@ -80,21 +91,6 @@ std::optional<RoleProblem> find_repeated_channel(const RoleNames& roles) {
     }
   }
   return std::nullopt;
-}
-
-} // namespace
-
-std::optional<RoleProblem> find_role_problem(const RoleNames& roles) {
-  if (auto problem = find_missing_sensor(roles)) {
-    return problem;
-  }
-  if (auto problem = find_sync_problem(roles)) {
-    return problem;
-  }
-  if (auto problem = find_sensor_problem(roles)) {
-    return problem;
-  }
-  return find_repeated_channel(roles);
 }
 
 bool has_own_clocks(const std::vector<ChannelName>& dut, const ChannelName& sync_dau) {

@@ -31,6 +31,11 @@ struct RoleProblem {
 // The first rule that these roles break.
 [[nodiscard]] std::optional<RoleProblem> find_role_problem(const RoleNames& roles);
 
+// A channel that has two roles is measured against itself: its result is a number, and wrong. Only
+// a bench file is held to this; the calibration of an ADC compares a channel with itself on
+// purpose.
+[[nodiscard]] std::optional<RoleProblem> find_repeated_channel(const RoleNames& roles);
+
 // Every channel under calibration is of another source than sync_dau: the sensors have stamps of
 // their own, and sync is recorded beside them.
 [[nodiscard]] bool has_own_clocks(const std::vector<ChannelName>& dut, const ChannelName& sync_dau);

@@ -85,11 +85,12 @@ def series_stamping(r):
         beta = phasor(three(trace)["channels"][0])
         way = expj(-w * mpf(r["dso_delay_s"]))
         answers.append(phasor(shot) / reference * turn(sync) * way / turn(beta))
-    mean = sum(answers) / len(answers)
+    length = sum(abs(h) for h in answers) / len(answers)
+    direction = sum(turn(h) for h in answers)
     return {
         "shots": [{"magnitude": number(abs(h)), "phase_rad": number(arg(h))} for h in answers],
-        "magnitude": number(abs(mean)),
-        "phase_rad": number(arg(mean)),
+        "magnitude": number(length),
+        "phase_rad": number(arg(direction)),
         "real_rate_hz": number(mpf(r["nominal_rate_hz"]) * f / apparent),
     }
 

@@ -86,7 +86,7 @@ TEST(RoleRules, AChannelHasOneRole) {
   const auto with = [](auto change) {
     RoleNames roles = sample_stamping();
     change(roles);
-    return find_role_problem(roles);
+    return find_repeated_channel(roles);
   };
   const auto sync_is_reference = with([](RoleNames& r) { r.sync_acs = r.reference; });
   EXPECT_EQ(role_of(sync_is_reference), "sync_acs");
@@ -109,7 +109,7 @@ TEST(RoleRules, WithoutSyncTheStepsMayBeFoundInTheReference) {
   roles.sync_sensor = {};
   roles.sync_acs = roles.reference;
   roles.dut = {{"acs", "sensor"}};
-  EXPECT_EQ(role_of(find_role_problem(roles)), "none");
+  EXPECT_EQ(role_of(find_repeated_channel(roles)), "none");
 }
 
 } // namespace

@@ -28,6 +28,7 @@ TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
   measurement.adc_calibration().push_back(point);
   measurement.temperature("dau/temperature");
   measurement.u_acs_delay_s(1e-7);
+  measurement.level_deviation_rel(0.05);
   measurement.frequency_search_rel(2e-3);
   const auto recipe = parse_recipe(measurement);
   ASSERT_TRUE(recipe) << recipe.error().message;
