@@ -118,8 +118,8 @@ Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
   double u_frequency_hz = 0.0;
   if (frequency_search_rel > 0.0 && pilot.values.size() == stamps_ns.size() && !stamps_ns.empty()) {
     const std::array channels{pilot.values};
-    const auto refined = fit_sine_and_frequency(nominal, frequency_search_rel, middle_ns(stamps_ns),
-                                                stamps_ns, channels);
+    const auto refined = fit_frequency_beside_disturbances(
+        nominal, frequency_search_rel, middle_ns(stamps_ns), stamps_ns, channels);
     if (!refined) {
       return of_channel(pilot.name, refined.error());
     }

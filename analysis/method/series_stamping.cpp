@@ -84,32 +84,6 @@ Error of_channel(const std::string& channel, Error error) {
   return error;
 }
 
-// The apparent frequency, shared by all shots, without what harmonics and hum do to it.
-Expected<FrequencyFit> fit_apparent_frequency(const SeriesStampingInput& input,
-                                              const Frequency& start,
-                                              std::span<const std::int64_t> stamps) {
-  auto series = shots_of_channel(input, 0);
-  const auto raw = fit_sine_and_frequency(start, input.rate_tolerance_rel, 0, stamps, series);
-  if (!raw) {
-    return fail(raw.error());
-  }
-  const auto undisturbed = fit_sine_beside_disturbances(raw->frequency, 0, stamps, series);
-  if (!undisturbed) {
-    return fail(undisturbed.error());
-  }
-  bool cleaned = false;
-  for (std::size_t j = 0; j < series.size(); ++j) {
-    if ((*undisturbed)[j].values.empty()) {
-      continue;
-    }
-    series[j] = (*undisturbed)[j].values;
-    cleaned = true;
-  }
-  return cleaned
-             ? fit_sine_and_frequency(raw->frequency, input.rate_tolerance_rel, 0, stamps, series)
-             : raw;
-}
-
 // One shot's H with what is random in it and what all shots share.
 Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool correct_trigger,
                        std::complex<double> link, double u_phase_start, const Budget& common) {
@@ -128,16 +102,24 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool 
   return result;
 }
 
-// Steps of the sensor's converter that its noise does not hide. They err alike in all shots.
-void add_quantisation(Repetition& shot, const SineFit& series, std::span<const double> values,
-                      double samples_per_period) {
-  const QuantisationUncertainty steps = quantisation_uncertainty(
-      series.amplitude(), series.residual_sd(), found_resolution(values), samples_per_period);
-  if (series.amplitude() > 0.0) {
-    shot.u_common_magnitude_rel =
-        std::hypot(shot.u_common_magnitude_rel, steps.u_amplitude / series.amplitude());
+// Steps of the sensor's converter that its noise does not hide, at their largest over the shots:
+// they err alike in all of them.
+Contribution quantisation_row(const SeriesStampingInput& input, std::size_t channel,
+                              const std::vector<CleanedFit>& fits, double samples_per_period) {
+  Contribution row{.kind = ContributionKind::quantisation,
+                   .subject = "the sensor",
+                   .distribution = Distribution::rectangular};
+  for (std::size_t j = 0; j < fits.size(); ++j) {
+    const SineFit& fit = fits[j].fit;
+    const QuantisationUncertainty steps = quantisation_uncertainty(
+        fit.amplitude(), fit.residual_sd(), found_resolution(input.shots[j].series[channel]),
+        samples_per_period);
+    if (fit.amplitude() > 0.0) {
+      row.u_magnitude_rel = std::max(row.u_magnitude_rel, steps.u_amplitude / fit.amplitude());
+      row.u_phase_rad = std::max(row.u_phase_rad, steps.u_phase_rad);
+    }
   }
-  shot.u_common_phase_rad = std::hypot(shot.u_common_phase_rad, steps.u_phase_rad);
+  return row;
 }
 
 Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock& acs, double w,
@@ -190,13 +172,14 @@ Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std:
   const double duration_s = static_cast<double>(shots.stamps.back() - shots.stamps.front()) * 1e-9;
   const double samples_per_period = static_cast<double>(shots.stamps.size()) /
                                     std::max(1.0, shots.apparent_frequency.hz() * duration_s);
-  SeriesChannelResult channel{shots.input.channels[c], {}, {}};
+  Budget budget;
+  budget.add(quantisation_row(shots.input, c, *fits, samples_per_period));
+  budget.append(shots.common);
+  SeriesChannelResult channel{shots.input.channels[c], {}, {}, budget.rows()};
   for (std::size_t j = 0; j < fits->size(); ++j) {
     channel.shots.push_back(shot_result((*fits)[j].fit, shots.triggers[j],
                                         shots.input.correct_trigger_phase, shots.link,
-                                        shots.u_start_rad, shots.common));
-    add_quantisation(channel.shots.back(), (*fits)[j].fit, shots.input.shots[j].series[c],
-                     samples_per_period);
+                                        shots.u_start_rad, budget));
   }
   const auto mean = mean_of_repetitions(channel.shots);
   if (!mean) {
@@ -232,7 +215,10 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
   const std::vector<std::int64_t> stamps =
       axis.stamps_ns(input.shots.front().series.front().size());
-  const auto pilot = fit_apparent_frequency(input, axis.on_axis(sync.frequency.hz()), stamps);
+  // The apparent frequency, shared by all shots.
+  const auto pilot =
+      fit_frequency_beside_disturbances(axis.on_axis(sync.frequency.hz()), input.rate_tolerance_rel,
+                                        0, stamps, shots_of_channel(input, 0));
   if (!pilot) {
     return fail(of_channel(input.channels.front(), pilot.error()));
   }
@@ -251,7 +237,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const Budget common = common_budget(input, *acs, w,
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *
                                           pilot->u_frequency_hz);
-  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, common.rows(), {}};
+  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
   for (const TriggerPhase& trigger : *triggers) {
     result.trigger_phase_rad.push_back(std::arg(trigger.sync));
     result.u_trigger_phase_rad.push_back(trigger.u_rad);

@@ -70,6 +70,7 @@ struct SeriesChannelResult {
   std::string channel;
   std::vector<Repetition> shots;
   RepetitionMean mean;
+  std::vector<Contribution> common_budget; // what all shots share
 };
 
 struct SeriesStampingResult {
@@ -78,7 +79,6 @@ struct SeriesStampingResult {
   std::vector<double> trigger_phase_rad; // beta_j
   std::vector<double> u_trigger_phase_rad;
   NominalFrequency rate;
-  std::vector<Contribution> common_budget; // what all shots and channels share
   std::vector<SeriesChannelResult> channels;
 };
 

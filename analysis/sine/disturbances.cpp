@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "analysis/sine/drift_order.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/sine_values.hpp"
 
@@ -103,7 +104,7 @@ std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t 
 
 struct Disturbances { // of one channel
   ExtendedBasis basis;
-  [[nodiscard]] bool any() const { return basis.max_harmonic > 1 || !basis.lines.empty(); }
+  DriftEvidence drift;
 };
 
 std::vector<Disturbances> search(const Frequency& frequency, std::int64_t phase_origin_ns,
@@ -113,18 +114,17 @@ std::vector<Disturbances> search(const Frequency& frequency, std::int64_t phase_
   std::vector<Disturbances> found(channels.size());
   const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
   const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
-  const std::vector<Candidate> tried = candidates(frequency, rate_hz, duration_s);
-  if (tried.empty()) {
-    return found;
-  }
   const std::unique_ptr<double[]> residuals =
       residuals_of(frequency, phase_origin_ns, stamps_ns, channels, fits);
   std::vector<std::span<const double>> residual_channels;
   for (std::size_t j = 0; j < channels.size(); ++j) {
-    residual_channels.emplace_back(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
+    const std::span<double> own(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
+    found[j].drift = find_drift(frequency, stamps_ns, own);
+    remove_drift(found[j].drift.polynomial(), stamps_ns, own);
+    residual_channels.emplace_back(own);
   }
 
-  for (const Candidate& candidate : tried) {
+  for (const Candidate& candidate : candidates(frequency, rate_hz, duration_s)) {
     const auto lines = fit_sine(candidate.frequency, phase_origin_ns, stamps_ns, residual_channels);
     if (!lines) {
       continue; // such a line cannot be told from a constant in this record
@@ -165,6 +165,8 @@ void remove_disturbances(CleanedFit& result, const Frequency& frequency, const E
   for (const FurtherPhasor& line : fit.lines) {
     take(Frequency::from_hz(line.frequency_hz), line);
   }
+  remove_drift(fit.drift, stamps_ns, result.values);
+  result.drift_order = static_cast<int>(fit.drift.size());
 }
 
 } // namespace
@@ -182,17 +184,46 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_orig
   std::vector<CleanedFit> result(channels.size());
   for (std::size_t j = 0; j < channels.size(); ++j) {
     result[j].fit = (*plain)[j];
-    if (!found[j].any()) {
-      continue;
-    }
-    const auto fit = fit_sine_extended(frequency, found[j].basis, Weighting::none, phase_origin_ns,
-                                       stamps_ns, channels.subspan(j, 1));
-    if (fit) {
-      remove_disturbances(result[j], frequency, fit->front(), phase_origin_ns, stamps_ns,
+    const auto chosen = choose_drift_order(frequency, found[j].basis, found[j].drift, (*plain)[j],
+                                           phase_origin_ns, stamps_ns, channels[j]);
+    if (chosen.model) {
+      remove_disturbances(result[j], frequency, *chosen.model, phase_origin_ns, stamps_ns,
                           channels[j]);
     }
+    add_undetected_drift(chosen, result[j].fit);
   }
   return result;
+}
+
+Expected<FrequencyFit> fit_frequency_beside_disturbances(
+    const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
+    std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
+  constexpr int max_rounds = 3; // each round's disturbances are those at the frequency of the last
+  auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, channels);
+  for (int round = 0; fit && round < max_rounds; ++round) {
+    const auto undisturbed =
+        fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels);
+    if (!undisturbed) {
+      return fail(undisturbed.error());
+    }
+    std::vector<std::span<const double>> cleaned(channels.begin(), channels.end());
+    bool any = false;
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      if (!(*undisturbed)[j].values.empty()) {
+        cleaned[j] = (*undisturbed)[j].values;
+        any = true;
+      }
+    }
+    if (!any) {
+      break;
+    }
+    const double before_hz = fit->frequency.hz();
+    fit = fit_sine_and_frequency(fit->frequency, search_rel, phase_origin_ns, stamps_ns, cleaned);
+    if (fit && std::abs(fit->frequency.hz() - before_hz) < 0.01 * fit->u_frequency_hz) {
+      break;
+    }
+  }
+  return fit;
 }
 
 } // namespace dyncal::analysis

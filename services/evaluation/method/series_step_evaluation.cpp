@@ -95,8 +95,7 @@ analysis::StartLatency start_latency(const analysis::SeriesStampingResult& resul
   return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz);
 }
 
-std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResult& result,
-                                              const analysis::SeriesChannelResult& channel) {
+std::vector<analysis::Contribution> budget_of(const analysis::SeriesChannelResult& channel) {
   const analysis::Repetition& first = channel.shots.front();
   const auto rest = [](double u, double common) {
     return std::sqrt(std::max(0.0, u * u - common * common));
@@ -109,7 +108,7 @@ std::vector<analysis::Contribution> budget_of(const analysis::SeriesStampingResu
        .u_magnitude_rel =
            rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
        .u_phase_rad = rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
-  rows.insert(rows.end(), result.common_budget.begin(), result.common_budget.end());
+  rows.insert(rows.end(), channel.common_budget.begin(), channel.common_budget.end());
   return rows;
 }
 
@@ -178,7 +177,7 @@ void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
       rate.real_rate_hz, std::hypot(rate.u_real_rate_hz, roles.u_acs_rate_rel * rate.real_rate_hz),
       to_string(evaluated.start.kind), evaluated.start.scatter_s};
   result.fits = {evaluated.result.reference, evaluated.result.sync_acs};
-  result.budget = budget_of(evaluated.result, channel);
+  result.budget = budget_of(channel);
 }
 
 // What a reader of the result should know of its shots.
