@@ -1,0 +1,80 @@
+// Is the series of one channel during one step what its sensor felt? End stops, stuck values,
+// distortion and noise, as plain numbers, and the judgement of them.
+//
+//   y = C + P + sum(P_k, k = 2..10) + e     P_k at k f on the true stamps, so that harmonics above
+//                                           half the rate are met where sampling folds them to
+//   THD = sqrt(sum |P_k|^2) / |P|           residual = standard deviation of e
+//
+// At a limit: values within half a resolution of an end of the stated range; and, stated or not,
+// values equal to the record's own extreme where the fitted sine goes on, when they are more than
+// steps q and noise explain. Their parts p of the record shorten the amplitude by x^3 / (3 pi), x =
+// pi p, at each end (`clipping_rel`).
+//
+// Stuck: a run of equal values during which the fitted sine moves by more than two steps, six times
+// the noise of neighbouring values and a fiftieth of the amplitude. Shorter than four samples is
+// none. Harmonics that sampling folds onto the signal, onto the mean or onto each other are left
+// out. Levels are those of the values, `thd` and `clipping_rel` relative.
+//
+// Fails as sine_fit.hpp does. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "analysis/base/error.hpp"
+#include "analysis/base/frequency.hpp"
+
+namespace dyncal::analysis {
+
+struct SignalExpectation {
+  double range_low = -std::numeric_limits<double>::infinity(); // of the sensor, in its unit
+  double range_high = std::numeric_limits<double>::infinity();
+  double resolution = 0.0; // one step of the converter; 0: none, or far below the noise
+  double noise_sd = 0.0;   // standard deviation of the residual; 0: not known
+};
+
+struct SignalIntegrity {
+  std::uint64_t samples = 0;
+  double amplitude = 0.0;
+  double at_range_part = 0.0;      // of all samples, at an end of the stated range
+  double clipped_part = 0.0;       // at the record's own extremes, beyond what is natural
+  double clipping_rel = 0.0;       // how much of the amplitude these take away, about
+  std::uint64_t longest_run = 0;   // of equal values, whatever the signal does
+  std::uint64_t longest_stuck = 0; // while the signal moves
+  double stuck_part = 0.0;         // of all samples, in such runs
+  double thd = 0.0;
+  double u_thd = 0.0; // what noise alone gives
+  double residual_sd = 0.0;
+  double residual_over_expected = 0.0; // 0: nothing was expected
+};
+
+[[nodiscard]] Expected<SignalIntegrity> measure_integrity(const Frequency& frequency,
+                                                          std::span<const std::int64_t> stamps_ns,
+                                                          std::span<const double> values,
+                                                          const SignalExpectation& expected);
+
+struct IntegrityThresholds {
+  double at_range_part = 5e-4;
+  double clipped_part = 2e-3;
+  std::uint64_t stuck_run = 4;
+  double thd = 0.05;     // ISO 16063-21: up to 5 % for most frequencies
+  double thd_in_u = 6.0; // and this many times what noise gives
+  double residual_ratio = 2.0;
+  double refused_clipping_rel = 1e-3;
+  double refused_stuck_part = 2e-3;
+};
+
+struct IntegrityFindings {
+  bool over_range = false;
+  bool stuck = false;
+  bool distorted = false;
+  bool noisy = false;
+  bool refused = false; // the value cannot be saved
+  [[nodiscard]] bool any() const { return over_range || stuck || distorted || noisy; }
+};
+
+[[nodiscard]] IntegrityFindings judge_integrity(const SignalIntegrity& integrity,
+                                                const IntegrityThresholds& thresholds = {});
+
+} // namespace dyncal::analysis
