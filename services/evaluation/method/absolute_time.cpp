@@ -49,7 +49,9 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs
                        .reference_unit = acs.unit(0),
                        .units = units_of(acs, dut, 0),
                        .samples = {acs.summary(), dut.summary()},
-                       .data_sha256 = digest_of({&acs, &dut})},
+                       .data_sha256 = digest_of({&acs, &dut}),
+                       .common = {{&acs, 0}},
+                       .first_dut = {&dut, 0}},
                       evaluate_channels(task, acs, dut));
 }
 

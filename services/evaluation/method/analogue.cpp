@@ -55,7 +55,9 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
                        .reference_unit = channels.unit(0),
                        .units = units_of(channels, channels, 1),
                        .samples = {channels.summary()},
-                       .data_sha256 = digest_of({&channels})},
+                       .data_sha256 = digest_of({&channels}),
+                       .common = {{&channels, 0}},
+                       .first_dut = {&channels, 1}},
                       evaluated);
 }
 

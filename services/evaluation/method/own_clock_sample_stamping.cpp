@@ -67,7 +67,9 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& source
        .reference_unit = channels.acs.unit(0),
        .units = units_of(channels.acs, channels.dut, 0),
        .samples = {channels.acs.summary(), channels.sync.summary(), channels.dut.summary()},
-       .data_sha256 = digest_of({&channels.acs, &channels.sync, &channels.dut})},
+       .data_sha256 = digest_of({&channels.acs, &channels.sync, &channels.dut}),
+       .common = {{&channels.acs, 0}, {&channels.acs, 1}, {&channels.sync, 0}},
+       .first_dut = {&channels.dut, 0}},
       evaluate_channels(task, channels));
 }
 

@@ -79,7 +79,9 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                        .reference_unit = acs.unit(0),
                        .units = units_of(acs, dau, 1),
                        .samples = {acs.summary(), dau.summary()},
-                       .data_sha256 = digest_of({&acs, &dau})},
+                       .data_sha256 = digest_of({&acs, &dau}),
+                       .common = {{&acs, 0}, {&acs, 1}, {&dau, 0}},
+                       .first_dut = {&dau, 1}},
                       evaluate_channels(task, acs, dau));
 }
 

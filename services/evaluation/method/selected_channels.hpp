@@ -37,13 +37,13 @@ public:
   [[nodiscard]] std::vector<analysis::ChannelSamples> channels_from(std::size_t first) const;
   [[nodiscard]] const std::string& unit(std::size_t i) const;
 
-  [[nodiscard]] SourceSamples summary() const;
-
-private:
   [[nodiscard]] const drivers::ChannelDescription& description(std::size_t i) const {
     return record().description().channels[columns_[i]];
   }
 
+  [[nodiscard]] SourceSamples summary() const;
+
+private:
   SourceInterval source_;
   std::vector<ChannelName> names_;
   std::vector<std::size_t> columns_;

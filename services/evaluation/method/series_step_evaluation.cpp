@@ -231,6 +231,27 @@ analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChann
   return input;
 }
 
+// The first shot in which something is found speaks for the step.
+SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotRecord::Shot>& shots,
+                        const EvaluatedSeries& evaluated, const ChannelName& channel,
+                        std::size_t column) {
+  const double interval_ns = 1e9 / evaluated.result.rate.real_rate_hz;
+  std::vector<std::int64_t> stamps_ns(shots.front().series->samples);
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    stamps_ns[i] = std::llround(static_cast<double>(i) * interval_ns);
+  }
+  const analysis::ChannelFit sine{
+      .channel = channel.text(), .frequency = input.task.step().frequency, .fit = {}};
+  for (const ShotRecord::Shot& shot : shots) {
+    SignalCheck check = check_signal(sine, stamps_ns, shot.series->channel(column),
+                                     input.sensor.description().channels[column]);
+    if (!check.flags.empty()) {
+      return check;
+    }
+  }
+  return {};
+}
+
 std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedChannels& acs,
                                    const std::vector<ShotRecord::Shot>& shots,
                                    const EvaluatedSeries& evaluated,
@@ -245,7 +266,12 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
                   summary_of(input.oscilloscope, shots, &ShotRecord::Shot::trace,
                              input.lost.traces),
                   summary_of(input.sensor, shots, &ShotRecord::Shot::series, input.lost.series)},
-      .data_sha256 = digest_of(acs.samples(), shots)};
+      .data_sha256 = digest_of(acs.samples(), shots),
+      .common = {},
+      .first_dut = {}};
+  const SignalCheck reference = check_signal(evaluated.result.reference, acs, 0);
+  SignalCheck sync = check_signal(evaluated.result.sync_acs, acs, 1);
+  sync.refusal.clear(); // it carries phase only
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < roles.dut.size(); ++i) {
     StepResult result = result_head(task.step(), roles.dut[i]);
@@ -253,6 +279,9 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
     const std::size_t column = *input.sensor.channel(roles.dut[i].channel);
     result.unit = ratio_unit(acs.unit(0), input.sensor.description().channels[column].unit);
     add_input(task, made_of, result);
+    add_check(reference, result);
+    add_check(sync, result);
+    add_check(check_shots(input, shots, evaluated, roles.dut[i], column), result);
     results.push_back(std::move(result));
   }
   return results;

@@ -21,6 +21,20 @@ StepResult point_result(const StepTask& task, const ChannelName& channel,
   return result;
 }
 
+// Of the channels that all results share. Sync carries phase only, which end stops on both sides
+// leave alone: its refusal is none of the results'.
+std::vector<SignalCheck> check_common(const StepInput& input,
+                                      const std::vector<analysis::ChannelFit>& fits) {
+  std::vector<SignalCheck> checks;
+  for (std::size_t i = 0; i < input.common.size(); ++i) {
+    checks.push_back(check_signal(fits[i], *input.common[i].selected, input.common[i].index));
+    if (i > 0) {
+      checks.back().refusal.clear();
+    }
+  }
+  return checks;
+}
+
 } // namespace
 
 StepResult result_head(const RecipeStep& step, const ChannelName& channel) {
@@ -43,6 +57,18 @@ std::vector<StepResult> results_without_value(const RecipeStep& step,
     results.back().problem = problem;
   }
   return results;
+}
+
+void add_check(const SignalCheck& check, StepResult& result) {
+  result.flags.insert(result.flags.end(), check.flags.begin(), check.flags.end());
+  if (check.refusal.empty() || !result.valid) {
+    return;
+  }
+  result.valid = false;
+  result.problem = check.refusal;
+  result.magnitude = result.u_magnitude = StepResult::nan_value;
+  result.phase_rad = result.u_phase_rad = StepResult::nan_value;
+  result.budget.clear();
 }
 
 void add_input(const StepTask& task, const StepInput& input, StepResult& result) {
@@ -69,13 +95,23 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   if (!step) {
     return results_without_value(task.step(), input.dut, step.error().message);
   }
+  const std::vector<SignalCheck> common = check_common(input, step->common_fits);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size(); ++i) {
-    results.push_back(point_result(task, input.dut[i], step->points[i], step->common_fits));
-    results.back().unit = input.units[i];
-    add_input(task, input, results.back());
-    add_monte_carlo_check(task.recipe->monte_carlo_trials, step->points[i], step->common_fits,
-                          results.back());
+    StepResult& result =
+        results.emplace_back(point_result(task, input.dut[i], step->points[i], step->common_fits));
+    result.unit = input.units[i];
+    add_input(task, input, result);
+    for (const SignalCheck& check : common) {
+      add_check(check, result);
+    }
+    add_check(
+        check_signal(step->points[i].dut, *input.first_dut.selected, input.first_dut.index + i),
+        result);
+    if (result.valid) {
+      add_monte_carlo_check(task.recipe->monte_carlo_trials, step->points[i], step->common_fits,
+                            result);
+    }
   }
   return results;
 }

@@ -9,6 +9,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "services/evaluation/method/selected_channels.hpp"
+#include "services/evaluation/method/signal_check.hpp"
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
@@ -21,6 +22,12 @@ struct EvaluatedStep {
   std::vector<analysis::TransferPoint> points;
 };
 
+// A channel among those that were selected, which outlives it.
+struct SelectedChannel {
+  const SelectedChannels* selected = nullptr;
+  std::size_t index = 0;
+};
+
 // What it was made from.
 struct StepInput {
   std::vector<ChannelName> dut; // in the order of the points
@@ -28,6 +35,8 @@ struct StepInput {
   std::vector<std::string> units;
   std::vector<SourceSamples> samples;
   std::string data_sha256;
+  std::vector<SelectedChannel> common; // in the order of the common fits
+  SelectedChannel first_dut;           // the points are of this channel and those after it
 };
 
 // Everything but the numbers: not valid, magnitude and phase NaN.
@@ -38,10 +47,14 @@ struct StepInput {
                                                             const std::vector<ChannelName>& dut,
                                                             const std::string& problem);
 
-// One result a channel: value, fits, budget, what it was made of, and the check by Monte Carlo when
-// the recipe asks for one. Where the evaluation failed: results without a value.
+// One result a channel: value, fits, budget, what it was made of, flags, and the check by Monte
+// Carlo when the recipe asks for one. Where the evaluation failed, or the samples of the channel or
+// of the reference refuse it (signal_check.hpp): results without a value.
 [[nodiscard]] std::vector<StepResult> make_results(const StepTask& task, const StepInput& input,
                                                    const analysis::Expected<EvaluatedStep>& step);
+
+// Flags what a check has found; takes the value away where it refuses it.
+void add_check(const SignalCheck& check, StepResult& result);
 
 // Flags a level that is off the plan and samples that were left out, and adds up what was lost.
 // REQUIRES: the first of the result's fits is that of the reference.

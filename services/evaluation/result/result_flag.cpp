@@ -21,6 +21,12 @@ const char* to_string(ResultFlag flag) {
     return "excitation broken off";
   case ResultFlag::level_off_plan:
     return "level off plan";
+  case ResultFlag::over_range:
+    return "over range";
+  case ResultFlag::values_stuck:
+    return "values stuck";
+  case ResultFlag::distorted:
+    return "distorted";
   case ResultFlag::settling_not_found:
     return "settling not found";
   case ResultFlag::settles_too_long:

@@ -266,6 +266,29 @@ TEST(RunEvaluator, FlagsALevelThatIsOffThePlan) {
   EXPECT_THAT(sentences_of(output.results[3].flags), testing::IsEmpty());
 }
 
+// Clipped at 0.95 of its amplitude a sine loses 1.7 % of it, which no uncertainty covers.
+TEST(RunEvaluator, RefusesTheValueOfASensorAtItsEndStops) {
+  for (const bool range_is_stated : {true, false}) {
+    const EvaluationOutput output = evaluate(
+        {.steps = {{"40", 10.0}}, .sensor_range = 9.0, .range_is_stated = range_is_stated});
+    ASSERT_EQ(output.results.size(), 1U);
+    const StepResult& result = output.results.front();
+    EXPECT_FALSE(result.valid);
+    EXPECT_TRUE(std::isnan(result.magnitude));
+    EXPECT_THAT(result.problem, HasSubstr("dau/acceleration_z is over its range"));
+    EXPECT_THAT(sentences_of(result.flags),
+                testing::Contains(HasSubstr("dau/acceleration_z: over range")));
+    EXPECT_TRUE(output.transfer_functions.empty());
+  }
+}
+
+TEST(RunEvaluator, TakesASensorJustWithinItsRange) {
+  const EvaluationOutput output = evaluate({.steps = {{"40", 10.0}}, .sensor_range = 10.0});
+  ASSERT_EQ(output.results.size(), 1U);
+  EXPECT_TRUE(output.results.front().valid) << output.results.front().problem;
+  EXPECT_THAT(sentences_of(output.results.front().flags), testing::IsEmpty());
+}
+
 TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {
   const tests::SyntheticRun run;
   RunEvaluator evaluator(*parse_recipe(run.measurement()));

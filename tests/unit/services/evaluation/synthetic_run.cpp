@@ -78,9 +78,15 @@ wire::SourceDescription SyntheticRun::acs_description() const {
 }
 
 wire::SourceDescription SyntheticRun::dau_description() const {
-  return description("dau", wire::SOURCE_DAU,
-                     {channel("acceleration_z", R"(\metre\second\tothe{-2})"),
-                      channel("temperature", R"(\degreecelsius)"), channel("sync", R"(\volt)")});
+  wire::SourceDescription dau =
+      description("dau", wire::SOURCE_DAU,
+                  {channel("acceleration_z", R"(\metre\second\tothe{-2})"),
+                   channel("temperature", R"(\degreecelsius)"), channel("sync", R"(\volt)")});
+  if (range_is_stated) {
+    dau.channels()[0].minimum(-sensor_range);
+    dau.channels()[0].maximum(sensor_range);
+  }
+  return dau;
 }
 
 double SyntheticRun::duration_s() const {
@@ -148,6 +154,9 @@ std::vector<wire::SampleBlock> SyntheticRun::dau_blocks() const {
       const double t = static_cast<double>(t_ns) * 1e-9;
       block.stamps_ns().push_back(dau_epoch_ns + t_ns);
       block.values()[i] = signal(t, magnitude, delay_s) + 10.0 * normal(random);
+      if (sensor_range > 0.0) {
+        block.values()[i] = std::clamp(block.values()[i], -sensor_range, sensor_range);
+      }
       block.values()[count + i] = 25.0;
       block.values()[2 * count + i] = signal(t, 0.0166, 0.0) + 1.5 + 1e-4 * normal(random);
     }

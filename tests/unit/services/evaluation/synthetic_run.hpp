@@ -23,6 +23,8 @@ struct SyntheticRun {
   double off_s = 0.5;
   double settling_time_constant_s = 0.0; // the amplitude comes up from nine tenths; 0: at once
   std::size_t block_samples = 50;        // of the DAU; ten times as many of the ACS
+  double sensor_range = 0.0;             // the sensor's end stops, plus and minus; 0: none
+  bool range_is_stated = true;           // in its description
   std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
 
   [[nodiscard]] wire::Measurement measurement() const;
