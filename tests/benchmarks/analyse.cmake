@@ -7,4 +7,4 @@ target_compile_definitions(analyse_speed PRIVATE DYNCAL="$<TARGET_FILE:dyncal>")
 add_dependencies(analyse_speed dyncal)
 add_test(NAME analyse_speed.gives_every_result
   COMMAND analyse_speed --step-s 3 --runs 1 --disturbed)
-set_tests_properties(analyse_speed.gives_every_result PROPERTIES LABELS benchmark TIMEOUT 120)
+set_tests_properties(analyse_speed.gives_every_result PROPERTIES LABELS benchmark TIMEOUT 600)
