@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "services/acs/played_source.hpp"
 #include "services/command/run_command.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/replay/file_input.hpp"
@@ -10,6 +11,7 @@
 #include "services/replay/shot_files.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -19,13 +21,27 @@ constexpr std::size_t max_evaluations = 4;
 
 using Inputs = std::vector<std::unique_ptr<FileInput>>;
 
+SourceKind kind_of(const BenchFile& bench, const std::string& name) {
+  const SourceSettings& source = *bench.source(name);
+  if (source.is<OscilloscopeSourceSettings>()) {
+    return SourceKind::dso;
+  }
+  return source.is<SeriesSourceSettings>() ? SourceKind::tss : acs::kind_of(bench.method, name);
+}
+
+void add_source(const BenchFile& bench, const std::string& name,
+                const drivers::SourceDescription& description, RunOutcome& outcome) {
+  outcome.sources.push_back({name, kind_of(bench, name), software_version(), description});
+}
+
 // All at once: a record of shots is small beside one of samples.
 Expected<void> take_shots(const BenchFile& bench, const std::string& source,
-                          RunEvaluator& evaluator) {
+                          RunEvaluator& evaluator, RunOutcome& outcome) {
   auto files = read_shot_files(bench, source);
   if (!files) {
     return fail(files.error());
   }
+  add_source(bench, source, files->description, outcome);
   if (auto described = evaluator.describe(source, std::move(files->description)); !described) {
     return described;
   }
@@ -35,12 +51,12 @@ Expected<void> take_shots(const BenchFile& bench, const std::string& source,
   return {};
 }
 
-Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
+Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, RunOutcome& outcome) {
   Inputs inputs;
   for (const std::string& name : evaluator.recipe().sources()) {
     const SourceSettings& source = *bench.source(name);
     if (source.is<OscilloscopeSourceSettings>() || source.is<SeriesSourceSettings>()) {
-      if (const auto read = take_shots(bench, name, evaluator); !read) {
+      if (const auto read = take_shots(bench, name, evaluator, outcome); !read) {
         return fail(read.error());
       }
       continue;
@@ -49,6 +65,7 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator) {
     if (!input) {
       return fail(input.error());
     }
+    add_source(bench, name, (*input)->description(), outcome);
     if (const auto described = evaluator.describe(name, (*input)->description()); !described) {
       return fail(described.error());
     }
@@ -93,6 +110,31 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
   return {};
 }
 
+// Stamps before 2000 were not made by a clock that knows the time: the record begins at 0.
+constexpr std::int64_t min_utc_ns = 946'684'800'000'000'000;
+
+// The time of the run is that of its records, where a source has stamps in UTC.
+void add_recorded_time(RunOutcome& outcome) {
+  const auto has_utc_stamps = [&](const std::string& name) {
+    return std::any_of(outcome.sources.begin(), outcome.sources.end(), [&](const RunSource& one) {
+      return one.source == name && one.description.time_base == drivers::TimeBase::utc &&
+             !is_triggered(one.kind);
+    });
+  };
+  for (const StepResult& result : outcome.results) {
+    for (const SourceSamples& samples : result.samples) {
+      if (samples.used == 0 || samples.first_stamp_ns < min_utc_ns ||
+          !has_utc_stamps(samples.source)) {
+        continue;
+      }
+      const bool first = outcome.ended_utc_ns == 0;
+      outcome.began_utc_ns =
+          first ? samples.first_stamp_ns : std::min(outcome.began_utc_ns, samples.first_stamp_ns);
+      outcome.ended_utc_ns = std::max(outcome.ended_utc_ns, samples.last_stamp_ns);
+    }
+  }
+}
+
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
@@ -110,7 +152,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations)});
-  auto inputs = open_inputs(*bench, evaluator);
+  auto inputs = open_inputs(*bench, evaluator, outcome);
   if (!inputs) {
     return fail(inputs.error());
   }
@@ -118,6 +160,8 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
     return fail(evaluated.error());
   }
   outcome.analysis_dds = "none";
+  outcome.analysis_software = software_version();
+  add_recorded_time(outcome);
   return outcome;
 }
 

@@ -4,6 +4,22 @@
 
 namespace dyncal::services {
 
+const char* to_string(SourceKind kind) {
+  switch (kind) {
+  case SourceKind::dau:
+    return "dau";
+  case SourceKind::acs:
+    return "acs";
+  case SourceKind::dso:
+    return "dso";
+  case SourceKind::tss:
+    return "tss";
+  case SourceKind::can:
+    return "can";
+  }
+  return "acs";
+}
+
 wire::SourceKind to_wire(SourceKind kind) {
   switch (kind) {
   case SourceKind::dau:

@@ -14,6 +14,9 @@ enum class SourceKind {
   can  // a sensor on CAN
 };
 
+// As result files spell it: "dau".
+[[nodiscard]] const char* to_string(SourceKind kind);
+
 [[nodiscard]] wire::SourceKind to_wire(SourceKind kind);
 // A value of a later contract reads as acs.
 [[nodiscard]] SourceKind from_wire(wire::SourceKind kind);

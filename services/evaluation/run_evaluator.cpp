@@ -6,7 +6,23 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/evaluation/record/step_temperature.hpp"
+
 namespace dyncal::services {
+
+namespace {
+
+Evaluation with_temperature(Evaluation evaluation, std::optional<double> degc) {
+  return [evaluation = std::move(evaluation), degc] {
+    std::vector<StepResult> results = evaluation();
+    for (StepResult& result : results) {
+      result.temperature_degc = degc;
+    }
+    return results;
+  };
+}
+
+} // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
@@ -131,11 +147,17 @@ void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutpu
   }
 }
 
+std::optional<double> RunEvaluator::temperature_of_step(std::size_t step) const {
+  return recipe_->temperature ? step_temperature_degc(records_, *recipe_->temperature, step)
+                              : std::nullopt;
+}
+
 void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < records_.excitation().steps_expected() && records_.is_searched(next_step_) &&
          method_->is_complete(next_step_, records_)) {
     evaluations_.make_room();
-    evaluations_.begin(method_->evaluation(next_step_, records_));
+    evaluations_.begin(with_temperature(method_->evaluation(next_step_, records_),
+                                        temperature_of_step(next_step_)));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);

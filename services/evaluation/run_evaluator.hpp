@@ -80,6 +80,7 @@ private:
   [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;
   [[nodiscard]] bool is_evaluated(std::uint32_t step) const;
+  [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   void finish(EvaluationOutput& output);

@@ -44,6 +44,7 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
     return fail(armed.error());
   }
   set_state(wire::MEASUREMENT_RUNNING);
+  outcome_.began_utc_ns = clock_.utc_now_ns();
   const Expected<void> excited = excite(stop);
   outcome_.interrupted = stop.stop_requested();
   if (!excited) {
@@ -59,6 +60,7 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
     outcome_.problem = collected.error().message;
   }
   outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
+  outcome_.ended_utc_ns = clock_.utc_now_ns();
   set_state(final_state(excited.has_value()));
   messages_->wait_for_acknowledgments(acknowledgment_limit);
   sort_outcome();

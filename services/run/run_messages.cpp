@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
@@ -19,12 +20,15 @@ Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Cloc
   auto results = participant.reader(topics::calibration_result, bench, wake_up);
   auto transfer = participant.reader(topics::transfer_function, bench, wake_up);
   auto clocks = participant.reader(topics::sample_clock_report, bench, wake_up);
-  if (auto error = first_error(measurement, excitation, status, results, transfer, clocks)) {
+  auto sources = participant.reader(topics::source_description, bench, wake_up);
+  if (auto error =
+          first_error(measurement, excitation, status, results, transfer, clocks, sources)) {
     return fail(*error);
   }
   return RunMessages(clock, bench, std::move(run),
                      Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
-                               std::move(*results), std::move(*transfer), std::move(*clocks)});
+                               std::move(*results), std::move(*transfer), std::move(*clocks),
+                               std::move(*sources)});
 }
 
 void RunMessages::publish(const wire::Measurement& measurement) {
@@ -71,7 +75,28 @@ void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>&
   });
 }
 
+void RunMessages::take_sources(RunOutcome& outcome) {
+  const std::vector<std::string> of_run =
+      outcome.recipe ? outcome.recipe->sources() : std::vector<std::string>{};
+  endpoints_.sources.take([&](const wire::SourceDescription& message, const bus::SampleInfo& info) {
+    RunSource source{message.source().to_string(), from_wire(message.kind()), message.software(),
+                     from_message(message)};
+    if (!info.valid || std::find(of_run.begin(), of_run.end(), source.source) == of_run.end()) {
+      return;
+    }
+    const auto known =
+        std::find_if(outcome.sources.begin(), outcome.sources.end(),
+                     [&](const RunSource& other) { return other.source == source.source; });
+    if (known == outcome.sources.end()) {
+      outcome.sources.push_back(std::move(source));
+    } else {
+      *known = std::move(source);
+    }
+  });
+}
+
 void RunMessages::take(RunOutcome& outcome) {
+  take_sources(outcome);
   take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
     return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
   });
@@ -84,6 +109,8 @@ void RunMessages::take(RunOutcome& outcome) {
       analysis_ = status;
       analysis_heard_ = clock_->now();
       outcome.analysis_dds = status.dds();
+      outcome.analysis_software = status.software();
+      outcome.analysis_host = status.host();
     }
   });
 }

@@ -32,7 +32,7 @@ public:
   void announce(const wire::PlannedStep& step, wire::ExcitationState state);
   void wait_for_acknowledgments(std::chrono::nanoseconds limit);
 
-  // Takes what has come, results into `outcome`.
+  // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
   void take(RunOutcome& outcome);
   // The newest status of an analysis service for this run; nothing before the first.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
@@ -46,11 +46,13 @@ private:
     bus::Reader<wire::CalibrationResult> results;
     bus::Reader<wire::TransferFunction> transfer_functions;
     bus::Reader<wire::SampleClockReport> clock_reports;
+    bus::Reader<wire::SourceDescription> sources;
   };
 
   RunMessages(bus::Clock& clock, std::string bench, std::string run, Endpoints endpoints)
       : clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
         endpoints_(std::move(endpoints)) {}
+  void take_sources(RunOutcome& outcome);
   template <class Message, class Result, class SameKey>
   void take_newest(bus::Reader<Message>& reader, std::vector<Result>& all, SameKey same_key);
 

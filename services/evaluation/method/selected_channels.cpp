@@ -66,12 +66,11 @@ std::string digest_of(std::initializer_list<const SelectedChannels*> parts) {
 }
 
 std::string ratio_unit(const std::string& input, const std::string& output) {
-  if (input == output) {
-    return R"(\one)";
+  if (input.empty() || output.empty()) {
+    return "";
   }
-  return input.empty() || output.empty()
-             ? ""
-             : fmt::format("({})/({})", short_form(output), short_form(input));
+  return input == output ? R"(\one)"
+                         : fmt::format("({})/({})", short_form(output), short_form(input));
 }
 
 } // namespace dyncal::services

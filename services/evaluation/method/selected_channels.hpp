@@ -53,7 +53,7 @@ private:
 // SHA-256 over stamps and values of all parts in their order.
 [[nodiscard]] std::string digest_of(std::initializer_list<const SelectedChannels*> parts);
 
-// Output per input, as D-SI spells it: "\one" when both are the same.
+// Output per input, as D-SI spells it: "\one" when both are the same, empty where one is not known.
 [[nodiscard]] std::string ratio_unit(const std::string& input, const std::string& output);
 
 } // namespace dyncal::services

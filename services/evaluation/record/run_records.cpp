@@ -57,6 +57,14 @@ std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t
   return searches_.at(search).steps.interval(step);
 }
 
+std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
+                                                    std::size_t step) const {
+  const auto search = std::find_if(searches_.begin(), searches_.end(), [&](const Search& one) {
+    return std::find(one.sources.begin(), one.sources.end(), source) != one.sources.end();
+  });
+  return search == searches_.end() ? std::nullopt : search->steps.interval(step);
+}
+
 SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {
   const SourceRecord& whole = of(source);
   if (copies_) {

@@ -58,6 +58,9 @@ public:
 
   // Evaluated in the caller's thread these look at the records themselves, else at copies.
   void copy_samples(bool copies) { copies_ = copies; }
+  // Of the step in a source; nothing where no search applies to it or the step was not found.
+  [[nodiscard]] std::optional<TimeInterval> interval_in(const std::string& source,
+                                                        std::size_t step) const;
   [[nodiscard]] SourceInterval samples(const std::string& source,
                                        const TimeInterval& interval) const;
 

@@ -1,57 +1,119 @@
 #include "services/evaluation/result/result_flag.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 namespace dyncal::services {
+namespace {
+
+struct Row {
+  ResultFlag kind;
+  const char* name;
+  const char* sentence;
+  const char* explanation;
+};
+
+// In the order of the enum.
+constexpr std::array rows{
+    Row{ResultFlag::samples_lost, "samples_lost", "samples lost",
+        "samples of this source are missing within the step and the fit uses the others; check "
+        "its network, its buffers and the load of its computer"},
+    Row{ResultFlag::stamps_not_trusted, "stamps_not_trusted",
+        "samples left out, their stamps are not trusted",
+        "the device or the check of its stamps does not trust some of them, and their samples are "
+        "left out; check the clock and the GPS reception of the unit"},
+    Row{ResultFlag::values_not_measured, "values_not_measured",
+        "samples left out, they were not measured",
+        "the device sent samples without a value, which are left out; check its settings"},
+    Row{ResultFlag::shorter_than_planned, "shorter_than_planned", "shorter than planned",
+        "less of the steady sine was recorded than the plan asks for, so the noise in u is larger "
+        "than planned; repeat the step, or lengthen what the generator plays"},
+    Row{ResultFlag::clock_uncertainty_unknown, "clock_uncertainty_unknown",
+        "nothing is known of the uncertainty of its clock",
+        "u of the phase holds nothing for the time stamps of this source; find their uncertainty "
+        "and add it by hand"},
+    Row{ResultFlag::excitation_broken_off, "excitation_broken_off", "excitation broken off",
+        "the step ended before its time, and what was recorded until then was evaluated; repeat "
+        "the step"},
+    Row{ResultFlag::level_off_plan, "level_off_plan", "level off plan",
+        "the reference shows another level than planned, and the value holds for what it shows; "
+        "check level_per_volt and the amplifier, or set level_tolerance_rel"},
+    Row{ResultFlag::over_range, "over_range", "over range",
+        "samples lie at an end of the channel's range, where the sine is cut off; lower the level "
+        "or choose a wider range"},
+    Row{ResultFlag::values_stuck, "values_stuck", "values stuck",
+        "the channel repeats one value while the signal moves; check the sensor and its interface"},
+    Row{ResultFlag::distorted, "distorted", "distorted",
+        "the channel shows more harmonics than ISO 16063-21 allows an excitation; check exciter, "
+        "mounting and level"},
+    Row{ResultFlag::settling_not_found, "settling_not_found", "settling not found",
+        "the data do not show when the sine became steady, so the planned settling time was left "
+        "out; look at the record, or state settling_s"},
+    Row{ResultFlag::settles_too_long, "settles_too_long", "settles for",
+        "the sine was not yet steady when the evaluation began; raise settling_s"},
+    Row{ResultFlag::shots_missing, "shots_missing", "shots",
+        "fewer shots than planned came or could be used, so u is larger than planned; check the "
+        "trigger and repeat the step"},
+    Row{ResultFlag::shots_left_out, "shots_left_out",
+        "shots of another length, rate or number of channels left out",
+        "the settings of an instrument changed during the step; repeat it with unchanged settings"},
+    Row{ResultFlag::records_lost, "records_lost", "records of shots lost: not usable, or too many",
+        "records of this source could not be used or exceeded what is held; check the instrument "
+        "and the number of shots"},
+    Row{ResultFlag::start_undecided, "start_undecided", "start of the series",
+        "the phases of the shots do not show how the series starts after the trigger, which u "
+        "allows for; record more shots"},
+    Row{ResultFlag::trigger_phase_not_corrected, "trigger_phase_not_corrected",
+        "the phase of the trigger is not corrected",
+        "noise and threshold of the trigger are left in the phase; set trigger_phase_correction "
+        "= true for a calibration"},
+    Row{ResultFlag::no_monte_carlo_check, "no_monte_carlo_check", "no Monte Carlo check",
+        "the cross-check that the bench file asks for was not possible for the reason given; the "
+        "value and its u stand without it"},
+    Row{ResultFlag::polarity_inverted, "polarity_inverted", "polarity inverted",
+        "the phase tends to pi at 0 Hz: sensor or reference point the other way or a cable is "
+        "reversed; turn it, or add pi to the phase when comparing"},
+    Row{ResultFlag::answers_before_excitation, "answers_before_excitation",
+        "answers before its excitation",
+        "the group delay is below 0 by more than three times its uncertainty, which no sensor "
+        "does; check which channels the roles name, and the corrections"},
+    Row{ResultFlag::from_message, "other", "",
+        "a newer version of dyncal made this result; its sentence says what it found"},
+};
+
+const Row& row_of(ResultFlag flag) {
+  return rows.at(static_cast<std::size_t>(flag));
+}
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (static_cast<std::size_t>(rows[i].kind) != i) {
+      return false;
+    }
+  }
+  return rows.size() == static_cast<std::size_t>(ResultFlag::from_message) + 1;
+}
+static_assert(is_in_order(), "one row for every flag, in the order of the enum");
+
+} // namespace
 
 const char* to_string(ResultFlag flag) {
-  switch (flag) {
-  case ResultFlag::samples_lost:
-    return "samples lost";
-  case ResultFlag::stamps_not_trusted:
-    return "samples left out, their stamps are not trusted";
-  case ResultFlag::values_not_measured:
-    return "samples left out, they were not measured";
-  case ResultFlag::shorter_than_planned:
-    return "shorter than planned";
-  case ResultFlag::clock_uncertainty_unknown:
-    return "nothing is known of the uncertainty of its clock";
-  case ResultFlag::excitation_broken_off:
-    return "excitation broken off";
-  case ResultFlag::level_off_plan:
-    return "level off plan";
-  case ResultFlag::over_range:
-    return "over range";
-  case ResultFlag::values_stuck:
-    return "values stuck";
-  case ResultFlag::distorted:
-    return "distorted";
-  case ResultFlag::settling_not_found:
-    return "settling not found";
-  case ResultFlag::settles_too_long:
-    return "settles for";
-  case ResultFlag::shots_missing:
-    return "shots";
-  case ResultFlag::shots_left_out:
-    return "shots of another length, rate or number of channels left out";
-  case ResultFlag::records_lost:
-    return "records of shots lost: not usable, or too many";
-  case ResultFlag::start_undecided:
-    return "start of the series";
-  case ResultFlag::trigger_phase_not_corrected:
-    return "the phase of the trigger is not corrected";
-  case ResultFlag::no_monte_carlo_check:
-    return "no Monte Carlo check";
-  case ResultFlag::polarity_inverted:
-    return "polarity inverted";
-  case ResultFlag::answers_before_excitation:
-    return "answers before its excitation: its group delay is below 0 by more than three times its "
-           "uncertainty; are the channels of the roles the right ones?";
-  case ResultFlag::from_message:
-    break;
-  }
-  return "";
+  return row_of(flag).sentence;
+}
+
+std::string_view name_of(ResultFlag flag) {
+  return row_of(flag).name;
+}
+
+ResultFlag parse_flag_name(std::string_view name) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.name == name; });
+  return found == rows.end() ? ResultFlag::from_message : found->kind;
+}
+
+std::string_view explanation_of(ResultFlag flag) {
+  return row_of(flag).explanation;
 }
 
 Flag make_flag(ResultFlag kind) {
@@ -73,10 +135,19 @@ std::vector<std::string> sentences_of(const std::vector<Flag>& flags) {
   return sentences;
 }
 
-std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences) {
+std::vector<std::string> names_of(const std::vector<Flag>& flags) {
+  std::vector<std::string> names;
+  std::transform(flags.begin(), flags.end(), std::back_inserter(names),
+                 [](const Flag& flag) { return std::string(name_of(flag.kind)); });
+  return names;
+}
+
+std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences,
+                                     const std::vector<std::string>& names) {
   std::vector<Flag> flags;
-  for (const std::string& sentence : sentences) {
-    flags.push_back({ResultFlag::from_message, sentence});
+  for (std::size_t i = 0; i < sentences.size(); ++i) {
+    const ResultFlag kind = i < names.size() ? parse_flag_name(names[i]) : ResultFlag::from_message;
+    flags.push_back({kind, sentences[i]});
   }
   return flags;
 }

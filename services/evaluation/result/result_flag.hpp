@@ -1,10 +1,12 @@
-// What a reader of a result should know of it beside its numbers: closed set of kinds, and the
-// sentence that results carry.
+// What a reader of a result should know beside its numbers: a closed set of flags, each with a
+// name for programs, the sentence that results carry, and what it means.
 //
-// Plain data and functions; any thread.
+// The table in result_flag.cpp is the only place that names and explains them: the terminal, JSON,
+// CSV, figures and `dyncal watch` take both from here. Plain data and functions; any thread.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dyncal::services {
@@ -30,11 +32,19 @@ enum class ResultFlag {
   no_monte_carlo_check,
   polarity_inverted,
   answers_before_excitation,
-  from_message // read from the bus, which carries the sentence alone
+  from_message // read from the bus, and not known to this version
 };
 
 // The part of the sentence that every flag of the kind has; empty for from_message.
 [[nodiscard]] const char* to_string(ResultFlag flag);
+
+// For programs: "samples_lost"; "other" for from_message.
+[[nodiscard]] std::string_view name_of(ResultFlag flag);
+// from_message for a name that this version does not know.
+[[nodiscard]] ResultFlag parse_flag_name(std::string_view name);
+
+// For people: what it means and what to do about it.
+[[nodiscard]] std::string_view explanation_of(ResultFlag flag);
 
 struct Flag {
   ResultFlag kind = ResultFlag::from_message;
@@ -49,6 +59,10 @@ struct Flag {
 [[nodiscard]] Flag flag_with_reason(ResultFlag kind, const std::string& reason);
 
 [[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Flag>& flags);
-[[nodiscard]] std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences);
+// One for each flag, in their order.
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Flag>& flags);
+// `names` may be shorter: a writer of an older contract sends none.
+[[nodiscard]] std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences,
+                                                   const std::vector<std::string>& names);
 
 } // namespace dyncal::services

@@ -27,7 +27,27 @@ wire::SineFit fit_message(const analysis::ChannelFit& fit) {
   return message;
 }
 
-// Covariances between the coefficients are not on the way.
+wire::FitCovariance covariance_message(const analysis::SineFit& fit) {
+  wire::FitCovariance message;
+  message.sine_sine(fit.covariance[0]);
+  message.sine_cosine(fit.covariance[1]);
+  message.sine_offset(fit.covariance[2]);
+  message.cosine_cosine(fit.covariance[3]);
+  message.cosine_offset(fit.covariance[4]);
+  message.offset_offset(fit.covariance[5]);
+  message.residual_sum_of_squares(fit.rss);
+  message.degrees_of_freedom(fit.degrees_of_freedom);
+  return message;
+}
+
+void read_covariance(const wire::FitCovariance& message, analysis::SineFit& fit) {
+  fit.covariance = {message.sine_sine(),     message.sine_cosine(),   message.sine_offset(),
+                    message.cosine_cosine(), message.cosine_offset(), message.offset_offset()};
+  fit.rss = message.residual_sum_of_squares();
+  fit.degrees_of_freedom = message.degrees_of_freedom();
+}
+
+// What a writer of an older contract sends: no covariances between the coefficients.
 analysis::ChannelFit fit_from_message(const wire::SineFit& message) {
   const auto square = [](double u) { return u * u; };
   const double samples = static_cast<double>(std::max<std::uint64_t>(message.sample_count(), 1));
@@ -120,6 +140,7 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   write_value(result, message);
   for (const analysis::ChannelFit& fit : result.fits) {
     message.fits().push_back(fit_message(fit));
+    message.fit_covariances().push_back(covariance_message(fit.fit));
   }
   for (const analysis::Contribution& row : result.budget) {
     message.budget().push_back(to_message(row));
@@ -129,6 +150,9 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   }
   message.lost(result.lost);
   message.flags() = sentences_of(result.flags);
+  message.flag_names() = names_of(result.flags);
+  message.temperature_valid(result.temperature_degc.has_value());
+  message.temperature_degc(result.temperature_degc.value_or(0.0));
   message.software(software_version());
   message.recipe_sha256(recipe.sha256);
   message.data_sha256(result.data_sha256);
@@ -153,9 +177,13 @@ StepResult from_message(const wire::CalibrationResult& message) {
   result.phase_rad = message.phase_rad();
   result.u_phase_rad = message.u_phase_rad();
   result.unit = message.unit();
-  for (const wire::SineFit& fit : message.fits()) {
+  for (std::size_t i = 0; i < message.fits().size(); ++i) {
+    const wire::SineFit& fit = message.fits()[i];
     if (std::isfinite(fit.frequency_hz()) && fit.frequency_hz() > 0.0) {
       result.fits.push_back(fit_from_message(fit));
+      if (i < message.fit_covariances().size()) {
+        read_covariance(message.fit_covariances()[i], result.fits.back().fit);
+      }
     }
   }
   for (const wire::BudgetContribution& row : message.budget()) {
@@ -167,7 +195,10 @@ StepResult from_message(const wire::CalibrationResult& message) {
                               samples.first_stamp_ns(), samples.last_stamp_ns()});
   }
   result.lost = message.lost();
-  result.flags = flags_from_message(message.flags());
+  result.flags = flags_from_message(message.flags(), message.flag_names());
+  if (message.temperature_valid()) {
+    result.temperature_degc = message.temperature_degc();
+  }
   result.data_sha256 = message.data_sha256();
   if (!message.series_start().empty()) {
     result.series = SeriesFinding{message.sample_rate_hz(), message.u_sample_rate_hz(),

@@ -1,7 +1,8 @@
 // The contract's CalibrationResult: made from a result where it leaves, read where it comes in.
 //
-// A message carries the standard uncertainties of fitted coefficients, not their covariances: these
-// are 0 in what from_message() gives. Plain functions, any thread.
+// What a member appended to the contract carries is missing in messages of older writers: then
+// covariances of fitted coefficients are 0, flags have no name, and there is no temperature. Plain
+// functions, any thread.
 #pragma once
 
 #include "idl/dyncal.h"

@@ -9,6 +9,7 @@ RunOutcome outcome_of(const Recipe& recipe) {
   outcome.method = recipe.method();
   outcome.recipe_sha256 = recipe.sha256;
   outcome.planned_steps = recipe.steps.size();
+  outcome.recipe = recipe;
   return outcome;
 }
 

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "drivers/sample_block.hpp"
 #include "services/contract/evaluation_method.hpp"
+#include "services/contract/source_kind.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/clock_report.hpp"
 #include "services/evaluation/result/step_result.hpp"
@@ -14,13 +18,27 @@
 
 namespace dyncal::services {
 
+// A source of the run as it described itself.
+struct RunSource {
+  std::string source;
+  SourceKind kind = SourceKind::acs;
+  std::string software; // of the service that published it
+  drivers::SourceDescription description;
+};
+
 struct RunOutcome {
   std::string bench;
   std::string run;
   EvaluationMethod method = EvaluationMethod::sample_timestamping;
   std::string recipe_sha256;
   std::size_t planned_steps = 0;
+  std::optional<Recipe> recipe;    // what was planned
+  std::int64_t began_utc_ns = 0;   // 0: not known
+  std::int64_t ended_utc_ns = 0;   // 0: not known
+  std::vector<RunSource> sources;  // those of the recipe
   std::string analysis_dds;        // DDS implementation of the analysis service; "none" offline
+  std::string analysis_software;   // its name and version; empty: not known
+  std::string analysis_host;       // its computer; empty offline
   std::vector<StepResult> results; // in the order of steps, then as they came
   std::vector<TransferFunction> transfer_functions;
   std::vector<ClockReport> clock_reports;

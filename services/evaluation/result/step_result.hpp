@@ -65,7 +65,8 @@ struct StepResult {
   std::uint64_t lost = 0; // all that was lost of any source
   std::vector<Flag> flags;
   std::string data_sha256;
-  std::optional<SeriesFinding> series; // series time stamping
+  std::optional<double> temperature_degc; // mean of the recipe's channel during the step
+  std::optional<SeriesFinding> series;    // series time stamping
   std::optional<analysis::TransferCheck> monte_carlo;
 };
 

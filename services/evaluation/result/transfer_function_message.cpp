@@ -41,6 +41,25 @@ FrequencyPoint point_from_message(const wire::TransferPoint& message) {
   return point;
 }
 
+wire::MeanUncertainty uncertainty_message(const analysis::RepetitionMean& mean) {
+  wire::MeanUncertainty message;
+  message.u_magnitude_rel(mean.magnitude_rel.u);
+  message.degrees_of_freedom_magnitude(mean.magnitude_rel.degrees_of_freedom);
+  message.k_magnitude(mean.magnitude_rel.k);
+  message.u_phase_rad(mean.phase.u);
+  message.degrees_of_freedom_phase(mean.phase.degrees_of_freedom);
+  message.k_phase(mean.phase.k);
+  message.u_independent_phase_rad(mean.u_independent_phase_rad);
+  return message;
+}
+
+void read_uncertainty(const wire::MeanUncertainty& message, analysis::RepetitionMean& mean) {
+  mean.magnitude_rel = {message.u_magnitude_rel(), message.degrees_of_freedom_magnitude(),
+                        message.k_magnitude()};
+  mean.phase = {message.u_phase_rad(), message.degrees_of_freedom_phase(), message.k_phase()};
+  mean.u_independent_phase_rad = message.u_independent_phase_rad();
+}
+
 } // namespace
 
 wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& function) {
@@ -52,6 +71,7 @@ wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& 
   message.unit(function.unit);
   for (const FrequencyPoint& point : function.points) {
     message.points().push_back(point_message(point));
+    message.mean_uncertainties().push_back(uncertainty_message(point.mean));
   }
   message.group_delay_valid(function.group_delay.has_value());
   message.group_delay_problem(function.group_delay_problem);
@@ -63,8 +83,12 @@ wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& 
     message.u_intercept_rad(delay.u_intercept_rad);
     message.cov_delay_intercept_rad_s(delay.cov_delay_intercept);
     message.phase_covariance_rad2() = delay.phase_covariance;
+    message.polarity_inverted(delay.polarity_inverted);
+    message.group_delay_chi_squared(delay.chi_squared);
+    message.group_delay_degrees_of_freedom(delay.degrees_of_freedom);
   }
   message.flags() = sentences_of(function.flags);
+  message.flag_names() = names_of(function.flags);
   message.lost(function.lost);
   message.software(software_version());
   message.recipe_sha256(recipe.sha256);
@@ -76,8 +100,11 @@ TransferFunction from_message(const wire::TransferFunction& message) {
   function.channel = message.channel().to_string();
   function.method = from_wire(message.method()).value_or(EvaluationMethod::sample_timestamping);
   function.unit = message.unit();
-  for (const wire::TransferPoint& point : message.points()) {
-    function.points.push_back(point_from_message(point));
+  for (std::size_t i = 0; i < message.points().size(); ++i) {
+    function.points.push_back(point_from_message(message.points()[i]));
+    if (i < message.mean_uncertainties().size()) {
+      read_uncertainty(message.mean_uncertainties()[i], function.points.back().mean);
+    }
   }
   if (message.group_delay_valid()) {
     analysis::GroupDelay& delay = function.group_delay.emplace();
@@ -87,9 +114,12 @@ TransferFunction from_message(const wire::TransferFunction& message) {
     delay.u_intercept_rad = message.u_intercept_rad();
     delay.cov_delay_intercept = message.cov_delay_intercept_rad_s();
     delay.phase_covariance = message.phase_covariance_rad2();
+    delay.polarity_inverted = message.polarity_inverted();
+    delay.chi_squared = message.group_delay_chi_squared();
+    delay.degrees_of_freedom = message.group_delay_degrees_of_freedom();
   }
   function.group_delay_problem = message.group_delay_problem();
-  function.flags = flags_from_message(message.flags());
+  function.flags = flags_from_message(message.flags(), message.flag_names());
   function.lost = message.lost();
   return function;
 }

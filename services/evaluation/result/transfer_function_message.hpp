@@ -10,7 +10,8 @@ namespace dyncal::services {
 
 [[nodiscard]] wire::TransferFunction to_message(const Recipe& recipe,
                                                 const TransferFunction& function);
-// A mean has what the message carries of it: not u_independent_phase_rad nor its coverage factors.
+// Without the unwrapped phases of the group delay, which stand in the points. Of a message by an
+// older writer, a mean has k = 2 with infinite degrees of freedom.
 [[nodiscard]] TransferFunction from_message(const wire::TransferFunction& message);
 
 } // namespace dyncal::services
