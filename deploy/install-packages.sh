@@ -31,6 +31,7 @@ test_packages=(
   nftables iproute2                            # packet loss between network namespaces
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
+  python3-jsonschema                           # results against their schema
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 

@@ -40,12 +40,20 @@ compare(const CompareCommand& command, const ResultPoints& first, const ResultPo
     if (match == second.end()) {
       continue;
     }
+    if (match->second.unit.empty() != point.unit.empty()) {
+      const bool first_unknown = point.unit.empty();
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: the unit of {} is not known; state the units of sensor and "
+                              "reference in its bench file and evaluate it again, or compare "
+                              "another channel with --channel",
+                              (first_unknown ? command.first : command.second).string(),
+                              first_unknown ? channel : other));
+    }
     if (match->second.unit != point.unit) {
-      return fail(
-          ErrorCode::bad_file,
-          fmt::format(
-              "{} is in \"{}\" but {} in \"{}\"; results in different units cannot be compared",
-              channel, point.unit, other, match->second.unit));
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{} is in \"{}\" but {} in \"{}\"; results in different units "
+                              "cannot be compared; --channel chooses others",
+                              channel, point.unit, other, match->second.unit));
     }
     const auto comparison = analysis::compare_transfer(
         point.value, match->second.value, {command.common_magnitude_rel, command.common_phase_rad});

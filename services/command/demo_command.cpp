@@ -17,7 +17,6 @@
 #include "services/demo/truth_check.hpp"
 #include "services/demo/vendor_assignment.hpp"
 #include "services/program/child_process.hpp"
-#include "services/report/run_report.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -75,8 +74,8 @@ Expected<Demo> prepare(const DemoCommand& command) {
   });
   if (preset == presets.end()) {
     return fail(ErrorCode::bad_argument,
-                fmt::format("--preset {} is not known; there are mpu9250-paper, "
-                            "mpu9250-ptb, bma280, tss, can, can-sync",
+                fmt::format("unknown preset '{}'; there are mpu9250-paper, mpu9250-ptb, "
+                            "bma280, tss, can, can-sync",
                             command.preset));
   }
   demo.preset = *preset;
@@ -126,7 +125,7 @@ Expected<nlohmann::json> wait_for_json(const std::filesystem::path& path, ChildP
               fmt::format("{} did not start: {}", process.name(), process.last_line()));
 }
 
-// How long the run will take in the bench's own time, about: the sensor shall warm up through it.
+// About how long the run takes in the bench's own time, in which the sensor is to warm up.
 double bench_seconds(const DemoPreset& preset) {
   constexpr double between_steps_s = 1.0;
   return static_cast<double>(preset.frequencies_hz.size()) * preset.repetitions *
@@ -224,8 +223,8 @@ Expected<void> start_services(Demo& demo) {
   return {};
 }
 
-// A service that has ended says why in its last line, which explains more than what the others make
-// of its absence.
+// A service that has ended reports why in its last line, which explains more than what the others
+// report of its absence.
 Error explain(Demo& demo, const Error& error) {
   for (ChildProcess& process : demo.processes) {
     if (!process.running()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +13,7 @@
 #include "analysis/sine/sine_fit.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
+#include "services/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -130,6 +132,9 @@ void print_json(const Fit& fit) {
                              {"phase_rad", one.phase_rad()},
                              {"u_amplitude", one.u_amplitude()},
                              {"u_phase_rad", one.u_phase_rad()},
+                             {"phase_deg", one.phase_rad() * 180.0 / std::numbers::pi},
+                             {"u_phase_deg", one.u_phase_rad() * 180.0 / std::numbers::pi},
+                             {"covariance", one.covariance}, // AA, AB, AC, BB, BC, CC
                              {"rss", one.rss},
                              {"samples", one.samples}};
   }
@@ -143,15 +148,23 @@ void print_json(const Fit& fit) {
 }
 
 void print_table(const Fit& fit) {
-  fmt::print("frequency {} Hz{}, reference time {} ns\n", fit.frequency.hz(),
-             fit.u_frequency_hz ? fmt::format(" (u {:.1e} Hz)", *fit.u_frequency_hz) : "",
-             fit.reference_ns);
-  fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10}\n", "column", "amplitude", "u",
-             "phase / rad", "u / rad", "offset", "samples");
+  const double frequency_hz = fit.frequency.hz();
+  if (fit.u_frequency_hz) {
+    const RoundedValue frequency = round_by_uncertainty(frequency_hz, *fit.u_frequency_hz);
+    fmt::print("frequency {} Hz (u {} Hz)", frequency.value, frequency.u);
+  } else {
+    fmt::print("frequency {} Hz", frequency_hz);
+  }
+  fmt::print(", reference time {} ns\n", fit.reference_ns);
+  fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", "column", "amplitude",
+             "u", "phase / rad", "u / rad", "offset", "u", "samples");
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const analysis::SineFit& one = fit.fits[i];
-    fmt::print("{:>20} {:>16.9g} {:>10.1e} {:>16.9f} {:>10.1e} {:>14.6g} {:>10}\n", fit.names[i],
-               one.amplitude(), one.u_amplitude(), one.phase_rad(), one.u_phase_rad(), one.offset,
+    const RoundedValue amplitude = round_by_uncertainty(one.amplitude(), one.u_amplitude());
+    const RoundedValue phase = round_by_uncertainty(one.phase_rad(), one.u_phase_rad());
+    const RoundedValue offset = round_by_uncertainty(one.offset, std::sqrt(one.covariance[5]));
+    fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", fit.names[i],
+               amplitude.value, amplitude.u, phase.value, phase.u, offset.value, offset.u,
                one.samples);
   }
 }

@@ -5,11 +5,14 @@
 #include <chrono>
 #include <deque>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "idl/dyncal.h"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/result/result_flag.hpp"
+#include "services/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -74,15 +77,38 @@ std::string source_line(const wire::SourceStatus& status) {
   return status.message().empty() ? line : line + " | " + status.message();
 }
 
-std::string result_line(const wire::CalibrationResult& result) {
+// ", samples_lost (dau: samples lost)"; nothing without flags.
+std::string flags_text(const std::vector<Flag>& flags) {
+  std::string text;
+  for (const Flag& flag : flags) {
+    text += fmt::format(", {} ({})", name_of(flag.kind), flag.sentence);
+  }
+  return text;
+}
+
+std::string result_line(const wire::CalibrationResult& result, const std::vector<Flag>& flags) {
   const std::string head = fmt::format(
       "{} {}: step {}, {} Hz, #{}, {}", result.bench().c_str(), result.run().c_str(), result.step(),
       result.frequency_text_hz(), result.repetition(), result.channel().c_str());
-  return result.valid()
-             ? fmt::format("{}: |H| = {:.6f} (u {:.1e}), arg H = {:.6f} rad (u {:.1e}), {} lost",
-                           head, result.magnitude(), result.u_magnitude(), result.phase_rad(),
-                           result.u_phase_rad(), result.lost())
-             : fmt::format("{}: no result: {}", head, result.problem());
+  if (!result.valid()) {
+    return fmt::format("{}: no result: {}{}", head, result.problem(), flags_text(flags));
+  }
+  const RoundedValue magnitude = round_by_uncertainty(result.magnitude(), result.u_magnitude());
+  const RoundedValue phase = round_by_uncertainty(result.phase_rad(), result.u_phase_rad());
+  return fmt::format("{}: |H| = {} (u {}), arg H = {} rad (u {}), {} lost{}", head, magnitude.value,
+                     magnitude.u, phase.value, phase.u, result.lost(), flags_text(flags));
+}
+
+std::string function_line(const wire::TransferFunction& function, const std::vector<Flag>& flags) {
+  const std::string head = fmt::format("{} {}: {}", function.bench().c_str(),
+                                       function.run().c_str(), function.channel().c_str());
+  if (!function.group_delay_valid()) {
+    return fmt::format("{}: no group delay: {}{}", head, function.group_delay_problem(),
+                       flags_text(flags));
+  }
+  const RoundedValue ms =
+      round_by_uncertainty(function.group_delay_s() * 1e3, function.u_group_delay_s() * 1e3);
+  return fmt::format("{}: group delay {} ms (u {}){}", head, ms.value, ms.u, flags_text(flags));
 }
 
 std::string run_line(const wire::ServiceStatus& status) {
@@ -122,6 +148,15 @@ public:
     }
   }
 
+  // What the flags that have been seen mean, each once.
+  void explain(const std::vector<Flag>& flags) {
+    for (const Flag& flag : flags) {
+      if (explained_.insert(flag.kind).second && !terminal_) {
+        fmt::print("flag {}\n", explanation_line(flag.kind));
+      }
+    }
+  }
+
   void draw() {
     if (terminal_) {
       fmt::print("\x1b[H\x1b[2J");
@@ -132,6 +167,12 @@ public:
       for (const std::string& line : newest_) {
         fmt::print("{}\n", line);
       }
+      if (!explained_.empty()) {
+        fmt::print("\nFlags:\n");
+      }
+      for (const ResultFlag kind : explained_) {
+        fmt::print("  {}\n", explanation_line(kind));
+      }
       if (lines_.empty()) {
         fmt::print("nothing on this DDS domain yet\n");
       }
@@ -140,9 +181,14 @@ public:
   }
 
 private:
+  static std::string explanation_line(ResultFlag kind) {
+    return fmt::format("{}: {}", name_of(kind), explanation_of(kind));
+  }
+
   bool terminal_;
   std::map<std::string, std::string> lines_;
   std::deque<std::string> newest_;
+  std::set<ResultFlag> explained_;
 };
 
 struct Readers {
@@ -150,6 +196,7 @@ struct Readers {
   bus::Reader<wire::ServiceStatus> services;
   bus::Reader<wire::Excitation> excitation;
   bus::Reader<wire::CalibrationResult> results;
+  bus::Reader<wire::TransferFunction> functions;
 };
 
 Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench,
@@ -158,11 +205,12 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
   auto services = participant.reader(bus::topics::service_status, bench, wake_up);
   auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
   auto results = participant.reader(bus::topics::calibration_result, bench, wake_up);
-  if (const auto error = first_error(sources, services, excitation, results)) {
+  auto functions = participant.reader(bus::topics::transfer_function, bench, wake_up);
+  if (const auto error = first_error(sources, services, excitation, results, functions)) {
     return fail(*error);
   }
   return Readers{std::move(*sources), std::move(*services), std::move(*excitation),
-                 std::move(*results)};
+                 std::move(*results), std::move(*functions)};
 }
 
 void take_all(Readers& readers, Screen& screen) {
@@ -187,7 +235,16 @@ void take_all(Readers& readers, Screen& screen) {
   });
   readers.results.take([&](const wire::CalibrationResult& result, const bus::SampleInfo& info) {
     if (info.valid) {
-      screen.append(result_line(result));
+      const auto flags = flags_from_message(result.flags(), result.flag_names());
+      screen.append(result_line(result, flags));
+      screen.explain(flags);
+    }
+  });
+  readers.functions.take([&](const wire::TransferFunction& function, const bus::SampleInfo& info) {
+    if (info.valid) {
+      const auto flags = flags_from_message(function.flags(), function.flag_names());
+      screen.append(function_line(function, flags));
+      screen.explain(flags);
     }
   });
 }

@@ -1,7 +1,8 @@
-// `dyncal watch`: benches, sources with their rates and losses, runs and results, as they come on
-// the network.
+// `dyncal watch`: benches, sources with their rates and losses, runs, and results with their flags,
+// as they come on the network.
 //
-// On a terminal the picture is drawn anew once a second; elsewhere every change is a line. It
+// On a terminal the screen is redrawn once a second, with an explanation of every flag below;
+// elsewhere every change is a line, and so is the explanation of a flag when it first occurs. It
 // publishes nothing. Belongs to one thread.
 #pragma once
 

@@ -6,6 +6,16 @@
 #include <nlohmann/json.hpp>
 
 namespace dyncal::services {
+namespace {
+
+// So that a factor of 2 gives U. Files of versions before the schema have u alone, which was that.
+double half_of_expanded(const nlohmann::json& point, const char* expanded, const char* standard) {
+  const auto found = point.find(expanded);
+  return found != point.end() && found->is_number() ? 0.5 * found->get<double>()
+                                                    : point.at(standard).get<double>();
+}
+
+} // namespace
 
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
   std::ifstream stream(path);
@@ -21,12 +31,12 @@ Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
       }
       points[{point.at("channel"), point.at("frequency_hz")}] = {
           point.value("unit", ""),
-          {point.at("magnitude"), point.at("u_magnitude"), point.at("phase_rad"),
-           point.at("u_phase_rad")}};
+          {point.at("magnitude"), half_of_expanded(point, "U_magnitude", "u_magnitude"),
+           point.at("phase_rad"), half_of_expanded(point, "U_phase_rad", "u_phase_rad")}};
     }
   } catch (const nlohmann::json::exception&) {
     return fail(ErrorCode::bad_file,
-                fmt::format("{} is no result of dyncal: it has no "
+                fmt::format("{} is not a result of dyncal: it has no "
                             "'transfer_function' with magnitude and phase, each "
                             "with its uncertainty",
                             path.string()));

@@ -1,241 +1,300 @@
-#include "services/report/run_report.hpp"
+#include "services/report/result_json.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <ctime>
 #include <fstream>
-#include <limits>
-#include <set>
+#include <numbers>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+
+#include "analysis/uncertainty/coverage.hpp"
+#include "services/report/clock_json.hpp"
+#include "services/report/expanded_uncertainty.hpp"
+#include "services/report/flag_legend.hpp"
+#include "services/report/json_number.hpp"
+#include "services/report/result_table.hpp"
+#include "services/report/run_setup_json.hpp"
+#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON cannot represent NaN or infinity.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+Json degrees(double radians) {
+  return json_number(radians * degrees_per_radian);
+}
+
+// "2026-03-01T12:00:00.123456789Z"
+Json utc_text(std::int64_t utc_ns) {
+  if (utc_ns == 0) {
+    return nullptr;
+  }
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  const std::int64_t fraction_ns = ((utc_ns % second_ns) + second_ns) % second_ns;
+  const std::time_t seconds = (utc_ns - fraction_ns) / second_ns;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  return fmt::format("{}.{:09}Z", text.data(), fraction_ns);
 }
 
 Json budget_json(const StepResult& result) {
   Json lines = Json::array();
   for (const analysis::Contribution& row : result.budget) {
     lines.push_back({{"name", row.name()},
+                     {"kind", to_string(row.kind)},
+                     {"subject", row.subject},
                      {"distribution", to_string(row.distribution)},
-                     {"degrees_of_freedom", number(row.degrees_of_freedom)}, // null: infinite
-                     {"u_magnitude_rel", number(row.u_magnitude_rel)},
-                     {"u_phase_rad", number(row.u_phase_rad)}});
+                     {"repeats", to_string(row.repeats)},
+                     {"degrees_of_freedom", json_number(row.degrees_of_freedom)}, // null: infinite
+                     {"u_magnitude_rel", json_number(row.u_magnitude_rel)},
+                     {"u_lasting_magnitude_rel", json_number(row.u_lasting_magnitude_rel)},
+                     {"u_phase_rad", json_number(row.u_phase_rad)}});
   }
   return lines;
 }
 
 Json monte_carlo_json(const analysis::TransferCheck& drawn) {
+  const auto interval = [](const analysis::MonteCarloResult& result) -> Json {
+    return {json_number(result.low), json_number(result.high)};
+  };
   return {{"trials", drawn.magnitude.trials},
           {"stable", drawn.magnitude.stable && drawn.phase_rad.stable},
-          {"u_magnitude", number(drawn.magnitude.u)},
-          {"magnitude_interval", {number(drawn.magnitude.low), number(drawn.magnitude.high)}},
-          {"u_phase_rad", number(drawn.phase_rad.u)},
-          {"phase_interval_rad", {number(drawn.phase_rad.low), number(drawn.phase_rad.high)}}};
+          {"u_magnitude", json_number(drawn.magnitude.u)},
+          {"magnitude_interval", interval(drawn.magnitude)},
+          {"u_phase_rad", json_number(drawn.phase_rad.u)},
+          {"phase_interval_rad", interval(drawn.phase_rad)}};
 }
 
-Json point_json(const StepResult& result) {
+Json samples_json(const StepResult& result) {
+  Json samples = Json::array();
+  for (const SourceSamples& source : result.samples) {
+    samples.push_back({{"source", source.source},
+                       {"used", source.used},
+                       {"lost", source.lost},
+                       {"unusable", source.unusable},
+                       {"overflowed", source.overflowed},
+                       {"not_trusted", source.not_trusted},
+                       {"not_measured", source.not_measured},
+                       {"first_stamp_ns", source.first_stamp_ns},
+                       {"last_stamp_ns", source.last_stamp_ns}});
+  }
+  return samples;
+}
+
+void add_flags(const std::vector<Flag>& flags, Json& json) {
+  json["flags"] = sentences_of(flags);
+  json["flag_names"] = names_of(flags);
+}
+
+// Beside u_magnitude and u_phase_rad.
+void add_expanded(const ExpandedUncertainty& magnitude, const ExpandedUncertainty& phase,
+                  Json& json) {
+  json["u_phase_deg"] = degrees(phase.u);
+  json["k_magnitude"] = json_number(magnitude.k);
+  json["nu_eff_magnitude"] = json_number(magnitude.nu_eff); // null: infinite
+  json["U_magnitude"] = json_number(magnitude.expanded);
+  json["k_phase"] = json_number(phase.k);
+  json["nu_eff_phase"] = json_number(phase.nu_eff);
+  json["U_phase_rad"] = json_number(phase.expanded);
+  json["U_phase_deg"] = degrees(phase.expanded);
+  json["coverage_probability"] = analysis::two_sigma_probability;
+}
+
+void add_measured_excitation(const RunOutcome& outcome, const StepResult& result, Json& point) {
+  const auto measured = measured_excitation(outcome, result);
+  if (!measured) {
+    return;
+  }
+  point["measured_frequency_hz"] = json_number(measured->reference->frequency.hz());
+  point["u_measured_frequency_hz"] = json_number(measured->reference->u_frequency_hz);
+  if (measured->is_acceleration) {
+    point["measured_level_m_s2"] = json_number(measured->reference->fit.amplitude());
+    point["u_measured_level_m_s2"] = json_number(measured->reference->fit.u_amplitude());
+  }
+}
+
+void add_fit_of_channel(const RunOutcome& outcome, const StepResult& result, Json& point) {
+  for (const analysis::ChannelFit& fit : result.fits) {
+    if (fit.channel == result.channel) {
+      point["fit"] = fit_json(outcome, fit);
+    }
+  }
+}
+
+void add_series(const SeriesFinding& series, Json& point) {
+  point["sample_rate_hz"] = json_number(series.sample_rate_hz);
+  point["u_sample_rate_hz"] = json_number(series.u_sample_rate_hz);
+  point["series_start"] = series.start;
+  point["series_start_scatter_s"] = json_number(series.start_scatter_s);
+}
+
+Json point_head(const StepResult& result) {
   Json samples = Json::object();
   for (const SourceSamples& source : result.samples) {
     samples[source.source] = source.used;
   }
-  Json point{{"channel", result.channel},
-             {"step", result.step},
-             {"frequency_hz", result.frequency_hz},
-             {"level_m_s2", result.level_m_s2},
-             {"repetition", result.repetition},
-             {"valid", result.valid},
-             {"magnitude", number(result.magnitude)},
-             {"u_magnitude", number(result.u_magnitude)},
-             {"phase_rad", number(result.phase_rad)},
-             {"u_phase_rad", number(result.u_phase_rad)},
-             {"unit", result.unit},
-             {"samples", samples},
-             {"lost", result.lost},
-             {"flags", sentences_of(result.flags)},
-             {"budget", budget_json(result)},
-             {"data_sha256", result.data_sha256}};
-  if (!result.valid) {
+  return {{"channel", result.channel},
+          {"step", result.step},
+          {"frequency_text_hz", result.frequency_text_hz},
+          {"frequency_hz", result.frequency_hz},
+          {"level_m_s2", result.level_m_s2},
+          {"repetition", result.repetition},
+          {"valid", result.valid},
+          {"magnitude", json_number(result.magnitude)},
+          {"u_magnitude", json_number(result.u_magnitude)},
+          {"phase_rad", json_number(result.phase_rad)},
+          {"phase_deg", degrees(result.phase_rad)},
+          {"u_phase_rad", json_number(result.u_phase_rad)},
+          {"unit", result.unit},
+          {"samples", samples},
+          {"lost", result.lost}};
+}
+
+Json point_json(const RunOutcome& outcome, const StepResult& result) {
+  Json point = point_head(result);
+  add_flags(result.flags, point);
+  point["budget"] = budget_json(result);
+  point["data_sha256"] = result.data_sha256;
+  if (result.valid) {
+    add_expanded(magnitude_uncertainty(result), phase_uncertainty(result), point);
+    add_measured_excitation(outcome, result, point);
+    point["source_samples"] = samples_json(result);
+    add_fit_of_channel(outcome, result, point);
+  } else {
     point["problem"] = result.problem;
+  }
+  if (result.temperature_degc) {
+    point["temperature_degc"] = json_number(*result.temperature_degc);
   }
   if (result.monte_carlo) {
     point["monte_carlo"] = monte_carlo_json(*result.monte_carlo);
   }
   if (result.series) {
-    point["sample_rate_hz"] = number(result.series->sample_rate_hz);
-    point["u_sample_rate_hz"] = number(result.series->u_sample_rate_hz);
-    point["series_start"] = result.series->start;
-    point["series_start_scatter_s"] = number(result.series->start_scatter_s);
+    add_series(*result.series, point);
   }
   return point;
 }
 
-Json transfer_json(const TransferFunction& function, const FrequencyPoint& point) {
-  return {{"channel", function.channel},
-          {"frequency_hz", point.frequency_hz},
-          {"magnitude", number(point.mean.magnitude)},
-          {"u_magnitude", number(point.mean.u_magnitude)},
-          {"phase_rad", number(point.mean.phase_rad)},
-          {"u_phase_rad", number(point.mean.u_phase_rad)},
-          {"unwrapped_phase_rad", number(point.unwrapped_phase_rad)},
-          {"scatter_magnitude", number(point.mean.scatter_magnitude)},
-          {"scatter_phase_rad", number(point.mean.scatter_phase_rad)},
-          {"unit", function.unit},
-          {"repetitions", point.mean.repetitions}};
+Json transfer_json(const RunOutcome& outcome, const TransferFunction& function,
+                   const FrequencyPoint& point) {
+  const ExpandedUncertainty magnitude = magnitude_uncertainty(point.mean);
+  const ExpandedUncertainty phase = phase_uncertainty(point.mean);
+  Json json{{"channel", function.channel},
+            {"frequency_text_hz", point.frequency_text_hz},
+            {"frequency_hz", point.frequency_hz},
+            {"level_m_s2", point.level_m_s2},
+            {"magnitude", json_number(point.mean.magnitude)},
+            {"u_magnitude", json_number(magnitude.u)},
+            {"phase_rad", json_number(point.mean.phase_rad)},
+            {"phase_deg", degrees(point.mean.phase_rad)},
+            {"u_phase_rad", json_number(phase.u)},
+            {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
+            {"unwrapped_phase_deg", degrees(point.unwrapped_phase_rad)},
+            {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
+            {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
+            {"unit", function.unit},
+            {"repetitions", point.mean.repetitions}};
+  add_expanded(magnitude, phase, json);
+  json["u_independent_phase_rad"] = json_number(point.mean.u_independent_phase_rad);
+  add_flags(flags_once(flags_of(outcome, function.channel, point)), json);
+  return json;
 }
 
 Json delay_json(const std::string& channel, const analysis::GroupDelay& delay) {
+  Json covariance = Json::array();
+  for (const double element : delay.phase_covariance) {
+    covariance.push_back(json_number(element));
+  }
   return {{"channel", channel},
-          {"value_s", number(delay.delay_s)},
-          {"u_s", number(delay.u_delay_s)},
-          {"intercept_rad", number(delay.intercept_rad)},
-          {"u_intercept_rad", number(delay.u_intercept_rad)}};
+          {"value_s", json_number(delay.delay_s)},
+          {"u_s", json_number(delay.u_delay_s)},
+          {"intercept_rad", json_number(delay.intercept_rad)},
+          {"intercept_deg", degrees(delay.intercept_rad)},
+          {"u_intercept_rad", json_number(delay.u_intercept_rad)},
+          {"u_intercept_deg", degrees(delay.u_intercept_rad)},
+          {"cov_delay_intercept_rad_s", json_number(delay.cov_delay_intercept)},
+          {"phase_covariance_rad2", std::move(covariance)},
+          {"chi_squared", json_number(delay.chi_squared)},
+          {"degrees_of_freedom", json_number(delay.degrees_of_freedom)},
+          {"polarity_inverted", delay.polarity_inverted}};
 }
 
-Json clock_json(const ClockReport& report) {
-  const analysis::SampleClockStatistics& clock = report.clock;
-  return {{"source", report.source},
-          {"mean_interval_s", clock.mean_interval_s},
-          {"u_mean_interval_s", clock.u_mean_interval_s},
-          {"sd_s", clock.sd_s},
-          {"min_s", clock.minimum_s},
-          {"max_s", clock.maximum_s},
-          {"median_s", clock.median_s},
-          {"mad_sd_s", clock.mad_sd_s},
-          {"count", clock.intervals},
-          {"nominal_rate_hz", clock.nominal_rate_hz},
-          {"mean_rate_hz", clock.mean_rate_hz},
-          {"tick_s", clock.tick_s},
-          {"lattice_statistic", clock.lattice_statistic},
-          {"events", clock.event_count},
-          {"pair_period_samples", number(clock.pair_period_samples)},
-          {"pair_period_s", number(clock.pair_period_s)},
-          {"temperature_correlation", number(clock.temperature_correlation)},
-          {"temperature_slope_s_per_degc", number(clock.temperature_slope_s_per_degc)},
-          {"lost", clock.lost}};
-}
-
-std::string channel_table(const TransferFunction& function) {
-  std::string text = fmt::format(
-      "\n{}{}\n", function.channel,
-      function.unit.empty() || function.unit == R"(\one)" ? "" : ", in " + function.unit);
-  text += fmt::format("{:>12}  {:>12} {:>10}  {:>12} {:>10}  {}\n", "f / Hz", "|H|", "u(|H|)",
-                      "arg H / rad", "u / rad", "n");
-  for (const FrequencyPoint& point : function.points) {
-    text += fmt::format("{:>12}  {:>12.6f} {:>10.1e}  {:>12.6f} {:>10.1e}  {}\n",
-                        point.frequency_text_hz, point.mean.magnitude, point.mean.u_magnitude,
-                        point.mean.phase_rad, point.mean.u_phase_rad, point.mean.repetitions);
+Json channel_json(const TransferFunction& function) {
+  Json json{{"channel", function.channel},
+            {"unit", function.unit},
+            {"responds", responds(function)},
+            {"lost", function.lost}};
+  add_flags(function.flags, json);
+  if (!function.group_delay) {
+    json["group_delay_problem"] = function.group_delay_problem;
   }
-  if (function.group_delay) {
-    const analysis::GroupDelay& delay = *function.group_delay;
-    text += fmt::format(
-        "  group delay {:.6g} ms, u = {:.2g} ms; intercept {:.2g} rad, u = {:.2g} rad\n",
-        delay.delay_s * 1e3, delay.u_delay_s * 1e3, delay.intercept_rad, delay.u_intercept_rad);
-  } else if (!function.group_delay_problem.empty()) {
-    text += fmt::format("  no group delay: {}\n", function.group_delay_problem);
-  }
-  return text;
+  return json;
 }
 
-// A series has no stamps: its rate is known by eq. (6) alone.
-std::string series_clock_line(const RunOutcome& outcome, const ClockReport& report) {
-  std::set<std::string> starts;
-  for (const StepResult& result : outcome.results) {
-    if (result.series) {
-      starts.insert(result.series->start);
-    }
+Json legend_json(const RunOutcome& outcome) {
+  Json legend = Json::array();
+  for (const FlagMeaning& meaning : flag_legend(flags_of(outcome))) {
+    legend.push_back({{"name", meaning.name},
+                      {"sentences", meaning.sentences},
+                      {"meaning", meaning.explanation}});
   }
-  const analysis::SampleClockStatistics& clock = report.clock;
-  const double u_rate_hz = clock.u_mean_interval_s * clock.mean_rate_hz * clock.mean_rate_hz;
-  return fmt::format(
-      "\nSample rate of {}: {:.6f} Hz, u = {:.1g} Hz, nominal {:g} Hz; its series start {}\n",
-      report.source, clock.mean_rate_hz, u_rate_hz, clock.nominal_rate_hz,
-      fmt::join(starts, " or "));
+  return legend;
 }
 
-std::string clock_line(const ClockReport& report) {
-  const analysis::SampleClockStatistics& clock = report.clock;
-  return fmt::format("\nSample clock of {}: mean interval {:.5f} us, sd {:.1f} ns, spread "
-                     "{:.0f} ns, {} intervals, {} events, {} samples lost\n",
-                     report.source, clock.mean_interval_s * 1e6, clock.sd_s * 1e9,
-                     (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals, clock.event_count,
-                     clock.lost);
-}
-
-// The steps without a result, each reason once.
-std::vector<std::string> problem_lines(const RunOutcome& outcome) {
-  std::vector<std::string> lines;
-  for (const StepResult& result : outcome.results) {
-    std::string line =
-        fmt::format("step {}, {} Hz: {}", result.step, result.frequency_text_hz, result.problem);
-    if (!result.valid && std::find(lines.begin(), lines.end(), line) == lines.end()) {
-      lines.push_back(std::move(line));
-    }
+Json head_json(const RunOutcome& outcome) {
+  Json json{
+      {"schema", {{"name", "dyncal-result"}, {"version", result_schema_version}}},
+      {"bench", outcome.bench},
+      {"run", outcome.run},
+      {"method", to_string(outcome.method)},
+      {"phase_convention",
+       "lead: arg H in rad, a delay is negative; u_ are standard uncertainties (k = 1), U_ = "
+       "k u_ expanded ones"},
+      {"software", software_version()},
+      {"analysis",
+       {{"software",
+         outcome.analysis_software.empty() ? Json(nullptr) : Json(outcome.analysis_software)},
+        {"host", outcome.analysis_host.empty() ? Json(nullptr) : Json(outcome.analysis_host)}}},
+      {"dds", {{"analysis", outcome.analysis_dds}}},
+      {"began_utc", utc_text(outcome.began_utc_ns)},
+      {"ended_utc", utc_text(outcome.ended_utc_ns)},
+      {"planned_steps", outcome.planned_steps},
+      {"interrupted", outcome.interrupted},
+      {"problem", outcome.problem},
+      {"recipe_sha256", outcome.recipe_sha256},
+      {"flags", legend_json(outcome)},
+      {"sources", sources_json(outcome)}};
+  if (outcome.recipe) {
+    json["roles"] = roles_json(*outcome.recipe);
+    json["corrections"] = corrections_json(*outcome.recipe);
   }
-  return lines;
+  return json;
 }
 
 } // namespace
 
-bool responds(const TransferFunction& function) {
-  const auto above = std::count_if(function.points.begin(), function.points.end(),
-                                   [](const FrequencyPoint& point) {
-                                     return point.mean.magnitude > 3.0 * point.mean.u_magnitude;
-                                   });
-  return 2 * static_cast<std::size_t>(above) > function.points.size();
-}
-
-std::string result_table(const RunOutcome& outcome) {
-  std::string text;
-  std::vector<std::string> quiet;
-  for (const TransferFunction& function : outcome.transfer_functions) {
-    if (responds(function)) {
-      text += channel_table(function);
-    } else {
-      quiet.push_back(function.channel);
-    }
-  }
-  if (!quiet.empty()) {
-    text += fmt::format("\nNo response above three times its uncertainty in: {}\n",
-                        fmt::join(quiet, ", "));
-  }
-  for (const ClockReport& report : outcome.clock_reports) {
-    text += report.clock.intervals == 0 ? series_clock_line(outcome, report) : clock_line(report);
-  }
-  const std::vector<std::string> problems = problem_lines(outcome);
-  if (!problems.empty()) {
-    text += fmt::format("\nWithout a result:\n  {}\n", fmt::join(problems, "\n  "));
-  }
-  return text;
-}
-
 nlohmann::ordered_json result_json(const RunOutcome& outcome) {
-  Json json{{"bench", outcome.bench},
-            {"run", outcome.run},
-            {"method", to_string(outcome.method)},
-            {"phase_convention",
-             "lead: arg H in rad, a delay is negative; u_ are standard uncertainties"},
-            {"dds", {{"analysis", outcome.analysis_dds}}},
-            {"recipe_sha256", outcome.recipe_sha256},
-            {"interrupted", outcome.interrupted},
-            {"problem", outcome.problem},
-            {"points", Json::array()},
-            {"transfer_function", Json::array()},
-            {"group_delay", Json::array()},
-            {"sample_clock", Json::array()}};
+  Json json = head_json(outcome);
+  json["steps"] = steps_json(outcome);
+  json["channels"] = Json::array();
+  json["transfer_function"] = Json::array();
+  json["group_delay"] = Json::array();
+  json["sample_clock"] = Json::array();
+  json["points"] = Json::array();
   for (const StepResult& result : outcome.results) {
-    json["points"].push_back(point_json(result));
+    json["points"].push_back(point_json(outcome, result));
   }
   for (const TransferFunction& function : outcome.transfer_functions) {
+    json["channels"].push_back(channel_json(function));
     for (const FrequencyPoint& point : function.points) {
-      json["transfer_function"].push_back(transfer_json(function, point));
+      json["transfer_function"].push_back(transfer_json(outcome, function, point));
     }
     if (function.group_delay) {
       json["group_delay"].push_back(delay_json(function.channel, *function.group_delay));
@@ -243,6 +302,9 @@ nlohmann::ordered_json result_json(const RunOutcome& outcome) {
   }
   for (const ClockReport& report : outcome.clock_reports) {
     json["sample_clock"].push_back(clock_json(report));
+  }
+  if (outcome.recipe) {
+    json["recipe"] = outcome.recipe->text;
   }
   return json;
 }

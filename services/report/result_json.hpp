@@ -1,11 +1,12 @@
-// What a run leaves behind: a table for people, JSON for programs.
+// What a run leaves behind, as JSON for programs: the whole record of a calibration in one file,
+// with every digit. result.schema.json describes each key; its version stands in "schema".
 //
-// Phase is lead, in rad, within (-pi, pi] (a delay is negative); `u_` is a standard uncertainty (k
-// = 1). Plain functions, any thread.
+// Phase is lead, in rad and degrees, within (-pi, pi] (a delay is negative); u_ is a standard
+// uncertainty (k = 1), U_ = k u_ the expanded one at 95.45 %. What is not known, not a number or
+// infinite is null. Plain functions, any thread.
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -14,12 +15,8 @@
 
 namespace dyncal::services {
 
-// The channel's magnitude is above three times its uncertainty at more than half of the
-// frequencies: it is worth showing.
-[[nodiscard]] bool responds(const TransferFunction& function);
-
-// One row per channel and frequency; channels that do not respond are only named.
-[[nodiscard]] std::string result_table(const RunOutcome& outcome);
+// Raised with every change of the schema; keys are added, never renamed.
+inline constexpr int result_schema_version = 1;
 
 [[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome);
 

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include "services/contract/unit.hpp"
+#include "services/report/expanded_uncertainty.hpp"
 #include "services/report/figures/sample_clock.hpp"
 #include "services/report/figures/transfer_function.hpp"
-#include "services/report/run_report.hpp"
+#include "services/report/flag_legend.hpp"
+#include "services/report/result_table.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -32,13 +34,18 @@ figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
       data.repetitions.push_back(
           {result.repetition,
            {result.frequency_hz,
-            {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad}}});
+            {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad},
+            flag_names(result.flags)}});
     }
   }
   for (const FrequencyPoint& point : function.points) {
     data.mean.push_back({point.frequency_hz,
-                         {point.mean.magnitude, point.mean.u_magnitude, point.unwrapped_phase_rad,
-                          point.mean.u_phase_rad}});
+                         {point.mean.magnitude, magnitude_uncertainty(point.mean).u,
+                          point.unwrapped_phase_rad, phase_uncertainty(point.mean).u},
+                         flag_names(flags_of(outcome, function.channel, point))});
+  }
+  for (const FlagMeaning& meaning : flag_legend(flags_of(outcome, function))) {
+    data.legend.push_back(legend_line(meaning));
   }
   data.group_delay = function.group_delay;
   return data;

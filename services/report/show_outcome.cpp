@@ -6,8 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "services/report/result_json.hpp"
+#include "services/report/result_table.hpp"
 #include "services/report/run_figures.hpp"
-#include "services/report/run_report.hpp"
 
 namespace dyncal::services {
 namespace {

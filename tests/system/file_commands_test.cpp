@@ -153,7 +153,7 @@ TEST_F(FileCommands, CompareRefusesWhatCannotBeCompared) {
   EXPECT_THAT(error_of({"compare", a, a, "--channel", "acs/none"}),
               HasSubstr("no channel and frequency in common"));
   std::ofstream(folder / "c.json") << "[1, 2";
-  EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("is no result of dyncal"));
+  EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("is not a result of dyncal"));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -18,6 +19,27 @@ std::string read(const std::filesystem::path& path) {
   return text.str();
 }
 
+constexpr int status_not_checked = 77;
+
+// Of dyncal's commands that write a result; the other commands have an option of the same name.
+std::optional<std::filesystem::path> result_of(const std::vector<std::string>& arguments) {
+  const auto is = [&](const char* command) {
+    return !arguments.empty() && arguments.front() == command;
+  };
+  if (!is("run") && !is("analyse") && !is("demo")) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
+    if (arguments[i] == "--json") {
+      return arguments[i + 1];
+    }
+    if (is("demo") && arguments[i] == "--output") {
+      return std::filesystem::path(arguments[i + 1]) / "result.json";
+    }
+  }
+  return std::nullopt;
+}
+
 services::ChildProcess started(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                services::ChildOutput output) {
@@ -32,7 +54,8 @@ services::ChildProcess started(const std::filesystem::path& program,
 
 ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder)
-    : output_(folder / (std::filesystem::path(program).filename().string() + ".out")),
+    : result_(result_of(arguments)),
+      output_(folder / (std::filesystem::path(program).filename().string() + ".out")),
       errors_(folder / (std::filesystem::path(program).filename().string() + ".err")),
       began_(std::chrono::steady_clock::now()),
       process_(started(std::filesystem::path(DYNCAL_PROGRAMS) / program, arguments,
@@ -58,12 +81,33 @@ bool ProgramRun::send_to_child(const std::string& program, int signal) {
   return false;
 }
 
+void ProgramRun::check_result() const {
+  if (!result_ || !std::filesystem::exists(*result_)) {
+    return;
+  }
+  const std::filesystem::path output = result_->string() + ".check";
+  auto check =
+      started(DYNCAL_PYTHON, {"-B", DYNCAL_CHECK_RESULT, DYNCAL_RESULT_SCHEMA, result_->string()},
+              {output, output});
+  const auto exit = check.wait_for(std::chrono::seconds(60));
+  if (exit && exit->status == status_not_checked) {
+    std::cerr << read(output);
+    return;
+  }
+  if (!exit || exit->status != 0) {
+    throw std::runtime_error("the result does not agree with its schema: " + read(output));
+  }
+}
+
 std::optional<int> ProgramRun::wait(std::chrono::nanoseconds limit) {
   const auto exit = process_.wait_for(limit);
   if (!exit) {
     return std::nullopt;
   }
-  ended_ = ended_.value_or(std::chrono::steady_clock::now());
+  if (!ended_) {
+    ended_ = std::chrono::steady_clock::now();
+    check_result();
+  }
   return exit->status;
 }
 

@@ -1,5 +1,6 @@
 // A program of the build as a test runs it: with arguments, a deadline, its outputs in files, and
-// signals. It is ended when the object is destroyed. One thread.
+// signals. It is ended when the object is destroyed. A result that it wrote is held against the
+// schema of results. One thread.
 #pragma once
 
 #include <chrono>
@@ -26,7 +27,7 @@ public:
   // To a process that the program has started; false when it has none of that name.
   bool send_to_child(const std::string& program, int signal);
   // Exit status, or nothing when the deadline passed first. A program ended by signal N counts as
-  // 128 + N.
+  // 128 + N. Throws what is wrong with a result file that the program wrote.
   std::optional<int> wait(std::chrono::nanoseconds limit);
   // True as soon as standard error contains the text.
   bool wait_for_error_text(const std::string& text, std::chrono::seconds limit);
@@ -37,6 +38,9 @@ public:
   [[nodiscard]] double seconds() const; // since it was started, until it was seen to end
 
 private:
+  void check_result() const;
+
+  std::optional<std::filesystem::path> result_; // that it is to write
   std::filesystem::path output_;
   std::filesystem::path errors_;
   std::chrono::steady_clock::time_point began_;

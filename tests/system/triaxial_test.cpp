@@ -120,7 +120,7 @@ TEST_F(Triaxial, SaysInOneLineWhatIsMissing) {
   EXPECT_THAT(error_of({"--z", file("other.json", "dau/field", column(response, 2))}),
               HasSubstr("name them: --channels X Y Z"));
   std::ofstream(folder / "no.json") << "{}";
-  EXPECT_THAT(error_of({"--z", folder / "no.json"}), HasSubstr("is no result of dyncal"));
+  EXPECT_THAT(error_of({"--z", folder / "no.json"}), HasSubstr("is not a result of dyncal"));
 }
 
 } // namespace

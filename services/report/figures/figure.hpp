@@ -31,7 +31,7 @@ write(const Figure& figure, const std::filesystem::path& folder);
 // "# text" and a line end; line breaks in the text become spaces.
 [[nodiscard]] std::string csv_comment(const std::string& text);
 
-// 17 significant digits; "nan" and "inf" where a value is none.
+// 17 significant digits; "nan" and "inf" where a value is not finite.
 [[nodiscard]] std::string csv_number(double value);
 
 } // namespace dyncal::services::figures

@@ -1,7 +1,7 @@
 // One pair of axes with what is drawn in it, and the lines of text above all panels of a figure.
 //
 // Points that an axis cannot show (not finite, not positive on a logarithmic axis) are left out; a
-// panel without any point says "no data".
+// panel without any point shows "no data".
 #pragma once
 
 #include <optional>

@@ -182,4 +182,19 @@ double text_width(std::string_view text, double size) {
   return em * size;
 }
 
+std::vector<std::string> wrap_text(std::string_view text, double size, double max_width) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t space = text.find(' ');
+    const std::string_view word = text.substr(0, space);
+    text.remove_prefix(space == std::string_view::npos ? text.size() : space + 1);
+    if (lines.empty() || text_width(lines.back() + " " + std::string(word), size) > max_width) {
+      lines.emplace_back(word);
+    } else {
+      lines.back().append(" ").append(word);
+    }
+  }
+  return lines;
+}
+
 } // namespace dyncal::services::figures

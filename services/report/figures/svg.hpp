@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dyncal::services::figures {
 
@@ -71,5 +72,9 @@ private:
 
 // About as wide as the text will be: fonts differ.
 [[nodiscard]] double text_width(std::string_view text, double size);
+
+// In lines that are no wider than that, broken at spaces; a longer word has a line of its own.
+[[nodiscard]] std::vector<std::string> wrap_text(std::string_view text, double size,
+                                                 double max_width);
 
 } // namespace dyncal::services::figures

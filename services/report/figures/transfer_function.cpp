@@ -73,6 +73,19 @@ Series mean_series(const TransferFunctionData& data, Quantity quantity) {
   return series;
 }
 
+// A ring around every mean that has a flag.
+Series flagged_series(const TransferFunctionData& data, Quantity quantity) {
+  Series series{
+      .label = "flagged, see below", .colour = "#CC0000", .marker = Marker::circle, .radius = 9};
+  for (const auto& point : data.mean) {
+    if (!point.flags.empty()) {
+      series.points.push_back(quantity(point));
+      series.points.back().half_bar = 0;
+    }
+  }
+  return series;
+}
+
 // The straight line of the phase, which the logarithmic axis bends.
 Series group_delay_series(const TransferFunctionData& data, const analysis::GroupDelay& delay) {
   Range frequencies(Scale::logarithmic);
@@ -100,6 +113,9 @@ Panel quantity_panel(const TransferFunctionData& data, Quantity quantity) {
   panel.series = repetition_series(data, quantity);
   if (!data.mean.empty()) {
     panel.series.insert(panel.series.begin(), mean_series(data, quantity));
+  }
+  if (Series flagged = flagged_series(data, quantity); !flagged.points.empty()) {
+    panel.series.push_back(std::move(flagged));
   }
   return panel;
 }
@@ -177,8 +193,20 @@ void draw_with_detail(Svg& svg, const Panel& panel, const Panel& detail_source, 
        {place->left + labels, place->top + 10, place->width - labels - 10, place->height - 34});
 }
 
+constexpr double legend_size = 11;
+constexpr double legend_line_height = 15;
+
+std::vector<std::string> legend_lines(const std::vector<std::string>& legend) {
+  std::vector<std::string> lines;
+  for (const std::string& text : legend) {
+    const std::vector<std::string> wrapped = wrap_text(text, legend_size, right - left);
+    lines.insert(lines.end(), wrapped.begin(), wrapped.end());
+  }
+  return lines;
+}
+
 std::string csv_of(const TransferFunctionData& data) {
-  const auto unit = data.unit.empty() ? std::string("1") : data.unit;
+  const auto unit = data.unit.empty() ? std::string("a unit that is not known") : data.unit;
   auto csv = csv_comment(data.title);
   csv += csv_comment(fmt::format("magnitude in {}; phase: lead, rad (ISO 2041), a delay has "
                                  "negative phase; u: standard uncertainty",
@@ -188,12 +216,20 @@ std::string csv_of(const TransferFunctionData& data) {
         "group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->delay_s),
         csv_number(data.group_delay->u_delay_s), csv_number(data.group_delay->intercept_rad)));
   }
-  csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad\n";
+  if (!data.subtitle.empty()) {
+    csv += csv_comment(data.subtitle);
+  }
+  csv += csv_comment("phase_rad of the means is continuous over frequency, of repetitions in (-pi, "
+                     "pi]");
+  for (const std::string& line : data.legend) {
+    csv += csv_comment("flag " + line);
+  }
+  csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags\n";
   const auto add = [&](const std::string& repetition, const ValueOverFrequency& p) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{}\n", repetition,
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{}\n", repetition,
                    csv_number(p.frequency_hz), csv_number(p.value.magnitude),
                    csv_number(p.value.u_magnitude), csv_number(p.value.phase_rad),
-                   csv_number(p.value.u_phase_rad));
+                   csv_number(p.value.u_phase_rad), p.flags);
   };
   for (const auto& [repetition, point] : data.repetitions) {
     add(std::to_string(repetition), point);
@@ -221,12 +257,19 @@ Figure transfer_function_figure(const TransferFunctionData& data, const std::str
   }
 
   constexpr double header_room = 110;
-  Svg svg(width, header_room + 2 * panel_height + 20 + 56);
+  const std::vector<std::string> below = legend_lines(data.legend);
+  const double panels_end = header_room + 2 * panel_height + 20 + 56;
+  Svg svg(width, panels_end + (below.empty() ? 0 : 10) +
+                     legend_line_height * static_cast<double>(below.size()));
   const double top =
       draw_header(svg, data.title, data.subtitle, {&magnitudes, &phases}, left, right);
   const double height = panel_height + (header_room - top) / 2;
   draw_with_detail(svg, magnitudes, magnitude_detail, {left, top, right - left, height});
   draw_with_detail(svg, phases, phase_detail, {left, top + height + 20, right - left, height});
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    svg.text({left, panels_end + legend_line_height * (static_cast<double>(i) + 0.5)}, below[i],
+             {.size = legend_size, .colour = "#555555"});
+  }
   return {name, svg.finish(), csv_of(data)};
 }
 

@@ -1,69 +1,21 @@
-#include "services/report/run_report.hpp"
+#include "services/report/result_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/services/report/example_outcome.hpp"
+
 namespace dyncal::services {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
+using tests::example_outcome;
 
-TransferFunction function(const std::string& channel, double magnitude) {
-  TransferFunction one;
-  one.channel = channel;
-  one.unit = R"(\one)";
-  for (const char* text : {"10", "20"}) {
-    FrequencyPoint point;
-    point.frequency_text_hz = text;
-    point.frequency_hz = std::stod(text);
-    point.mean.magnitude = magnitude;
-    point.mean.u_magnitude = 1e-3;
-    point.mean.phase_rad = -0.5;
-    point.mean.u_phase_rad = 2e-3;
-    point.mean.repetitions = 3;
-    one.points.push_back(point);
-  }
-  one.group_delay.emplace();
-  one.group_delay->delay_s = 8.1e-3;
-  one.group_delay->u_delay_s = 1e-6;
-  return one;
-}
-
-RunOutcome outcome() {
-  RunOutcome one;
-  one.bench = "acc-1";
-  one.run = "r1";
-  one.planned_steps = 2;
-  one.analysis_dds = "fastdds";
-  StepResult result;
-  result.channel = "dau/acceleration_z";
-  result.step = 1;
-  result.frequency_hz = 10.0;
-  result.frequency_text_hz = "10";
-  result.level_m_s2 = 2.75;
-  result.repetition = 1;
-  result.valid = true;
-  result.magnitude = 1.0;
-  result.samples = {{.source = "dau", .used = 3010}};
-  one.results.push_back(result);
-  result.valid = false;
-  result.step = 2;
-  result.frequency_text_hz = "20";
-  result.problem = "no steady sine";
-  one.results.push_back(result);
-  one.transfer_functions = {function("dau/acceleration_z", 1.0),
-                            function("dau/angular_velocity_x", 1e-4)};
-  ClockReport clock{.source = "dau", .clock = {}};
-  clock.clock.mean_interval_s = 996.96e-6;
-  clock.clock.intervals = 1000;
-  one.clock_reports.push_back(clock);
-  return one;
-}
-
-TEST(RunReport, JsonHasTheFormOthersRead) {
-  const auto json = result_json(outcome());
+TEST(ResultJson, HasTheFormOthersRead) {
+  const auto json = result_json(example_outcome());
+  EXPECT_EQ(json["schema"]["name"], "dyncal-result");
+  EXPECT_EQ(json["schema"]["version"], result_schema_version);
   EXPECT_EQ(json["bench"], "acc-1");
   EXPECT_EQ(json["method"], "sample-timestamping");
   EXPECT_EQ(json["dds"]["analysis"], "fastdds");
@@ -72,42 +24,89 @@ TEST(RunReport, JsonHasTheFormOthersRead) {
   EXPECT_DOUBLE_EQ(point["frequency_hz"], 10.0);
   EXPECT_DOUBLE_EQ(point["level_m_s2"], 2.75);
   EXPECT_EQ(point["samples"]["dau"], 3010);
-  EXPECT_EQ(point["lost"], 0);
+  EXPECT_EQ(point["lost"], 7);
   EXPECT_EQ(json["transfer_function"][0]["repetitions"], 3);
   EXPECT_DOUBLE_EQ(json["group_delay"][0]["value_s"], 8.1e-3);
   EXPECT_EQ(json["sample_clock"][0]["count"], 1000);
 }
 
+TEST(ResultJson, TellsWhoMeasuredWhatAndWhen) {
+  const auto json = result_json(example_outcome());
+  EXPECT_THAT(json["software"].get<std::string>(), HasSubstr("dyncal "));
+  EXPECT_EQ(json["analysis"]["software"], "dyncal 1.2.3");
+  EXPECT_EQ(json["began_utc"], "2023-11-14T22:13:20.000000012Z");
+  EXPECT_EQ(json["ended_utc"], "2023-11-14T22:14:20.000000000Z");
+  const auto& source = json["sources"][0];
+  EXPECT_EQ(source["serial"], "42");
+  EXPECT_TRUE(source["tick_s"].is_null()); // not known
+  EXPECT_EQ(source["channels"][0]["quantity"], "acceleration");
+  EXPECT_EQ(source["channels"][0]["unit"], R"(\metre\second\tothe{-2})");
+  EXPECT_TRUE(source["channels"][1]["maximum"].is_null());
+  EXPECT_EQ(json["roles"]["sync_dau"], "dau/sync");
+  EXPECT_EQ(json["recipe"], "bench = \"acc-1\"\n");
+}
+
+TEST(ResultJson, UnknownTimesAreNull) {
+  RunOutcome outcome = example_outcome();
+  outcome.began_utc_ns = 0;
+  EXPECT_TRUE(result_json(outcome)["began_utc"].is_null());
+}
+
+TEST(ResultJson, HasCorrectionsAndTheExcitationThatWasMeasured) {
+  const auto json = result_json(example_outcome());
+  const auto& point = json["points"][0];
+  EXPECT_DOUBLE_EQ(point["measured_level_m_s2"], 2.7);
+  EXPECT_DOUBLE_EQ(point["measured_frequency_hz"], 10.000001);
+  EXPECT_DOUBLE_EQ(point["temperature_degc"], 23.5);
+  EXPECT_EQ(point["fit"]["role"], "dut");
+  const auto& step = json["steps"][0];
+  ASSERT_EQ(step["fits"].size(), 2U);
+  EXPECT_EQ(step["fits"][0]["role"], "reference");
+  EXPECT_EQ(step["fits"][1]["role"], "sync_acs");
+  EXPECT_DOUBLE_EQ(step["fits"][1]["amplitude"], 1.0);
+  EXPECT_DOUBLE_EQ(step["fits"][1]["residual_rms"], 1e-3);
+  ASSERT_EQ(step["corrections"].size(), 2U);
+  EXPECT_EQ(step["corrections"][0]["name"], "reference_delay");
+  EXPECT_NEAR(step["corrections"][0]["phase_rad"], -6.283e-5, 1e-8);
+  EXPECT_EQ(step["corrections"][1]["name"], "adc_phase_lag");
+  EXPECT_NEAR(step["corrections"][1]["phase_rad"], -2e-4, 1e-5);
+  EXPECT_EQ(json["corrections"]["adc_calibration"].size(), 2U);
+  EXPECT_TRUE(json["steps"][1]["fits"].empty()); // it has no result
+}
+
+TEST(ResultJson, EventsHaveTheirPlace) {
+  const auto clock = result_json(example_outcome())["sample_clock"][0];
+  EXPECT_EQ(clock["events"], 1);
+  EXPECT_EQ(clock["event_list"][0]["sample"], 300);
+  EXPECT_DOUBLE_EQ(clock["event_list"][0]["time_s"], 0.299);
+}
+
+TEST(ResultJson, ExplainsEveryFlag) {
+  const auto json = result_json(example_outcome());
+  EXPECT_EQ(json["points"][0]["flags"][0], "dau: samples lost");
+  EXPECT_EQ(json["points"][0]["flag_names"][0], "samples_lost");
+  EXPECT_EQ(json["transfer_function"][0]["flag_names"][0], "samples_lost");
+  EXPECT_TRUE(json["transfer_function"][1]["flags"].empty());
+  EXPECT_EQ(json["channels"][0]["flag_names"][0], "polarity_inverted");
+  ASSERT_EQ(json["flags"].size(), 2U);
+  EXPECT_EQ(json["flags"][0]["name"], "samples_lost");
+  EXPECT_EQ(json["flags"][0]["sentences"][0], "dau: samples lost");
+  EXPECT_THAT(json["flags"][1]["meaning"].get<std::string>(), HasSubstr("phase tends to pi"));
+}
+
 // JSON cannot represent infinity, and 0 would say the contrary.
-TEST(RunReport, InfiniteDegreesOfFreedomAreNull) {
-  RunOutcome one = outcome();
-  one.results.front().budget = {
-      {.kind = analysis::ContributionKind::reference, .u_phase_rad = 1e-3},
-      {.kind = analysis::ContributionKind::fit_noise,
-       .subject = "the sensor",
-       .degrees_of_freedom = 17.0}};
-  const auto budget = result_json(one)["points"][0]["budget"];
-  ASSERT_EQ(budget.size(), 2u);
+TEST(ResultJson, InfiniteDegreesOfFreedomAreNull) {
+  const auto json = result_json(example_outcome());
+  const auto budget = json["points"][0]["budget"];
+  ASSERT_EQ(budget.size(), 2U);
   EXPECT_EQ(budget[0]["name"], "reference");
   EXPECT_TRUE(budget[0]["degrees_of_freedom"].is_null());
   EXPECT_EQ(budget[1]["name"], "noise of the sensor");
   EXPECT_EQ(budget[1]["degrees_of_freedom"], 17.0);
+  EXPECT_TRUE(json["transfer_function"][0]["nu_eff_magnitude"].is_null());
 }
 
-TEST(RunReport, TableShowsChannelsThatRespondAndNamesTheOthers) {
-  const std::string table = result_table(outcome());
-  EXPECT_THAT(table, HasSubstr("dau/acceleration_z\n"));
-  EXPECT_THAT(table, HasSubstr("group delay 8.1 ms"));
-  EXPECT_THAT(
-      table, HasSubstr("No response above three times its uncertainty in: dau/angular_velocity_x"));
-}
-
-TEST(RunReport, TableListsWhatHasNoResultAndWhy) {
-  EXPECT_THAT(result_table(outcome()), HasSubstr("step 2, 20 Hz: no steady sine"));
-  EXPECT_THAT(result_table(outcome()), Not(HasSubstr("nan")));
-}
-
-TEST(RunReport, AFileThatCannotBeWrittenIsAnError) {
+TEST(ResultJson, AFileThatCannotBeWrittenIsAnError) {
   EXPECT_THAT(write_json("/nowhere/result.json", {}).error().message,
               HasSubstr("/nowhere/result.json: cannot write"));
 }

@@ -121,11 +121,30 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
   data.group_delay = line_of(delay_s, 0.25);
   const auto csv = transfer_function_figure(data, "tf").csv;
   EXPECT_THAT(csv, HasSubstr("phase: lead, rad"));
-  EXPECT_THAT(csv,
-              HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad\n"));
+  EXPECT_THAT(
+      csv,
+      HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags\n"));
   EXPECT_THAT(csv, HasSubstr("intercept 0.25 rad"));
   EXPECT_THAT(csv, HasSubstr("\nmean,10,"));
   EXPECT_EQ(lines_without_comments(csv), 1U + 2 * 3 + 2);
+}
+
+TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
+  auto data = low_pass(4);
+  const auto without = transfer_function_figure(data, "tf");
+  EXPECT_THAT(texts_of(without.svg), Not(Contains("flagged, see below")));
+  data.mean[1].flags = "samples_lost";
+  data.repetitions[4].point.flags = "samples_lost";
+  data.legend = {"samples_lost (dau: samples lost): " + std::string(200, 'a') + " and more"};
+  const auto figure = transfer_function_figure(data, "tf");
+  EXPECT_EQ(problem_of(figure.svg), "");
+  EXPECT_THAT(texts_of(figure.svg), Contains("flagged, see below"));
+  EXPECT_THAT(texts_of(figure.svg), Contains("samples_lost (dau: samples lost):"));
+  EXPECT_THAT(texts_of(figure.svg), Contains("and more"));
+  // Two panels, and the sample in the legend.
+  EXPECT_EQ(count_elements(figure.svg, "circle"), count_elements(without.svg, "circle") + 3);
+  EXPECT_THAT(figure.csv, HasSubstr("# flag samples_lost (dau: samples lost): aaa"));
+  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost\n2,"));
 }
 
 } // namespace

@@ -1,0 +1,27 @@
+// From the standard uncertainty of a result to its coverage interval (GUM 6, G.4):
+//
+//   U = k u,   k = t_p(nu_eff),   p = 95.45 %
+//
+// Of a single step, nu_eff is that of Welch and Satterthwaite over the rows of its budget; of a
+// mean over repetitions, u, nu_eff and k are those of analysis/method/repetitions.hpp. Plain
+// functions, any thread.
+#pragma once
+
+#include "services/evaluation/result/step_result.hpp"
+#include "services/evaluation/result/transfer_function.hpp"
+
+namespace dyncal::services {
+
+struct ExpandedUncertainty {
+  double u = 0.0; // k = 1
+  double k = 2.0;
+  double nu_eff = analysis::infinite_degrees_of_freedom;
+  double expanded = 0.0; // U
+};
+
+[[nodiscard]] ExpandedUncertainty magnitude_uncertainty(const StepResult& result);
+[[nodiscard]] ExpandedUncertainty phase_uncertainty(const StepResult& result);
+[[nodiscard]] ExpandedUncertainty magnitude_uncertainty(const analysis::RepetitionMean& mean);
+[[nodiscard]] ExpandedUncertainty phase_uncertainty(const analysis::RepetitionMean& mean);
+
+} // namespace dyncal::services

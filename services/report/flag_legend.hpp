@@ -1,0 +1,40 @@
+// The flags of a run for those who read its results: which point has which, and what each means.
+//
+// Names and explanations are those of services/evaluation/result/result_flag.hpp. Plain functions,
+// any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/evaluation/result/run_outcome.hpp"
+
+namespace dyncal::services {
+
+struct FlagMeaning {
+  std::string name;                   // "samples_lost"
+  std::vector<std::string> sentences; // as the results carry them, each once: "dau: samples lost"
+  std::string explanation;            // what it means and what to do
+};
+
+// Of these flags, each kind once and in the order of ResultFlag.
+[[nodiscard]] std::vector<FlagMeaning> flag_legend(const std::vector<Flag>& flags);
+
+// "samples_lost (dau: samples lost; acs: samples lost): samples of this source are missing ..."
+[[nodiscard]] std::string legend_line(const FlagMeaning& meaning);
+
+// All of a run, or of one of its channels.
+[[nodiscard]] std::vector<Flag> flags_of(const RunOutcome& outcome);
+[[nodiscard]] std::vector<Flag> flags_of(const RunOutcome& outcome,
+                                         const TransferFunction& function);
+// Of the valid results that a mean was made of.
+[[nodiscard]] std::vector<Flag> flags_of(const RunOutcome& outcome, const std::string& channel,
+                                         const FrequencyPoint& point);
+
+// Each kind and sentence once.
+[[nodiscard]] std::vector<Flag> flags_once(const std::vector<Flag>& flags);
+
+// The names, each once, separated by spaces: "samples_lost shots_missing".
+[[nodiscard]] std::string flag_names(const std::vector<Flag>& flags);
+
+} // namespace dyncal::services

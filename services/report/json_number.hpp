@@ -1,0 +1,14 @@
+// Numbers of result files: JSON cannot represent NaN or infinity, so they are null. Any thread.
+#pragma once
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace dyncal::services {
+
+[[nodiscard]] inline nlohmann::ordered_json json_number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,12 @@
+// Prints a result with everything that one can hold.
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "services/report/result_json.hpp"
+#include "tests/unit/services/report/example_outcome.hpp"
+
+int main() {
+  std::puts(dyncal::services::result_json(dyncal::tests::example_outcome()).dump(1).c_str());
+  return 0;
+}
