@@ -38,12 +38,12 @@ Error refused(std::string message) {
 Error no_time_scale(const std::string& source) {
   return refused(
       fmt::format("source '{}' does not stamp in UTC: sync links unrelated clocks only up to a "
-                  "delay, and a delay is what the phase of "
-                  "the ADC is made of; let both sources stamp in UTC (time_base = \"utc\")",
+                  "delay, and the phase of the ADC is a "
+                  "delay; let both sources stamp in UTC (time_base = \"utc\")",
                   source));
 }
 
-// What the sources say of themselves, which counts more than the bench file.
+// How the sources describe themselves, which takes precedence over the bench file.
 Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
                                          const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
@@ -147,7 +147,7 @@ Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& mea
                                     lowest_vpp, highest_vpp, *asked_vpp)));
   }
   if (!asked_vpp && highest_vpp > lowest_vpp * (1.0 + amplitude_spread)) {
-    return fail(refused(fmt::format("sync goes from {:.4g} to {:.4g} V peak to peak with "
+    return fail(refused(fmt::format("sync ranges from {:.4g} to {:.4g} V peak to peak with "
                                     "the bench's levels, but an ADC is calibrated at "
                                     "one amplitude after the other: give --amplitudes",
                                     lowest_vpp, highest_vpp)));
@@ -185,8 +185,9 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   if (measurements->size() < outcome->planned_steps) {
     return fail(
         ErrorCode::no_result,
-        fmt::format("{} of {} steps have no result; the analysis service says why (dyncal watch)",
-                    outcome->planned_steps - measurements->size(), outcome->planned_steps));
+        fmt::format(
+            "{} of {} steps have no result; the analysis service reports why (dyncal watch)",
+            outcome->planned_steps - measurements->size(), outcome->planned_steps));
   }
   if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
     return fail(named.error());
@@ -213,7 +214,7 @@ void print(const Measurements& measurements) {
                point.phase_lag_rad, point.u_phase_lag_rad, 1e9 * point.phase_lag_rad / w,
                1e9 * point.u_phase_lag_rad / w);
     if (std::abs(point.phase_lag_rad) > w * max_adc_delay_s + 6.0 * point.u_phase_lag_rad) {
-      fmt::print("{:>10} a delay that an ADC hardly has: do both sources mark the instant of "
+      fmt::print("{:>10} implausible for an ADC: do both sources mark the instant of "
                  "sampling in UTC? is a cable inverted?\n",
                  "");
     }
@@ -292,8 +293,8 @@ Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) 
     }
   }
   if (bench.excitation.repetitions < 2) {
-    return fail(refused(fmt::format("{}: excitation.repetitions must be 2 at least: the "
-                                    "scatter of the calibration is seen from them",
+    return fail(refused(fmt::format("{}: excitation.repetitions must be at least 2: the "
+                                    "scatter of the calibration is found from them",
                                     bench.path.string())));
   }
   if (sets_amplitude && bench.generator.driver == GeneratorDriver::none) {

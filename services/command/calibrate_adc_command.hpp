@@ -7,9 +7,9 @@
 // `[corrections] adc` reads. Without --amplitudes the bench's levels are used and the test
 // amplitude is the one that the ACS finds. With them the generator is set to half of the
 // peak-to-peak voltage, so sync must be its output. Needs both sources to stamp in UTC: anything
-// else is refused, for an ADC's delay cannot be told from an unknown offset of two clocks. An
-// oscilloscope's record is refused as well: it is placed in time by its trigger, which the DAU does
-// not stamp. Belongs to one thread.
+// else is refused, for an ADC's delay cannot be distinguished from an unknown offset of two
+// clocks. An oscilloscope's record is refused as well: it is placed in time by its trigger, which
+// the DAU does not stamp. Belongs to one thread.
 #pragma once
 
 #include <filesystem>

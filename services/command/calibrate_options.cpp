@@ -15,12 +15,10 @@ void add_dso_delay(CLI::App& calibrate, CalibrateDsoDelayCommand& delay) {
   command
       ->add_option("--by", delay.by,
                    "sync signal: rectangle (from edge to edge) or sine (from the trigger point; "
-                   "its noise is told)")
+                   "its noise is reported)")
       ->check(CLI::IsMember({"rectangle", "sine"}))
       ->capture_default_str();
-  command
-      ->add_option("--frequency", delay.frequency_hz,
-                   "frequency of the generator in Hz, decimal text")
+  command->add_option("--frequency", delay.frequency_hz, "frequency of the generator in Hz")
       ->capture_default_str();
   command
       ->add_option("--amplitude", delay.amplitude_v,

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t events_shown = 20;
 
-struct Judged {
+struct EvaluatedPulses {
   PulseRecord record;
   analysis::SortedPulses pulses;
   std::optional<analysis::PulsePrediction> prediction;
@@ -61,7 +61,7 @@ bool has_reference(const PulseRecord& record) {
                      [](const auto& edge) { return edge.input == PulseInput::reference; });
 }
 
-Expected<Judged> judge(const CalibrateTimeCommand& command) {
+Expected<EvaluatedPulses> judge(const CalibrateTimeCommand& command) {
   auto record = read_pulse_files(command.files);
   if (!record) {
     return fail(record.error());
@@ -74,33 +74,32 @@ Expected<Judged> judge(const CalibrateTimeCommand& command) {
   if (!pulses) {
     return failure(pulses.error());
   }
-  Judged judged{std::move(*record), std::move(*pulses), {}, {}};
-  judged.prediction = analysis::predict_gps_pulses(judged.pulses);
-  if (has_reference(judged.record)) {
-    auto deviation =
-        analysis::stamp_deviations(judged.pulses, {.reference_offset_s = command.reference_offset_s,
-                                                   .u_reference_s = command.u_reference_s});
+  EvaluatedPulses evaluated{std::move(*record), std::move(*pulses), {}, {}};
+  evaluated.prediction = analysis::predict_gps_pulses(evaluated.pulses);
+  if (has_reference(evaluated.record)) {
+    auto deviation = analysis::stamp_deviations(
+        evaluated.pulses,
+        {.reference_offset_s = command.reference_offset_s, .u_reference_s = command.u_reference_s});
     if (!deviation) {
       return failure(deviation.error());
     }
-    judged.deviation = std::move(*deviation);
+    evaluated.deviation = std::move(*deviation);
   }
-  if (!judged.deviation && !judged.prediction) {
-    return fail(ErrorCode::no_result,
-                fmt::format("{}: too few pulses follow each other to say anything about them",
-                            command.files.front().string()));
+  if (!evaluated.deviation && !evaluated.prediction) {
+    return fail(ErrorCode::no_result, fmt::format("{}: too few consecutive pulses to evaluate",
+                                                  command.files.front().string()));
   }
-  return judged;
+  return evaluated;
 }
 
-void print_edges(const Judged& judged) {
-  const analysis::SortedPulses& pulses = judged.pulses;
-  fmt::print("{} edges in {} session{}\n", judged.record.edges.size(), pulses.sessions.size(),
+void print_edges(const EvaluatedPulses& evaluated) {
+  const analysis::SortedPulses& pulses = evaluated.pulses;
+  fmt::print("{} edges in {} session{}\n", evaluated.record.edges.size(), pulses.sessions.size(),
              pulses.sessions.size() == 1 ? "" : "s");
   fmt::print("{:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "pulse", "seconds", "extra", "missing",
              "repeated", "moved");
   for (const PulseInput input : {PulseInput::gps, PulseInput::reference}) {
-    if (input == PulseInput::reference && !has_reference(judged.record)) {
+    if (input == PulseInput::reference && !has_reference(evaluated.record)) {
       continue;
     }
     fmt::print("{:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n", name_of(input), seconds_of(pulses, input),
@@ -113,7 +112,7 @@ void print_edges(const Judged& judged) {
     if (++shown > events_shown) {
       break;
     }
-    fmt::print("  {}, {}: {}{}: {}\n", judged.record.place(event.edge), name_of(event.input),
+    fmt::print("  {}, {}: {}{}: {}\n", evaluated.record.place(event.edge), name_of(event.input),
                name_of(event.fault),
                event.fault == PulseFault::missing ? fmt::format(" ({})", event.missing) : "",
                event.reason);
@@ -126,7 +125,7 @@ void print_edges(const Judged& judged) {
 void print_prediction(const analysis::PulsePrediction& prediction) {
   fmt::print("counter {:.2f} ticks per second of GPS, sd {:.2f} ticks\n",
              prediction.ticks_per_second, prediction.sd_ticks);
-  fmt::print("GPS pulse against its foretelling from the pulses before: {} seconds, sd {:.1f} ns, "
+  fmt::print("GPS pulse against its prediction from the pulses before: {} seconds, sd {:.1f} ns, "
              "{:+.1f} to {:+.1f} ns\n",
              prediction.count, 1e9 * prediction.sd_s, 1e9 * prediction.minimum_s,
              1e9 * prediction.maximum_s);
@@ -145,7 +144,7 @@ void print_deviation(const CalibrateTimeCommand& command,
                "of GPS, which is taken as its delay\n",
                deviation.reference_offset_s);
   }
-  fmt::print("  sd             {:10.2f} ns   u {:.2f} ns (its values wander: worth {:.0f} "
+  fmt::print("  sd             {:10.2f} ns   u {:.2f} ns (its values are correlated: worth {:.0f} "
              "independent ones)\n",
              1e9 * deviation.sd_s, 1e9 * deviation.u_sd_s, deviation.effective_count);
   fmt::print("  95 % within    {:+10.2f} ns to {:+.2f} ns\n", 1e9 * deviation.quantile_025_s,
@@ -161,10 +160,10 @@ void print_deviation(const CalibrateTimeCommand& command,
              1e9 * deviation.u_stamp_s);
 }
 
-Json events_json(const Judged& judged) {
+Json events_json(const EvaluatedPulses& evaluated) {
   Json events = Json::array();
-  for (const analysis::PulseEvent& event : judged.pulses.events) {
-    events.push_back({{"place", judged.record.place(event.edge)},
+  for (const analysis::PulseEvent& event : evaluated.pulses.events) {
+    events.push_back({{"place", evaluated.record.place(event.edge)},
                       {"pulse", name_of(event.input)},
                       {"what", name_of(event.fault)},
                       {"missing", event.missing},
@@ -212,19 +211,19 @@ Json deviation_json(const CalibrateTimeCommand& command,
   return json;
 }
 
-Json result_json(const CalibrateTimeCommand& command, const Judged& judged) {
+Json result_json(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
   Json files = Json::array();
   for (const std::filesystem::path& file : command.files) {
     files.push_back(file.string());
   }
   Json json{{"files", files},
             {"sign", "positive: the stamp is later than the reference pulse"},
-            {"sessions", judged.pulses.sessions.size()},
-            {"gps", counts_json(judged.pulses, PulseInput::gps)},
-            {"reference", counts_json(judged.pulses, PulseInput::reference)},
-            {"events", events_json(judged)}};
-  if (judged.prediction) {
-    const analysis::PulsePrediction& prediction = *judged.prediction;
+            {"sessions", evaluated.pulses.sessions.size()},
+            {"gps", counts_json(evaluated.pulses, PulseInput::gps)},
+            {"reference", counts_json(evaluated.pulses, PulseInput::reference)},
+            {"events", events_json(evaluated)}};
+  if (evaluated.prediction) {
+    const analysis::PulsePrediction& prediction = *evaluated.prediction;
     json["gps_prediction"] = {{"count", prediction.count},
                               {"sd_s", prediction.sd_s},
                               {"min_s", prediction.minimum_s},
@@ -232,25 +231,25 @@ Json result_json(const CalibrateTimeCommand& command, const Judged& judged) {
                               {"ticks_per_second", prediction.ticks_per_second},
                               {"sd_ticks", prediction.sd_ticks}};
   }
-  if (judged.deviation) {
-    json["deviation"] = deviation_json(command, *judged.deviation);
+  if (evaluated.deviation) {
+    json["deviation"] = deviation_json(command, *evaluated.deviation);
   }
   return json;
 }
 
-figures::Figure figure_of(const CalibrateTimeCommand& command, const Judged& judged) {
-  const analysis::StampDeviationStatistics& deviation = *judged.deviation;
+figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
+  const analysis::StampDeviationStatistics& deviation = *evaluated.deviation;
   figures::StampDeviationData data;
   data.title = "Deviation of the time stamps from the reference pulse";
   data.subtitle = fmt::format(
       "{} seconds, sd {:.1f} ns, 95 % within {:+.1f} to {:+.1f} ns{}", deviation.deviations.size(),
       1e9 * deviation.sd_s, 1e9 * deviation.quantile_025_s, 1e9 * deviation.quantile_975_s,
-      command.reference_offset_s ? "" : "; the mean is not known and taken off");
+      command.reference_offset_s ? "" : "; the mean is not known and was removed");
   data.comments = {fmt::format("reference pulse {} s after the second of GPS, {}",
                                deviation.reference_offset_s,
                                command.reference_offset_s ? "given" : "the mean of the record"),
                    "positive: the stamp is later than the reference pulse"};
-  data.tick_s = 1.0 / judged.pulses.ticks_per_second;
+  data.tick_s = 1.0 / evaluated.pulses.ticks_per_second;
   for (const analysis::StampDeviation& one : deviation.deviations) {
     data.deviations.push_back({one.session, one.time_s, one.deviation_s});
   }
@@ -260,19 +259,19 @@ figures::Figure figure_of(const CalibrateTimeCommand& command, const Judged& jud
   return stamp_deviation_figure(data, command.output.stem().string());
 }
 
-Expected<void> write(const CalibrateTimeCommand& command, const Judged& judged) {
+Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
   std::ofstream file(command.output);
-  file << result_json(command, judged).dump(1) << '\n';
+  file << result_json(command, evaluated).dump(1) << '\n';
   if (!file.flush()) {
     return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string()));
   }
   fmt::print("wrote {}\n", command.output.string());
-  if (!judged.deviation) {
+  if (!evaluated.deviation) {
     return {};
   }
   const std::filesystem::path folder =
       command.output.has_parent_path() ? command.output.parent_path() : ".";
-  const auto written = figures::write(figure_of(command, judged), folder);
+  const auto written = figures::write(figure_of(command, evaluated), folder);
   if (!written) {
     return fail(written.error());
   }
@@ -285,21 +284,21 @@ Expected<void> write(const CalibrateTimeCommand& command, const Judged& judged) 
 } // namespace
 
 int run_calibrate_time(const CalibrateTimeCommand& command) {
-  const auto judged = judge(command);
-  if (!judged) {
-    return report_error(judged.error());
+  const auto evaluated = judge(command);
+  if (!evaluated) {
+    return report_error(evaluated.error());
   }
-  print_edges(*judged);
-  if (judged->prediction) {
-    print_prediction(*judged->prediction);
+  print_edges(*evaluated);
+  if (evaluated->prediction) {
+    print_prediction(*evaluated->prediction);
   }
-  if (judged->deviation) {
-    print_deviation(command, *judged->deviation);
+  if (evaluated->deviation) {
+    print_deviation(command, *evaluated->deviation);
   } else {
     fmt::print("no edges of a reference pulse (REFT;n;ticks): the deviation of the stamps cannot "
-               "be known from this record\n");
+               "be determined from this record\n");
   }
-  const auto written = write(command, *judged);
+  const auto written = write(command, *evaluated);
   return written ? 0 : report_error(written.error());
 }
 

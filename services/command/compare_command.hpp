@@ -5,7 +5,7 @@
 // 1 at k = 2 means that they agree. What both have in common, such as the reference, can be taken
 // out of the uncertainties of the difference by its relative standard uncertainty
 // (--common-magnitude, --common-phase); without that E_n is too kind to two results that share a
-// reference. Prints a table, or JSON. Exit status 1 and one line when a file is no result or the
+// reference. Prints a table, or JSON. Exit status 1 and one line when a file is not a result or the
 // two have nothing in common. Belongs to one thread.
 #pragma once
 

@@ -1,9 +1,8 @@
 // `dyncal demo`: a whole virtual bench, its services, DDS, analysis and report on this machine.
 //
 // Every instrument and service is a process of its own and talks as it does in a laboratory. All
-// files go to one folder: bench file, ADC calibration, logs, result, figures, and the truth that
-// nobody but the final comparison reads. Belongs to one thread; all processes have ended when it
-// returns.
+// files go to one folder: bench file, ADC calibration, logs, result, figures, and the truth, which
+// only the final comparison reads. Belongs to one thread; all processes have ended when it returns.
 #pragma once
 
 #include <cstdint>

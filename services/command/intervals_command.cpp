@@ -120,10 +120,9 @@ int run_intervals(const IntervalsCommand& command) {
   clock.push(0, series->stamps_ns, {}, temperature);
   const auto statistics = clock.statistics();
   if (!statistics) {
-    return report_error(
-        {ErrorCode::bad_file,
-         fmt::format("{}: fewer than three samples: there are no intervals to speak of",
-                     command.file.string())});
+    return report_error({ErrorCode::bad_file,
+                         fmt::format("{}: fewer than three samples: too few to evaluate intervals",
+                                     command.file.string())});
   }
   command.json ? print_json(*statistics) : print_table(*statistics);
   return 0;

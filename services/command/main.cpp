@@ -1,4 +1,4 @@
-// dyncal: the command for people.
+// The dyncal command-line tool.
 #include <array>
 #include <string>
 #include <unistd.h>
@@ -32,8 +32,8 @@ void add_run(CLI::App& app, RunCommand& run) {
 }
 
 void add_demo(CLI::App& app, DemoCommand& demo) {
-  CLI::App* command =
-      app.add_subcommand("demo", "a whole virtual bench, DDS, analysis and report on this machine");
+  CLI::App* command = app.add_subcommand(
+      "demo", "run a whole virtual bench with DDS, analysis and report on this machine");
   command
       ->add_option("--preset", demo.preset,
                    "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")
@@ -42,28 +42,29 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
                       "fastdds, cyclonedds, or one for each: "
                       "dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
   command->add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
-                    "of preset tss: take the phase of sync at the trigger out of every shot "
-                    "(default), or see what that is worth");
-  command->add_option("--speed", demo.speed, "times real time, or max")->capture_default_str();
-  command->add_option("--seed", demo.seed, "of the virtual bench's randomness")
+                    "preset tss: correct every shot for the phase of sync at the trigger "
+                    "(default); without it you see what the correction is worth");
+  command->add_option("--speed", demo.speed, "multiple of real time, or max")
+      ->capture_default_str();
+  command->add_option("--seed", demo.seed, "seed of the virtual bench's random numbers")
       ->capture_default_str();
   command
       ->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")
       ->check(CLI::Range(0, 232));
-  command->add_option("--output", demo.folder, "folder for all files")->capture_default_str();
+  command->add_option("--output", demo.folder, "folder of all files")->capture_default_str();
   command->add_option("--json", demo.json,
                       "write the result to this file as JSON (default: result.json in the folder)");
-  command->add_option("--repetitions", demo.repetitions, "of the excitation list")
+  command->add_option("--repetitions", demo.repetitions, "repetitions of the excitation list")
       ->check(CLI::Range(1, 1000));
   command
       ->add_option("--duration", demo.duration_s,
-                   "of the evaluated part of a step, in seconds of the bench")
+                   "duration of the evaluated part of a step, in seconds of the bench")
       ->check(CLI::PositiveNumber);
-  command->add_option("--loss", demo.loss, "part of the unit's datagrams that is lost, 0 to 1")
+  command->add_option("--loss", demo.loss, "fraction of the unit's datagrams that are lost, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
   command
       ->add_option("--duplicate", demo.duplicates,
-                   "part of the unit's datagrams that comes twice, 0 to 1")
+                   "fraction of the unit's datagrams that arrive twice, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
   command
       ->add_option("--can", demo.can_interface,
@@ -78,8 +79,8 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
 }
 
 void add_watch(CLI::App& app, WatchCommand& watch) {
-  CLI::App* command =
-      app.add_subcommand("watch", "show benches, sources, rates, losses and results as they come");
+  CLI::App* command = app.add_subcommand(
+      "watch", "show benches, sources, rates, losses, results and their flags as they come");
   command->add_option("--bench", watch.bench, "only this bench (default: all)");
   command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
@@ -102,10 +103,10 @@ void add_fit(CLI::App& app, FitCommand& fit) {
                    "CSV with a header line, or .npy: column t_ns, further columns")
       ->required();
   command->add_option("--frequency", fit.frequency,
-                      "in Hz, decimal text (default: estimated as fourth parameter)");
+                      "in Hz (default: estimated as fourth parameter)");
   command->add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
   command->add_option("--reference-time", fit.reference_time_ns,
-                      "in ns, of the phase (default: the first stamp)");
+                      "instant at which the phase is given, in ns (default: the first stamp)");
   command->add_option("--drift", fit.drift, "highest power of a drift beside the sine")
       ->check(CLI::Range(0, 8));
   command->add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")
@@ -113,7 +114,7 @@ void add_fit(CLI::App& app, FitCommand& fit) {
   command->add_option("--hum", fit.hum, "frequency of a further line in Hz (repeatable)");
   command
       ->add_option("--nominal-rate", fit.nominal_rate_hz,
-                   "take stamps of this rate in Hz in place of the file's")
+                   "replace the file's stamps by those of this rate in Hz")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", fit.json, "print JSON");
 }
@@ -125,16 +126,18 @@ void add_intervals(CLI::App& app, IntervalsCommand& intervals) {
       ->required();
   command->add_option("--temperature", intervals.temperature,
                       "column with the sensor's temperature");
-  command->add_option("--tick", intervals.tick_s, "of the counter that made the stamps, in seconds")
+  command
+      ->add_option("--tick", intervals.tick_s,
+                   "tick of the counter that made the stamps, in seconds")
       ->check(CLI::PositiveNumber);
-  command->add_option("--nominal-rate", intervals.nominal_rate_hz, "in Hz")
+  command->add_option("--nominal-rate", intervals.nominal_rate_hz, "nominal sample rate in Hz")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", intervals.json, "print JSON");
 }
 
 void add_compare(CLI::App& app, CompareCommand& compare) {
   CLI::App* command = app.add_subcommand(
-      "compare", "do two results agree? E_n of magnitude and phase at every common frequency");
+      "compare", "compare two results: E_n of magnitude and phase at every common frequency");
   command->add_option("A.json", compare.first, "result of dyncal")->required();
   command->add_option("B.json", compare.second, "the other result")->required();
   command->add_option("--channel", compare.first_channel, "only this channel (default: all)");
@@ -142,11 +145,11 @@ void add_compare(CLI::App& app, CompareCommand& compare) {
                       "its name in the other result (default: the same)");
   command
       ->add_option("--common-magnitude", compare.common_magnitude_rel,
-                   "relative standard uncertainty that both share, e.g. of one reference")
+                   "relative standard uncertainty that both results share, e.g. of one reference")
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--common-phase", compare.common_phase_rad,
-                   "standard uncertainty of the phase that both share, in rad")
+                   "standard uncertainty of the phase that both results share, in rad")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", compare.json, "print JSON");
 }
@@ -165,16 +168,18 @@ void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
         std::string("result of a triaxial reference's other axes against its axis ") + axes[i]);
   }
   command
-      ->add_option("--channels", triaxial.channels,
-                   "channels of the sensor: x, y, z (default: by their names' ends)")
+      ->add_option(
+          "--channels", triaxial.channels,
+          "channels of the sensor: x, y, z (default: those whose names end with _x, _y, _z)")
       ->expected(3);
   command
-      ->add_option("--motion-channels", triaxial.motion_channels,
-                   "channels of the reference: x, y, z (default: by their names' ends)")
+      ->add_option(
+          "--motion-channels", triaxial.motion_channels,
+          "channels of the reference: x, y, z (default: those whose names end with _x, _y, _z)")
       ->expected(3);
   command
       ->add_option("--transverse-motion", triaxial.transverse_motion_rel,
-                   "bound of the exciter's motion across its axis, relative to that along it")
+                   "bound of the exciter's transverse motion, relative to that along its axis")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", triaxial.json, "print JSON");
 }

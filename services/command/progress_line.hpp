@@ -1,5 +1,5 @@
-// The progress of a run for the person who waits: one line that is written over on a terminal, one
-// line a step elsewhere. Belongs to one thread.
+// The progress of a run: one line that is overwritten on a terminal, one line per step elsewhere.
+// Belongs to one thread.
 #pragma once
 
 #include <cstdio>

@@ -67,8 +67,8 @@ Expected<void> read_file(const std::filesystem::path& path, PulseRecord& record,
     const auto edge = edge_of(line, *with_input);
     if (!edge) {
       return fail(ErrorCode::bad_file,
-                  fmt::format("{}: line {}: '{}' is no edge: {} is expected", path.string(), number,
-                              line.substr(0, max_shown),
+                  fmt::format("{}: line {}: '{}' is not an edge: expected {}", path.string(),
+                              number, line.substr(0, max_shown),
                               *with_input ? "GPST;n;ticks or REFT;n;ticks" : "n;ticks"));
     }
     record.edges.push_back(*edge);

@@ -7,9 +7,10 @@
 //
 // n and ticks are decimal, without sign. Empty lines and lines that begin with # are passed over;
 // line ends may be those of Windows. Several files are one record in the order given. Nothing is
-// guessed: a line of another form is an error with file and line. Fails (bad_file): a file that
-// cannot be opened, a line that is none of these, lines of two fields among lines of three, no
-// edges. Any thread.
+// guessed: a line of another form is an error with file and line.
+//
+// Fails (bad_file): a file that cannot be opened, a line that is none of these, lines of two fields
+// among lines of three, no edges. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -58,9 +58,9 @@ Expected<Names> find_channels(const std::set<std::string>& names, const std::str
     }
   }
   if (beginnings.size() != 1) {
-    return bad(fmt::format(
-        "the axes' channels cannot be told by their names' ends (_x, _y, _z); name them: {} X Y Z",
-        option));
+    return bad(fmt::format("the channels of the axes cannot be found by their names (_x, _y, _z at "
+                           "the end); name them: {} X Y Z",
+                           option));
   }
   const std::string& beginning = *beginnings.begin();
   return Names{beginning + "x", beginning + "y", beginning + "z"};
@@ -110,7 +110,7 @@ Expected<Measured> read(const TriaxialCommand& command) {
     }
   }
   if (measured.directions.empty()) {
-    return bad("name the result of one direction of excitation at least: --x, --y or --z");
+    return bad("give the result of at least one direction of excitation: --x, --y or --z");
   }
   auto channels =
       channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
@@ -292,14 +292,15 @@ void print_table(const TriaxialCommand& command, const Measured& measured,
     }
   }
   if (measured.triaxial_reference()) {
-    fmt::print("\nthe motion across the excited axis is taken out by the triaxial reference\n");
+    fmt::print("\ntransverse motion of the exciter is corrected by the triaxial reference\n");
   } else if (command.transverse_motion_rel > 0.0) {
-    fmt::print("\nthe exciter's motion across its axis is unknown up to {} of the motion along it, "
-               "which u holds\n",
-               command.transverse_motion_rel);
+    fmt::print(
+        "\ntransverse motion of the exciter is unknown up to {} of the motion along its axis; u "
+        "includes that\n",
+        command.transverse_motion_rel);
   } else {
-    fmt::print("\nthe exciter's motion across its axis is taken for nothing; --transverse-motion "
-               "gives its bound\n");
+    fmt::print("\ntransverse motion of the exciter is assumed to be zero; --transverse-motion "
+               "states its bound\n");
   }
 }
 

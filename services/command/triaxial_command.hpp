@@ -4,13 +4,15 @@
 //
 // The result of an excitation along j holds the transfer functions of the sensor's three channels
 // against the reference along j: column j of the 3x3 response. Any one direction is enough for its
-// column; what moved across it then counts as nothing and goes into the uncertainty by its bound
-// (--transverse-motion). With a triaxial reference the motion across is known: --motion-x, -y, -z
-// name a result each (method analogue) of the other two axes of the reference against the excited
-// one, from the same records; they need all three directions. Frequencies are those that all files
-// have. A channel is found by its name's end (_x, _y, _z) or named with --channels,
-// --motion-channels. Prints a table, or JSON. Exit status not 0 and one line when a file is no
-// result, a channel is missing or nothing is in common. Belongs to one thread.
+// column; transverse motion is then assumed to be zero, and its bound (--transverse-motion) goes
+// into the uncertainty. With a triaxial reference the transverse motion is known: --motion-x, -y,
+// -z name a result each (method analogue) of the other two axes of the reference against the
+// excited one, from the same records; they need all three directions. Frequencies are those that
+// all files have. A channel is found by the end of its name (_x, _y, _z) or named with --channels,
+// --motion-channels.
+//
+// Prints a table, or JSON. Exit status not 0 and one line when a file is not a result, a channel is
+// missing or nothing is in common. Belongs to one thread.
 #pragma once
 
 #include <array>

@@ -36,7 +36,7 @@ struct DemoAddresses {
   std::string can_bus;       // of the virtual bench: "500k", "1M", "fd-5M"
 };
 
-// What the virtual bench says of itself in its truth file's settings: the recipe must state the
+// What the virtual bench draws its errors from, as in its truth file: the recipe must state the
 // same.
 struct DemoUncertainty {
   double reference_magnitude_rel = 0.0;

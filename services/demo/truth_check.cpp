@@ -19,7 +19,7 @@ struct TruePoint {
 
 struct Truth {
   std::vector<TruePoint> points;
-  double mean_interval_s; // NaN: not told
+  double mean_interval_s; // NaN: not stated
 };
 
 Error unreadable(const std::filesystem::path& path, const std::string& why) {

@@ -1,4 +1,4 @@
-// Holds the results of a demo against what the virtual bench knows: the only place that reads the
+// Compares the results of a demo with the truth of the virtual bench: the only place that reads the
 // truth file, after the run is over.
 //
 // The deviation of a point is compared with its own standard uncertainty; for the phase after

@@ -10,8 +10,8 @@
 
 namespace dyncal::services {
 
-// Word of --dds for each of "dau", "acs", "analysis", "run". Fails (bad_argument) on words that are
-// none.
+// The implementation for each of "dau", "acs", "analysis" and "run". Fails (bad_argument) for other
+// names.
 [[nodiscard]] Expected<std::map<std::string, std::string>>
 parse_vendor_assignment(const std::string& text);
 

@@ -1,6 +1,6 @@
 // A recorded file of the bench as a source of blocks, for `dyncal analyse`.
 //
-// The file is read in a thread of its own, a bounded stretch ahead of who takes the blocks; it
+// The file is read in a thread of its own, a bounded stretch ahead of the taker of its blocks; it
 // waits there for room, so nothing is lost. The thread ends with the file, with a failure, or when
 // the object is destroyed. Everything else belongs to one thread.
 #pragma once

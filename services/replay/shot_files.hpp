@@ -2,9 +2,10 @@
 // (drivers/tss/README.md), named "step-2-shot-5.csv" by the step of the plan and the number of the
 // shot, in the folder `path` of the oscilloscope's source and in that of the sensor's. The
 // oscilloscope's files have its sample rate as nominal_rate_hz and the time of their first sample
-// after the trigger as first_sample_s (negative before it). Fails (bad_file), naming folder or
-// file: no path, not readable, malformed, a channel of the recipe missing, more than
-// ShotRecord holds.
+// after the trigger as first_sample_s (negative before it).
+//
+// Fails (bad_file), naming folder or file: no path, not readable, malformed, a channel of the
+// recipe missing, more than ShotRecord holds.
 #pragma once
 
 #include <string>

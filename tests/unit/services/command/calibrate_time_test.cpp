@@ -94,11 +94,12 @@ TEST_F(CalibrateTime, ARecordOfGpsPulsesAloneHasNoDeviation) {
 }
 
 TEST_F(CalibrateTime, WhatIsNoEdgeIsAnErrorWithFileAndLine) {
-  EXPECT_THAT(error_of({file("a.csv", "GPST;0;1\nGPST;1;x\n")}),
-              HasSubstr("a.csv: line 2: 'GPST;1;x' is no edge: GPST;n;ticks or REFT;n;ticks"));
+  EXPECT_THAT(
+      error_of({file("a.csv", "GPST;0;1\nGPST;1;x\n")}),
+      HasSubstr("a.csv: line 2: 'GPST;1;x' is not an edge: expected GPST;n;ticks or REFT;n;ticks"));
   EXPECT_THAT(error_of({file("b.csv", "GPST;0;1\n1;2\n")}), HasSubstr("b.csv: line 2"));
   EXPECT_THAT(error_of({file("c.csv", "0;1\nREFT;1;2\n")}),
-              HasSubstr("'REFT;1;2' is no edge: n;ticks"));
+              HasSubstr("'REFT;1;2' is not an edge: expected n;ticks"));
   EXPECT_THAT(error_of({file("d.csv", "GPST;0;-1\n")}), HasSubstr("line 1"));
   EXPECT_THAT(error_of({file("e.csv", "GPST;0;99999999999999999999999\n")}), HasSubstr("line 1"));
   EXPECT_THAT(error_of({file("f.csv", "GPST;0;1;2\n")}), HasSubstr("line 1"));
