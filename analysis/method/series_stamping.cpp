@@ -189,6 +189,13 @@ Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std:
   return channel;
 }
 
+void add_trigger_phases(const std::vector<TriggerPhase>& triggers, SeriesStampingResult& result) {
+  for (const TriggerPhase& trigger : triggers) {
+    result.trigger_phase_rad.push_back(std::arg(trigger.sync));
+    result.u_trigger_phase_rad.push_back(trigger.u_rad);
+  }
+}
+
 } // namespace
 
 Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInput& input) {
@@ -238,10 +245,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *
                                           pilot->u_frequency_hz);
   SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
-  for (const TriggerPhase& trigger : *triggers) {
-    result.trigger_phase_rad.push_back(std::arg(trigger.sync));
-    result.u_trigger_phase_rad.push_back(trigger.u_rad);
-  }
+  add_trigger_phases(*triggers, result);
   const ShotEvaluation shots{input, pilot->frequency,          stamps, *triggers,
                              link,  w * input.start_scatter_s, common};
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
