@@ -8,13 +8,14 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double one_sigma_probability = 0.68268949213708590;
 // The grid of tau, in units of the noise; one more point stands for 0 and all below the first.
 constexpr std::size_t grid_steps = 80;
 constexpr std::size_t grid_points = grid_steps + 1;
 constexpr double grid_low = 0.03;
 constexpr double grid_high = 3e4;
 constexpr double prior_bend = 0.2;    // prior density 1 / (bend + tau)
+constexpr double no_scatter = 0.35;   // probability that nothing scatters, where it can be seen
+constexpr double seen_freedom = 5.0;  // degrees of freedom of all frequencies from which it can
 constexpr double unlike_others = 0.1; // probability that a frequency scatters as no other
 constexpr double negligible = 1e-7;   // weight of a part
 constexpr double bin = 0.04;          // parts whose variances are closer become one
@@ -66,6 +67,18 @@ const Grid& prior() {
     return result;
   }();
   return weights;
+}
+
+// Of the common value: with room for no scatter at all where the frequencies together can tell.
+Grid common_prior(double freedom) {
+  Grid result = prior();
+  if (freedom >= seen_freedom) {
+    for (double& weight : result) {
+      weight *= 1.0 - no_scatter;
+    }
+    result[grid_steps] += no_scatter;
+  }
+  return result;
 }
 
 double noise_of(const RepeatedQuantity& quantity) {
@@ -218,11 +231,20 @@ MeanError mixture(std::vector<LogPart> parts) {
   return result;
 }
 
+double freedom_of(std::span<const RepeatedQuantity> quantities) {
+  double freedom = 0.0;
+  for (const RepeatedQuantity& quantity : quantities) {
+    freedom += static_cast<double>(quantity.u.size()) - 1.0;
+  }
+  return quantities.size() > 1 ? freedom : 0.0;
+}
+
 // Of the frequency `f`, by its own runs and by what the others say of tau.
 MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
                         const std::vector<Hypothesis>& hypotheses, std::size_t f) {
   const RepeatedQuantity& own = quantities[f];
   const bool repeated = shows_scatter(own);
+  const Grid common = common_prior(freedom_of(quantities));
   double largest = -1e300;
   for (const Hypothesis& hypothesis : hypotheses) {
     for (std::size_t i = 0; i < grid_points; ++i) {
@@ -233,7 +255,7 @@ MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
   for (const Hypothesis& hypothesis : hypotheses) {
     for (std::size_t i = 0; i < grid_points; ++i) {
       total +=
-          prior()[i] * std::exp(hypothesis.log_sum[i] - hypothesis.log_evidence[f][i] - largest);
+          common[i] * std::exp(hypothesis.log_sum[i] - hypothesis.log_evidence[f][i] - largest);
     }
   }
   std::vector<LogPart> parts;
@@ -244,7 +266,7 @@ MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
   const double shared = repeated ? 1.0 - unlike_others : 1.0;
   for (const Hypothesis& hypothesis : hypotheses) {
     for (std::size_t i = 0; i < grid_points; ++i) {
-      const double log_prior = std::log(shared * prior()[i] / total) + hypothesis.log_sum[i] -
+      const double log_prior = std::log(shared * common[i] / total) + hypothesis.log_sum[i] -
                                hypothesis.log_evidence[f][i] - largest;
       if (log_prior < std::log(negligible)) {
         continue;
@@ -275,78 +297,6 @@ MeanError student_error(const RepeatedQuantity& quantity) {
   return result;
 }
 
-// Half the interval that holds `probability`.
-double half_interval(const MeanError& error, double u_common, double probability) {
-  const auto outside = [&](double half) {
-    double sum = 0.0;
-    for (const MeanError::Part& part : error.parts) {
-      sum += part.weight * std::erfc(half / std::sqrt(2.0 * (part.variance + u_common * u_common)));
-    }
-    return sum;
-  };
-  double low = 0.0;
-  double high = std::hypot(std::sqrt(error.parts.front().variance), u_common);
-  while (outside(high) > 1.0 - probability) {
-    low = high;
-    high *= 2.0;
-  }
-  for (int i = 0; i < 100 && high - low > 1e-9 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (outside(middle) > 1.0 - probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-// Degrees of freedom of Student's t by the quotient of its 95.45 % and 68.27 % intervals.
-double degrees_of_freedom_of(double quotient) {
-  struct Entry {
-    double log_freedom, log_excess;
-  };
-  constexpr double first = -1.0; // logarithm of the degrees of freedom
-  constexpr double step = 0.1;
-  static const std::array<Entry, 131> table = [] {
-    std::array<Entry, 131> entries{};
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const double log_freedom = first + step * static_cast<double>(i);
-      const double freedom = std::exp(log_freedom);
-      entries[i] = {log_freedom, std::log(coverage_factor(freedom) /
-                                              coverage_factor(freedom, one_sigma_probability) -
-                                          2.0)};
-    }
-    return entries;
-  }();
-  const double log_excess = std::log(std::max(quotient - 2.0, 1e-300));
-  if (log_excess <= table.back().log_excess) {
-    return infinite_degrees_of_freedom;
-  }
-  const auto above = std::find_if(table.begin() + 1, table.end() - 1, [&](const Entry& entry) {
-    return entry.log_excess <= log_excess;
-  });
-  const Entry& below = *(above - 1);
-  const double part =
-      std::max(0.0, (log_excess - below.log_excess) / (above->log_excess - below.log_excess));
-  return std::exp(below.log_freedom + part * step);
-}
-
-// Of Student's t and a normal part. k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a
-// common part of 0.2..0.5 u_a; expanding the parts one by one and adding squares covers up to 98 %.
-// A third of the way between: 94.1..96.5 % for n = 3 and any common part.
-CombinedUncertainty combine_student(const UncertaintyPart& student, double u_common) {
-  const std::array parts{student, UncertaintyPart{u_common}};
-  CombinedUncertainty result;
-  result.u = std::hypot(student.u, u_common);
-  if (!(result.u > 0.0)) {
-    return result;
-  }
-  result.degrees_of_freedom = effective_degrees_of_freedom(parts);
-  const double by_effective_freedom = coverage_factor(result.degrees_of_freedom);
-  const double by_parts = std::hypot(coverage_factor(student.degrees_of_freedom) * student.u,
-                                     coverage_factor(infinite_degrees_of_freedom) * u_common) /
-                          result.u;
-  result.k = by_effective_freedom + (by_parts - by_effective_freedom) / 3.0;
-  return result;
-}
-
 } // namespace
 
 std::vector<MeanError> errors_of_means(std::span<const RepeatedQuantity> at_frequencies) {
@@ -370,22 +320,6 @@ std::vector<MeanError> errors_of_means(std::span<const RepeatedQuantity> at_freq
       result.push_back(error_of_mean(with_noise, hypotheses, next++));
     }
   }
-  return result;
-}
-
-CombinedUncertainty combine(const MeanError& error, double u_common) {
-  if (error.parts.empty()) {
-    return combine_student(error.student, u_common);
-  }
-  if (error.parts.size() == 1) {
-    return {std::hypot(std::sqrt(error.parts.front().variance), u_common)};
-  }
-  const double expanded = half_interval(error, u_common, two_sigma_probability);
-  CombinedUncertainty result;
-  result.degrees_of_freedom =
-      degrees_of_freedom_of(expanded / half_interval(error, u_common, one_sigma_probability));
-  result.k = coverage_factor(result.degrees_of_freedom);
-  result.u = expanded / result.k;
   return result;
 }
 

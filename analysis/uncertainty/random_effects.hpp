@@ -8,7 +8,8 @@
 // times the prior 1 / (0.2 u + tau). Runs of the same session share what makes them scatter, so the
 // other frequencies are evidence too: tau is taken as the same part of the noise, the same size or
 // the same time (tau f) at all of them, each with the weight its likelihood gives it, and alike
-// within 30 %. One frequency in ten may be unlike the others. Where none was repeated, nothing is
+// within 30 %, or nothing scatters (35 %, where all together have five degrees of freedom). One
+// frequency in ten may be unlike the others. Where none was repeated, nothing is
 // known of tau, and u holds what the single run shows.
 //
 // Why so: with equal noise, Birge, Mandel and Paule, DerSimonian and Laird all take max(s, u),
@@ -16,8 +17,7 @@
 // of s, 4.7 u and 1.9 u wide at tau = 0. Of the priors, half-Cauchy and DuMouchel's cover 80..90 %
 // at tau = 3 u and n = 2, the flat one is 1000 times too wide. For n = 2 alone, no rule covers
 // every tau and is narrow at 0: this one covers 94 % and more, at 4.1 u (n = 2), 1.6 u (3), 1.2 u
-// (5). With eight frequencies it covers 94..98 % at 1.17 u (n = 2), 1.10 u (3), 1.06 u (5) without
-// scatter.
+// (5). With eight frequencies it covers 93..97.5 %, at 1.1 u (n = 2) and less without scatter.
 //
 // Units: those of the values, the same at all frequencies. Any thread.
 #pragma once
@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/uncertainty/coverage.hpp"
+#include "analysis/uncertainty/mean_error.hpp"
 
 namespace dyncal::analysis {
 
@@ -35,30 +35,7 @@ struct RepeatedQuantity {         // at one frequency; both vectors of equal siz
   double frequency_hz = 0.0;      // 0: not known
 };
 
-// What is known of the error of the plain mean: a mixture of normal distributions; or, where no
-// noise is known, Student's t of the observed scatter.
-struct MeanError {
-  struct Part {
-    double variance = 0.0;
-    double weight = 0.0; // all parts: 1
-  };
-  std::vector<Part> parts;
-  UncertaintyPart student{};
-};
-
 [[nodiscard]] std::vector<MeanError>
 errors_of_means(std::span<const RepeatedQuantity> at_frequencies);
-
-struct CombinedUncertainty {
-  double u = 0.0;                                          // standard uncertainty, U / k
-  double degrees_of_freedom = infinite_degrees_of_freedom; // nu_eff
-  double k = 2.0;                                          // at 95.45 %
-
-  [[nodiscard]] double expanded() const { return k * u; } // U
-};
-
-// With what all runs have in common, normal and known. U is half the 95.45 % interval; nu_eff is
-// that of Student's t whose 68.27 % and 95.45 % intervals have the same quotient, k is its factor.
-[[nodiscard]] CombinedUncertainty combine(const MeanError& error, double u_common);
 
 } // namespace dyncal::analysis
