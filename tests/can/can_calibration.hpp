@@ -58,6 +58,9 @@ public:
                               const std::string& uncorrected) const;
 
 private:
+  // Ends the bench; true if it had no time to keep the time of a bus.
+  bool bench_was_starved();
+
   void write_bench_file(const std::vector<std::string>& channels) const;
 
   Bus bus_;
