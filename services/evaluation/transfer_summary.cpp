@@ -19,16 +19,24 @@ std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& re
   for (const StepResult* result : results) {
     by_frequency_and_level[{result->frequency_hz, result->level_m_s2}].push_back(result);
   }
-  std::vector<FrequencyPoint> points;
+  // All at once: how much runs scatter shows at all frequencies together.
+  std::vector<analysis::RepeatedFrequency> repeated;
   for (const auto& [key, of_point] : by_frequency_and_level) {
-    std::vector<analysis::Repetition> repetitions;
-    std::transform(of_point.begin(), of_point.end(), std::back_inserter(repetitions),
+    repeated.push_back({key.first, {}});
+    std::transform(of_point.begin(), of_point.end(),
+                   std::back_inserter(repeated.back().repetitions),
                    [](const StepResult* result) { return repetition_of(*result); });
-    if (const auto mean = analysis::mean_of_repetitions(repetitions)) {
+  }
+  const auto means = analysis::means_of_repetitions(repeated);
+  std::vector<FrequencyPoint> points;
+  auto mean = means.begin();
+  for (const auto& [key, of_point] : by_frequency_and_level) {
+    if (*mean) {
       const StepResult& first = *of_point.front();
-      points.push_back(
-          {first.frequency_text_hz, first.frequency_hz, first.level_m_s2, *mean, mean->phase_rad});
+      points.push_back({first.frequency_text_hz, first.frequency_hz, first.level_m_s2, **mean,
+                        (*mean)->phase_rad});
     }
+    ++mean;
   }
   return points;
 }

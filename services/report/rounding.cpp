@@ -39,8 +39,9 @@ std::string with_exponent(double value, int place) {
   }
   // Rounding may carry into a digit more: 9.96e-6 to 1e-7 is 1.00e-05.
   int digits = std::clamp(exponent_of(value, max_digits) - place + 1, 1, max_digits);
-  digits = std::clamp(exponent_of(value, digits) - place + 1, 1, max_digits);
-  return fmt::format("{:.{}e}", value, digits - 1);
+  const double rounded = std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr);
+  digits = std::clamp(exponent_of(rounded, digits) - place + 1, 1, max_digits);
+  return fmt::format("{:.{}e}", rounded, digits - 1);
 }
 
 bool needs_exponent(double size) {

@@ -144,7 +144,7 @@ TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   // Two panels, and the sample in the legend.
   EXPECT_EQ(count_elements(figure.svg, "circle"), count_elements(without.svg, "circle") + 3);
   EXPECT_THAT(figure.csv, HasSubstr("# flag samples_lost (dau: samples lost): aaa"));
-  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost\n2,"));
+  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost\n3,"));
 }
 
 } // namespace
