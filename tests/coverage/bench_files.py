@@ -28,6 +28,17 @@ def write_shot(path, channel, unit, values, nominal_rate_hz, first_sample_s=None
     path.write_text(f"{head}# unit = {unit}\n{channel}\n{rows}\n", "utf-8")
 
 
+def write_reference_calibration(path, points):
+    """`points`: (frequency_hz, magnitude, phase_rad, u_magnitude_rel, u_phase_rad); half of the
+    variance is said to be of mounting."""
+    columns = "frequency_hz, magnitude, phase_rad, u_magnitude_rel, u_phase_rad"
+    rows = [f"{columns}, mounting.u_magnitude_rel, mounting.u_phase_rad"]
+    for point in points:
+        of_mounting = (u * 0.5**0.5 for u in point[3:])
+        rows.append(", ".join(map(repr, (*point, *of_mounting))))
+    path.write_text("\n".join(rows) + "\n", "utf-8")
+
+
 def write_adc_calibration(path, channel, points):
     """`points`: (frequency_hz, gain, lag_rad, u_lag_rad)."""
     measurements = {

@@ -36,7 +36,10 @@ class BenchSettings:
 
     # What a bench file should say and may not.
     states_reference_uncertainty: bool = True
+    calibrated_reference: bool = False  # by a table, with its uncertainty, in place of keys
     states_adc_calibration: bool = True
+    stated_u_adc_delay_s: float = 0.0  # 0: not stated
+    states_dso_rate: bool = True
     sync_acs_channel: str = "sync"
 
     # Faults.
@@ -65,6 +68,6 @@ class BenchSettings:
     start: str = "with the trigger"  # or "free-running"
     start_jitter_s: float = 0.0
     corrects_trigger_phase: bool = True
-    dso_rate_rel: float = 0.0  # half width of the oscilloscope's rate error; no key states it
+    dso_rate_rel: float = 1e-6  # half width of the oscilloscope's rate error
     trace_noise_v: float = 0.02
     trace_step_v: float = 16.0 / 256  # 8 bits over +-8 V

@@ -159,14 +159,23 @@ class Calibration:
                 signal = signal + part * np.sin(number * (turn - lag_rad) + 0.4 * number)
         return self._envelope(step, times_s) * signal
 
+    def reference_response(self, frequency_hz):
+        """What its channel reads over what is: magnitude, phase as lead."""
+        if not self.settings.calibrated_reference:
+            return 1.0, 0.0
+        return 1.0 + 2e-5 * frequency_hz, -1e-4 * frequency_hz
+
     def _reference(self, times_s):
         s = self.settings
         noise = s.reference_noise_rel * s.level_m_s2 * s.level_factor
         values = noise * self.rng.standard_normal(times_s.size)
         for step, part in self._steps_in(times_s):
             magnitude_error, phase_error = self.reference_error[step.frequency_text]
-            read = step.amplitude * (1.0 + magnitude_error)
-            values[part] += read * self._excitation(step, times_s[part], lag_rad=-phase_error)
+            magnitude, phase_rad = self.reference_response(float(step.frequency_text))
+            read = step.amplitude * magnitude * (1.0 + magnitude_error)
+            values[part] += read * self._excitation(
+                step, times_s[part], lag_rad=-phase_error - phase_rad
+            )
             limit = s.reference_range_rel * step.amplitude
             values[part] = disturbances.over_range(values[part], -limit, limit)
         if s.reference_not_measured_rel:
@@ -324,6 +333,15 @@ class Calibration:
             points.append((float(text), ADC_GAIN, lag_rad, self.settings.u_adc_lag_rad))
         bench_files.write_adc_calibration(folder / "adc.json", "ADC1", points)
 
+    def _write_reference_calibration(self, folder):
+        s = self.settings
+        frequencies_hz = sorted(float(text) for text in s.frequencies)
+        points = [
+            (f, *self.reference_response(f), s.u_reference_magnitude_rel, s.u_reference_phase_rad)
+            for f in frequencies_hz
+        ]
+        bench_files.write_reference_calibration(folder / "reference.csv", points)
+
     def _sources_and_method(self):
         s = self.settings
         metres = "m/s^2"
@@ -365,18 +383,25 @@ class Calibration:
             "duration_s": s.duration_s,
         }
         tables.update(self._sources_and_method())
+        corrections = {}
+        if s.calibrated_reference:
+            self._write_reference_calibration(folder)
+            corrections["reference"] = "reference.csv"
         if s.method == "sample-timestamping" and s.states_adc_calibration:
             self._write_adc_calibration(folder)
-            tables["corrections"] = {"adc": {"file": "adc.json", "channel": "ADC1"}}
+            corrections["adc"] = {"file": "adc.json", "channel": "ADC1"}
         elif s.method == "series-timestamping":
-            dso_delay = {"value_s": DSO_DELAY_S, "u_s": U_DSO_DELAY_S}
-            tables["corrections"] = {"dso_delay": dso_delay}
-        if s.states_reference_uncertainty:
-            tables["uncertainty"] = {
-                "reference_magnitude_rel": s.u_reference_magnitude_rel,
-                "reference_phase_rad": s.u_reference_phase_rad,
-                "acs_rate_rel": s.acs_rate_error_rel,
-            }
+            corrections["dso_delay"] = {"value_s": DSO_DELAY_S, "u_s": U_DSO_DELAY_S}
+        tables["corrections"] = corrections
+        uncertainty = {"acs_rate_rel": s.acs_rate_error_rel}
+        if s.states_reference_uncertainty and not s.calibrated_reference:
+            uncertainty["reference_magnitude_rel"] = s.u_reference_magnitude_rel
+            uncertainty["reference_phase_rad"] = s.u_reference_phase_rad
+        if s.method == "series-timestamping" and s.states_dso_rate:
+            uncertainty["dso_rate_rel"] = s.dso_rate_rel / math.sqrt(3.0)
+        if s.stated_u_adc_delay_s:
+            uncertainty["adc_delay_s"] = s.stated_u_adc_delay_s
+        tables["uncertainty"] = uncertainty
         bench_files.write_bench_file(folder / "bench.toml", tables)
 
     def write(self, folder):

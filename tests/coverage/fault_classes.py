@@ -29,6 +29,7 @@ HARDLY_ANY_NOISE = {
     "reference_noise_rel": 1e-5,
     "sync_noise_rel": 1e-5,
     "trace_noise_v": 5e-5,
+    "dso_rate_rel": 0.0,
     "trace_step_v": 1e-6,
     "u_reference_magnitude_rel": 3e-7,
     "u_reference_phase_rad": 3e-7,
@@ -67,6 +68,8 @@ CLASSES = {
     "clean, analogue": bench(method="analogue"),
     "clean, absolute time": bench(method="absolute-time"),
     "clean, series": bench(SERIES),
+    "clean, calibrated reference": bench(calibrated_reference=True),
+    "clean, series, calibrated reference": bench(SERIES, calibrated_reference=True),
     "clean, 0.4 Hz": bench(LOW_FREQUENCIES),
     "clean, 0.4 Hz, pauses of 0.5 s": bench(LOW_FREQUENCIES, pause_s=0.5),
     "clean, resolution of 1 noise": bench(resolution_rel=0.01),
@@ -96,7 +99,11 @@ CLASSES = {
         SERIES, corrects_trigger_phase=False, trigger_noise_rad=0.1
     ),
     "clock of the oscilloscope 25 ppm off": bench(
-        SERIES, LITTLE_NOISE, dso_rate_rel=25e-6, frequencies=("160", "200", "250", "315", "400")
+        SERIES,
+        LITTLE_NOISE,
+        states_dso_rate=False,
+        dso_rate_rel=25e-6,
+        frequencies=("160", "200", "250", "315", "400"),
     ),
     # Range and level.
     "sensor clipped at 0.95 A": bench(sensor_range_rel=0.95, sensor_offset_rel=0.0),
@@ -146,6 +153,12 @@ CLASSES = {
     "ADC not calibrated": bench(
         LITTLE_NOISE,
         states_adc_calibration=False,
+        frequencies=("125", "160", "200", "250", "315", "400"),
+    ),
+    "ADC not calibrated, its delay bounded": bench(
+        LITTLE_NOISE,
+        states_adc_calibration=False,
+        stated_u_adc_delay_s=0.3e-6,
         frequencies=("125", "160", "200", "250", "315", "400"),
     ),
     "uncertainty of the reference not stated": bench(
