@@ -11,15 +11,14 @@ namespace dyncal::analysis {
 namespace {
 
 Budget systematic_rows(const RecordedChannel& reference, double w,
-                       const ComparisonUncertainty& systematic) {
+                       const ReferenceResponse& response, const ComparisonUncertainty& systematic) {
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the channels",
               .u_phase_rad = w * systematic.channel_delay_s});
-  budget.add({.kind = ContributionKind::reference,
-              .u_magnitude_rel = systematic.reference_magnitude_rel,
-              .u_phase_rad = systematic.reference_phase_rad});
+  add_reference_rows(budget, response, systematic.reference_magnitude_rel,
+                     systematic.reference_phase_rad);
   return budget;
 }
 
@@ -33,8 +32,9 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
   }
   const RecordedChannel& reference = system->pilot;
   const double w = reference.result.frequency.angular();
-  const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
-  const Budget common = systematic_rows(reference, w, input.systematic);
+  const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
+                                    reference.phasor() * input.reference_response.phasor();
+  const Budget common = systematic_rows(reference, w, input.reference_response, input.systematic);
   ComparisonResult result{reference.result, {}};
   for (const RecordedChannel& dut : system->others) {
     Budget budget;
@@ -58,8 +58,9 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
   const RecordedChannel& reference = acs->pilot;
   ComparisonResult result{reference.result, {}};
   const double w = reference.result.frequency.angular();
-  const Budget common = systematic_rows(reference, w, input.systematic);
-  const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) / reference.phasor();
+  const Budget common = systematic_rows(reference, w, input.reference_response, input.systematic);
+  const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
+                                    reference.phasor() * input.reference_response.phasor();
   const OwnClockUncertainty clock{.clock_offset_s = input.systematic.clock_offset_s,
                                   .stamp_jitter_s = input.systematic.stamp_jitter_s};
   for (const ChannelSamples& channel : input.dut) {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
+#include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
@@ -45,6 +46,7 @@ struct AnalogueInput {
   ChannelSamples reference{};
   std::vector<ChannelSamples> dut{};
   double channel_delay_s = 0.0; // tau_ch
+  ReferenceResponse reference_response{};
   ComparisonUncertainty systematic{};
 };
 
@@ -56,6 +58,7 @@ struct AbsoluteTimeInput {
   std::span<const std::int64_t> dut_stamps_ns{};
   std::vector<ChannelSamples> dut{};
   double channel_delay_s = 0.0;
+  ReferenceResponse reference_response{};
   ComparisonUncertainty systematic{};
 };
 

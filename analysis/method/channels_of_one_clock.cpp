@@ -198,6 +198,21 @@ void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jit
   }
 }
 
+void add_reference_rows(Budget& budget, const ReferenceResponse& response, double magnitude_rel,
+                        double phase_rad) {
+  budget.add({.kind = ContributionKind::reference,
+              .u_magnitude_rel = magnitude_rel,
+              .u_phase_rad = phase_rad});
+  for (const ReferenceContribution& one : response.contributions) {
+    budget.add({.kind = ContributionKind::reference,
+                .subject = one.name,
+                .distribution = one.distribution,
+                .degrees_of_freedom = one.degrees_of_freedom,
+                .u_magnitude_rel = one.u_magnitude_rel,
+                .u_phase_rad = one.u_phase_rad});
+  }
+}
+
 TransferPoint transfer_point(const RecordedChannel& dut, std::complex<double> link,
                              const Budget& budget) {
   const std::complex<double> h = dut.phasor() * link;

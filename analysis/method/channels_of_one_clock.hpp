@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
+#include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "analysis/uncertainty/budget.hpp"
 
@@ -70,7 +71,11 @@ void add_signal_rows(Budget& budget, const std::string& what, const RecordedChan
 // Noise, quantisation and Rice's lengthening of a channel under calibration, however weak.
 void add_sensor_rows(Budget& budget, const RecordedChannel& channel, double jitter_s);
 
-// H = P_dut * link with the budget's uncertainty. |link| is 1 / the reference's amplitude.
+// The reference's calibration: a row for every contribution, and one for what is stated beside it.
+void add_reference_rows(Budget& budget, const ReferenceResponse& response, double magnitude_rel,
+                        double phase_rad);
+
+// H = P_dut * link with the budget's uncertainty. |link| is 1 / the reference's true amplitude.
 [[nodiscard]] TransferPoint transfer_point(const RecordedChannel& dut, std::complex<double> link,
                                            const Budget& budget);
 

@@ -38,9 +38,8 @@ Budget common_budget(const SampleStampingInput& input, const ChannelsOfOneClock&
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * systematic.acs_delay_s});
-  budget.add({.kind = ContributionKind::reference,
-              .u_magnitude_rel = systematic.reference_magnitude_rel,
-              .u_phase_rad = systematic.reference_phase_rad});
+  add_reference_rows(budget, input.reference_response, systematic.reference_magnitude_rel,
+                     systematic.reference_phase_rad);
   return budget;
 }
 
@@ -111,7 +110,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
       std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
   const std::complex<double> link = unit_phasor(acs->pilot.phasor()) /
                                     (unit_phasor(dau->pilot.phasor()) / adc) /
-                                    (reference.phasor() * late);
+                                    (reference.phasor() * late / input.reference_response.phasor());
 
   const Budget common = common_budget(input, *acs, dau->pilot);
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};

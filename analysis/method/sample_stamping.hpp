@@ -7,7 +7,7 @@
 // psi is lead (a delay is negative); the paper's dphi of eq. (4) is -psi, and S = |S| e^{-i dphi} =
 // H (errata T1-T5). G is the response of the DAU's sync ADC; its amplitude must not enter |H|. A
 // known delay of the reference's channel against the ACS's sync is taken out: arg P_ref + w
-// tau_ref.
+// tau_ref. Its calibrated response R is taken out, P_ref / R (reference_calibration.hpp).
 //
 // In each system the frequency is refined on its sync channel in that system's own clock, and both
 // of its channels are evaluated at that frequency about the same instant, which removes unknown
@@ -27,6 +27,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/instrument/adc_calibration.hpp"
+#include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
@@ -58,6 +59,7 @@ struct SampleStampingInput {
   std::span<const std::int64_t> dut_stamps_ns{};
   AdcResponse adc{};
   double reference_delay_s = 0.0; // tau_ref
+  ReferenceResponse reference_response{};
   SystematicUncertainty systematic{};
 };
 

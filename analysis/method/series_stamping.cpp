@@ -122,6 +122,20 @@ Contribution quantisation_row(const SeriesStampingInput& input, std::size_t chan
   return row;
 }
 
+// By how much an error of the oscilloscope's clock turns sync between the middle of a trace and its
+// trigger point, where it was fitted.
+double u_trace_clock_rad(const SeriesStampingInput& input, double w) {
+  if (!input.correct_trigger_phase) {
+    return 0.0;
+  }
+  double longest_s = 0.0;
+  for (const SeriesShot& shot : input.shots) {
+    const double half_s = 0.5 * static_cast<double>(shot.dso_sync.size()) * shot.dso_interval_s;
+    longest_s = std::max(longest_s, std::abs(shot.dso_first_s + half_s));
+  }
+  return w * longest_s * input.u_dso_rate_rel;
+}
+
 Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock& acs, double w,
                      double u_phase_apparent) {
   Budget budget;
@@ -129,13 +143,15 @@ Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock&
   add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
   budget.add({.kind = ContributionKind::apparent_frequency, .u_phase_rad = u_phase_apparent});
   budget.add({.kind = ContributionKind::trigger_delay, .u_phase_rad = w * input.u_dso_delay_s});
+  budget.add({.kind = ContributionKind::trace_clock,
+              .distribution = Distribution::rectangular,
+              .u_phase_rad = u_trace_clock_rad(input, w)});
   budget.add({.kind = ContributionKind::series_start, .u_phase_rad = w * input.u_start_latency_s});
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * input.acs_delay_s});
-  budget.add({.kind = ContributionKind::reference,
-              .u_magnitude_rel = input.reference_magnitude_rel,
-              .u_phase_rad = input.reference_phase_rad});
+  add_reference_rows(budget, input.reference_response, input.reference_magnitude_rel,
+                     input.reference_phase_rad);
   return budget;
 }
 
@@ -239,7 +255,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   // Everything that is the same for all shots: the reference's phasor against sync, and the way
   // from trigger point to sample 0.
   const std::complex<double> link =
-      unit_phasor(acs->pilot.phasor()) / reference.phasor() *
+      unit_phasor(acs->pilot.phasor()) / reference.phasor() * input.reference_response.phasor() *
       std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
   const Budget common = common_budget(input, *acs, w,
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *

@@ -14,9 +14,10 @@
 // correction (paper section 2.5), but an error of w_TSS turns theta_0 of all shots alike by
 // u(w_TSS) T / 2. Harmonics and hum are fitted beside the signal (disturbances.hpp). A TSS that
 // runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
-// sqrt(12) (T9). Mean over shots as in repetitions.hpp, which keeps the magnitude of shots whose
-// phase scatters; tau_DSO and mean l are common to all shots and frequencies. The first of
-// `channels` must be excited.
+// sqrt(12) (T9). A trace is fitted best in its middle, t_m from the trigger point: an error of the
+// rate of the oscilloscope's clock turns beta_j of all shots alike by w t_m u(rate). Mean over
+// shots as in repetitions.hpp, which keeps the magnitude of shots whose phase scatters; tau_DSO and
+// mean l are common to all shots and frequencies. The first of `channels` must be excited.
 //
 // Fails as channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument (no shot, shots of
 // unequal length). Any thread.
@@ -28,6 +29,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
+#include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/nominal_frequency.hpp"
 #include "analysis/method/repetitions.hpp"
 #include "analysis/method/transfer_point.hpp"
@@ -53,12 +55,14 @@ struct SeriesStampingInput {
   std::vector<SeriesShot> shots{};
   double dso_delay_s = 0.0; // tau_DSO
   double u_dso_delay_s = 0.0;
+  double u_dso_rate_rel = 0.0;  // of the oscilloscope's clock
   double start_latency_s = 0.0; // l
   double u_start_latency_s = 0.0;
   double start_scatter_s =
       0.0; // standard deviation of l from shot to shot, as far as it is known beforehand
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
+  ReferenceResponse reference_response{};
   double acs_delay_s = 0.0;
   double reference_delay_s =
       0.0; // known delay of the reference's channel against the ACS's sync, taken out

@@ -23,7 +23,7 @@ constexpr std::array rows{
     Row{ContributionKind::sync_jitter, "jitter of the DAU sync alone", false, Repeats::anew},
     Row{ContributionKind::adc_phase, "phase of the DAU sync ADC", false, Repeats::common_delay},
     Row{ContributionKind::channel_delay, "delay between", true, Repeats::common_delay},
-    Row{ContributionKind::reference, "reference", false, Repeats::common},
+    Row{ContributionKind::reference, "reference", true, Repeats::common},
     Row{ContributionKind::record_frequency, "frequency between the records", false, Repeats::anew},
     Row{ContributionKind::clock_offset, "offset between the clocks", false, Repeats::common_delay},
     Row{ContributionKind::apparent_frequency,
@@ -34,6 +34,7 @@ constexpr std::array rows{
         Repeats::common_delay},
     Row{ContributionKind::shots, "shots: noise and scatter of series and trigger", false,
         Repeats::anew},
+    Row{ContributionKind::trace_clock, "clock of the oscilloscope", false, Repeats::common_delay},
     Row{ContributionKind::other, "other", false, Repeats::common}};
 
 constexpr bool in_order() {
@@ -82,7 +83,8 @@ std::string Contribution::name() const {
 
 NamedKind parse_contribution_name(std::string_view name) {
   for (const Row& row : rows) { // whole names first: "jitter of the DAU sync alone"
-    if (!row.has_subject && row.kind != ContributionKind::other && name == row.text) {
+    const bool stands_alone = !row.has_subject || row.kind == ContributionKind::reference;
+    if (stands_alone && row.kind != ContributionKind::other && name == row.text) {
       return {row.kind, {}};
     }
   }

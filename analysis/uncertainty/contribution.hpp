@@ -37,13 +37,14 @@ enum class ContributionKind {
   sync_jitter,        // instant at which the DAU samples sync, which its stamps do not show
   adc_phase,          // phase lag of the DAU's sync ADC
   channel_delay,      // delay between channels of one instrument; subject: which
-  reference,          // calibration of the reference transducer
+  reference,          // calibration of the reference transducer; subject: which part of it, or none
   record_frequency,   // frequency over the distance between the middles of two records
   clock_offset,       // one clock against the other
   apparent_frequency, // of a triggered series, from its middle to its first sample
   trigger_delay,      // of the oscilloscope
   series_start,       // from trigger to first sample of a triggered series
   shots,              // noise and scatter over the shots of a step
+  trace_clock,        // rate of the oscilloscope's clock, from the middle of a trace to its trigger
   other               // a row that this version does not know; its subject is its name
 };
 

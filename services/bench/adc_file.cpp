@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -108,6 +109,11 @@ Expected<analysis::AdcCalibrationPoint> read_measurement(const Json& measurement
   point.u_phase_lag_rad = number(measurement, "u_Phase").value_or(0.0);
   if (!(point.u_gain >= 0.0) || !(point.u_phase_lag_rad >= 0.0)) {
     return bad_file(settings, where("a standard uncertainty is negative"));
+  }
+  if (point.u_gain > 0.5 * point.gain || point.u_phase_lag_rad > std::numbers::pi / 2.0) {
+    return bad_file(settings, where("a standard uncertainty above half the gain or pi / 2 rad is "
+                                    "not plausible; u_Phase is in rad, u_Amplitude that of the "
+                                    "gain"));
   }
   return point;
 }

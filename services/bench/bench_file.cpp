@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -27,21 +28,40 @@ NetworkSettings read_network(TomlTable table) {
   return network;
 }
 
+// Standard uncertainties above these are taken for another unit.
+constexpr double largest_relative = 0.5;
+constexpr double largest_phase_rad = std::numbers::pi / 2.0;
+constexpr double largest_rate_rel = 0.01;
+constexpr double largest_delay_s = 1.0;
+
 UncertaintySettings read_uncertainty(TomlTable table) {
   UncertaintySettings uncertainty;
-  const auto read = [&](const char* key, const char* unit) {
-    const double value = table.number(key, 0.0, unit);
+  const auto read = [&](const char* key, const char* unit, double largest, const char* question,
+                        double otherwise = 0.0) {
+    const double value = table.number(key, otherwise, unit);
     if (value < 0.0) {
       table.refuse(key, "is a standard uncertainty and must not be negative");
+    } else if (!(value <= largest)) {
+      table.refuse(key, fmt::format("= {:g} is not plausible: a standard uncertainty in {} above "
+                                    "{:.3g}; {}",
+                                    value, unit, largest, question));
     }
     return value;
   };
-  uncertainty.reference_magnitude_rel = read("reference_magnitude_rel", "parts of the magnitude");
-  uncertainty.reference_phase_rad = read("reference_phase_rad", "rad");
-  uncertainty.acs_delay_s = read("acs_delay_s", "seconds");
+  const char* const percent = "is it given in per cent?";
+  const char* const ppm = "is it given in parts per million?";
+  const char* const other_unit = "is it given in microseconds or nanoseconds?";
+  uncertainty.reference_magnitude_rel =
+      read("reference_magnitude_rel", "parts of the magnitude", largest_relative, percent);
+  uncertainty.reference_phase_rad =
+      read("reference_phase_rad", "rad", largest_phase_rad, "is it given in degrees?");
+  uncertainty.acs_delay_s = read("acs_delay_s", "seconds", largest_delay_s, other_unit);
   uncertainty.monte_carlo_trials =
       static_cast<std::uint64_t>(table.whole_number("monte_carlo_trials", 0, 0));
-  uncertainty.acs_rate_rel = read("acs_rate_rel", "parts of the rate");
+  uncertainty.acs_rate_rel = read("acs_rate_rel", "parts of the rate", largest_rate_rel, ppm);
+  uncertainty.dso_rate_rel =
+      read("dso_rate_rel", "parts of the rate", largest_rate_rel, ppm, default_dso_rate_rel);
+  uncertainty.adc_delay_s = read("adc_delay_s", "seconds", largest_delay_s, other_unit);
   table.finish();
   return uncertainty;
 }
@@ -80,6 +100,10 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
     file.corrections = read_corrections(std::move(*corrections), folder);
   }
   if (auto uncertainty = root.table("uncertainty")) {
+    if (file.corrections.adc && uncertainty->has("adc_delay_s")) {
+      uncertainty->refuse("adc_delay_s", "is for a sync ADC without calibration, but "
+                                         "corrections.adc names one, which has its own");
+    }
     file.uncertainty = read_uncertainty(std::move(*uncertainty));
   }
   root.finish();

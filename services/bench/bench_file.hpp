@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/instrument/reference_calibration.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
@@ -77,10 +78,14 @@ struct AdcCorrectionSettings {
 
 struct CorrectionSettings {
   std::optional<AdcCorrectionSettings> adc;
+  std::vector<analysis::ReferenceCalibrationPoint> reference; // empty: it reads right
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   double dso_delay_s = 0.0;       // of the oscilloscope's trigger output
   double u_dso_delay_s = 0.0;
 };
+
+// Of the clock of an oscilloscope of which nothing is stated: 25 ppm either way, a rectangle.
+inline constexpr double default_dso_rate_rel = 1.44e-5;
 
 struct UncertaintySettings { // standard uncertainties
   double reference_magnitude_rel = 0.0;
@@ -88,6 +93,8 @@ struct UncertaintySettings { // standard uncertainties
   double acs_delay_s = 0.0;
   std::uint64_t monte_carlo_trials = 0; // at most, for the cross-check of every result; 0: none
   double acs_rate_rel = 0.0;            // of the ACS's clock, for sample rates
+  double dso_rate_rel = default_dso_rate_rel;
+  double adc_delay_s = 0.0; // of a sync ADC without calibration; 0: not stated
 };
 
 struct BenchFile {

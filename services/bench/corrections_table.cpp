@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "services/bench/dso_delay_file.hpp"
+#include "services/bench/reference_file.hpp"
 
 namespace dyncal::services {
 
@@ -23,6 +24,11 @@ void read_trigger_delay(TomlTable table, const std::filesystem::path& folder,
     } else {
       table.refuse("file", delay.error().message);
     }
+  }
+  if (corrections.u_dso_delay_s > 1.0) {
+    table.refuse(table.has("file") ? "file" : "u_s",
+                 "gives a standard uncertainty above 1 s, which is not plausible; is it given in "
+                 "microseconds or nanoseconds?");
   }
   if (corrections.u_dso_delay_s < 0.0) {
     table.refuse("u_s", "is a standard uncertainty and must not be negative");
@@ -52,6 +58,14 @@ CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path
   CorrectionSettings corrections;
   if (auto adc = table.table("adc")) {
     corrections.adc = read_adc(std::move(*adc), folder);
+  }
+  if (table.has("reference")) {
+    auto points = read_reference_file(folder / table.required_text("reference"));
+    if (points) {
+      corrections.reference = std::move(*points);
+    } else {
+      table.refuse("reference", "names " + points.error().message);
+    }
   }
   corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");
   if (auto delay = table.table("dso_delay")) {

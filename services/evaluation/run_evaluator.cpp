@@ -27,7 +27,7 @@ Evaluation with_temperature(Evaluation evaluation, std::optional<double> degc) {
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
-      summary_(*recipe_, *method_), evaluations_(limits.evaluations_at_once) {
+      summary_(*recipe_), evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
+#include <iterator>
+
+#include "services/evaluation/method/unstated_uncertainty.hpp"
+#include "services/evaluation/shared_phase_uncertainty.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -53,16 +56,13 @@ std::vector<std::size_t> first_of_each_frequency(const std::vector<FrequencyPoin
   return chosen;
 }
 
-// One clock against the other, and the latency of stamps: the same error of time at every
-// frequency.
-double u_clock_offset_s(const std::vector<analysis::Contribution>& budget, double frequency_hz) {
-  double max_s = 0.0;
-  for (const analysis::Contribution& row : budget) {
-    if (row.kind == analysis::ContributionKind::clock_offset) {
-      max_s = std::max(max_s, row.u_phase_rad / (2.0 * std::numbers::pi * frequency_hz));
-    }
-  }
-  return max_s;
+// The budget of a point: that of its first step, which the others repeat.
+BudgetAtFrequency budget_of(const FrequencyPoint& point,
+                            const std::vector<const StepResult*>& results) {
+  const auto found = std::find_if(results.begin(), results.end(), [&](const StepResult* result) {
+    return result->frequency_hz == point.frequency_hz && result->level_m_s2 == point.level_m_s2;
+  });
+  return {point.frequency_hz, (*found)->budget};
 }
 
 } // namespace
@@ -74,26 +74,20 @@ void TransferSummary::add(const StepResult& result) {
   results_[result.channel].insert_or_assign({result.step, result.repetition}, result);
 }
 
-void TransferSummary::add_group_delay(const ChannelResults& results,
+void TransferSummary::add_group_delay(const std::vector<const StepResult*>& results,
                                       TransferFunction& function) const {
   const std::vector<std::size_t> chosen = first_of_each_frequency(function.points);
+  std::vector<BudgetAtFrequency> budgets;
+  std::transform(chosen.begin(), chosen.end(), std::back_inserter(budgets),
+                 [&](std::size_t i) { return budget_of(function.points[i], results); });
+  const SharedPhaseUncertainty shared = shared_phase_uncertainty(budgets);
   std::vector<analysis::PhasePoint> phases;
-  std::vector<double> frequencies_hz;
-  for (const std::size_t i : chosen) {
-    const FrequencyPoint& point = function.points[i];
-    phases.push_back(
-        {point.frequency_hz, point.mean.phase_rad, point.mean.u_independent_phase_rad});
-    frequencies_hz.push_back(point.frequency_hz);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const FrequencyPoint& point = function.points[chosen[i]];
+    phases.push_back({point.frequency_hz, point.mean.phase_rad,
+                      std::hypot(point.mean.u_independent_phase_rad, shared.beyond_rad[i])});
   }
-  // What shifts all frequencies alike adds in full to the group delay.
-  double u_clock_s = 0.0;
-  for (const auto& [key, result] : results) {
-    u_clock_s = std::max(u_clock_s, u_clock_offset_s(result.budget, result.frequency_hz));
-  }
-  const double u_common_s =
-      std::hypot(recipe_.systematic.acs_delay_s, method_.u_link_delay_s(frequencies_hz));
-  auto delay = analysis::evaluate_group_delay(
-      phases, {std::hypot(u_common_s, u_clock_s), recipe_.systematic.reference_phase_rad});
+  auto delay = analysis::evaluate_group_delay(phases, shared.common);
   if (!delay) {
     function.group_delay_problem = delay.error().message;
     return;
@@ -125,7 +119,8 @@ TransferFunction TransferSummary::function_of(const std::string& channel) const 
   }
   function.points = mean_points(valid);
   if (!function.points.empty()) {
-    add_group_delay(results, function);
+    function.flags = flags_of_unstated(recipe_);
+    add_group_delay(valid, function);
   }
   return function;
 }

@@ -2,7 +2,7 @@
 // frequency, scatter, unwrapped phase, group delay with intercept and covariance
 // (analysis/method/repetitions.hpp, analysis/response/group_delay.hpp).
 //
-// Belongs to one thread; recipe and method must outlive it.
+// Belongs to one thread; the recipe must outlive it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "services/evaluation/method/method.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
@@ -20,7 +19,7 @@ namespace dyncal::services {
 
 class TransferSummary {
 public:
-  TransferSummary(const Recipe& recipe, const Method& method) : recipe_(recipe), method_(method) {}
+  explicit TransferSummary(const Recipe& recipe) : recipe_(recipe) {}
 
   // A result of the same channel, step and repetition as an earlier one takes its place.
   void add(const StepResult& result);
@@ -33,10 +32,10 @@ private:
   using ChannelResults = std::map<StepKey, StepResult>;
 
   [[nodiscard]] TransferFunction function_of(const std::string& channel) const;
-  void add_group_delay(const ChannelResults& results, TransferFunction& function) const;
+  void add_group_delay(const std::vector<const StepResult*>& results,
+                       TransferFunction& function) const;
 
   const Recipe& recipe_;
-  const Method& method_;
   std::vector<std::string> channels_; // in the order of their first result
   std::map<std::string, ChannelResults> results_;
 };

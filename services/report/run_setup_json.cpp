@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/instrument/adc_calibration.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
 #include "services/report/json_number.hpp"
 
 namespace dyncal::services {
@@ -93,6 +94,20 @@ Json correction_json(const char* name, double phase_rad, double u_phase_rad) {
           {"phase_rad", json_number(phase_rad)},
           {"phase_deg", json_number(phase_rad * degrees_per_radian)},
           {"u_phase_rad", json_number(u_phase_rad)}};
+}
+
+// What the response of the reference does to H, which is multiplied by it.
+Json reference_json(const analysis::ReferenceResponse& response) {
+  double magnitude2 = 0.0;
+  double phase2 = 0.0;
+  for (const analysis::ReferenceContribution& one : response.contributions) {
+    magnitude2 += one.u_magnitude_rel * one.u_magnitude_rel;
+    phase2 += one.u_phase_rad * one.u_phase_rad;
+  }
+  Json json = correction_json("reference_response", response.phase_rad, std::sqrt(phase2));
+  json["magnitude_factor"] = json_number(response.magnitude);
+  json["u_magnitude_rel"] = json_number(std::sqrt(magnitude2));
+  return json;
 }
 
 std::string role_of(const Recipe& recipe, const std::string& channel) {
@@ -194,6 +209,11 @@ nlohmann::ordered_json corrections_json(const Recipe& recipe) {
 nlohmann::ordered_json applied_corrections_json(const Recipe& recipe, const RecipeStep& step) {
   const double w = step.frequency.angular();
   Json json = Json::array();
+  if (!recipe.reference_calibration.empty()) {
+    if (const auto response = reference_response(recipe, step)) {
+      json.push_back(reference_json(*response));
+    }
+  }
   if (recipe.reference_delay_s != 0.0) {
     json.push_back(correction_json("reference_delay", -w * recipe.reference_delay_s,
                                    w * recipe.systematic.acs_delay_s));

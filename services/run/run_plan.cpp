@@ -34,7 +34,9 @@ Roles plan_roles(const BenchFile& file,
                      .trigger_phase_correction = method.trigger_phase_correction,
                      .dso_delay_s = file.corrections.dso_delay_s,
                      .u_dso_delay_s = file.corrections.u_dso_delay_s,
-                     .u_acs_rate_rel = file.uncertainty.acs_rate_rel});
+                     .u_acs_rate_rel = file.uncertainty.acs_rate_rel,
+                     .u_dso_rate_rel = file.uncertainty.dso_rate_rel,
+                     .u_adc_delay_s = file.uncertainty.adc_delay_s});
 }
 
 } // namespace
@@ -53,6 +55,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.frequency_search_rel = file.method.frequency_search_rel;
   recipe.level_deviation_rel = file.excitation.level_deviation_rel;
   recipe.reference_delay_s = file.corrections.reference_delay_s;
+  recipe.reference_calibration = file.corrections.reference;
   recipe.systematic.reference_magnitude_rel = file.uncertainty.reference_magnitude_rel;
   recipe.systematic.reference_phase_rad = file.uncertainty.reference_phase_rad;
   recipe.systematic.acs_delay_s = file.uncertainty.acs_delay_s;

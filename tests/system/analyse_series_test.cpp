@@ -92,6 +92,9 @@ shots = 3
 frequency_search_rel = 0
 [corrections]
 dso_delay = { value_s = 236e-9, u_s = 1e-9 }
+[uncertainty]
+reference_magnitude_rel = 1e-3
+reference_phase_rad = 1e-3
 )";
   }
 

@@ -4,6 +4,7 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -26,13 +27,15 @@ void leave_settling_out(StepTask& task, SelectedChannels& channels) {
       without_settling(channels.interval(), settling.settling_s, task.step().duration_s));
 }
 
-analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& channels) {
+analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& channels,
+                                 const analysis::ReferenceResponse& reference) {
   const Recipe& recipe = *task.recipe;
   analysis::AnalogueInput input{.frequency = task.step().frequency};
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.stamps_ns = channels.stamps_ns();
   input.reference = channels.channel(0);
   input.dut = channels.channels_from(1);
+  input.reference_response = reference;
   input.channel_delay_s = -recipe.reference_delay_s;
   input.systematic.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
   input.systematic.reference_phase_rad = recipe.systematic.reference_phase_rad;
@@ -46,10 +49,14 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, channels);
   }
-  const auto evaluated = analysis::evaluate_analogue(input_of(task, channels))
-                             .map([](const analysis::ComparisonResult& result) {
-                               return EvaluatedStep{{result.reference}, result.points};
-                             });
+  const auto evaluated =
+      reference_response(*task.recipe, task.step())
+          .and_then([&](const analysis::ReferenceResponse& reference) {
+            return analysis::evaluate_analogue(input_of(task, channels, reference));
+          })
+          .map([](const analysis::ComparisonResult& result) {
+            return EvaluatedStep{{result.reference}, result.points};
+          });
   return make_results(task,
                       {.dut = roles.dut,
                        .reference_unit = channels.unit(0),

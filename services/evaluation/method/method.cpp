@@ -18,10 +18,6 @@ bool Method::is_complete(std::size_t /*step*/, const RunRecords& /*records*/) co
   return true;
 }
 
-double Method::u_link_delay_s(std::span<const double> /*frequencies_hz*/) const {
-  return 0.0;
-}
-
 std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe) {
   switch (recipe->method()) {
   case EvaluationMethod::analogue:

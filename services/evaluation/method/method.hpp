@@ -12,7 +12,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -55,10 +54,6 @@ public:
   [[nodiscard]] virtual std::optional<std::string> clock_source() const { return std::nullopt; }
   // What the evaluated steps themselves tell of it.
   [[nodiscard]] virtual std::vector<ClockReport> clock_reports() const { return {}; }
-
-  // Standard uncertainty of a delay that this method's link between the clocks adds to all
-  // frequencies alike, s.
-  [[nodiscard]] virtual double u_link_delay_s(std::span<const double> frequencies_hz) const;
 
 protected:
   Method() = default;

@@ -7,6 +7,7 @@
 #include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -33,6 +34,10 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
   if (!adc) {
     return fail(adc.error());
   }
+  const auto reference = reference_response(recipe, task.step());
+  if (!reference) {
+    return fail(reference.error());
+  }
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = channels.acs.stamps_ns(),
@@ -44,6 +49,7 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                       .dut_stamps_ns = channels.dut.stamps_ns(),
                                       .adc = *adc,
                                       .reference_delay_s = recipe.reference_delay_s,
+                                      .reference_response = *reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = channels.sync.record().description().tick_s;
   input.systematic.clock_offset_s = u_clock_offset_s(channels.sync, channels.dut);
@@ -114,10 +120,6 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   all.insert(all.end(), sources.sensors.begin(), sources.sensors.end());
   StepTask task = make_step_task(recipe_, step, records.excitation(), all);
   return [task = std::move(task), sources = std::move(sources)] { return evaluate(task, sources); };
-}
-
-double OwnClockSampleStamping::u_link_delay_s(std::span<const double> frequencies_hz) const {
-  return u_adc_delay_s(roles_, frequencies_hz);
 }
 
 } // namespace dyncal::services

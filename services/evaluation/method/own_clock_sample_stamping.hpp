@@ -21,7 +21,6 @@ public:
   [[nodiscard]] std::optional<std::string> clock_source() const override {
     return roles_.dut.front().source;
   }
-  [[nodiscard]] double u_link_delay_s(std::span<const double> frequencies_hz) const override;
 
 private:
   std::shared_ptr<const Recipe> recipe_;

@@ -5,6 +5,7 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -45,6 +46,10 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
   if (!adc) {
     return fail(adc.error());
   }
+  const auto reference = reference_response(recipe, task.step());
+  if (!reference) {
+    return fail(reference.error());
+  }
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = acs.stamps_ns(),
@@ -55,6 +60,7 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
                                       .dut = dau.channels_from(1),
                                       .adc = *adc,
                                       .reference_delay_s = recipe.reference_delay_s,
+                                      .reference_response = *reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = dau.record().description().tick_s;
   return analysis::evaluate_sample_stamping(input).map(
@@ -107,10 +113,6 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
   return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)] {
     return evaluate(task, acs, dau);
   };
-}
-
-double SampleTimeStamping::u_link_delay_s(std::span<const double> frequencies_hz) const {
-  return u_adc_delay_s(roles_, frequencies_hz);
 }
 
 } // namespace dyncal::services

@@ -22,7 +22,6 @@ public:
   [[nodiscard]] std::optional<std::string> clock_source() const override {
     return roles_.sync_dau.source;
   }
-  [[nodiscard]] double u_link_delay_s(std::span<const double> frequencies_hz) const override;
 
 private:
   std::shared_ptr<const Recipe> recipe_;

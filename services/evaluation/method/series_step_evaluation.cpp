@@ -11,6 +11,7 @@
 #include "analysis/method/series_stamping.hpp"
 #include "services/contract/digest.hpp"
 #include "services/evaluation/method/step_results.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -131,6 +132,7 @@ void add_corrections(const Recipe& recipe, analysis::SeriesStampingInput& input)
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.dso_delay_s = roles.dso_delay_s;
   input.u_dso_delay_s = roles.u_dso_delay_s;
+  input.u_dso_rate_rel = roles.u_dso_rate_rel;
   input.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
   input.reference_phase_rad = recipe.systematic.reference_phase_rad;
   input.acs_delay_s = recipe.systematic.acs_delay_s;
@@ -305,6 +307,11 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
     return without_result(step, "the records of the shots lack a channel that was described");
   }
   analysis::SeriesStampingInput input = input_of(step.task, acs, shots, sync, columns);
+  const auto reference = reference_response(*step.task.recipe, step.task.step());
+  if (!reference) {
+    return without_result(step, reference.error().message);
+  }
+  input.reference_response = *reference;
   const auto evaluated = evaluate_series(input, step.start_so_far);
   if (!evaluated) {
     return without_result(step, evaluated.error().message);

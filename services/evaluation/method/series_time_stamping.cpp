@@ -60,8 +60,4 @@ std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {
   return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates_)};
 }
 
-double SeriesTimeStamping::u_link_delay_s(std::span<const double> /*frequencies_hz*/) const {
-  return roles_.u_dso_delay_s;
-}
-
 } // namespace dyncal::services

@@ -27,7 +27,6 @@ public:
   [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
-  [[nodiscard]] double u_link_delay_s(std::span<const double> frequencies_hz) const override;
 
 private:
   [[nodiscard]] std::vector<StepResult> evaluate(std::size_t step, const RunRecords& records);

@@ -2,6 +2,7 @@
 
 #include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
+#include "services/evaluation/method/unstated_uncertainty.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -78,6 +79,9 @@ void add_input(const StepTask& task, const StepInput& input, StepResult& result)
   if (auto flag = find_level_deviation(task.step(), task.recipe->level_deviation_rel,
                                        result.fits.front(), input.reference_unit)) {
     result.flags.push_back(std::move(*flag));
+  }
+  for (Flag& flag : flags_of_unstated(*task.recipe)) {
+    result.flags.push_back(std::move(flag));
   }
   for (const SourceSamples& samples : input.samples) {
     result.lost += samples.all_lost();

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "services/evaluation/recipe/reference_correction.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -50,13 +52,14 @@ Roles make_roles(RoleNames names, MethodDetails details) {
                        details.trigger_phase_correction,
                        details.dso_delay_s,
                        details.u_dso_delay_s,
-                       details.u_acs_rate_rel};
+                       details.u_acs_rate_rel,
+                       details.u_dso_rate_rel};
   case EvaluationMethod::sample_timestamping:
     break;
   }
-  return SampleStampingRoles{std::move(names.reference), std::move(names.sync_acs),
-                             std::move(names.sync_sensor), std::move(names.dut),
-                             std::move(details.adc_calibration)};
+  return SampleStampingRoles{std::move(names.reference),         std::move(names.sync_acs),
+                             std::move(names.sync_sensor),       std::move(names.dut),
+                             std::move(details.adc_calibration), details.u_adc_delay_s};
 }
 
 EvaluationMethod Recipe::method() const {
@@ -136,6 +139,11 @@ Expected<void> check_recipe(const Recipe& recipe) {
       return refuse(
           fmt::format("step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
                       step.step, step.frequency_text_hz, step.settling_s, step.duration_s));
+    }
+  }
+  for (const RecipeStep& step : recipe.steps) {
+    if (const auto reference = reference_response(recipe, step); !reference) {
+      return refuse(fmt::format("step {} of the recipe: {}", step.step, reference.error().message));
     }
   }
   if (recipe.whole_record && recipe.steps.size() != 1) {

@@ -16,6 +16,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/instrument/adc_calibration.hpp"
+#include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
@@ -57,6 +58,7 @@ struct SampleStampingRoles {
   ChannelName sync_dau;
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::vector<analysis::AdcCalibrationPoint> adc_calibration; // of sync_dau; empty: no correction
+  double u_adc_delay_s = 0.0; // of an ADC without calibration; 0: not stated
 
   // The sensors have stamps of their own, beside the DAU that records sync.
   [[nodiscard]] bool own_clocks() const { return has_own_clocks(dut, sync_dau); }
@@ -72,6 +74,7 @@ struct SeriesRoles {
   double dso_delay_s = 0.0; // from the oscilloscope's trigger point to its trigger output
   double u_dso_delay_s = 0.0;
   double u_acs_rate_rel = 0.0; // of the ACS's clock, for sample rates
+  double u_dso_rate_rel = 0.0; // of the oscilloscope's clock
 };
 
 using Roles = std::variant<SampleStampingRoles, AnalogueRoles, SeriesRoles, AbsoluteTimeRoles>;
@@ -84,6 +87,8 @@ struct MethodDetails {
   double dso_delay_s = 0.0;
   double u_dso_delay_s = 0.0;
   double u_acs_rate_rel = 0.0;
+  double u_dso_rate_rel = 0.0;
+  double u_adc_delay_s = 0.0;
 };
 
 // Those of the names' method; details that it does not have are dropped. An excitation channel that
@@ -102,6 +107,7 @@ struct Recipe {
   double frequency_search_rel = 1e-3;   // 0: the frequency is known exactly in every clock
   double level_deviation_rel = default_level_deviation_rel; // beyond it a step is flagged
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
+  std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right
   analysis::SystematicUncertainty systematic;
   std::string text; // of the bench file, for those who read the message
   std::string sha256;
@@ -121,7 +127,8 @@ struct Recipe {
 [[nodiscard]] RoleNames role_names(const Recipe& recipe);
 
 // Fails (bad_argument) with what this version cannot evaluate: roles that the method does not
-// allow, no steps, settings that the method does not have.
+// allow, no steps, settings that the method does not have, steps at which the reference was not
+// calibrated.
 [[nodiscard]] Expected<void> check_recipe(const Recipe& recipe);
 
 } // namespace dyncal::services

@@ -29,6 +29,7 @@ void write_own_part(const SampleStampingRoles& roles, wire::Measurement& measure
     message.u_phase_lag_rad(point.u_phase_lag_rad);
     measurement.adc_calibration().push_back(message);
   }
+  measurement.u_adc_delay_s(roles.u_adc_delay_s);
 }
 
 void write_own_part(const SeriesRoles& roles, wire::Measurement& measurement) {
@@ -37,6 +38,26 @@ void write_own_part(const SeriesRoles& roles, wire::Measurement& measurement) {
   measurement.dso_delay_s(roles.dso_delay_s);
   measurement.u_dso_delay_s(roles.u_dso_delay_s);
   measurement.u_acs_rate_rel(roles.u_acs_rate_rel);
+  measurement.u_dso_rate_rel(roles.u_dso_rate_rel);
+}
+
+void write_reference(const Recipe& recipe, wire::Measurement& measurement) {
+  for (const analysis::ReferenceCalibrationPoint& point : recipe.reference_calibration) {
+    wire::ReferenceCalibrationPoint message;
+    message.frequency_hz(point.frequency_hz);
+    message.level_m_s2(point.level_m_s2);
+    message.magnitude(point.magnitude);
+    message.phase_rad(point.phase_rad);
+    for (const analysis::ReferenceContribution& one : point.contributions) {
+      wire::ReferenceContribution contribution;
+      contribution.name(one.name);
+      contribution.u_magnitude_rel(one.u_magnitude_rel);
+      contribution.u_phase_rad(one.u_phase_rad);
+      contribution.degrees_of_freedom(one.degrees_of_freedom);
+      message.contributions().push_back(contribution);
+    }
+    measurement.reference_calibration().push_back(message);
+  }
 }
 
 void write_steps(const Recipe& recipe, wire::Measurement& measurement) {
@@ -96,7 +117,9 @@ MethodDetails read_details(const wire::Measurement& measurement) {
                         .trigger_phase_correction = measurement.trigger_phase_correction(),
                         .dso_delay_s = measurement.dso_delay_s(),
                         .u_dso_delay_s = measurement.u_dso_delay_s(),
-                        .u_acs_rate_rel = measurement.u_acs_rate_rel()};
+                        .u_acs_rate_rel = measurement.u_acs_rate_rel(),
+                        .u_dso_rate_rel = measurement.u_dso_rate_rel(),
+                        .u_adc_delay_s = measurement.u_adc_delay_s()};
   for (const wire::AdcCalibrationPoint& point : measurement.adc_calibration()) {
     details.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
                                        point.gain(), point.phase_lag_rad(), point.u_gain(),
@@ -118,6 +141,20 @@ Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) 
                             planned.duration_s()});
   }
   return {};
+}
+
+void read_reference(const wire::Measurement& measurement, Recipe& recipe) {
+  for (const wire::ReferenceCalibrationPoint& message : measurement.reference_calibration()) {
+    analysis::ReferenceCalibrationPoint point{
+        message.frequency_hz(), message.level_m_s2(), message.magnitude(), message.phase_rad(), {}};
+    for (const wire::ReferenceContribution& one : message.contributions()) {
+      point.contributions.push_back({.name = one.name(),
+                                     .u_magnitude_rel = one.u_magnitude_rel(),
+                                     .u_phase_rad = one.u_phase_rad(),
+                                     .degrees_of_freedom = one.degrees_of_freedom()});
+    }
+    recipe.reference_calibration.push_back(std::move(point));
+  }
 }
 
 void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
@@ -162,6 +199,7 @@ wire::Measurement to_message(const Recipe& recipe) {
     measurement.temperature(recipe.temperature->text());
   }
   write_steps(recipe, measurement);
+  write_reference(recipe, measurement);
   std::visit([&](const auto& own) { write_own_part(own, measurement); }, recipe.roles);
   measurement.u_reference_magnitude_rel(recipe.systematic.reference_magnitude_rel);
   measurement.u_reference_phase_rad(recipe.systematic.reference_phase_rad);
@@ -193,6 +231,7 @@ Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
     }
   }
   read_common_part(measurement, recipe);
+  read_reference(measurement, recipe);
   const auto sound = read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); });
   if (!sound) {
     return fail(sound.error());

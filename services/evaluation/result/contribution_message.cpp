@@ -30,6 +30,7 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::trigger_delay, wire::CONTRIBUTION_TRIGGER_DELAY},
     {ContributionKind::series_start, wire::CONTRIBUTION_SERIES_START},
     {ContributionKind::shots, wire::CONTRIBUTION_SHOTS},
+    {ContributionKind::trace_clock, wire::CONTRIBUTION_TRACE_CLOCK},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 

@@ -78,6 +78,13 @@ constexpr std::array rows{
         "answers before its excitation",
         "the group delay is below 0 by more than three times its uncertainty, which no sensor "
         "does; check which channels the roles name, and the corrections"},
+    Row{ResultFlag::adc_not_calibrated, "adc_not_calibrated", "sync ADC not calibrated",
+        "u of the phase holds without the delay of the ADC that records sync; name its calibration "
+        "as corrections.adc, or state uncertainty.adc_delay_s"},
+    Row{ResultFlag::reference_uncertainty_not_stated, "reference_uncertainty_not_stated",
+        "the uncertainty of the reference is not stated",
+        "u holds without it; name the calibration of the reference as corrections.reference, or "
+        "state uncertainty.reference_magnitude_rel and .reference_phase_rad"},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

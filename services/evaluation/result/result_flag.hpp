@@ -32,6 +32,8 @@ enum class ResultFlag {
   no_monte_carlo_check,
   polarity_inverted,
   answers_before_excitation,
+  adc_not_calibrated,
+  reference_uncertainty_not_stated,
   from_message // read from the bus, and not known to this version
 };
 

@@ -111,6 +111,48 @@ TEST(SeriesStamping, RecoversTheTransferFunctionThroughNoisyTriggers) {
   EXPECT_GE(covered, 90);
 }
 
+// A trace of which only the first sample lies before the trigger: its middle is 2 ms behind it.
+TEST(SeriesStamping, TheClockOfTheOscilloscopeIsARowOfTheBudget) {
+  const Scene scene;
+  const Traces traces = simulate(scene, 3);
+  SeriesStampingInput input = input_for(traces, scene);
+  for (SeriesShot& shot : input.shots) {
+    shot.dso_first_s = 0.0;
+  }
+  const auto row_of = [](const SeriesStampingResult& result) {
+    for (const Contribution& row : result.channels.front().common_budget) {
+      if (row.kind == ContributionKind::trace_clock) {
+        return row.u_phase_rad;
+      }
+    }
+    return 0.0;
+  };
+  const auto exact = evaluate_series_stamping(input);
+  input.u_dso_rate_rel = 1e-4;
+  const auto uncertain = evaluate_series_stamping(input);
+  ASSERT_TRUE(exact && uncertain);
+  EXPECT_EQ(row_of(*exact), 0.0);
+  EXPECT_NEAR(row_of(*uncertain), 2.0 * pi * 250.0 * 2e-3 * 1e-4, 1e-9);
+  EXPECT_GT(uncertain->channels[0].mean.u_phase_rad,
+            std::hypot(exact->channels[0].mean.u_phase_rad, 0.99 * row_of(*uncertain)));
+  input.correct_trigger_phase = false; // then nothing of the trace is used
+  EXPECT_EQ(row_of(*evaluate_series_stamping(input)), 0.0);
+}
+
+TEST(SeriesStamping, TheResponseOfTheReferenceIsTakenOut) {
+  const Scene scene;
+  const Traces traces = simulate(scene, 3);
+  SeriesStampingInput input = input_for(traces, scene);
+  const auto plain = evaluate_series_stamping(input);
+  input.reference_response = {1.02, -0.03, {{.name = "drift", .u_magnitude_rel = 1e-3}}};
+  const auto corrected = evaluate_series_stamping(input);
+  ASSERT_TRUE(plain && corrected);
+  const RepetitionMean& mean = corrected->channels[0].mean;
+  EXPECT_NEAR(mean.magnitude, 1.02 * plain->channels[0].mean.magnitude, 1e-9);
+  EXPECT_NEAR(mean.phase_rad, plain->channels[0].mean.phase_rad - 0.03, 1e-9);
+  EXPECT_EQ(corrected->channels[0].common_budget.back().name(), "reference drift");
+}
+
 // The phases of the shots are uniform over 2 pi f / fs: the length of their mean would be 2.5 %
 // short at 250 Hz of 2 kS/s.
 TEST(SeriesStamping, ASensorThatRunsFreelyKeepsItsMagnitude) {

@@ -13,6 +13,8 @@ TEST(Contribution, IsNamedByItsKindAndItsSubject) {
   EXPECT_EQ((Contribution{.kind = ContributionKind::fit_noise, .subject = "the sensor"}.name()),
             "noise of the sensor");
   EXPECT_EQ(Contribution{.kind = ContributionKind::reference}.name(), "reference");
+  EXPECT_EQ((Contribution{.kind = ContributionKind::reference, .subject = "drift"}.name()),
+            "reference drift");
   EXPECT_EQ((Contribution{.kind = ContributionKind::other, .subject = "cable"}.name()), "cable");
 }
 
@@ -31,6 +33,7 @@ TEST(Contribution, ANameOfAnotherVersionIsKeptAsItIs) {
   const NamedKind read = parse_contribution_name("noise offset");
   EXPECT_EQ(read.kind, ContributionKind::other);
   EXPECT_EQ(read.subject, "noise offset");
+  EXPECT_EQ(parse_contribution_name("reference drift").subject, "drift");
   EXPECT_EQ(parse_contribution_name("").kind, ContributionKind::other);
 }
 

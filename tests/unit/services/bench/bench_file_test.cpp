@@ -1,5 +1,7 @@
 #include "services/bench/bench_file.hpp"
 
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -72,6 +74,66 @@ TEST(BenchFile, GivesWhatTheFileSays) {
 TEST(BenchFile, NamesFileLineAndKeyOfAnUnknownKeyAndTheOneThatWasMeant) {
   EXPECT_EQ(problem_of(replaced(complete, "settling_s", "setling_s")),
             "bench.toml:6: key 'excitation.setling_s' is not known; did you mean 'settling_s'?");
+}
+
+std::string with_uncertainty(const std::string& line) {
+  return replaced(complete, "reference_magnitude_rel = 1e-3", line);
+}
+
+TEST(BenchFile, RefusesAnUncertaintyThatIsNotPlausible) {
+  EXPECT_THAT(problem_of(with_uncertainty("reference_magnitude_rel = 50")),
+              HasSubstr("bench.toml:28: key 'uncertainty.reference_magnitude_rel' = 50 is not "
+                        "plausible"));
+  EXPECT_THAT(problem_of(with_uncertainty("reference_magnitude_rel = 0.51")),
+              HasSubstr("per cent"));
+  EXPECT_THAT(problem_of(with_uncertainty("reference_phase_rad = 1.6")), HasSubstr("degrees"));
+  EXPECT_THAT(problem_of(with_uncertainty("acs_rate_rel = 5")), HasSubstr("parts per million"));
+  EXPECT_THAT(problem_of(with_uncertainty("dso_rate_rel = 25")), HasSubstr("parts per million"));
+  EXPECT_THAT(problem_of(with_uncertainty("acs_delay_s = 236")), HasSubstr("nanoseconds"));
+  EXPECT_THAT(problem_of(with_uncertainty("adc_delay_s = 0.46e3")), HasSubstr("microseconds"));
+  EXPECT_TRUE(parse_bench_file(with_uncertainty("reference_magnitude_rel = 0.5"), "bench.toml"));
+}
+
+TEST(BenchFile, TakesTheClockOfAnOscilloscopeFor25PpmOff) {
+  EXPECT_NEAR(parse_bench_file(complete, "bench.toml")->uncertainty.dso_rate_rel,
+              25e-6 / std::sqrt(3.0), 1e-7);
+  const std::string text(complete);
+  const auto bare = parse_bench_file(text.substr(0, text.find("[uncertainty]")), "bench.toml");
+  ASSERT_TRUE(bare) << bare.error().message;
+  EXPECT_GT(bare->uncertainty.dso_rate_rel, 1.4e-5);
+  EXPECT_EQ(parse_bench_file(with_uncertainty("dso_rate_rel = 0"), "bench.toml")
+                ->uncertainty.dso_rate_rel,
+            0.0);
+}
+
+TEST(BenchFile, TakesADelayOfTheAdcOnlyWhereItIsNotCalibrated) {
+  EXPECT_EQ(parse_bench_file(with_uncertainty("adc_delay_s = 1e-6"), "bench.toml")
+                ->uncertainty.adc_delay_s,
+            1e-6);
+  const auto adc = std::filesystem::temp_directory_path() / "dyncal-bench-file-test-adc.json";
+  std::ofstream(adc) << "{}";
+  const std::string both = replaced(with_uncertainty("adc_delay_s = 1e-6"), "[uncertainty]",
+                                    "[corrections]\nadc = { file = \"" + adc.string() +
+                                        "\", channel = \"a\" }\n[uncertainty]");
+  EXPECT_THAT(problem_of(both), HasSubstr("is for a sync ADC without calibration"));
+  std::filesystem::remove(adc);
+}
+
+TEST(BenchFile, ReadsTheCalibrationOfTheReference) {
+  const auto table = std::filesystem::temp_directory_path() / "dyncal-bench-file-test-ref.csv";
+  const auto with_table = [&] {
+    return replaced(complete, "[uncertainty]",
+                    "[corrections]\nreference = \"" + table.string() + "\"\n[uncertainty]");
+  };
+  std::ofstream(table) << "frequency_hz,magnitude,phase_rad\n10,1.01,0.1\n";
+  const auto file = parse_bench_file(with_table(), "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  ASSERT_EQ(file->corrections.reference.size(), 1U);
+  EXPECT_EQ(file->corrections.reference.front().magnitude, 1.01);
+  std::ofstream(table) << "frequency_hz,magnitude,phase_rad\n10,1.01,x\n";
+  EXPECT_THAT(problem_of(with_table()), HasSubstr("'corrections.reference' names " +
+                                                  table.string() + ":2:9: 'x' is not a number"));
+  std::filesystem::remove(table);
 }
 
 TEST(BenchFile, RefusesAUnitThatIsNone) {

@@ -1,5 +1,6 @@
 #include "services/evaluation/run_evaluator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -67,6 +68,70 @@ wire::Measurement analogue(wire::Measurement measurement) {
   measurement.sync_dau("");
   measurement.dut() = {"acs/sync"};
   return measurement;
+}
+
+TEST(RunEvaluator, FlagsWhatTheRecipeLeavesUnstated) {
+  const tests::SyntheticRun run;
+  wire::Measurement measurement = run.measurement();
+  measurement.u_reference_phase_rad(0.0);
+  measurement.u_adc_delay_s(0.0);
+  const EvaluationOutput output = evaluate(run, measurement);
+  const auto both = testing::ElementsAre(HasSubstr("uncertainty of the reference is not stated"),
+                                         HasSubstr("sync ADC not calibrated"));
+  ASSERT_FALSE(output.results.empty());
+  for (const StepResult& result : output.results) {
+    EXPECT_THAT(sentences_of(result.flags), both);
+  }
+  ASSERT_FALSE(output.transfer_functions.empty());
+  EXPECT_THAT(sentences_of(output.transfer_functions.front().flags), both);
+}
+
+TEST(RunEvaluator, TakesTheUncertaintyOfAnAdcThatIsNotCalibratedIntoTheBudget) {
+  const tests::SyntheticRun run;
+  wire::Measurement measurement = run.measurement();
+  measurement.u_adc_delay_s(1e-5);
+  for (const StepResult& result : evaluate(run, measurement).results) {
+    EXPECT_THAT(sentences_of(result.flags), testing::IsEmpty());
+    EXPECT_GT(result.u_phase_rad, 2.0 * std::numbers::pi * result.frequency_hz * 1e-5);
+  }
+}
+
+TEST(RunEvaluator, TakesTheResponseOfTheReferenceOut) {
+  const tests::SyntheticRun run;
+  for (const bool is_analogue : {false, true}) {
+    wire::Measurement measurement = is_analogue ? analogue(run.measurement()) : run.measurement();
+    const EvaluationOutput plain = evaluate(run, measurement);
+    wire::ReferenceContribution drift;
+    drift.name("drift");
+    drift.u_magnitude_rel(0.01);
+    drift.u_phase_rad(0.02);
+    drift.degrees_of_freedom(5.0);
+    for (const double hz : {40.0, 80.0}) {
+      wire::ReferenceCalibrationPoint point;
+      point.frequency_hz(hz);
+      point.magnitude(1.02);
+      point.phase_rad(-1e-3 * hz);
+      point.contributions().push_back(drift);
+      measurement.reference_calibration().push_back(point);
+    }
+    const EvaluationOutput corrected = evaluate(run, measurement);
+    ASSERT_EQ(corrected.results.size(), plain.results.size());
+    ASSERT_FALSE(plain.results.empty());
+    for (std::size_t i = 0; i < plain.results.size(); ++i) {
+      const StepResult& result = corrected.results[i];
+      EXPECT_NEAR(result.magnitude, 1.02 * plain.results[i].magnitude, 1e-9);
+      EXPECT_NEAR(
+          std::remainder(result.phase_rad - plain.results[i].phase_rad + 1e-3 * result.frequency_hz,
+                         2.0 * std::numbers::pi),
+          0.0, 1e-9);
+      EXPECT_GT(result.u_magnitude, 0.01 * result.magnitude);
+      EXPECT_GT(result.u_phase_rad, 0.02);
+      const auto named = [](const analysis::Contribution& row) {
+        return row.name() == "reference drift" && row.degrees_of_freedom == 5.0;
+      };
+      EXPECT_EQ(std::count_if(result.budget.begin(), result.budget.end(), named), 1);
+    }
+  }
 }
 
 TEST(RunEvaluator, FindsMagnitudeAndPhaseOfEveryStepAcrossUnrelatedClocks) {

@@ -30,6 +30,20 @@ TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
   measurement.u_acs_delay_s(1e-7);
   measurement.level_deviation_rel(0.05);
   measurement.frequency_search_rel(2e-3);
+  wire::ReferenceContribution drift;
+  drift.name("drift");
+  drift.u_magnitude_rel(1e-3);
+  drift.u_phase_rad(2e-3);
+  drift.degrees_of_freedom(5.0);
+  for (const double hz : {40.0, 80.0}) {
+    wire::ReferenceCalibrationPoint calibrated;
+    calibrated.frequency_hz(hz);
+    calibrated.level_m_s2(10.0);
+    calibrated.magnitude(1.01);
+    calibrated.phase_rad(-0.01);
+    calibrated.contributions().push_back(drift);
+    measurement.reference_calibration().push_back(calibrated);
+  }
   const auto recipe = parse_recipe(measurement);
   ASSERT_TRUE(recipe) << recipe.error().message;
   EXPECT_TRUE(to_message(*recipe) == measurement);
@@ -52,6 +66,29 @@ TEST(RecipeMessage, TakesTheSyncOfTheOscilloscopeForSeriesAlone) {
   EXPECT_EQ(parse_recipe(measurement)->sources(), (std::vector<std::string>{"acs", "dso", "tss"}));
   measurement.sync_dso("");
   EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("sync_dso is \"\""));
+}
+
+TEST(RecipeMessage, RefusesAStepAtWhichTheReferenceWasNotCalibrated) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  wire::ReferenceCalibrationPoint calibrated;
+  calibrated.frequency_hz(40.0);
+  calibrated.magnitude(1.0);
+  measurement.reference_calibration().push_back(calibrated);
+  EXPECT_THAT(parse_recipe(measurement).error().message,
+              HasSubstr("step 2 of the recipe: the reference was calibrated from 40 to 40 Hz"));
+}
+
+TEST(RecipeMessage, CarriesTheClockOfTheOscilloscopeInSeriesAlone) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.sync_dau("");
+  measurement.sync_dso("dso/sync");
+  measurement.dut({"tss/z"});
+  measurement.method(wire::METHOD_SERIES_TIMESTAMPING);
+  measurement.u_dso_rate_rel(1.4e-5);
+  const auto recipe = parse_recipe(measurement);
+  ASSERT_TRUE(recipe) << recipe.error().message;
+  EXPECT_EQ(std::get<SeriesRoles>(recipe->roles).u_dso_rate_rel, 1.4e-5);
+  EXPECT_EQ(to_message(*recipe).u_dso_rate_rel(), 1.4e-5);
 }
 
 TEST(RecipeMessage, RefusesRolesThatAreNoChannels) {

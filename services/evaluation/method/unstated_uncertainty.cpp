@@ -1,0 +1,40 @@
+#include "services/evaluation/method/unstated_uncertainty.hpp"
+
+#include <algorithm>
+
+namespace dyncal::services {
+
+namespace {
+
+// Of the reference: beside its calibration, or by it.
+bool is_stated(const Recipe& recipe, double analysis::SystematicUncertainty::*beside,
+               double analysis::ReferenceContribution::*of_contribution) {
+  const auto is_above_0 = [&](const analysis::ReferenceContribution& one) {
+    return one.*of_contribution > 0.0;
+  };
+  return recipe.systematic.*beside > 0.0 ||
+         std::any_of(recipe.reference_calibration.begin(), recipe.reference_calibration.end(),
+                     [&](const analysis::ReferenceCalibrationPoint& point) {
+                       return std::any_of(point.contributions.begin(), point.contributions.end(),
+                                          is_above_0);
+                     });
+}
+
+} // namespace
+
+std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
+  std::vector<Flag> flags;
+  if (!is_stated(recipe, &analysis::SystematicUncertainty::reference_magnitude_rel,
+                 &analysis::ReferenceContribution::u_magnitude_rel) ||
+      !is_stated(recipe, &analysis::SystematicUncertainty::reference_phase_rad,
+                 &analysis::ReferenceContribution::u_phase_rad)) {
+    flags.push_back(make_flag(ResultFlag::reference_uncertainty_not_stated));
+  }
+  const auto* const stamped = std::get_if<SampleStampingRoles>(&recipe.roles);
+  if (stamped != nullptr && stamped->adc_calibration.empty() && !(stamped->u_adc_delay_s > 0.0)) {
+    flags.push_back(make_flag(ResultFlag::adc_not_calibrated));
+  }
+  return flags;
+}
+
+} // namespace dyncal::services
