@@ -17,6 +17,7 @@ constexpr double max_periods = 50.0;   // more, and a frequency 1e-3 off would f
 constexpr std::size_t min_samples = 8; // of a frame that can be judged
 constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
 constexpr double phase_margin_rad = 0.15;
+constexpr double steady_phase_margin_rad = 0.02; // of frames that the sine fills from end to end
 
 std::int64_t frame_length_ns(const Frequency& frequency) {
   const double period_ns = 1e9 / frequency.hz();
@@ -212,8 +213,20 @@ void ExcitationWindowFinder::take(const Frame& frame) {
     run_.back().phase_rad = unwrapped_rad;
     return;
   }
+  const Frame last = run_.back();
   close_run();
-  if (!ended_ && starts(frame)) {
+  if (ended_) {
+    return;
+  }
+  // What came before the last frame may have been the edge of this excitation.
+  run_.push_back(last);
+  if (continues(frame, unwrapped_rad)) {
+    run_.push_back(frame);
+    run_.back().phase_rad = unwrapped_rad;
+    return;
+  }
+  run_.clear();
+  if (starts(frame)) {
     run_.push_back(frame);
   }
 }
@@ -224,6 +237,23 @@ void ExcitationWindowFinder::close_run() {
   if (!ended_) {
     run_.clear();
   }
+}
+
+// Whether the phase over these frames of the run advances as a frequency within the tolerance does.
+// Frames are taken into a run with a wide margin, for one at an edge may be filled in part only;
+// but two or three of them would pass with a sine a few percent off.
+bool ExcitationWindowFinder::has_nominal_frequency(std::size_t begin, std::size_t end) const {
+  const Frame& first = run_[begin];
+  const Frame& last = run_[end - 1];
+  const double max_advance = 2.0 * pi * frequency_.hz() * static_cast<double>(frame_ns_) * 1e-9 *
+                             settings_.frequency_tolerance_rel;
+  // Noise is the same in both; only a frame at an edge is described worse.
+  const double noise =
+      4.0 * std::numbers::sqrt2 *
+      std::min(first.u_amplitude / first.amplitude, last.u_amplitude / last.amplitude);
+  return std::abs(last.phase_rad - first.phase_rad) <=
+         max_advance * static_cast<double>(last.index - first.index) + steady_phase_margin_rad +
+             noise;
 }
 
 std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
@@ -268,6 +298,16 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
     if (run_[best_end - 1].max_residual > 1.6 * usual) {
       --best_end;
     }
+  }
+  while (best_end - best_begin >= 2 && !has_nominal_frequency(best_begin, best_end)) {
+    if (run_[best_begin].max_residual > run_[best_end - 1].max_residual) {
+      ++best_begin;
+    } else {
+      --best_end;
+    }
+  }
+  if (best_end - best_begin < 2) {
+    return std::nullopt;
   }
   ExcitationWindow window;
   window.begin_ns = std::max(first_stamp_ns_, run_[best_begin].index * frame_ns_);

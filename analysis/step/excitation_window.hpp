@@ -8,9 +8,10 @@
 //
 // Of such a run of frames the steady part is the longest stretch whose amplitude is within
 // `amplitude_tolerance_rel` of the plateau, without frames at its edges that are only partly
-// excited. It is up to two frames at each end shorter than the excitation. Lost samples leave
-// frames thinner or empty; an excitation goes on across a gap when its phase does. An off-phase
-// must last 0.2 s.
+// excited, and its phase advances as the nominal frequency's: two frames of a sine a few percent
+// off are no step. It is up to two frames at each end shorter than the excitation. Lost samples
+// leave frames thinner or empty; an excitation goes on across a gap when its phase does. An
+// off-phase must last 0.2 s.
 //
 // Units: stamps int64 ns of any epoch; the window is half-open. Cost: about one sine and cosine a
 // sample; memory: the samples of one frame and some 80 bytes a frame of the excitation. Samples
@@ -91,6 +92,7 @@ private:
   [[nodiscard]] bool starts(const Frame& frame) const;
   [[nodiscard]] bool continues(const Frame& frame, double& unwrapped_rad) const;
   void close_run();
+  [[nodiscard]] bool has_nominal_frequency(std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::optional<ExcitationWindow> steady_part() const;
   [[nodiscard]] double mean_advance_rad() const;
 

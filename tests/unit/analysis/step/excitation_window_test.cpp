@@ -240,6 +240,43 @@ TEST(ExcitationWindow, FindsNothingInNoiseOrInAnotherSine) {
       80.0));
 }
 
+// A frame that holds the end of one step and the beginning of the next may pass for a sine that is
+// a little off, with any phases; the step must not fall in two there.
+TEST(ExcitationWindow, FindsWholeStepsOfPeriodsLongerThanTheirPauses) {
+  constexpr int phases = 12;
+  for (int k = 0; k < 6 * phases * phases; ++k) {
+    const std::int64_t epoch_ns = 1'700'000'000'123'456'789 + (k % 6) * 400'000'000LL;
+    const auto phase = [](int part) { return 2.0 * std::numbers::pi * part / phases; };
+    const Stream stream = record({{0.41, 1.0, 17.4, phase(k / 6 / phases)},
+                                  {0, 0, 0.5},
+                                  {0.42, 1.0, 17.4, phase(k / 6 % phases)},
+                                  {0, 0, 0.5},
+                                  {0.43, 1.0, 17.2, 1.0},
+                                  {0, 0, 0.5}},
+                                 {.rate_hz = 40.0, .epoch_ns = epoch_ns});
+    std::size_t first = 0;
+    for (std::size_t step = 0; step < 3; ++step) {
+      const double frequency_hz = 0.41 + 0.01 * static_cast<double>(step);
+      const auto window = search(stream, frequency_hz, first);
+      ASSERT_TRUE(window) << k << ", step " << step;
+      expect_within_part(*window, stream, 2 * step, frequency_hz);
+      while (first < stream.stamps_ns.size() && stream.stamps_ns[first] < window->off_ns) {
+        ++first;
+      }
+    }
+  }
+}
+
+TEST(ExcitationWindow, DoesNotTakeTwoFramesOfANeighbouringSine) {
+  for (const double f : {0.40, 0.405, 0.41, 0.42, 0.44, 0.45, 0.46}) {
+    for (const double duration_s : {5.0, 7.5, 10.0, 20.0}) {
+      const Stream stream =
+          record({{0, 0, 0.5}, {f, 1.0, duration_s}, {0, 0, 4.0}}, {.rate_hz = 100.0});
+      EXPECT_FALSE(search(stream, 0.43)) << f << " Hz, " << duration_s << " s";
+    }
+  }
+}
+
 TEST(ExcitationWindow, LeavesOutSamplesThatCannotBe) {
   Stream stream = record({{0, 0, 0.3}, {63.0, 1.0, 2.0}, {0, 0, 0.3}}, {});
   stream.values[20000] = std::nan("");
