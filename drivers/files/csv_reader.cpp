@@ -94,31 +94,23 @@ Expected<bool> CsvReader::next_stretch() {
     rows_ = ahead_.front().get();
     ahead_.pop_front();
     read_ahead();
-    if (const auto order = check_order(); !order) {
+    if (const auto order = check_numbers(); !order) {
       return fail(order.error());
     }
   }
   return true;
 }
 
-Expected<void> CsvReader::check_order() {
-  if (rows_.blocks.empty()) {
+Expected<void> CsvReader::check_numbers() {
+  if (rows_.blocks.empty() || !layout_.has_number) {
     return {};
   }
   const SampleBlock& first = rows_.blocks.front();
   const SampleBlock& last = rows_.blocks.back();
-  if (layout_.has_number) {
-    if (last_sample_ && first.first_sample <= *last_sample_) {
-      return malformed(first_line_, not_rising(first.first_sample, *last_sample_));
-    }
-    last_sample_ = last.first_sample + last.samples - 1;
+  if (last_sample_ && first.first_sample <= *last_sample_) {
+    return malformed(first_line_, not_rising(first.first_sample, *last_sample_));
   }
-  if (layout_.has_time) {
-    if (last_stamp_ns_ && first.stamps_ns.front() <= *last_stamp_ns_) {
-      return malformed(first_line_, not_rising(first.stamps_ns.front(), *last_stamp_ns_));
-    }
-    last_stamp_ns_ = last.stamps_ns.back();
-  }
+  last_sample_ = last.first_sample + last.samples - 1;
   return {};
 }
 
@@ -164,6 +156,7 @@ Expected<SampleBlock> CsvReader::read(std::size_t samples) {
   }
   next_sample_ = block.first_sample + block.samples;
   if (layout_.has_time) {
+    order_.check(block);
     make_regular(block);
   } else {
     block.clock = settings_.sample_rate->clock(0);

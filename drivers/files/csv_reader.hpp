@@ -16,6 +16,7 @@
 #include "drivers/files/csv_rows.hpp"
 #include "drivers/files/file_source.hpp"
 #include "drivers/files/mapped_file.hpp"
+#include "drivers/files/stamp_order.hpp"
 
 namespace dyncal::drivers::files {
 
@@ -32,8 +33,9 @@ private:
   Expected<void> read_header();
   void read_ahead();
   Expected<bool> next_stretch(); // into rows_; false: the end
-  // Of the first row of rows_ after the last one before it; notes what the next one must follow.
-  [[nodiscard]] Expected<void> check_order();
+  // Of the sample number of the first row of rows_ after the last one before it; notes what the
+  // next one must follow.
+  [[nodiscard]] Expected<void> check_numbers();
   [[nodiscard]] SampleBlock next_piece(std::size_t samples); // of the block that is read now
   [[nodiscard]] tl::unexpected<Error> malformed(std::size_t line, const std::string& problem) const;
 
@@ -49,7 +51,7 @@ private:
   std::size_t taken_ = 0;      // rows of that block
   std::size_t first_line_ = 2; // of rows_ in the file
   std::uint64_t next_sample_ = 0;
-  std::optional<std::int64_t> last_stamp_ns_;
+  StampOrder order_;
   std::optional<std::uint64_t> last_sample_;
 };
 

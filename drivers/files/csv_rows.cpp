@@ -97,7 +97,7 @@ private:
       }
       at_ += last ? 0 : 1;
     }
-    if (rises(stamp_ns, number)) {
+    if (rises(number)) {
       keep(stamp_ns, number);
     }
     at_ += at_ != end_ && *at_ == '\r' ? 1 : 0;
@@ -138,11 +138,9 @@ private:
     return false;
   }
 
-  bool rises(std::int64_t stamp_ns, std::uint64_t number) {
+  bool rises(std::uint64_t number) {
     if (any_ && layout_.has_number && number <= last_number_) {
       problem_ = not_rising(number, last_number_);
-    } else if (any_ && layout_.has_time && stamp_ns <= last_stamp_ns_) {
-      problem_ = not_rising(stamp_ns, last_stamp_ns_);
     }
     return problem_.empty();
   }
@@ -165,7 +163,6 @@ private:
     }
     ++filled_;
     any_ = true;
-    last_stamp_ns_ = stamp_ns;
     last_number_ = number;
   }
 
@@ -204,7 +201,6 @@ private:
   SampleBlock open_;       // its columns have room for block_rows rows each
   std::size_t filled_ = 0; // rows of open_
   bool any_ = false;       // rows so far
-  std::int64_t last_stamp_ns_ = 0;
   std::uint64_t last_number_ = 0;
   std::string problem_;
 };

@@ -44,7 +44,7 @@ struct CsvRows {
   std::optional<Problem> problem;
 };
 
-// Also checks that stamps and sample numbers rise within the stretch.
+// Also checks that sample numbers rise within the stretch.
 [[nodiscard]] CsvRows read_csv_rows(std::string_view lines, const CsvLayout& layout);
 
 } // namespace dyncal::drivers::files

@@ -91,6 +91,8 @@ Expected<void> FileSource::run(SampleSink& sink) {
   while (block.samples > 0 && wait_for_due_time(block, started)) {
     block.received_utc_ns = utc_now_ns();
     counts.add(block, next_sample);
+    counts.stamps_not_trusted += static_cast<std::uint64_t>(std::count_if(
+        block.flags.begin(), block.flags.end(), [](auto flags) { return flags != 0; }));
     sink.take(std::move(block));
     sink.count(counts);
     auto next = reader_->read(samples);

@@ -91,25 +91,10 @@ void NpyReader::copy(const NpyField& field, std::size_t rows, Number* to) const 
   }
 }
 
-Expected<void> NpyReader::check_order(const std::vector<std::uint64_t>& numbers,
-                                      const SampleBlock& block) const {
-  const auto at_row = [&](std::size_t i, const std::string& problem) {
-    return malformed("row " + std::to_string(row_ + i) + ": " + problem);
-  };
+Expected<void> NpyReader::check_numbers(const std::vector<std::uint64_t>& numbers) const {
   if (!numbers.empty() && row_ > 0 && numbers.front() < next_sample_) {
-    return at_row(0, not_rising(numbers.front(), next_sample_ - 1));
-  }
-  if (block.stamps_ns.empty()) {
-    return {};
-  }
-  if (last_stamp_ns_ && block.stamps_ns.front() <= *last_stamp_ns_) {
-    return at_row(0, not_rising(block.stamps_ns.front(), *last_stamp_ns_));
-  }
-  const auto later = std::adjacent_find(block.stamps_ns.begin(), block.stamps_ns.end(),
-                                        [](auto a, auto b) { return b <= a; });
-  if (later != block.stamps_ns.end()) {
-    return at_row(static_cast<std::size_t>(later - block.stamps_ns.begin()) + 1,
-                  not_rising(*(later + 1), *later));
+    return malformed("row " + std::to_string(row_) + ": " +
+                     not_rising(numbers.front(), next_sample_ - 1));
   }
   return {};
 }
@@ -134,7 +119,7 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
     block.stamps_ns.resize(block.samples);
     copy(*time_, block.samples, block.stamps_ns.data());
   }
-  if (const auto order = check_order(numbers, block); !order) {
+  if (const auto order = check_numbers(numbers); !order) {
     return fail(order.error());
   }
   block.values.resize(block.samples * channels_.size());
@@ -144,7 +129,7 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
   row_ += block.samples;
   next_sample_ = block.first_sample + block.samples;
   if (time_) {
-    last_stamp_ns_ = block.stamps_ns.back();
+    order_.check(block);
     make_regular(block);
   } else {
     block.clock = settings_.sample_rate->clock(0);

@@ -13,6 +13,7 @@
 #include "drivers/files/file_source.hpp"
 #include "drivers/files/mapped_file.hpp"
 #include "drivers/files/npy_header.hpp"
+#include "drivers/files/stamp_order.hpp"
 
 namespace dyncal::drivers::files {
 
@@ -31,8 +32,7 @@ private:
   [[nodiscard]] tl::unexpected<Error> malformed(const std::string& problem) const;
   template <class Number>
   void copy(const NpyField& field, std::size_t rows, Number* to) const;
-  [[nodiscard]] Expected<void> check_order(const std::vector<std::uint64_t>& numbers,
-                                           const SampleBlock& block) const;
+  [[nodiscard]] Expected<void> check_numbers(const std::vector<std::uint64_t>& numbers) const;
 
   FileSettings settings_;
   MappedFile file_;
@@ -42,7 +42,7 @@ private:
   std::vector<NpyField> channels_;
   SourceDescription description_;
   std::size_t row_ = 0; // the next one
-  std::optional<std::int64_t> last_stamp_ns_;
+  StampOrder order_;
   std::uint64_t next_sample_ = 0;
 };
 

@@ -3,10 +3,13 @@
 namespace dyncal::drivers::files {
 
 void make_regular(SampleBlock& block) {
-  if (block.samples < 2) {
+  if (block.samples < 2 || !block.flags.empty()) {
     return;
   }
   const std::int64_t interval = block.stamps_ns[1] - block.stamps_ns[0];
+  if (interval <= 0) {
+    return;
+  }
   for (std::size_t i = 2; i < block.samples; ++i) {
     if (block.stamps_ns[i] - block.stamps_ns[i - 1] != interval) {
       return;
@@ -20,11 +23,6 @@ void make_regular(SampleBlock& block) {
   }
   block.clock = RegularClock{origin, interval, 1};
   block.stamps_ns.clear();
-}
-
-std::string not_rising(std::int64_t stamp_ns, std::int64_t before_ns) {
-  return "t_ns " + std::to_string(stamp_ns) + " after " + std::to_string(before_ns) +
-         "; the stamps must rise";
 }
 
 std::string not_rising(std::uint64_t sample, std::uint64_t before) {

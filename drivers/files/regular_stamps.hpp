@@ -1,4 +1,5 @@
-// What all files say by their stamps and sample numbers: how regular they are, and that they rise.
+// What all files say by their stamps and sample numbers: how regular stamps are, and that numbers
+// rise.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +9,10 @@
 
 namespace dyncal::drivers::files {
 
-// One clock for the whole block when its stamps are exactly equidistant.
+// One clock for the whole block when its stamps are exactly equidistant and none is flagged.
 void make_regular(SampleBlock& block);
 
-// The sentence for a stamp or a sample number that does not rise.
-[[nodiscard]] std::string not_rising(std::int64_t stamp_ns, std::int64_t before_ns);
+// The sentence for a sample number that does not rise.
 [[nodiscard]] std::string not_rising(std::uint64_t sample, std::uint64_t before);
 
 } // namespace dyncal::drivers::files

@@ -25,6 +25,7 @@ struct Fit {
   analysis::Frequency frequency = analysis::Frequency::from_hz(1.0); // until it is known
   std::optional<double> u_frequency_hz;
   std::int64_t reference_ns = 0;
+  std::size_t out_of_order = 0; // samples left out for their stamps
   std::vector<std::string> names;
   std::vector<analysis::SineFit> fits;
 };
@@ -143,6 +144,7 @@ void print_json(const Fit& fit) {
     json["u_frequency_hz"] = *fit.u_frequency_hz;
   }
   json["reference_time_ns"] = fit.reference_ns;
+  json["out_of_order"] = fit.out_of_order;
   json["columns"] = std::move(columns);
   fmt::print("{}\n", json.dump(1));
 }
@@ -156,6 +158,9 @@ void print_table(const Fit& fit) {
     fmt::print("frequency {} Hz", frequency_hz);
   }
   fmt::print(", reference time {} ns\n", fit.reference_ns);
+  if (fit.out_of_order > 0) {
+    fmt::print("{} samples left out, their stamps do not rise\n", fit.out_of_order);
+  }
   fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", "column", "amplitude",
              "u", "phase / rad", "u / rad", "offset", "u", "samples");
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
@@ -179,6 +184,8 @@ int run_fit(const FitCommand& command) {
   Fit fit;
   if (command.nominal_rate_hz) {
     replace_stamps(*command.nominal_rate_hz, series->stamps_ns);
+  } else {
+    fit.out_of_order = series->leave_out_disorder();
   }
   const auto columns = chosen_columns(command, *series, fit.names);
   if (!columns) {

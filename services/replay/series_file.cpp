@@ -23,6 +23,8 @@ public:
     for (std::size_t i = 0; i < block.samples; ++i) {
       series_.stamps_ns.push_back(block.clock ? block.clock->stamp_ns(block.first_sample + i)
                                               : block.stamps_ns[i]);
+      series_.flags.push_back(block.flags.empty() ? 0 : block.flags[i]);
+      series_.sample_numbers.push_back(block.first_sample + i);
     }
     for (std::size_t channel = 0; channel < series_.columns.size(); ++channel) {
       const auto begin =
@@ -44,6 +46,29 @@ std::optional<std::size_t> SeriesFile::column(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? std::nullopt
                               : std::optional(static_cast<std::size_t>(found - names.begin()));
+}
+
+std::size_t SeriesFile::leave_out_disorder() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    if (flags[i] != 0) {
+      continue;
+    }
+    stamps_ns[kept] = stamps_ns[i];
+    sample_numbers[kept] = sample_numbers[i];
+    for (std::vector<double>& column : columns) {
+      column[kept] = column[i];
+    }
+    ++kept;
+  }
+  const std::size_t left_out = stamps_ns.size() - kept;
+  stamps_ns.resize(kept);
+  sample_numbers.resize(kept);
+  flags.assign(kept, 0);
+  for (std::vector<double>& column : columns) {
+    column.resize(kept);
+  }
+  return left_out;
 }
 
 Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {

@@ -116,13 +116,29 @@ TEST(FileSource, NamesTheLineOfWhatIsWrong) {
       {"t_ns,a\n0,1\n1.5,2\n", ":3: '1.5' in column t_ns is not a whole number"},
       {"t_ns,a\n0,1\n1,2\n2\n", ":4: 1 fields, but the first line has 2 columns"},
       {"t_ns,a\n0,1\n1,2,3\n", ":3: more fields than"},
-      {"t_ns,a\n0,1\n\n5,2\n4,3\n", ":5: t_ns 4 after 5"},
       {"t_ns,sample_number,a\n0,5,1\n1,5,2\n", ":3: sample_number 5 after 5"},
   };
   for (const auto& [text, message] : cases) {
     const TemporaryFile file("wrong.csv", text);
     EXPECT_THAT(problem_of(settings_for(file)), HasSubstr(message)) << text;
   }
+}
+
+TEST(FileSource, FlagsCountsAndGoesOnWhenAStampDoesNotRise) {
+  const TemporaryFile file("disorder.csv", "t_ns,a\n0,1\n10,2\n10,3\n7,4\n40,5\n50,6\n");
+  FileSource source(settings_for(file));
+  ASSERT_TRUE(source.describe());
+  CollectingSink sink;
+  ASSERT_TRUE(source.run(sink));
+  EXPECT_EQ(sink.numbers.size(), 6U);
+  EXPECT_EQ(sink.counts.stamps_not_trusted, 2U);
+  std::vector<std::uint8_t> flags;
+  for (const SampleBlock& block : sink.blocks) {
+    std::vector<std::uint8_t> of_block = block.flags;
+    of_block.resize(block.samples, 0);
+    flags.insert(flags.end(), of_block.begin(), of_block.end());
+  }
+  EXPECT_EQ(flags, (std::vector<std::uint8_t>{0, 0, stamp_repeated, stamp_backwards, 0, 0}));
 }
 
 TEST(FileSource, SaysThatThereIsNoFileOrNoTime) {
