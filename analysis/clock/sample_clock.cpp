@@ -4,9 +4,11 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "analysis/base/statistics.hpp"
 #include "analysis/clock/interval_counts.hpp"
+#include "analysis/clock/period_count.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -39,6 +41,7 @@ struct SampleClock::State {
 
   SampleClockSettings settings;
   IntervalCounts counts;
+  PeriodCount periods;
   IntervalEventCollector events;
   IntervalOverview overview;
   IntervalCloseUp close_up;
@@ -74,6 +77,7 @@ void SampleClock::State::take_sample(std::uint64_t sample, std::int64_t stamp_ns
     have_interval_before = false;
     allan.interrupt();
   }
+  periods.add(sample, stamp_ns);
   allan.add(stamp_ns);
   have_last = true;
   last_stamp_ns = stamp_ns;
@@ -116,6 +120,8 @@ void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t>
   if (state.next_sample && first_sample != *state.next_sample) {
     if (first_sample > *state.next_sample) {
       state.lost += first_sample - *state.next_sample;
+    } else {
+      state.periods.restart();
     }
     state.have_last = false;
   }
@@ -132,7 +138,6 @@ void describe_intervals(SampleClockStatistics& result, const IntervalCounts& cou
                         const IntervalDistribution& distribution) {
   const IntervalSums& sums = counts.sums();
   result.intervals = sums.count;
-  result.mean_interval_s = seconds(sums.mean_ns());
   result.sd_s = seconds(sums.sd_ns());
   result.minimum_s = seconds(static_cast<double>(counts.minimum_ns()));
   result.maximum_s = seconds(static_cast<double>(counts.maximum_ns()));
@@ -143,6 +148,23 @@ void describe_intervals(SampleClockStatistics& result, const IntervalCounts& cou
   result.quantile_50_s = result.median_s;
   result.quantile_99_s = seconds(distribution.quantile(0.99));
   result.quantile_999_s = seconds(distribution.quantile(0.999));
+}
+
+// Bit for bit the mean of the intervals where nothing is missing between them.
+double mean_interval_s(const IntervalSums& sums, const PeriodCount& periods) {
+  const bool across = periods.periods() > 0 && periods.periods() != sums.count;
+  return seconds(across ? periods.mean_ns() : sums.mean_ns());
+}
+
+// REQUIRES: mean and core of `result` are there.
+double u_mean_interval_s(const SampleClockStatistics& result, const PeriodCount& periods,
+                         double u_stamp_s) {
+  const auto count = static_cast<double>(std::max(periods.periods(), result.intervals));
+  const double scatter_s =
+      result.core_sd_s > 0.0 ? result.core_sd_s : std::numeric_limits<double>::quiet_NaN();
+  const double ends_s = u_stamp_s > 0.0 ? std::sqrt(2.0) * u_stamp_s : scatter_s;
+  const auto stretches = static_cast<double>(std::max<std::uint64_t>(1, periods.stretches()));
+  return ends_s * std::sqrt(stretches) / count;
 }
 
 void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, IntervalSums core) {
@@ -171,9 +193,10 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
   }
   SampleClockStatistics result;
   const IntervalDistribution distribution = state.counts.distribution();
+  PeriodCount periods = state.periods;
+  periods.finish();
   describe_intervals(result, state.counts, distribution);
-  result.u_mean_interval_s =
-      std::sqrt(2.0) * state.settings.stamp_uncertainty_s / static_cast<double>(sums.count);
+  result.mean_interval_s = mean_interval_s(sums, periods);
   result.nominal_rate_hz = state.settings.nominal_rate_hz;
   result.mean_rate_hz = result.mean_interval_s > 0.0 ? 1.0 / result.mean_interval_s : 0.0;
   result.tick_s = state.settings.tick_s;
@@ -192,6 +215,7 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
       result,
       state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events),
       sums);
+  result.u_mean_interval_s = u_mean_interval_s(result, periods, state.settings.stamp_uncertainty_s);
 
   result.over_time = state.overview.buckets(*state.first_stamp_ns);
   result.close_up_ns = state.close_up.lengths_ns();
@@ -207,7 +231,7 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
   if (result.mean_interval_s > 0.0) {
     result.allan = state.allan.points(result.mean_interval_s);
   }
-  result.lost = state.lost;
+  result.lost = state.lost + periods.unnumbered();
   result.untrusted = state.untrusted;
   return result;
 }

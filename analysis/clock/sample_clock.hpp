@@ -2,9 +2,10 @@
 // paper sections 3 and 4.2.
 //
 // Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an
-// integer in ns; mean, standard deviation (n - 1), median, MAD and quantiles (linear between order
-// statistics) are those of the integers, exactly. What is usual is known after 64 intervals, and
-// learned again at 128, 256 ...
+// integer in ns; standard deviation (n - 1), median, MAD and quantiles (linear between order
+// statistics) are those of the integers, exactly. The mean goes across what is missing: it is the
+// span of the stamps over the sample periods in it (period_count.hpp). What is usual is known after
+// 64 intervals, and learned again at 128, 256 ...
 //
 //   histogram, lattice statistic, modes     interval_histogram.hpp
 //   events, their number, period of pairs   interval_events.hpp; core_mean, core_sd leave them out
@@ -48,7 +49,10 @@ struct SampleClockSettings {
 struct SampleClockStatistics {
   std::uint64_t intervals = 0;
   double mean_interval_s = 0.0;
-  double u_mean_interval_s = 0.0; // sqrt(2) u(stamp) / n
+  // In the clock of the stamps, of n periods: sqrt(2) u(stamp) / n; where that is not stated, the
+  // scatter of the intervals without events over n, which is at least as much when stamps scatter
+  // by chance. NaN when intervals do not scatter: nothing is known.
+  double u_mean_interval_s = 0.0;
   double sd_s = 0.0;
   double minimum_s = 0.0;
   double maximum_s = 0.0;
@@ -83,7 +87,7 @@ struct SampleClockStatistics {
   double temperature_correlation = 0.0;
   double temperature_slope_s_per_degc = 0.0;
   std::vector<AllanPoint> allan;
-  std::uint64_t lost = 0;      // samples missing from the numbering
+  std::uint64_t lost = 0;      // samples missing from the numbering, or by the stamps alone
   std::uint64_t untrusted = 0; // samples whose stamp was flagged
 };
 

@@ -1,5 +1,7 @@
 #include "services/command/intervals_command.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -41,10 +43,31 @@ Json allan_json(const analysis::SampleClockStatistics& clock) {
   return points;
 }
 
+// The numbering of the file shows what is missing; stamps that are not in order are events.
+void push_series(const SeriesFile& series, std::span<const double> temperature,
+                 analysis::SampleClock& clock) {
+  const std::span<const std::int64_t> stamps(series.stamps_ns);
+  const std::vector<std::uint64_t>& numbers = series.sample_numbers;
+  for (std::size_t begin = 0; begin < stamps.size();) {
+    std::size_t end = begin + 1;
+    while (end < stamps.size() && numbers[end] == numbers[end - 1] + 1) {
+      ++end;
+    }
+    clock.push(numbers[begin], stamps.subspan(begin, end - begin), {},
+               temperature.empty() ? temperature : temperature.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+// JSON has no NaN: null says that nothing is known.
+Json known(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
 void print_json(const analysis::SampleClockStatistics& clock) {
   const Json json{{"count", clock.intervals},
                   {"mean_interval_s", clock.mean_interval_s},
-                  {"u_mean_interval_s", clock.u_mean_interval_s},
+                  {"u_mean_interval_s", known(clock.u_mean_interval_s)},
                   {"sd_s", clock.sd_s},
                   {"min_s", clock.minimum_s},
                   {"max_s", clock.maximum_s},
@@ -63,6 +86,7 @@ void print_json(const analysis::SampleClockStatistics& clock) {
                   {"tick_s", clock.tick_s},
                   {"lattice_statistic", clock.lattice_statistic},
                   {"modes_s", clock.modes_s},
+                  {"lost", clock.lost},
                   {"event_count", clock.event_count},
                   {"pair_count", clock.pair_count},
                   {"pair_period_samples", clock.pair_period_samples},
@@ -87,7 +111,7 @@ void print_table(const analysis::SampleClockStatistics& clock) {
     fmt::print("{} late/early pairs, one every {:.0f} samples ({:.4f} s)\n", clock.pair_count,
                clock.pair_period_samples, clock.pair_period_s);
   }
-  fmt::print("{} events\n", clock.event_count);
+  fmt::print("{} events, {} samples lost\n", clock.event_count, clock.lost);
   for (const analysis::IntervalEvent& event : clock.events) {
     fmt::print("  {:>9} at sample {:>10}, {:>12.6f} s, {:+.0f} ns{}\n", event.kind, event.sample,
                event.time_s, event.size_ns,
@@ -117,7 +141,7 @@ int run_intervals(const IntervalsCommand& command) {
   settings.tick_s = command.tick_s;
   settings.nominal_rate_hz = command.nominal_rate_hz;
   analysis::SampleClock clock(settings);
-  clock.push(0, series->stamps_ns, {}, temperature);
+  push_series(*series, temperature, clock);
   const auto statistics = clock.statistics();
   if (!statistics) {
     return report_error({ErrorCode::bad_file,

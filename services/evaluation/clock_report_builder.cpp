@@ -1,6 +1,7 @@
 #include "services/evaluation/clock_report_builder.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace dyncal::services {
 
@@ -29,17 +30,27 @@ void ClockReportBuilder::describe(const drivers::SourceDescription& description)
   settings.tick_s = description.tick_s;
   settings.stamp_uncertainty_s = description.stamp_uncertainty_s;
   clock_.emplace(settings);
+  has_own_clock_ = description.time_base == drivers::TimeBase::local;
+  states_uncertainty_ = description.stamp_uncertainty_s > 0.0;
 }
 
 void ClockReportBuilder::add(const SourceBlock& block) {
-  if (!clock_ || block.stamps_ns.empty()) {
+  if (!clock_) {
     return;
+  }
+  std::span<const std::int64_t> stamps = block.stamps_ns;
+  if (stamps.empty()) {
+    stamps_.resize(block.samples);
+    for (std::size_t i = 0; i < block.samples; ++i) {
+      stamps_[i] = block.clock.stamp_ns(block.first_sample + i);
+    }
+    stamps = stamps_;
   }
   std::span<const double> temperature;
   if (temperature_column_) {
     temperature = block.values.subspan(*temperature_column_ * block.samples, block.samples);
   }
-  clock_->push(block.first_sample, block.stamps_ns, block.flags, temperature);
+  clock_->push(block.first_sample, stamps, block.flags, temperature);
 }
 
 std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
@@ -48,7 +59,17 @@ std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
     return {};
   }
   statistics->lost = lost;
-  return {{source_, std::move(*statistics)}};
+  ClockReport report{source_, std::move(*statistics)};
+  if (has_own_clock_) {
+    report.clock.u_mean_interval_s = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (has_own_clock_ || !states_uncertainty_) {
+    report.flags.push_back(make_flag(ResultFlag::clock_uncertainty_unknown));
+  }
+  if (lost > 0) {
+    report.flags.push_back(make_flag(ResultFlag::samples_lost));
+  }
+  return {std::move(report)};
 }
 
 } // namespace dyncal::services

@@ -2,9 +2,10 @@
 // section 3 (direct sample interval evaluation) and section 4.2 (analysis/clock/sample_clock.hpp
 // has the definitions).
 //
-// Takes the blocks of the source whose stamps tell of it, relates intervals to its temperature
-// channel if it has one. What was lost is counted by the source's record alone. Belongs to one
-// thread.
+// Relates intervals to the temperature channel of the source if it has one. Without a stated
+// uncertainty of its stamps the report is flagged; of a source with a clock of its own, whose rate
+// nobody states, the uncertainty of the mean interval is not known (NaN). What was lost is counted
+// by the source's record alone. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +40,9 @@ private:
   std::optional<std::string> temperature_channel_;
   std::optional<std::size_t> temperature_column_;
   std::optional<analysis::SampleClock> clock_;
+  bool has_own_clock_ = false;       // its stamps are not UTC
+  bool states_uncertainty_ = false;  // of its stamps
+  std::vector<std::int64_t> stamps_; // of a block whose stamps follow from a clock
 };
 
 } // namespace dyncal::services

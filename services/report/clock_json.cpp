@@ -65,7 +65,9 @@ nlohmann::ordered_json clock_json(const ClockReport& report) {
           {"temperature_degc", temperature_json(clock)},
           {"temperature_correlation", json_number(clock.temperature_correlation)},
           {"temperature_slope_s_per_degc", json_number(clock.temperature_slope_s_per_degc)},
-          {"lost", clock.lost}};
+          {"lost", clock.lost},
+          {"flags", sentences_of(report.flags)},
+          {"flag_names", names_of(report.flags)}};
 }
 
 } // namespace dyncal::services

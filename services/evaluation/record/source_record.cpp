@@ -92,7 +92,26 @@ void SourceRecord::append(const SourceBlock& block) {
     }
   }
   newest_ns_ = stamps_ns_.back();
+  find_unnumbered_gaps(block);
   drop_overflow();
+}
+
+// REQUIRES: the samples of the block are the newest.
+void SourceRecord::find_unnumbered_gaps(const SourceBlock& block) {
+  const auto stamps = std::span(stamps_ns_).last(block.samples);
+  const auto flags = std::span(flags_).last(block.samples);
+  // Stamps that follow from a clock show nothing within a block.
+  const bool ends_suffice = block.stamps_ns.empty() && periods_.knows_period();
+  const std::size_t stride = ends_suffice ? std::max<std::size_t>(1, block.samples - 1) : 1;
+  for (std::size_t i = 0; i < block.samples; i += stride) {
+    if (flags[i] == 0) {
+      periods_.add(block.first_sample + i, stamps[i]);
+    }
+  }
+  for (const analysis::UnnumberedGap& gap : periods_.take_gaps()) {
+    unnumbered_ += gap.missing;
+    add_gap(gaps_, {gap.before_ns, gap.after_ns, {.missing = gap.missing}});
+  }
 }
 
 void SourceRecord::append_stamps(const SourceBlock& block) {
@@ -147,6 +166,7 @@ void SourceRecord::restart() {
   gaps_.clear();
   overflow_.clear();
   newest_ns_.reset();
+  periods_ = {};
 }
 
 std::span<const double> SourceRecord::column(std::size_t channel) const {

@@ -6,7 +6,8 @@
 // buffered, since sample numbers and perhaps the clock begin anew.
 //
 // This is the one place where losses of a source are counted. Lost are samples that the numbering
-// shows to be missing (never sent, or in a block that did not come or could not be used), and those
+// shows to be missing (never sent, or in a block that did not come or could not be used), those
+// that stamps show to be missing where the numbering does not (a source that has none), and those
 // that the bounded buffer dropped before they were evaluated: beyond `capacity` samples the oldest
 // go. Each loss stands between two stamps, so that it counts for the steps it belongs to.
 //
@@ -21,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/clock/period_count.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/contract/sample_continuity.hpp"
 #include "services/contract/source_block.hpp"
@@ -90,7 +92,7 @@ public:
   [[nodiscard]] std::uint32_t restarts() const { return restarts_; }
   // Samples that never came in a form that could be used.
   [[nodiscard]] std::uint64_t lost() const {
-    return continuity_.counts().missing_samples + continuity_.pending_samples();
+    return continuity_.counts().missing_samples + continuity_.pending_samples() + unnumbered_;
   }
   [[nodiscard]] std::uint64_t overflowed() const { return overflowed_; }
   [[nodiscard]] std::uint64_t unusable_blocks() const {
@@ -117,6 +119,7 @@ private:
   void append(const SourceBlock& block);
   void append_stamps(const SourceBlock& block);
   void append_stamp_uncertainties(const SourceBlock& block);
+  void find_unnumbered_gaps(const SourceBlock& block);
   void drop_overflow();
   void restart();
   void forget(std::size_t samples);
@@ -126,6 +129,8 @@ private:
   std::optional<drivers::SourceDescription> description_;
   std::optional<std::set<std::size_t>> kept_channels_; // all when there is no set
   SampleContinuity continuity_;
+  analysis::PeriodCount periods_;
+  std::uint64_t unnumbered_ = 0; // missing by their stamps alone
   std::size_t first_ = 0;
   std::vector<std::int64_t> stamps_ns_;
   std::vector<std::uint8_t> flags_;

@@ -1,16 +1,21 @@
 // What a run tells of the sample clock of its sensor. Of series time stamping, whose samples have
-// no stamps, the rate is known and `clock.intervals` is 0. Plain data; any thread.
+// no stamps, the rate is known and `clock.intervals` is 0. A NaN `clock.u_mean_interval_s`: nothing
+// is known of it, as of a clock of the source's own, whose rate nobody states. The bus carries no
+// flags. Plain data; any thread.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/clock/sample_clock.hpp"
+#include "services/evaluation/result/result_flag.hpp"
 
 namespace dyncal::services {
 
 struct ClockReport {
   std::string source;
   analysis::SampleClockStatistics clock;
+  std::vector<Flag> flags{};
 };
 
 } // namespace dyncal::services

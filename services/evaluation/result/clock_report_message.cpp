@@ -1,5 +1,7 @@
 #include "services/evaluation/result/clock_report_message.hpp"
 
+#include <cmath>
+
 #include "services/version.hpp"
 
 namespace dyncal::services {
@@ -146,6 +148,9 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   report.source = message.source().to_string();
   read_numbers(message, report.clock);
   read_lists(message, report.clock);
+  if (std::isnan(report.clock.u_mean_interval_s)) {
+    report.flags.push_back(make_flag(ResultFlag::clock_uncertainty_unknown));
+  }
   return report;
 }
 

@@ -168,6 +168,44 @@ TEST(SampleClock, LostAndUntrustedSamplesMakeNoInterval) {
   EXPECT_EQ(s->untrusted, 1u);
 }
 
+// A sensor of 1003.05 Hz with 1 % lost, with and without sample numbers.
+TEST(SampleClock, MeanGoesAcrossLosses) {
+  constexpr double interval_ns = 1e9 / 1003.05;
+  for (const bool numbered : {true, false}) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> noise_ns(0.0, 20.0);
+    SampleClock clock;
+    std::uint64_t number = 0;
+    std::uint64_t lost = 0;
+    for (int i = 0; i < 30'000; ++i) {
+      const double noise = noise_ns(random);
+      if (i > 0 && i < 29'999 && random() % 100 == 0) {
+        ++lost;
+        continue;
+      }
+      const std::vector<std::int64_t> stamp{std::llround(interval_ns * i + noise)};
+      clock.push(numbered ? static_cast<std::uint64_t>(i) : number++, stamp);
+    }
+    const auto s = clock.statistics();
+    ASSERT_TRUE(s);
+    EXPECT_GT(s->u_mean_interval_s, 0.0);
+    EXPECT_LT(s->u_mean_interval_s, 40e-9 / 29'999);
+    EXPECT_NEAR(s->mean_interval_s, interval_ns * 1e-9, 2.0 * s->u_mean_interval_s);
+    EXPECT_NEAR(s->mean_rate_hz, 1003.05, 1e-5);
+    EXPECT_EQ(s->lost, lost);
+  }
+}
+
+TEST(SampleClock, KnowsNothingOfTheUncertaintyOfEqualIntervals) {
+  std::vector<std::int64_t> stamps;
+  for (int i = 0; i < 1000; ++i) {
+    stamps.push_back(1'000'000LL * i);
+  }
+  const SampleClockStatistics s = statistics_of(stamps);
+  EXPECT_EQ(s.mean_rate_hz, 1000.0);
+  EXPECT_TRUE(std::isnan(s.u_mean_interval_s));
+}
+
 TEST(SampleClock, SaysNothingWithFewerThanTwoIntervals) {
   SampleClock clock;
   EXPECT_FALSE(clock.statistics().has_value());

@@ -69,6 +69,23 @@ TEST(Loss, OfABlockThatDidNotCome) {
   EXPECT_EQ(output.clock_reports.at(0).clock.lost, 50U);
 }
 
+// A source that numbers what it sends, not what it measured.
+TEST(Loss, OfSamplesThatOnlyTheStampsShow) {
+  const EvaluationOutput output = evaluate([](Blocks& blocks) {
+    const auto gone = blocks.erase(blocks.begin() + block_in_first_step);
+    for (auto block = gone; block != blocks.end(); ++block) {
+      block->block(block->block() - 1);
+      block->first_sample(block->first_sample() - 50);
+    }
+  });
+  EXPECT_EQ(of_dau(output.results[0]).lost, 50U);
+  EXPECT_EQ(output.results[0].lost, 50U);
+  EXPECT_THAT(sentences_of(output.results[0].flags), Contains("dau: samples lost"));
+  expect_untouched(output.results[1]);
+  EXPECT_EQ(output.clock_reports.at(0).clock.lost, 50U);
+  EXPECT_NEAR(output.clock_reports.at(0).clock.mean_interval_s, 997e-6, 1e-9);
+}
+
 TEST(Loss, OfABlockThatCannotBeUsed) {
   const EvaluationOutput output =
       evaluate([](Blocks& blocks) { blocks[block_in_first_step].values().pop_back(); });
