@@ -256,6 +256,51 @@ bool ExcitationWindowFinder::has_nominal_frequency(std::size_t begin, std::size_
              noise;
 }
 
+// The longest part of the run whose amplitude stays at the plateau.
+ExcitationWindowFinder::Frames ExcitationWindowFinder::longest_steady(double plateau) const {
+  Frames best;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= run_.size(); ++i) {
+    const bool steady = i < run_.size() &&
+                        std::abs(run_[i].amplitude - plateau) <=
+                            settings_.amplitude_tolerance_rel * plateau + 4.0 * run_[i].u_amplitude;
+    if (steady) {
+      continue;
+    }
+    if (i - begin > best.size()) {
+      best = {begin, i};
+    }
+    begin = i + 1;
+  }
+  return best;
+}
+
+// A frame at the edge that the sine fills only in part has residuals that its neighbours have not,
+// or makes the phase advance as the sine does not.
+ExcitationWindowFinder::Frames ExcitationWindowFinder::without_edges(Frames part) const {
+  if (part.size() > 3) {
+    std::vector<double> residuals;
+    for (std::size_t i = part.begin + 1; i + 1 < part.end; ++i) {
+      residuals.push_back(run_[i].max_residual);
+    }
+    const double usual = upper_median(residuals);
+    if (run_[part.begin].max_residual > 1.6 * usual) {
+      ++part.begin;
+    }
+    if (run_[part.end - 1].max_residual > 1.6 * usual) {
+      --part.end;
+    }
+  }
+  while (part.size() >= 2 && !has_nominal_frequency(part.begin, part.end)) {
+    if (run_[part.begin].max_residual > run_[part.end - 1].max_residual) {
+      ++part.begin;
+    } else {
+      --part.end;
+    }
+  }
+  return part;
+}
+
 std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
   if (run_.size() < 2) {
     return std::nullopt;
@@ -265,62 +310,28 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
     late_amplitudes.push_back(run_[i].amplitude);
   }
   const double plateau = upper_median(late_amplitudes);
-
-  std::size_t best_begin = 0, best_end = 0, begin = 0;
-  for (std::size_t i = 0; i <= run_.size(); ++i) {
-    const bool steady = i < run_.size() &&
-                        std::abs(run_[i].amplitude - plateau) <=
-                            settings_.amplitude_tolerance_rel * plateau + 4.0 * run_[i].u_amplitude;
-    if (steady) {
-      continue;
-    }
-    if (i - begin > best_end - best_begin) {
-      best_begin = begin;
-      best_end = i;
-    }
-    begin = i + 1;
-  }
-  if (best_end - best_begin < 2) {
+  Frames part = longest_steady(plateau);
+  if (part.size() < 2) {
     return std::nullopt;
   }
-
-  // A frame at the edge that the sine fills only in part has residuals that its neighbours have
-  // not.
-  if (best_end - best_begin > 3) {
-    std::vector<double> residuals;
-    for (std::size_t i = best_begin + 1; i + 1 < best_end; ++i) {
-      residuals.push_back(run_[i].max_residual);
-    }
-    const double usual = upper_median(residuals);
-    if (run_[best_begin].max_residual > 1.6 * usual) {
-      ++best_begin;
-    }
-    if (run_[best_end - 1].max_residual > 1.6 * usual) {
-      --best_end;
-    }
-  }
-  while (best_end - best_begin >= 2 && !has_nominal_frequency(best_begin, best_end)) {
-    if (run_[best_begin].max_residual > run_[best_end - 1].max_residual) {
-      ++best_begin;
-    } else {
-      --best_end;
-    }
-  }
-  if (best_end - best_begin < 2) {
+  part = without_edges(part);
+  if (part.size() < 2) {
     return std::nullopt;
   }
+  const Frame& first = run_[part.begin];
+  const Frame& last = run_[part.end - 1];
   ExcitationWindow window;
-  window.begin_ns = std::max(first_stamp_ns_, run_[best_begin].index * frame_ns_);
-  window.end_ns = (run_[best_end - 1].index + 1) * frame_ns_;
+  window.begin_ns = std::max(first_stamp_ns_, first.index * frame_ns_);
+  window.end_ns = (last.index + 1) * frame_ns_;
   window.excited_begin_ns = std::max(first_stamp_ns_, run_.front().index * frame_ns_);
   window.off_ns = (run_.back().index + 1) * frame_ns_;
   window.ended = ended_;
   window.amplitude = plateau;
   window.frequency_offset_rel =
-      (run_[best_end - 1].phase_rad - run_[best_begin].phase_rad) /
-      (2.0 * pi * frequency_.hz() *
-       static_cast<double>((run_[best_end - 1].index - run_[best_begin].index) * frame_ns_) * 1e-9);
-  window.frames = best_end - best_begin;
+      (last.phase_rad - first.phase_rad) /
+      (2.0 * pi * frequency_.hz() * static_cast<double>((last.index - first.index) * frame_ns_) *
+       1e-9);
+  window.frames = part.size();
   if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.min_duration_s) {
     return std::nullopt;
   }

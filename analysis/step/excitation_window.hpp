@@ -92,6 +92,14 @@ private:
   [[nodiscard]] bool starts(const Frame& frame) const;
   [[nodiscard]] bool continues(const Frame& frame, double& unwrapped_rad) const;
   void close_run();
+  struct Frames { // of the run, [begin, end)
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+  };
+
+  [[nodiscard]] Frames longest_steady(double plateau) const;
+  [[nodiscard]] Frames without_edges(Frames part) const;
   [[nodiscard]] bool has_nominal_frequency(std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::optional<ExcitationWindow> steady_part() const;
   [[nodiscard]] double mean_advance_rad() const;

@@ -131,15 +131,14 @@ std::string clock_line(const ClockReport& report) {
   const RoundedValue mean =
       round_by_uncertainty(clock.mean_interval_s * 1e6, clock.u_mean_interval_s * 1e6);
   const std::vector<std::string> flags = sentences_of(report.flags);
-  return fmt::format("\nSample clock of {}: mean interval {} us, sd {:.1f} ns, spread "
-                     "{:.0f} ns, {} intervals, {} events, {} samples lost{}{}\n",
-                     report.source,
-                     clock.u_mean_interval_s > 0.0
-                         ? fmt::format("{} us, u = {}", mean.value, mean.u)
-                         : fmt::format("{:.5f}", clock.mean_interval_s * 1e6),
-                     clock.sd_s * 1e9, (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals,
-                     clock.event_count, clock.lost, flags.empty() ? "" : "; ",
-                     fmt::join(flags, "; "));
+  return fmt::format(
+      "\nSample clock of {}: mean interval {} us, sd {:.1f} ns, spread "
+      "{:.0f} ns, {} intervals, {} events, {} samples lost{}{}\n",
+      report.source,
+      clock.u_mean_interval_s > 0.0 ? fmt::format("{} us, u = {}", mean.value, mean.u)
+                                    : fmt::format("{:.5f}", clock.mean_interval_s * 1e6),
+      clock.sd_s * 1e9, (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals,
+      clock.event_count, clock.lost, flags.empty() ? "" : "; ", fmt::join(flags, "; "));
 }
 
 // The steps without a result, each reason once.

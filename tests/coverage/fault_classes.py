@@ -176,8 +176,8 @@ CLASSES = {
 
 # What happens too seldom to be met in few calibrations: these draws of their class, and no others.
 CHOSEN_DRAWS = {
-    # A frame that held the end of one step and the beginning of the next was taken for the beginning
-    # of the next: the DAU's record of it fell in two. Met twice in 600 calibrations.
+    # A frame that held the end of one step and the beginning of the next was taken for the
+    # beginning of the next: the DAU's record of it fell in two. Met twice in 600 calibrations.
     "clean, 0.4 Hz, pauses of 0.5 s": (159, 219),
 }
 # Classes that need more calibrations than others to show what is wrong: so many times the usual.
