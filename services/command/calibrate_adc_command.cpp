@@ -18,6 +18,7 @@
 #include "services/contract/digest.hpp"
 #include "services/contract/topics.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/report/show_outcome.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -172,6 +173,12 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   progress.end();
   if (!outcome) {
     return fail(outcome.error());
+  }
+  if (outcome->output_may_be_on) {
+    return fail(ErrorCode::device,
+                fmt::format("{}; no file was written; {}",
+                            outcome->interrupted ? "interrupted" : outcome->problem,
+                            output_warning()));
   }
   if (outcome->interrupted || !outcome->problem.empty()) {
     return fail(outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,

@@ -46,9 +46,21 @@ Expected<void> show_outcome(const RunOutcome& outcome,
   return {};
 }
 
+std::string output_warning() {
+  return "THE OUTPUT OF THE GENERATOR MAY BE ON: it has not confirmed that it is off; switch it "
+         "off "
+         "by hand. A guard goes on trying for ten minutes";
+}
+
 Expected<void> check_complete(const RunOutcome& outcome) {
   const std::size_t steps = outcome.planned_steps;
   const std::size_t measured = steps_with_a_result(outcome);
+  if (outcome.output_may_be_on) {
+    return fail(ErrorCode::device,
+                fmt::format("{}; {} of {} steps were measured and kept; {}",
+                            outcome.interrupted ? "interrupted" : outcome.problem, measured, steps,
+                            output_warning()));
+  }
   if (outcome.interrupted) {
     return fail(
         ErrorCode::interrupted,

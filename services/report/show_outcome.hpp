@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
@@ -15,7 +16,11 @@ namespace dyncal::services {
                                           const std::optional<std::filesystem::path>& json,
                                           const std::optional<std::filesystem::path>& figures);
 
-// Fails (interrupted, no_result) unless every planned step has a valid result, with how many have.
+// What to say last where RunOutcome::output_may_be_on: what is dangerous, and what to do.
+[[nodiscard]] std::string output_warning();
+
+// Fails (interrupted, no_result) unless every planned step has a valid result, with how many have;
+// and (device) when the generator's output may be on.
 [[nodiscard]] Expected<void> check_complete(const RunOutcome& outcome);
 
 } // namespace dyncal::services

@@ -23,6 +23,7 @@ Expected<GeneratorConnection> connect_generator(const GeneratorSettings& setting
   connection.guard.emplace(std::move(*guard));
   auto generator = drivers::generator::ScpiGenerator::connect(settings.address);
   if (!generator) {
+    connection.guard->dismiss(); // nothing was switched on
     return fail(device_error(generator.error()));
   }
   connection.generator = std::move(*generator);

@@ -15,7 +15,7 @@
 namespace dyncal::services {
 
 struct GeneratorConnection {
-  std::optional<OutputGuard> guard; // destroyed after the generator, which switches its output off
+  std::optional<OutputGuard> guard; // to be dismissed when the output is known to be off
   std::unique_ptr<drivers::generator::Generator> generator;
 };
 

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -20,12 +22,45 @@ namespace dyncal::services {
 namespace {
 
 constexpr char farewell = '.';
-constexpr int attempts =
-    5; // the instrument may hold on to the dead program's connection for a moment
+// A link that is pulled and put back, an instrument that is switched off and on.
+constexpr std::chrono::minutes try_limit{10};
+constexpr std::chrono::milliseconds pause{500}; // where a connection is refused at once
+constexpr int quiet_attempts = 5; // the instrument may hold on to the dead program's connection
 
 Error cannot_start(const std::string& why) {
   return {ErrorCode::device,
           fmt::format("the guard of the generator's output cannot be started: {}", why)};
+}
+
+// Connecting switches the output off.
+int switch_off(const std::string& generator_address) {
+  const auto deadline = std::chrono::steady_clock::now() + try_limit;
+  for (int attempt = 1;; ++attempt) {
+    const auto generator = drivers::generator::ScpiGenerator::connect(generator_address);
+    if (generator) {
+      fmt::print(
+          stderr,
+          "dyncal: the run has ended without it; the output of the generator {} was switched "
+          "off now\n",
+          generator_address);
+      return 0;
+    }
+    if (std::chrono::steady_clock::now() > deadline) {
+      return report_error(
+          {ErrorCode::device,
+           fmt::format("the output of the generator {} MAY STILL BE ON after {} "
+                       "min of trying: switch it off by hand ({})",
+                       generator_address, try_limit.count(), generator.error().message)});
+    }
+    if (attempt == quiet_attempts) {
+      fmt::print(
+          stderr,
+          "dyncal: the run has ended and the output of the generator {} MAY BE ON: switch it "
+          "off by hand if you can; trying for {} min ({})\n",
+          generator_address, try_limit.count(), generator.error().message);
+    }
+    std::this_thread::sleep_for(pause);
+  }
 }
 
 } // namespace
@@ -61,10 +96,7 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   return OutputGuard(std::move(writing), process);
 }
 
-OutputGuard::~OutputGuard() {
-  if (!pipe_.is_open()) {
-    return; // moved from
-  }
+void OutputGuard::dismiss() {
   static_cast<void>(
       write(pipe_.number(), &farewell, 1)); // fails only when the guard is gone already
   waitpid(process_, nullptr, 0);
@@ -81,21 +113,7 @@ int guard_output(const std::string& generator_address, int input) {
   if (count == 1 && byte == farewell) {
     return 0;
   }
-  for (int attempt = 1;; ++attempt) {
-    // Connecting switches the output off.
-    const auto generator = drivers::generator::ScpiGenerator::connect(generator_address);
-    if (generator) {
-      fmt::print(stderr,
-                 "dyncal: the run has died; the output of the generator {} was switched off\n",
-                 generator_address);
-      return 0;
-    }
-    if (attempt == attempts) {
-      return report_error({ErrorCode::device,
-                           fmt::format("the run has died, and its generator's output may be on: {}",
-                                       generator.error().message)});
-    }
-  }
+  return switch_off(generator_address);
 }
 
 } // namespace dyncal::services

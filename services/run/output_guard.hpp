@@ -3,9 +3,10 @@
 //
 // A process of its own ("dyncal guard-output HOST:PORT") waits for the end of a pipe whose other
 // end only the guarded program holds. When the pipe ends without a farewell the guard connects to
-// the generator and switches its output off; with one it ends and does nothing. It has a session of
-// its own, so that what is sent to the terminal's programs does not reach it. Fails (device) when
-// the guard cannot be started. Belongs to one thread.
+// the generator and switches its output off, and goes on trying for ten minutes when the generator
+// does not answer; with one it ends and does nothing. It has a session of its own, so that what is
+// sent to the terminal's programs does not reach it. Fails (device) when the guard cannot be
+// started. Belongs to one thread.
 #pragma once
 
 #include <string>
@@ -17,10 +18,11 @@ namespace dyncal::services {
 
 class OutputGuard {
 public:
-  // Guards the output for the lifetime of this object. REQUIRES: the output is switched off before
-  // the object is destroyed.
+  // Guards the output from now on, beyond the life of this object unless it is dismissed.
   [[nodiscard]] static Expected<OutputGuard> start(const std::string& generator_address);
-  ~OutputGuard();
+  // The output has confirmed that it is off: the guard ends.
+  void dismiss();
+  ~OutputGuard() = default; // the pipe ends: without a farewell the guard sets to work
   OutputGuard(OutputGuard&&) noexcept = default;
   OutputGuard& operator=(OutputGuard&&) = delete;
   OutputGuard(const OutputGuard&) = delete;

@@ -59,6 +59,9 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   if (!collected && outcome_.problem.empty()) {
     outcome_.problem = collected.error().message;
   }
+  if (excitation_ && excitation_->output_may_be_on()) {
+    outcome_.output_may_be_on = !excitation_->switch_off();
+  }
   outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
   outcome_.ended_utc_ns = clock_.utc_now_ns();
   set_state(final_state(excited.has_value()));

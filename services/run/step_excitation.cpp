@@ -111,13 +111,13 @@ void StepExcitation::end() {
 
 Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::stop_token& stop) {
   const auto excited = hold_step(step, stop);
-  const auto off = generator().set_output(false);
+  const auto off = switch_off();
   if (!excited || stop.stop_requested()) {
     hooks_.announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
   if (!off) {
-    return fail(device_error(off.error()));
+    return off;
   }
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return confirmed;
@@ -128,6 +128,21 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::
     return fail(device_error(now.error()));
   }
   return hold_until(*now + off_s, stop).map([](bool) {});
+}
+
+StepExcitation::~StepExcitation() {
+  const bool off = !output_may_be_on_ || switch_off();
+  if (off && connection_ && connection_->guard) {
+    connection_->guard->dismiss();
+  }
+}
+
+Expected<void> StepExcitation::switch_off() {
+  if (const auto off = generator().set_output(false); !off) {
+    return fail(device_error(off.error()));
+  }
+  output_may_be_on_ = false;
+  return {};
 }
 
 Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
@@ -159,6 +174,7 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
 // The bench time from which on the output is on.
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
+  output_may_be_on_ = true;
   const auto set = generator()
                        .set_frequency(step.frequency_text_hz())
                        .and_then([&] { return generator().set_amplitude_v(voltage_v); })

@@ -9,10 +9,11 @@
 // (drivers/generator/level_control.hpp) within the planned settling
 // (services/run/level_settling.hpp).
 //
-// The output is off whenever excite() has returned, and when the object is destroyed; a guard
-// switches it off when the program is killed. Fails: bad_argument (a level above a limit, before
-// anything is excited), device (generator, exciter), and as `keep_alive` does. A requested stop is
-// not a failure. Belongs to one thread.
+// The output is off whenever excite() has returned, unless output_may_be_on(): then the generator
+// has not confirmed it, and switch_off() tries again. A guard switches it off when the program is
+// killed, and goes on trying when the object is destroyed before it is known to be off. Fails:
+// bad_argument (a level above a limit, before anything is excited), device (generator, exciter),
+// and as `keep_alive` does. A requested stop is not a failure. Belongs to one thread.
 #pragma once
 
 #include <functional>
@@ -57,10 +58,17 @@ public:
   open(const RunEnvironment& environment, const BenchFile& bench,
        const wire::Measurement& measurement, std::shared_ptr<bus::WakeUp> wake_up, StepHooks hooks);
 
+  ~StepExcitation();
+  StepExcitation(const StepExcitation&) = delete;
+  StepExcitation& operator=(const StepExcitation&) = delete;
+
   // Before the first step and after the last.
   [[nodiscard]] Expected<void> begin();
   void end();
   [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, const std::stop_token& stop);
+
+  [[nodiscard]] bool output_may_be_on() const { return output_may_be_on_; }
+  [[nodiscard]] Expected<void> switch_off();
 
 private:
   StepExcitation(const RunEnvironment& environment, const BenchFile& bench, std::string run,
@@ -90,6 +98,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   StepHooks hooks_;
   std::optional<GeneratorConnection> connection_; // from open() on
+  bool output_may_be_on_ = false;
   std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
   std::optional<ShotCounter> shots_;              // series time stamping only

@@ -136,6 +136,29 @@ INSTANTIATE_TEST_SUITE_P(Signals, ExcitationKilled,
                            return "Signal" + std::to_string(signal.param);
                          });
 
+// The bench stands still, as when its link is down: nothing answers, and the output stays on.
+class LinkDown : public testing::TestWithParam<int> {};
+
+TEST_P(LinkDown, IsSaidAndTheGuardSwitchesOffWhenTheLinkIsBack) {
+  const auto folder = fresh_folder("excitation-link-down-" + std::to_string(GetParam()));
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 4", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
+  bench.signal_bench(SIGSTOP);
+  run.send(GetParam());
+  ASSERT_TRUE(run.wait(patience));
+  EXPECT_TRUE(run.wait_for_error_text("MAY BE ON", patience)) << run.errors();
+  EXPECT_THAT(run.errors(), testing::Not(HasSubstr("the excitation is off")));
+  bench.signal_bench(SIGCONT);
+  EXPECT_TRUE(bench.wait_for_output("OFF"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, LinkDown, testing::Values(SIGINT, SIGKILL),
+                         [](const auto& signal) {
+                           return "Signal" + std::to_string(signal.param);
+                         });
+
 // Standard input of the programs that a test starts.
 class OperatorLine {
 public:

@@ -85,6 +85,7 @@ public:
     }
     return false;
   }
+  void signal_bench(int signal) { virtual_bench_->send(signal); }
   ProgramRun& start(const std::vector<std::string>& arguments) {
     return laboratory_.start("dyncal", arguments, "fastdds");
   }

@@ -43,7 +43,8 @@ struct RunOutcome {
   std::vector<TransferFunction> transfer_functions;
   std::vector<ClockReport> clock_reports;
   bool interrupted = false;
-  std::string problem; // why the run ended early; empty when it did not
+  bool output_may_be_on = false; // the generator has not confirmed that its output is off
+  std::string problem;           // why the run ended early; empty when it did not
 };
 
 // Of a run that has no results yet.

@@ -146,6 +146,24 @@ TEST_P(StepExcitationFailure, LeavesTheOutputOffAndPassesTheErrorOn) {
   EXPECT_FALSE(instrument_.connected);
 }
 
+// A link that is down while the output is to be switched off, and comes back later.
+TEST_F(StepExcitationTest, KnowsThatTheOutputMayBeOnUntilItIsConfirmedToBeOff) {
+  instrument_.failing_call = "set_output(false)";
+  const auto excitation = open().value();
+  EXPECT_FALSE(excitation->output_may_be_on());
+  ASSERT_TRUE(excitation->begin());
+  stop_.request_stop(); // an interruption is not a failure, and must not hide this
+  EXPECT_TRUE(excitation->excite(measurement().steps()[0], stop_.get_token()));
+  EXPECT_TRUE(instrument_.on);
+  EXPECT_TRUE(excitation->output_may_be_on());
+  EXPECT_FALSE(excitation->switch_off());
+  EXPECT_TRUE(excitation->output_may_be_on());
+  instrument_.failing_call = "";
+  EXPECT_TRUE(excitation->switch_off());
+  EXPECT_FALSE(instrument_.on);
+  EXPECT_FALSE(excitation->output_may_be_on());
+}
+
 class StepExcitationStop : public StepExcitationTest,
                            public testing::WithParamInterface<std::chrono::milliseconds> {};
 
