@@ -55,6 +55,9 @@ std::vector<Flag> flags_of(const RunOutcome& outcome) {
   for (const TransferFunction& function : outcome.transfer_functions) {
     append(function.flags, flags);
   }
+  for (const ClockReport& report : outcome.clock_reports) {
+    append(report.flags, flags);
+  }
   return flags;
 }
 

@@ -203,7 +203,9 @@ Json transfer_json(const RunOutcome& outcome, const TransferFunction& function,
             {"repetitions", point.mean.repetitions}};
   add_expanded(magnitude, phase, json);
   json["u_independent_phase_rad"] = json_number(point.mean.u_independent_phase_rad);
-  add_flags(flags_once(flags_of(outcome, function.channel, point)), json);
+  std::vector<Flag> flags = flags_of(outcome, function.channel, point);
+  flags.insert(flags.end(), function.flags.begin(), function.flags.end());
+  add_flags(flags_once(flags), json);
   return json;
 }
 

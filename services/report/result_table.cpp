@@ -154,6 +154,24 @@ std::vector<std::string> problem_lines(const RunOutcome& outcome) {
   return lines;
 }
 
+// Indented, in lines of a terminal's width; lines after the first one further in.
+std::string wrapped(const std::string& line) {
+  constexpr std::size_t max_width = 100;
+  std::string text;
+  std::size_t width = max_width;
+  for (std::size_t begin = 0; begin < line.size();) {
+    const std::size_t end = std::min(line.find(' ', begin), line.size());
+    if (width + 1 + (end - begin) > max_width) {
+      text += text.empty() ? " " : "\n   ";
+      width = 3;
+    }
+    text += " " + line.substr(begin, end - begin);
+    width += 1 + (end - begin);
+    begin = end + 1;
+  }
+  return text + "\n";
+}
+
 // Of channels that are shown, and of steps without a result.
 std::string legend(const RunOutcome& outcome) {
   std::vector<Flag> flags;
@@ -170,9 +188,12 @@ std::string legend(const RunOutcome& outcome) {
       add(result.flags);
     }
   }
+  for (const ClockReport& report : outcome.clock_reports) {
+    add(report.flags);
+  }
   std::string text;
   for (const FlagMeaning& meaning : flag_legend(flags)) {
-    text += (text.empty() ? "\nFlags:\n  " : "  ") + legend_line(meaning) + "\n";
+    text += (text.empty() ? "\nFlags:\n" : "") + wrapped(legend_line(meaning));
   }
   return text;
 }

@@ -40,7 +40,7 @@ def deviations(schema, text):
 def undeclared_flags(result):
     """A flag of a value must be explained in the file."""
     explained = {meaning["name"] for meaning in result["flags"]}
-    for place in ("points", "transfer_function", "channels"):
+    for place in ("points", "transfer_function", "channels", "sample_clock"):
         for i, one in enumerate(result[place]):
             if len(one["flags"]) != len(one["flag_names"]):
                 yield f"$.{place}[{i}]: flags and flag_names are not of one length"

@@ -112,7 +112,7 @@ TEST_F(Triaxial, BoundsWhatASingleAxisReferenceDoesNotKnow) {
 
 TEST_F(Triaxial, SaysInOneLineWhatIsMissing) {
   const auto z = file("z.json", "dau/acceleration_", column(response, 2));
-  EXPECT_THAT(error_of({}), HasSubstr("name the result of one direction"));
+  EXPECT_THAT(error_of({}), HasSubstr("give the result of at least one direction"));
   EXPECT_THAT(error_of({"--z", z, "--motion-z", z}),
               HasSubstr("needs the results and the motions of all three directions"));
   EXPECT_THAT(error_of({"--z", z, "--channels", "a", "b", "c"}),

@@ -1,5 +1,7 @@
 #include "services/report/result_table.hpp"
 
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,8 +51,18 @@ TEST(ResultTable, ShowsFlagsAndWhatTheyMean) {
   const std::string table = result_table(example_outcome());
   EXPECT_THAT(table, HasSubstr("3  samples_lost\n"));
   EXPECT_THAT(table, HasSubstr("  flags: polarity_inverted\n"));
-  EXPECT_THAT(table, HasSubstr("\nFlags:\n  samples_lost (dau: samples lost): samples of this"));
+  EXPECT_THAT(table, HasSubstr("\nFlags:\n  samples_lost (dau: samples lost): samples of"));
   EXPECT_THAT(table, HasSubstr("\n  polarity_inverted (polarity inverted): "));
+}
+
+TEST(ResultTable, LegendFitsATerminal) {
+  const std::string table = result_table(example_outcome());
+  std::istringstream lines(table.substr(table.find("\nFlags:")));
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    EXPECT_LE(line.size(), 100U) << line;
+  }
+  EXPECT_GE(count, 6U); // two flags, in more than a line each
 }
 
 TEST(ResultTable, HasNoLegendWithoutFlags) {

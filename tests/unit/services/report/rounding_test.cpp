@@ -37,6 +37,7 @@ TEST(Rounding, ACarryKeepsTwoDigits) {
   expect_rounded(1.0, 0.0996, "1.00", "0.10");
   expect_rounded(0.9996, 0.0099996, "1.000", "0.010");
   expect_rounded(9.99996e-6, 1e-9, "1.00000e-05", "1.0e-09");
+  expect_rounded(-9.96e-6, 1.2e-6, "-1.00e-05", "1.2e-06");
 }
 
 TEST(Rounding, SmallAndLargeNumbersHaveAnExponent) {
