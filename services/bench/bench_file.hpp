@@ -36,7 +36,8 @@ struct ExcitationSettings {
   int repetitions = 1;
   double settling_s = 1.0;
   double duration_s = 3.0;
-  double level_deviation_rel = 0.1; // of the measured level from the planned one, without a flag
+  // Of the measured level from the planned one, without a flag; left out: what a recipe takes.
+  std::optional<double> level_deviation_rel;
   bool settling_from_data = false;  // settling_s is the longest that may be left out
   bool whole_record =
       false; // evaluate each record as a whole: one step, nothing searched, nothing left out

@@ -61,8 +61,8 @@ ExcitationSettings read_excitation(TomlTable table) {
   excitation.levels_m_s2 = table.numbers("level", "m/s^2");
   spread_levels(table, excitation);
   excitation.level_deviation_rel =
-      table.number("level_deviation_rel", excitation.level_deviation_rel, "parts of the level");
-  if (excitation.level_deviation_rel <= 0.0) {
+      table.optional_number("level_deviation_rel", "parts of the level");
+  if (excitation.level_deviation_rel && *excitation.level_deviation_rel <= 0.0) {
     table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
   }
   excitation.repetitions = table.whole_number("repetitions", 1, 1);

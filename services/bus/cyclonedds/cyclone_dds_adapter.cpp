@@ -8,6 +8,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
+#include "services/bus/write_within.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -116,19 +117,12 @@ public:
       : participant_(std::move(participant)), topic_(topic), writer_(writer) {}
 
   WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
-    const auto deadline = std::chrono::steady_clock::now() + limit;
-    while (true) {
+    return write_within(limit, [&] {
       const dds_return_t outcome = dds_write(writer_.get(), sample);
-      if (outcome == DDS_RETCODE_OK) {
-        return WriteOutcome::written;
-      }
-      if (outcome != DDS_RETCODE_TIMEOUT) {
-        return WriteOutcome::failed;
-      }
-      if (std::chrono::steady_clock::now() >= deadline) {
-        return WriteOutcome::timed_out;
-      }
-    }
+      return outcome == DDS_RETCODE_OK        ? WriteOutcome::written
+             : outcome == DDS_RETCODE_TIMEOUT ? WriteOutcome::timed_out
+                                              : WriteOutcome::failed;
+    });
   }
 
   // Disposed as well: that is what readers of both vendors hear of.

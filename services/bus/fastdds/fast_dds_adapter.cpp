@@ -20,6 +20,7 @@
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/qos_profiles.hpp"
+#include "services/bus/write_within.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -160,20 +161,12 @@ public:
   }
 
   WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
-    const auto deadline = std::chrono::steady_clock::now() + limit;
-    // It may give up long before its time: only our own clock decides when time is up.
-    while (true) {
+    return write_within(limit, [&] {
       const ReturnCode outcome = writer_->write(const_cast<void*>(sample), dds::InstanceHandle_t());
-      if (outcome == ReturnCode::RETCODE_OK) {
-        return WriteOutcome::written;
-      }
-      if (outcome != ReturnCode::RETCODE_TIMEOUT) {
-        return WriteOutcome::failed;
-      }
-      if (std::chrono::steady_clock::now() >= deadline) {
-        return WriteOutcome::timed_out;
-      }
-    }
+      return outcome == ReturnCode::RETCODE_OK        ? WriteOutcome::written
+             : outcome == ReturnCode::RETCODE_TIMEOUT ? WriteOutcome::timed_out
+                                                      : WriteOutcome::failed;
+    });
   }
 
   // Disposed as well: that is what readers of both vendors hear of.

@@ -25,9 +25,6 @@
 
 namespace dyncal::services {
 
-// By which part the measured level of a step may be off the planned one without a flag.
-inline constexpr double default_level_deviation_rel = 0.1;
-
 struct RecipeStep {
   std::uint32_t step = 0;
   std::uint32_t repetition = 0;
@@ -105,7 +102,8 @@ struct Recipe {
   std::uint64_t monte_carlo_trials = 0; // 0: no cross-check
   bool whole_record = false;            // one step; nothing is searched, nothing is left out
   double frequency_search_rel = 1e-3;   // 0: the frequency is known exactly in every clock
-  double level_deviation_rel = default_level_deviation_rel; // beyond it a step is flagged
+  // Part by which the measured level of a step may be off the planned one without a flag.
+  double level_deviation_rel = 0.1;
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right
   analysis::SystematicUncertainty systematic;
