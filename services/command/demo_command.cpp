@@ -10,8 +10,10 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "drivers/virtual_bench/model/response_file.hpp"
 #include "services/command/run_command.hpp"
 #include "services/demo/demo_bench.hpp"
 #include "services/demo/truth_check.hpp"
@@ -66,6 +68,26 @@ Error cannot_write(const std::filesystem::path& path) {
           fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
 }
 
+// Excites where the response is known.
+Expected<void> follow_response(const std::filesystem::path& file, DemoPreset& preset) {
+  const auto table = drivers::virtual_bench::read_response_file(file);
+  if (!table) {
+    return fail(ErrorCode::bad_file, table.error().message);
+  }
+  const auto left_out = keep_frequencies(preset, table->first_hz, table->last_hz);
+  if (preset.frequencies_hz.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: the response is known from {} to {} Hz, where preset {} excites "
+                            "nothing; choose another preset",
+                            file.string(), table->first_hz, table->last_hz, preset.name));
+  }
+  if (!left_out.empty()) {
+    fmt::print("Without {} Hz, where {} states no response\n", fmt::join(left_out, ", "),
+               file.string());
+  }
+  return {};
+}
+
 Expected<Demo> prepare(const DemoCommand& command) {
   Demo demo;
   const auto& presets = demo_presets();
@@ -82,6 +104,11 @@ Expected<Demo> prepare(const DemoCommand& command) {
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
   demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
   demo.preset.trigger_phase_correction = command.trigger_phase_correction;
+  if (command.response) {
+    if (const auto followed = follow_response(*command.response, demo.preset); !followed) {
+      return fail(followed.error());
+    }
+  }
   const auto dds = parse_vendor_assignment(command.dds);
   if (!dds) {
     return fail(dds.error());
@@ -161,6 +188,12 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
   for (const auto& [name, value] : options) {
     arguments.push_back(name);
     arguments.push_back(value);
+  }
+  if (command.response) {
+    arguments.insert(arguments.end(), {"--response", *command.response});
+  }
+  for (const std::string& fault : command.faults) {
+    arguments.insert(arguments.end(), {"--fault", fault});
   }
   return arguments;
 }

@@ -2,7 +2,9 @@
 //
 // Every instrument and service is a process of its own and talks as it does in a laboratory. All
 // files go to one folder: bench file, ADC calibration, logs, result, figures, and the truth, which
-// only the final comparison reads. Belongs to one thread; all processes have ended when it returns.
+// only the final comparison reads. With a response from a file the demo leaves out the frequencies
+// at which the file does not know it. Belongs to one thread; all processes have ended when it
+// returns.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +12,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 namespace dyncal::services {
 
@@ -28,6 +31,8 @@ struct DemoCommand {
   double duplicates = 0.0;
   std::string can_interface = "vcan0"; // presets with CAN output
   std::string can_bus = "1M";
+  std::optional<std::filesystem::path> response; // of the sensor, in place of the preset's
+  std::vector<std::string> faults;               // of the virtual bench, each as its --fault
 };
 
 // Exit status: 0 when every result agrees with the bench's truth within four standard

@@ -66,6 +66,12 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
       ->add_option("--duplicate", demo.duplicates,
                    "fraction of the unit's datagrams that arrive twice, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--response", demo.response,
+                      "put a sensor with this response on the bench: CSV file, "
+                      "frequency_hz,magnitude,phase_rad");
+  command->add_option("--fault", demo.faults,
+                      "what is wrong on purpose, again for each fault, as "
+                      "'dyncal-virtual-bench --help' lists it: hum=0.01,at=sensor");
   command
       ->add_option("--can", demo.can_interface,
                    "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a "

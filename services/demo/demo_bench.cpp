@@ -1,5 +1,7 @@
 #include "services/demo/demo_bench.hpp"
 
+#include <cstdlib>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -173,6 +175,25 @@ const std::vector<DemoPreset>& demo_presets() {
        .can = DemoPreset::CanLink::sync_beside},
   };
   return presets;
+}
+
+std::vector<std::string> keep_frequencies(DemoPreset& preset, double first_hz, double last_hz) {
+  std::vector<std::string> left_out;
+  std::vector<std::string> frequencies_hz;
+  std::vector<double> levels_m_s2;
+  for (std::size_t i = 0; i < preset.frequencies_hz.size(); ++i) {
+    const std::string& text = preset.frequencies_hz[i];
+    const double frequency_hz = std::strtod(text.c_str(), nullptr);
+    if (frequency_hz < first_hz || frequency_hz > last_hz) {
+      left_out.push_back(text);
+      continue;
+    }
+    frequencies_hz.push_back(text);
+    levels_m_s2.push_back(preset.levels_m_s2[i]);
+  }
+  preset.frequencies_hz = std::move(frequencies_hz);
+  preset.levels_m_s2 = std::move(levels_m_s2);
+  return left_out;
 }
 
 std::string demo_bench_file(const DemoPreset& preset, const std::string& bench,

@@ -26,6 +26,10 @@ struct DemoPreset {
 
 [[nodiscard]] const std::vector<DemoPreset>& demo_presets();
 
+// Leaves out the frequencies outside first_hz..last_hz; returns them.
+[[nodiscard]] std::vector<std::string> keep_frequencies(DemoPreset& preset, double first_hz,
+                                                        double last_hz);
+
 struct DemoAddresses {
   std::string dau_listen;
   std::string acs;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "services/version.hpp"
+#include "services/virtual_bench/fault_option.hpp"
 
 namespace dyncal::services::virtual_bench {
 namespace {
@@ -27,7 +28,7 @@ struct Words {
   std::string can_bus = "1M";
   std::vector<std::string> scope_faults;
   std::size_t scope_pieces = 0;
-  bool free_running = false;
+  std::string response;
   std::vector<std::string> faults;
   std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
   std::vector<double> levels{10.0};
@@ -57,8 +58,8 @@ void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) 
       ->capture_default_str();
   app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")
       ->capture_default_str();
-  app.add_flag("--tss-free-running", words.free_running,
-               "the time series sensor starts with its next own sample");
+  app.add_flag("--tss-free-running", options.bench.faults.series_start.free_running,
+               "the same as --fault free-running");
   app.add_option("--scope-fault", words.scope_faults,
                  fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}",
                              fmt::join(device::scope_fault_names(), ", ")));
@@ -86,6 +87,9 @@ void add_can_options(CLI::App& app, Words& words, BenchOptions& options) {
 }
 
 void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
+  app.add_option("--response", words.response,
+                 "CSV file with the response of the sensor's z axis, in place of the preset's: "
+                 "frequency_hz,magnitude,phase_rad (magnitude of m/s^2 over m/s^2; lead)");
   app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")
       ->delimiter(',');
   app.add_option("--levels", words.levels,
@@ -98,8 +102,8 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_flag(
       "--sync-is-first-output", options.bench.sync_is_first_output,
       "sync is the output that drives the exciter, not a second one of constant amplitude");
-  app.add_option("--exciter-gain", options.bench.exciter_gain,
-                 "times the acceleration that a volt should give: an amplifier turned up or down")
+  app.add_option("--exciter-gain", options.bench.faults.exciter_gain,
+                 "the same as --fault exciter-gain=FACTOR")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--thermal-cycle", options.bench.thermal_cycle_s,
@@ -124,9 +128,7 @@ void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--reorder", options.server.path.reorder,
                  "probability that a datagram comes after the next one")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option(
-      "--fault", words.faults,
-      fmt::format("NAME=PROBABILITY per sample: {}", fmt::join(device::fault_names(), ", ")));
+  app.add_option("--fault", words.faults, fault_help());
   app.add_option("--datagrams-per-second", options.server.datagrams_per_s,
                  "most datagrams in a second of this host")
       ->check(CLI::PositiveNumber)
@@ -181,9 +183,10 @@ Expected<void> read_addresses(const Words& words, device::ServerSettings& server
   return {};
 }
 
-Expected<void> read_faults(const std::string& option, const std::vector<std::string>& texts,
-                           const std::vector<std::string>& known,
-                           std::map<std::string, double>& faults) {
+Expected<void> read_scope_faults(const std::vector<std::string>& texts,
+                                 device::ScopeFaults& faults) {
+  constexpr const char* option = "--scope-fault";
+  const std::vector<std::string>& known = device::scope_fault_names();
   for (const std::string& text : texts) {
     const std::size_t sign = text.find('=');
     const std::string name = text.substr(0, sign);
@@ -240,6 +243,13 @@ Expected<void> read_can(const Words& words, BenchOptions& options) {
   options.can.bus = *kind;
   options.can.preset = options.bench.preset;
   options.can.seed = options.bench.seed;
+  options.can.highest_level_m_s2 = options.bench.highest_level_m_s2;
+  options.can.faults = options.bench.faults.sensor;
+  options.can.loss = options.bench.faults.sensor_loss;
+  if (options.bench.response) {
+    options.can.preset.axes[2] = options.bench.response->response;
+    options.can.latency_s = std::min(options.can.latency_s, options.can.preset.axes[2].delay_s);
+  }
   if (!options.can_interface.empty() && options.bench.preset.triggered) {
     return refuse("--can: the sensor of preset tss records series and has no CAN output; choose "
                   "another preset");
@@ -264,9 +274,40 @@ Expected<void> read_triggered(const Words& words, BenchOptions& options) {
   triggered.scope_listen = *scope;
   triggered.sensor_listen = *sensor;
   options.server.triggered = triggered;
-  options.free_running_sensor = words.free_running;
-  return read_faults("--scope-fault", words.scope_faults, device::scope_fault_names(),
-                     options.server.triggered->faults);
+  if (options.bench.faults.sensor_loss.probability > 0.0 &&
+      options.bench.faults.sensor_loss.counted) {
+    return refuse("--fault loss: the samples of a series have no numbers; write counted=no");
+  }
+  return read_scope_faults(words.scope_faults, options.server.triggered->faults);
+}
+
+Expected<void> read_bench_faults(const Words& words, device::BenchFaults& faults) {
+  for (const std::string& text : words.faults) {
+    if (auto read = read_fault(text, faults); !read) {
+      return read;
+    }
+  }
+  return {};
+}
+
+Expected<void> read_response(const Words& words, BenchOptions& options) {
+  if (words.response.empty()) {
+    return {};
+  }
+  auto table = device::read_response_file(words.response);
+  if (!table) {
+    return fail(ErrorCode::bad_file, table.error().message);
+  }
+  for (const std::string& text : options.programme.frequencies_hz) {
+    double frequency_hz = 0.0;
+    if (read_whole(text, frequency_hz) && !table->covers(frequency_hz)) {
+      return refuse(fmt::format("--frequencies: {} Hz lies outside the response of {}, which is "
+                                "known from {} to {} Hz",
+                                text, words.response, table->first_hz, table->last_hz));
+    }
+  }
+  options.bench.response = std::move(*table);
+  return {};
 }
 
 Expected<void> read_words(const Words& words, BenchOptions& options) {
@@ -287,10 +328,9 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
     return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
   }
   return read_addresses(words, options.server)
-      .and_then([&] {
-        return read_faults("--fault", words.faults, device::fault_names(), options.bench.faults);
-      })
+      .and_then([&] { return read_bench_faults(words, options.bench.faults); })
       .and_then([&] { return read_programme(words, options); })
+      .and_then([&] { return read_response(words, options); })
       .and_then([&] { return read_triggered(words, options); })
       .and_then([&] { return read_can(words, options); });
 }

@@ -22,9 +22,7 @@ struct BenchOptions {
   std::filesystem::path truth_file; // empty: not wanted
   std::filesystem::path adc_file;
   std::filesystem::path ports_file;
-  std::filesystem::path record_folder; // set: files instead of sockets
-  bool free_running_sensor =
-      false; // of the time series sensor, whose other settings follow from the bench
+  std::filesystem::path record_folder;           // set: files instead of sockets
   std::string can_interface;                     // of a sensor with CAN output; empty: none
   drivers::virtual_bench::CanSensorSettings can; // its preset and seed are those of the bench
   std::filesystem::path dbc_file;

@@ -100,12 +100,20 @@ Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
   return part;
 }
 
+device::SeriesSensorSettings series_sensor_of(const device::VirtualBench& bench) {
+  const device::BenchSettings& settings = bench.settings();
+  auto sensor = device::series_sensor_of(settings.preset, settings.seed, bench.unit().range_m_s2());
+  sensor.highest_level_m_s2 = settings.highest_level_m_s2;
+  sensor.start = settings.faults.series_start;
+  sensor.faults = settings.faults.sensor;
+  sensor.loss = settings.faults.sensor_loss.probability;
+  return sensor;
+}
+
 Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   device::ServerSettings settings = options.server;
   if (settings.triggered) {
-    settings.triggered->sensor = device::series_sensor_of(options.bench.preset, options.bench.seed,
-                                                          bench.unit().range_m_s2());
-    settings.triggered->sensor.free_running = options.free_running_sensor;
+    settings.triggered->sensor = series_sensor_of(bench);
   }
   auto can = open_can(options);
   if (!can) {

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
 namespace device = drivers::virtual_bench;
 using can::CanFrame;
 
-constexpr double resolution_m_s2 = 0.005;
+constexpr double usual_resolution_m_s2 = 0.005;
+constexpr double counts_per_range = 32768.0;
 constexpr double max_rate_error = 200e-6;
 constexpr double standard_gravity = 9.80665;
 constexpr std::uint8_t classic_bytes = 8;
@@ -19,6 +22,11 @@ constexpr std::uint8_t fd_bytes = 24; // three axes and a counter, and what else
 void put_16_bit(CanFrame& frame, std::size_t byte, std::uint16_t value) {
   frame.data[byte] = static_cast<std::uint8_t>(value);
   frame.data[byte + 1] = static_cast<std::uint8_t>(value >> 8U);
+}
+
+// Shortest text that reads back as the same number.
+std::string shortest(double value) {
+  return fmt::format("{}", value);
 }
 
 } // namespace
@@ -31,7 +39,11 @@ const std::vector<CanBusKind>& can_bus_kinds() {
 
 CanSensor::CanSensor(const CanSensorSettings& settings)
     : settings_(settings), bus_(settings.bus.rates), noise_(settings.seed, "CAN sensor noise"),
-      traffic_(settings.seed, "CAN traffic") {
+      traffic_(settings.seed, "CAN traffic"), loss_(settings.seed, "CAN sensor loss"),
+      disturbances_(3, ChannelDisturbance(settings.seed, "sensor", settings.faults,
+                                          settings.highest_level_m_s2)),
+      resolution_m_s2_(settings.faults.range > 0.0 ? settings.faults.range / counts_per_range
+                                                   : usual_resolution_m_s2) {
   device::Random draws(settings.seed, "CAN sensor");
   rate_hz_ = nominal_rate_hz * (1.0 + draws.uniform(-max_rate_error, max_rate_error));
   noise_m_s2_ =
@@ -55,11 +67,13 @@ CanFrame CanSensor::measure(double time_s, const device::Excitation& excitation)
         excitation.motion(time_s - (response.delay_s - settings_.latency_s));
     const double value =
         excitation.acceleration(motion, device::harmonic_gains(response, motion.frequency_hz)) +
-        offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
-    const double counts = std::clamp(std::rint(value / resolution_m_s2), -32768.0, 32767.0);
+        offset_m_s2_[axis] + noise_.normal(noise_m_s2_) + disturbances_[axis].added(time_s, motion);
+    const double counts = disturbances_[axis].held(
+        std::clamp(std::rint(value / resolution_m_s2_), -counts_per_range, counts_per_range - 1.0),
+        time_s);
     put_16_bit(frame, 2 * axis, static_cast<std::uint16_t>(static_cast<std::int16_t>(counts)));
   }
-  put_16_bit(frame, 6, static_cast<std::uint16_t>(next_sample_));
+  put_16_bit(frame, 6, static_cast<std::uint16_t>(next_sample_ - uncounted_));
   return frame;
 }
 
@@ -89,8 +103,11 @@ void CanSensor::advance_to(double time_s, const device::Excitation& excitation,
                            const std::function<void(const SentFrame&)>& sent) {
   for (double at_s = static_cast<double>(next_sample_) / rate_hz_; at_s < time_s;
        at_s = static_cast<double>(next_sample_) / rate_hz_) {
-    const CanFrame frame = measure(at_s, excitation);
-    bus_.offer(frame, at_s + settings_.latency_s);
+    if (loss_.happens(settings_.loss.probability)) {
+      uncounted_ += settings_.loss.counted ? 0 : 1;
+    } else {
+      bus_.offer(measure(at_s, excitation), at_s + settings_.latency_s);
+    }
     ++next_sample_;
   }
   for (; next_foreign_s_ < time_s; next_foreign_s_ += next_foreign_pause_s()) {
@@ -107,8 +124,9 @@ std::string CanSensor::dbc() const {
   text += "BO_ " + std::to_string(id) + " Sample: " + (settings_.bus.fd ? "24" : "8") + " Sensor\n";
   const char* axes[] = {"acceleration_x", "acceleration_y", "acceleration_z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    text += std::string(" SG_ ") + axes[axis] + " : " + std::to_string(16 * axis) +
-            "|16@1- (0.005,0) [-163.84|163.835] \"m/s^2\" Host\n";
+    text += std::string(" SG_ ") + axes[axis] + " : " + std::to_string(16 * axis) + "|16@1- (" +
+            shortest(resolution_m_s2_) + ",0) [" + shortest(-counts_per_range * resolution_m_s2_) +
+            "|" + shortest((counts_per_range - 1.0) * resolution_m_s2_) + "] \"m/s^2\" Host\n";
   }
   text += " SG_ counter : 48|16@1+ (1,0) [0|65535] \"\" Host\n";
   text += "BA_DEF_ BO_ \"VFrameFormat\" ENUM "

@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "drivers/virtual_bench/can/can_bus.hpp"
+#include "drivers/virtual_bench/model/bench_faults.hpp"
+#include "drivers/virtual_bench/model/channel_disturbance.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
@@ -38,6 +40,9 @@ struct CanSensorSettings {
   double background_load = 0.15; // of the bus's time
   double latency_s = 0.2e-3; // from the reading to the frame; not more than the smallest delay of
                              // the preset's axes
+  double highest_level_m_s2 = 130.0;
+  ChannelFaults faults;
+  SampleLoss loss;
 };
 
 class CanSensor {
@@ -65,11 +70,15 @@ private:
   CanBus bus_;
   Random noise_;
   Random traffic_;
+  Random loss_;
+  std::vector<ChannelDisturbance> disturbances_; // x, y, z
   double rate_hz_ = nominal_rate_hz;
   double noise_m_s2_ = 0.0;
   std::array<double, 3> offset_m_s2_{};
+  double resolution_m_s2_ = 0.0;
   std::uint64_t next_sample_ = 0;
-  can::CanFrame foreign_; // the next of another device
+  std::uint64_t uncounted_ = 0; // samples that were lost and that its counter does not show
+  can::CanFrame foreign_;       // the next of another device
   double next_foreign_s_ = 0.0;
 };
 

@@ -9,7 +9,7 @@ namespace dyncal::drivers::virtual_bench {
 namespace {
 
 constexpr double counts_per_range = 8388608.0; // 24 bit
-constexpr double sync_range_v = 10.0;
+constexpr double usual_sync_range_v = 10.0;
 constexpr double reference_noise_m_s2 = 0.004;
 constexpr double sync_noise_v = 60e-6;
 constexpr double hum_hz = 49.98; // the mains are rarely exactly at 50 Hz
@@ -24,7 +24,10 @@ std::int32_t to_counts(double value, double scale) {
 } // namespace
 
 AcsInstrument::AcsInstrument(const AcsSettings& settings)
-    : settings_(settings), noise_(settings.seed, "ACS noise") {
+    : settings_(settings), noise_(settings.seed, "ACS noise"), loss_(settings.seed, "ACS loss"),
+      reference_disturbance_(settings.seed, "reference", settings.reference_faults,
+                             settings.highest_level_m_s2),
+      sync_disturbance_(settings.seed, "sync", settings.sync_faults, settings.sync_amplitude_v) {
   Random draws(settings.seed, "ACS errors");
   rate_error_ = draws.uniform(-settings.max_rate_error, settings.max_rate_error);
   if (settings.utc) {
@@ -33,9 +36,13 @@ AcsInstrument::AcsInstrument(const AcsSettings& settings)
   gain_error_ = draws.normal(settings.reference_magnitude_rel);
   phase_error_rad_ = draws.normal(settings.reference_phase_rad);
   hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
-  reference_range_m_s2_ = 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
+  reference_range_m_s2_ = settings.reference_faults.range > 0.0
+                              ? settings.reference_faults.range
+                              : 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
+  sync_range_v_ =
+      settings.sync_faults.range > 0.0 ? settings.sync_faults.range : usual_sync_range_v;
   reference_scale_ = reference_range_m_s2_ / counts_per_range;
-  sync_scale_ = sync_range_v / counts_per_range;
+  sync_scale_ = sync_range_v_ / counts_per_range;
   reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_,
                       1.0 + gain_error_};
 }
@@ -50,14 +57,27 @@ void AcsInstrument::sample_until(double time_s, const Excitation& excitation, Ac
     const Motion motion = excitation.motion(at_s);
     const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
     const double reference = excitation.acceleration(motion, reference_gains_) +
-                             reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2);
+                             reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2) +
+                             reference_disturbance_.added(at_s, motion);
     const double sync_v = settings_.sync_is_first_output ? motion.generator_v
                           : motion.sync_on               ? settings_.sync_amplitude_v
                                                          : 0.0;
-    const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v);
-    samples.counts.push_back(to_counts(reference, reference_scale_));
-    samples.counts.push_back(to_counts(sync, sync_scale_));
+    const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v) +
+                        sync_disturbance_.added(at_s, motion);
+    samples.counts.push_back(static_cast<std::int32_t>(
+        reference_disturbance_.held(to_counts(reference, reference_scale_), at_s)));
+    samples.counts.push_back(
+        static_cast<std::int32_t>(sync_disturbance_.held(to_counts(sync, sync_scale_), at_s)));
   }
+}
+
+bool AcsInstrument::sends(AcsSamples& samples) {
+  samples.first_sample -= uncounted_;
+  const bool lost = loss_.happens(settings_.loss.probability);
+  if (lost && !settings_.loss.counted) {
+    uncounted_ += samples.samples();
+  }
+  return !lost;
 }
 
 std::int64_t AcsInstrument::stamp_ns(std::uint64_t sample) const {
@@ -75,8 +95,9 @@ std::string AcsInstrument::description_line() const {
                           {"minimum", -reference_range_m_s2_},
                           {"maximum", reference_range_m_s2_},
                           {"scale", reference_scale_}};
-  const Json sync = {{"name", "sync"},           {"quantity", "Voltage"},   {"unit", "\\volt"},
-                     {"minimum", -sync_range_v}, {"maximum", sync_range_v}, {"scale", sync_scale_}};
+  const Json sync = {{"name", "sync"},           {"quantity", "Voltage"},
+                     {"unit", "\\volt"},         {"minimum", -sync_range_v_},
+                     {"maximum", sync_range_v_}, {"scale", sync_scale_}};
   const Json line = {{"protocol", "dyncal-acs-stream"},
                      {"version", 1},
                      {"device", "virtual analogue calibration system"},

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/virtual_bench/model/bench_faults.hpp"
+#include "drivers/virtual_bench/model/channel_disturbance.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
 
@@ -30,6 +32,9 @@ struct AcsSettings {
   double reference_phase_rad = 1.7e-3;
   double max_rate_error = 0.5e-6;
   bool utc = false; // disciplined: the rate has no error, and origin_ns is UTC
+  ChannelFaults reference_faults;
+  ChannelFaults sync_faults;
+  SampleLoss loss; // of what it sends at a time
 };
 
 struct AcsSamples {
@@ -46,6 +51,9 @@ public:
   // Appends the samples taken before `time_s`.
   void sample_until(double time_s, const Excitation& excitation, AcsSamples& samples);
 
+  // Whether what it has sampled reaches anybody; numbers it as whoever receives it will see it.
+  [[nodiscard]] bool sends(AcsSamples& samples);
+
   [[nodiscard]] std::string description_line() const; // without the line end
   [[nodiscard]] std::int64_t stamp_ns(std::uint64_t sample) const;
   [[nodiscard]] double reference_scale() const { return reference_scale_; } // m/s^2 per count
@@ -57,15 +65,20 @@ public:
 private:
   AcsSettings settings_;
   Random noise_;
+  Random loss_;
+  ChannelDisturbance reference_disturbance_;
+  ChannelDisturbance sync_disturbance_;
   double rate_error_ = 0.0;
   double gain_error_ = 0.0;
   double phase_error_rad_ = 0.0;
   double hum_phase_rad_ = 0.0;
   double reference_range_m_s2_ = 0.0;
   double reference_scale_ = 0.0;
+  double sync_range_v_ = 0.0;
   double sync_scale_ = 0.0;
   HarmonicGains reference_gains_;
   std::uint64_t next_sample_ = 0;
+  std::uint64_t uncounted_ = 0; // samples that were lost and that its numbers do not show
 };
 
 } // namespace dyncal::drivers::virtual_bench

@@ -63,8 +63,13 @@ Motion Excitation::motion(double time_s) const {
   const Segment& segment = segment_at(time_s);
   const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
   const double angle = two_pi * (turns - std::floor(turns));
-  return {std::sin(angle),      std::cos(angle), envelope(segment, time_s),
-          segment.frequency_hz, segment.on,      segment.amplitude_v};
+  return {.sine = std::sin(angle),
+          .cosine = std::cos(angle),
+          .envelope = envelope(segment, time_s),
+          .frequency_hz = segment.frequency_hz,
+          .sync_on = segment.on,
+          .generator_v = segment.amplitude_v,
+          .since_change_s = std::max(0.0, time_s - segment.begin_s)};
 }
 
 double Excitation::acceleration(const Motion& motion, const HarmonicGains& gains) const {

@@ -42,10 +42,11 @@ struct ExciterModel {
 struct Motion {
   double sine = 0.0; // of theta
   double cosine = 1.0;
-  std::complex<double> envelope; // fundamental is Im{envelope * e^{i theta}}
+  std::complex<double> envelope{}; // fundamental is Im{envelope * e^{i theta}}
   double frequency_hz = 0.0;
   bool sync_on = false;
-  double generator_v = 0.0; // amplitude of the generator's first output, zero to peak
+  double generator_v = 0.0;    // amplitude of the generator's first output, zero to peak
+  double since_change_s = 0.0; // since the generator was last changed
 };
 
 // Response at the fundamental and the harmonics, without the delay (which shifts the instant

@@ -78,7 +78,9 @@ void run_for(VirtualBench& bench, double duration_s, CsvFiles& files) {
     AcsSamples acs;
     bench.advance_to(std::min(bench.now_s() + slice_s, end_s), acs,
                      [&](const UnitSample& sample) { files.write(sample); });
-    files.write(acs);
+    if (bench.acs().sends(acs)) {
+      files.write(acs);
+    }
   }
 }
 

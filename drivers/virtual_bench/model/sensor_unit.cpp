@@ -17,13 +17,14 @@ constexpr std::array<double, 3> earth_field_ut{18.6, 1.4, -45.1};
 constexpr double steps_16_bit = 65536.0;
 
 // The smallest range that holds the excitation with gravity and a tenth to spare.
-double choose_range_g(double highest_level_m_s2) {
-  for (const double range_g : {2.0, 4.0, 8.0}) {
-    if (1.1 * highest_level_m_s2 + standard_gravity <= range_g * standard_gravity) {
-      return range_g;
-    }
+double choose_range_g(const SensorUnitSettings& settings) {
+  const double shown_m_s2 = settings.highest_level_m_s2 * settings.largest_magnitude;
+  double range_g = 2.0;
+  while (range_g < settings.widest_range_g &&
+         1.1 * shown_m_s2 + standard_gravity > range_g * standard_gravity) {
+    range_g *= 2.0;
   }
-  return 16.0;
+  return range_g;
 }
 
 } // namespace
@@ -33,9 +34,15 @@ SensorUnit::SensorUnit(const SensorUnitSettings& settings)
       clock_(settings.seed, settings.start_ns),
       sensor_clock_(
           make_sensor_clock(settings.preset.sensor, settings.seed, settings.thermal_cycle_s)),
-      faults_(settings.seed, settings.faults) {
+      stamp_faults_(settings.seed, settings.stamp_faults), loss_(settings.seed, "sensor loss"),
+      sensor_disturbances_(3, ChannelDisturbance(settings.seed, "sensor", settings.sensor_faults,
+                                                 settings.highest_level_m_s2)),
+      sync_disturbance_(settings.seed, "sync at the unit", settings.sync_faults,
+                        settings.sync_amplitude_v) {
   const Preset& preset = settings_.preset;
-  range_m_s2_ = choose_range_g(settings.highest_level_m_s2) * standard_gravity;
+  range_m_s2_ = settings.sensor_faults.range > 0.0 ? settings.sensor_faults.range
+                                                   : choose_range_g(settings) * standard_gravity;
+  sync_range_v_ = settings.sync_faults.range > 0.0 ? settings.sync_faults.range : adc_range_v;
   step_m_s2_ = range_m_s2_ / preset.counts_per_range;
   noise_m_s2_ =
       preset.noise_g_per_root_hz * standard_gravity * std::sqrt(0.5 / preset.mean_interval_s);
@@ -127,8 +134,10 @@ void SensorUnit::measure_acceleration(UnitSample& sample, double time_s,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
     const double value = excitation.acceleration(motion, gains(axis, motion.frequency_hz)) +
-                         offset_m_s2_[axis] + noise_.normal(noise_m_s2_);
-    sample.data[axis] = quantised(value, step_m_s2_, range_m_s2_);
+                         offset_m_s2_[axis] + noise_.normal(noise_m_s2_) +
+                         sensor_disturbances_[axis].added(time_s, motion);
+    sample.data[axis] = static_cast<float>(
+        sensor_disturbances_[axis].held(quantised(value, step_m_s2_, range_m_s2_), time_s));
   }
 }
 
@@ -154,9 +163,12 @@ void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitatio
                                                             : 0.0;
   const double sync_v = amplitude_v * motion.sine;
   for (std::size_t adc = 0; adc < 3; ++adc) {
-    const double input_v = (adc == 0 ? sync_v : 0.0) + noise_.normal(adc_step_v);
+    const bool is_sync = adc == 0;
+    const double input_v = (is_sync ? sync_v + sync_disturbance_.added(time_s, motion) : 0.0) +
+                           noise_.normal(adc_step_v);
+    const double shown_v = quantised(input_v, adc_step_v, is_sync ? sync_range_v_ : adc_range_v);
     sample.data[10 + adc] = static_cast<float>(
-        settings_.adc.gain * static_cast<double>(quantised(input_v, adc_step_v, adc_range_v)));
+        settings_.adc.gain * (is_sync ? sync_disturbance_.held(shown_v, time_s) : shown_v));
   }
 }
 
@@ -170,6 +182,10 @@ std::optional<UnitSample> SensorUnit::next_before(double time_s, const Excitatio
     }
     const SensorEdge edge = *edge_;
     edge_.reset();
+    if (loss_.happens(settings_.loss.probability)) {
+      sample_number_ += settings_.loss.counted ? 1 : 0;
+      continue;
+    }
     const DauStamp stamp = clock_.stamp(edge.time_s);
     UnitSample sample;
     sample.sample_number = ++sample_number_;
@@ -179,7 +195,7 @@ std::optional<UnitSample> SensorUnit::next_before(double time_s, const Excitatio
     measure_acceleration(sample, edge.time_s, excitation);
     measure_rest(sample, edge.temperature_degc);
     measure_adcs(sample, edge.time_s, excitation);
-    if (faults_.apply(sample)) {
+    if (stamp_faults_.apply(sample)) {
       return sample;
     }
   }

@@ -11,6 +11,8 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/virtual_bench/model/bench_faults.hpp"
+#include "drivers/virtual_bench/model/channel_disturbance.hpp"
 #include "drivers/virtual_bench/model/dau_clock.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
@@ -30,11 +32,16 @@ struct SensorUnitSettings {
   std::uint64_t seed = 1;
   std::int64_t start_ns = 0;         // unit time at bench time 0
   double highest_level_m_s2 = 130.0; // decides the range of the sensor
+  double largest_magnitude = 1.0;    // of its response
+  double widest_range_g = 16.0;
   double thermal_cycle_s = 100.0;
   double sync_amplitude_v = 9.75;
   bool sync_is_first_output = false;
   SyncAdcModel adc;
-  FaultProbabilities faults;
+  ChannelFaults sensor_faults;
+  ChannelFaults sync_faults;
+  SampleLoss loss;
+  StampFaultProbabilities stamp_faults;
 };
 
 class SensorUnit {
@@ -75,10 +82,14 @@ private:
   Random noise_;
   DauClock clock_;
   std::unique_ptr<SensorClock> sensor_clock_;
-  StampFaults faults_;
+  StampFaults stamp_faults_;
+  Random loss_;
+  std::vector<ChannelDisturbance> sensor_disturbances_; // x, y, z
+  ChannelDisturbance sync_disturbance_;
   std::vector<UnitChannel> channels_;
   double range_m_s2_ = 0.0;
   double step_m_s2_ = 0.0;
+  double sync_range_v_ = 0.0;
   double noise_m_s2_ = 0.0; // standard deviation
   std::array<double, 3> offset_m_s2_{};
   std::array<HarmonicGains, 3> gains_;

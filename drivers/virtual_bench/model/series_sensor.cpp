@@ -8,7 +8,9 @@
 namespace dyncal::drivers::virtual_bench {
 
 SeriesSensor::SeriesSensor(SeriesSensorSettings settings)
-    : settings_(std::move(settings)), random_(settings_.seed, "TSS") {}
+    : settings_(std::move(settings)), random_(settings_.seed, "TSS"),
+      loss_(settings_.seed, "TSS loss"),
+      disturbance_(settings_.seed, "sensor", settings_.faults, settings_.highest_level_m_s2) {}
 
 SeriesSensorSettings series_sensor_of(const Preset& preset, std::uint64_t seed, double range_m_s2) {
   SeriesSensorSettings sensor;
@@ -27,7 +29,14 @@ void SeriesSensor::trigger(double edge_s) {
   recording_ = true;
   ++shot_;
   counts_.clear();
-  first_sample_s_ = edge_s + (settings_.free_running ? random_.uniform() / real_rate_hz() : 0.0);
+  next_sample_ = 0;
+  first_sample_s_ = edge_s;
+  if (settings_.start.free_running) {
+    first_sample_s_ += random_.uniform() / real_rate_hz();
+  }
+  if (settings_.start.jitter_s > 0.0) {
+    first_sample_s_ += settings_.start.jitter_s * random_.uniform();
+  }
 }
 
 std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s,
@@ -36,16 +45,22 @@ std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s,
     return std::nullopt;
   }
   while (counts_.size() < settings_.samples) {
-    const double at_s = first_sample_s_ + static_cast<double>(counts_.size()) / real_rate_hz();
+    const double at_s = first_sample_s_ + static_cast<double>(next_sample_) / real_rate_hz();
     if (at_s >= time_s) {
       return std::nullopt;
+    }
+    ++next_sample_;
+    if (loss_.happens(settings_.loss)) {
+      continue;
     }
     const Motion motion = excitation.motion(at_s - settings_.response.delay_s);
     const double value =
         excitation.acceleration(motion, harmonic_gains(settings_.response, motion.frequency_hz));
-    const double counts =
-        std::rint((value + random_.normal(settings_.noise_m_s2)) / settings_.step_m_s2);
-    counts_.push_back(static_cast<std::int16_t>(std::clamp(counts, -32768.0, 32767.0)));
+    const double counts = std::rint(
+        (value + random_.normal(settings_.noise_m_s2) + disturbance_.added(at_s, motion)) /
+        settings_.step_m_s2);
+    counts_.push_back(
+        static_cast<std::int16_t>(disturbance_.held(std::clamp(counts, -32768.0, 32767.0), at_s)));
   }
   recording_ = false;
   return RecordedSeries{shot_, std::exchange(counts_, {})};

@@ -2,9 +2,10 @@
 // start latency of its own.
 //
 // Sample n is taken at edge + latency + n / (nominal rate * rate_factor) and shows the acceleration
-// of `delay` earlier, with the response, noise and quantisation of the sensor. Latency is 0, or for
-// a sensor that runs free uniform over one sample. A trigger during a series is ignored. One
-// thread.
+// of `delay` earlier, with the response, noise and quantisation of the sensor. Latency is 0, for a
+// sensor that runs free uniform over one sample, and with start jitter uniform over that. A sample
+// that is lost is missing in the series, which goes on until it is full. A trigger during a series
+// is ignored. One thread.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/virtual_bench/model/bench_faults.hpp"
+#include "drivers/virtual_bench/model/channel_disturbance.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
@@ -25,12 +28,15 @@ struct SeriesSensorSettings {
   double nominal_rate_hz = 1000.0;
   double rate_factor = 1.00305; // real rate / nominal rate: the paper's MPU-9250
   std::size_t samples = 1000;
-  bool free_running = false;
+  SeriesStart start;
   double noise_m_s2 = 0.04;
   double step_m_s2 = 0.0048; // of its converter
+  double highest_level_m_s2 = 130.0;
+  ChannelFaults faults;
+  double loss = 0.0; // probability per sample; a series has no numbers that would show it
 };
 
-// The z axis of a preset.
+// The z axis of a preset, sound.
 [[nodiscard]] SeriesSensorSettings series_sensor_of(const Preset& preset, std::uint64_t seed,
                                                     double range_m_s2);
 
@@ -60,9 +66,12 @@ public:
 private:
   SeriesSensorSettings settings_;
   Random random_;
+  Random loss_;
+  ChannelDisturbance disturbance_;
   std::uint64_t shot_ = 0;
   bool recording_ = false;
   double first_sample_s_ = 0.0;
+  std::size_t next_sample_ = 0; // of the series, with those that are lost
   std::vector<std::int16_t> counts_;
 };
 

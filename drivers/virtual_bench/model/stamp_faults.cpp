@@ -15,14 +15,14 @@ std::int64_t ticks_in_ns(double ticks) {
 
 } // namespace
 
-const std::vector<std::string>& fault_names() {
+const std::vector<std::string>& stamp_fault_names() {
   static const std::vector<std::string> names{"second-slip", "counter-extension", "torn-counter",
                                               "pps-offset",  "repeated",          "no-uncertainty",
                                               "no-fix",      "unit-loss"};
   return names;
 }
 
-StampFaults::StampFaults(std::uint64_t seed, FaultProbabilities probabilities)
+StampFaults::StampFaults(std::uint64_t seed, StampFaultProbabilities probabilities)
     : random_(seed, "stamp faults"), probabilities_(std::move(probabilities)) {}
 
 bool StampFaults::happens(const char* name) {

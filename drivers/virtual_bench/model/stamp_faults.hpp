@@ -24,13 +24,13 @@
 
 namespace dyncal::drivers::virtual_bench {
 
-using FaultProbabilities = std::map<std::string, double>;
+using StampFaultProbabilities = std::map<std::string, double>;
 
-[[nodiscard]] const std::vector<std::string>& fault_names();
+[[nodiscard]] const std::vector<std::string>& stamp_fault_names();
 
 class StampFaults {
 public:
-  StampFaults(std::uint64_t seed, FaultProbabilities probabilities);
+  StampFaults(std::uint64_t seed, StampFaultProbabilities probabilities);
 
   // Spoils the stamp of a sample. False: the sample is lost in the unit.
   [[nodiscard]] bool apply(UnitSample& sample);
@@ -39,7 +39,7 @@ private:
   [[nodiscard]] bool happens(const char* name);
 
   Random random_;
-  FaultProbabilities probabilities_;
+  StampFaultProbabilities probabilities_;
   std::int64_t offset_ns_ = 0; // of the episode that lasts until episode_end_ns_
   std::int64_t episode_end_ns_ = 0;
   std::int64_t previous_ns_ = 0;

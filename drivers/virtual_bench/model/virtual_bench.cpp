@@ -7,14 +7,22 @@ namespace dyncal::drivers::virtual_bench {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr double widest_range_g = 1024.0;
 
 // The day of the paper's publication; benches of different seeds live at different times of it.
 constexpr std::int64_t unit_day_ns = 1'631'836'800 * second_ns;
 
+BenchSettings with_response(BenchSettings settings) {
+  if (settings.response) {
+    settings.preset.axes[2] = settings.response->response;
+  }
+  return settings;
+}
+
 ExciterModel draw_exciter(const BenchSettings& settings) {
   Random random(settings.seed, "exciter");
   ExciterModel exciter;
-  exciter.acceleration_per_volt = VirtualBench::level_per_volt * settings.exciter_gain;
+  exciter.acceleration_per_volt = VirtualBench::level_per_volt * settings.faults.exciter_gain;
   exciter.second_harmonic = std::pow(10.0, random.uniform(-52.0, -42.0) / 20.0);
   exciter.third_harmonic = std::pow(10.0, random.uniform(-60.0, -48.0) / 20.0);
   exciter.second_phase_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -55,6 +63,9 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   acs.sync_amplitude_v = VirtualBench::sync_amplitude_v;
   acs.reference_magnitude_rel = settings.reference_magnitude_rel;
   acs.reference_phase_rad = settings.reference_phase_rad;
+  acs.reference_faults = settings.faults.reference;
+  acs.sync_faults = settings.faults.sync_acs;
+  acs.loss = settings.faults.acs_loss;
   return acs;
 }
 
@@ -64,19 +75,27 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
   unit.seed = settings.seed;
   unit.start_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
   unit.highest_level_m_s2 = settings.highest_level_m_s2;
+  if (settings.response) { // of a sensor that is made for these levels
+    unit.largest_magnitude = settings.response->largest_magnitude;
+    unit.widest_range_g = widest_range_g;
+  }
   unit.thermal_cycle_s = settings.thermal_cycle_s;
   unit.sync_amplitude_v = VirtualBench::sync_amplitude_v;
   unit.sync_is_first_output = settings.sync_is_first_output;
   unit.adc = adc;
-  unit.faults = settings.faults;
+  unit.sensor_faults = settings.faults.sensor;
+  unit.sync_faults = settings.faults.sync_dau;
+  unit.loss = settings.faults.sensor_loss;
+  unit.stamp_faults = settings.faults.stamps;
   return unit;
 }
 
 } // namespace
 
 VirtualBench::VirtualBench(const BenchSettings& settings)
-    : settings_(settings), exciter_(draw_exciter(settings)), adc_(draw_adc(settings.seed)),
-      excitation_(exciter_), acs_(acs_settings(settings)), unit_(unit_settings(settings, adc_)) {}
+    : settings_(with_response(settings)), exciter_(draw_exciter(settings)),
+      adc_(draw_adc(settings.seed)), excitation_(exciter_), acs_(acs_settings(settings_)),
+      unit_(unit_settings(settings_, adc_)) {}
 
 void VirtualBench::advance_to(double time_s, AcsSamples& acs,
                               const std::function<void(const UnitSample&)>& unit) {

@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "drivers/virtual_bench/model/acs_instrument.hpp"
+#include "drivers/virtual_bench/model/bench_faults.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
 #include "drivers/virtual_bench/model/preset.hpp"
+#include "drivers/virtual_bench/model/response_file.hpp"
 #include "drivers/virtual_bench/model/sensor_unit.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -27,10 +29,10 @@ struct BenchSettings {
   double thermal_cycle_s = 100.0;
   double reference_magnitude_rel = 1e-3; // standard uncertainties that the recipe states
   double reference_phase_rad = 1.7e-3;
-  FaultProbabilities faults;
-  double exciter_gain = 1.0;         // times level_per_volt: an amplifier that somebody turned up
-  bool acs_utc = false;              // the ACS stamps in UTC too
-  bool sync_is_first_output = false; // see acs_instrument.hpp
+  BenchFaults faults;
+  std::optional<ResponseTable> response; // of z, in place of the preset's
+  bool acs_utc = false;                  // the ACS stamps in UTC too
+  bool sync_is_first_output = false;     // see acs_instrument.hpp
   // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS
   // receiver do, instead of epochs of their own.
   std::optional<std::int64_t> utc_origin_ns;
@@ -46,6 +48,10 @@ public:
   [[nodiscard]] double now_s() const { return now_s_; }
   [[nodiscard]] const Drive& drive() const { return excitation_.drive(); }
   void set_drive(const Drive& drive) { excitation_.change(now_s_, drive); }
+  // False where the response of the sensor is not known.
+  [[nodiscard]] bool has_response_at(double frequency_hz) const {
+    return !settings_.response || settings_.response->covers(frequency_hz);
+  }
 
   // Samples up to `time_s` go to the two outputs in the order in which they were taken by each
   // instrument. REQUIRES: not before now_s(); steps of at most half a second.
@@ -54,6 +60,7 @@ public:
 
   [[nodiscard]] const BenchSettings& settings() const { return settings_; }
   [[nodiscard]] const AcsInstrument& acs() const { return acs_; }
+  [[nodiscard]] AcsInstrument& acs() { return acs_; }
   [[nodiscard]] const SensorUnit& unit() const { return unit_; }
   [[nodiscard]] const SyncAdcModel& adc() const { return adc_; }
   [[nodiscard]] const Excitation& excitation() const { return excitation_; }

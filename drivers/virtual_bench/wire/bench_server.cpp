@@ -204,9 +204,15 @@ void BenchServer::advance_to(double time_s) {
     frame_.counts.clear();
   } else if (static_cast<double>(frame_.samples()) >=
              frame_s * static_cast<double>(bench_.settings().acs_rate_hz)) {
-    stream_.send_frame(frame_);
-    frame_.counts.clear();
+    send_frame();
   }
+}
+
+void BenchServer::send_frame() {
+  if (bench_.acs().sends(frame_)) {
+    stream_.send_frame(frame_);
+  }
+  frame_.counts.clear();
 }
 
 void BenchServer::send_datagram(const std::string& datagram) {
@@ -220,7 +226,7 @@ void BenchServer::end_stream(const StopSignal& stop) {
   if (!stream_.connected() || stop.raised()) {
     return;
   }
-  stream_.send_frame(frame_);
+  send_frame();
   stream_.send_end();
   const auto deadline = Clock::now() + std::chrono::seconds(2);
   while (stream_.backlog_bytes() > 0 && stream_.connected() && Clock::now() < deadline &&

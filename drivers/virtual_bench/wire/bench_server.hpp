@@ -71,6 +71,7 @@ private:
   [[nodiscard]] bool datagrams_are_taken();
   void hold_pace();
   void advance_to(double time_s);
+  void send_frame();
   void send_datagram(const std::string& datagram);
   void end_stream(const StopSignal& stop);
 

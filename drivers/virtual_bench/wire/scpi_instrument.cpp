@@ -151,7 +151,8 @@ void ScpiInstrument::set_frequency(std::string_view argument) {
   const auto frequency_hz = parse_parameter(argument);
   if (!frequency_hz) {
     complain("-104,\"Data type error\"");
-  } else if (!(*frequency_hz > 0.0 && *frequency_hz <= max_frequency_hz)) {
+  } else if (!(*frequency_hz > 0.0 && *frequency_hz <= max_frequency_hz) ||
+             !bench_.has_response_at(*frequency_hz)) {
     complain("-222,\"Data out of range\"");
   } else {
     Drive drive = bench_.drive();

@@ -7,7 +7,8 @@
 //   :SOURce1:FUNCtion SINusoid|SQUare
 //   :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity
 // and of the bench itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when
-// that time has come. One thread.
+// that time has come. A frequency at which the sensor's response is not known is out of range. One
+// thread.
 #pragma once
 
 #include <deque>

@@ -46,5 +46,14 @@ TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
   }
 }
 
+TEST(DemoBench, ExcitesWhereTheResponseIsKnown) {
+  DemoPreset preset;
+  preset.frequencies_hz = {"10", "20", "80", "160"};
+  preset.levels_m_s2 = {1, 2, 8, 16};
+  EXPECT_EQ(keep_frequencies(preset, 20.0, 80.0), (std::vector<std::string>{"10", "160"}));
+  EXPECT_EQ(preset.frequencies_hz, (std::vector<std::string>{"20", "80"}));
+  EXPECT_EQ(preset.levels_m_s2, (std::vector<double>{2, 8}));
+}
+
 } // namespace
 } // namespace dyncal::services

@@ -97,7 +97,7 @@ private:
   }
   static SeriesSensorSettings sensor_settings(bool free_running) {
     SeriesSensorSettings settings = series_sensor_of(*preset_by_name("tss"), 1, 157.0);
-    settings.free_running = free_running;
+    settings.start.free_running = free_running;
     return settings;
   }
   static std::vector<double> volts(const OscilloscopeModel::Record& record) {

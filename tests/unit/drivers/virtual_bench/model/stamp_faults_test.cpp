@@ -15,7 +15,7 @@ struct Outcome {
   int lost = 0;
 };
 
-Outcome apply(const FaultProbabilities& probabilities) {
+Outcome apply(const StampFaultProbabilities& probabilities) {
   StampFaults faults(8, probabilities);
   Outcome outcome;
   for (int i = 0; i < samples; ++i) {

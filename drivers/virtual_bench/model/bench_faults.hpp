@@ -1,0 +1,56 @@
+// What is wrong with a bench on purpose: one description for all its instruments, by channel,
+// sensor and exciter. An empty one is a sound bench.
+//
+// Channels are those of the roles in a bench file: the sensor under calibration, reference and sync
+// as the ACS records them, sync as the unit's ADC does. Each may have
+//
+//   range      end stops at +-range, which its description states, whatever the level
+//   stuck      the value of one sample for so many samples, again and again
+//   hum        mains: an added sine of constant amplitude, between the steps too
+//   drift      of the zero: rises from each change of the generator on, while its output is on
+//
+// Hum and drift are in parts of the signal: of the highest level, or of the amplitude of sync.
+// Stamps have faults of their own (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp).
+// Plain data; any thread.
+#pragma once
+
+#include <cstddef>
+
+#include "drivers/virtual_bench/model/stamp_faults.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+struct ChannelFaults {
+  double range = 0.0; // in the channel's unit; 0: one that holds the highest level
+  std::size_t stuck_samples = 0;
+  double stuck_every_s = 1.0;
+  double hum_rel = 0.0;
+  double hum_hz = 50.0;
+  double drift_rel_per_s = 0.0;
+};
+
+// Of single samples of the sensor; of the ACS, which loses whole frames.
+struct SampleLoss {
+  double probability = 0.0;
+  bool counted = true; // the numbers of the samples go on over those that are lost
+};
+
+// When a time series sensor takes the first sample of a series, after the trigger.
+struct SeriesStart {
+  bool free_running = false; // with its next own sample: uniform over one sample
+  double jitter_s = 0.0;     // width of a uniform delay
+};
+
+struct BenchFaults {
+  ChannelFaults sensor; // each axis of it
+  ChannelFaults reference;
+  ChannelFaults sync_acs;
+  ChannelFaults sync_dau;
+  SampleLoss sensor_loss;
+  SampleLoss acs_loss;
+  SeriesStart series_start;
+  StampFaultProbabilities stamps;
+  double exciter_gain = 1.0; // times level_per_volt: an amplifier that somebody turned up
+};
+
+} // namespace dyncal::drivers::virtual_bench

@@ -1,0 +1,47 @@
+#include "drivers/virtual_bench/model/channel_disturbance.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "drivers/virtual_bench/model/random.hpp"
+
+namespace dyncal::drivers::virtual_bench {
+
+ChannelDisturbance::ChannelDisturbance(std::uint64_t seed, std::string_view name,
+                                       const ChannelFaults& faults, double signal)
+    : faults_(faults), signal_(signal) {
+  Random draws(seed, "disturbance of " + std::string(name));
+  hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
+  next_stuck_s_ = draws.uniform(0.0, faults.stuck_every_s);
+}
+
+double ChannelDisturbance::added(double time_s, const Motion& motion) const {
+  double value = 0.0;
+  if (faults_.hum_rel != 0.0) {
+    value += faults_.hum_rel *
+             std::sin(2.0 * std::numbers::pi * faults_.hum_hz * time_s + hum_phase_rad_);
+  }
+  if (motion.sync_on) {
+    value += faults_.drift_rel_per_s * motion.since_change_s;
+  }
+  return signal_ * value;
+}
+
+double ChannelDisturbance::held(double value, double time_s) {
+  if (faults_.stuck_samples == 0) {
+    return value;
+  }
+  if (stuck_left_ == 0 && time_s >= next_stuck_s_) {
+    stuck_value_ = value;
+    stuck_left_ = faults_.stuck_samples;
+    next_stuck_s_ = time_s + faults_.stuck_every_s;
+  }
+  if (stuck_left_ == 0) {
+    return value;
+  }
+  --stuck_left_;
+  return stuck_value_;
+}
+
+} // namespace dyncal::drivers::virtual_bench

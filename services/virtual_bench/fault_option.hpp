@@ -1,0 +1,32 @@
+// One --fault of the command line, NAME=VALUE[,KEY=VALUE...], into the description of what is wrong
+// with the bench (drivers/virtual_bench/model/bench_faults.hpp).
+//
+//   over-range=LIMIT,at=CHANNEL        end stops at +-LIMIT in m/s^2 or V
+//   stuck=SAMPLES,at=CHANNEL           for so many samples, every second, or every=SECONDS
+//   hum=PART,at=CHANNEL                of the signal, at 50 Hz, or frequency=HZ
+//   drift=PART,at=CHANNEL              of the signal per second, from each change of the generator
+//   loss=PROBABILITY,at=sensor|acs     per sample, or per frame of the ACS; counted=no: the numbers
+//                                      of the samples do not show it
+//   free-running                       the time series sensor starts with its next own sample
+//   start-jitter=SECONDS               ... and anywhere within so long after the trigger
+//   exciter-gain=FACTOR                times the acceleration that a volt should give
+//   NAME=PROBABILITY                   per sample, of a stamp (stamp_faults.hpp)
+//
+// CHANNEL is sensor, reference, sync_acs or sync_dau. Fails (bad_argument) with the whole option.
+// Any thread.
+#pragma once
+
+#include <string>
+
+#include "drivers/virtual_bench/model/bench_faults.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services::virtual_bench {
+
+[[nodiscard]] Expected<void> read_fault(const std::string& text,
+                                        drivers::virtual_bench::BenchFaults& faults);
+
+// What can be written, for --help.
+[[nodiscard]] std::string fault_help();
+
+} // namespace dyncal::services::virtual_bench
