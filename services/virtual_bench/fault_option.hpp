@@ -8,7 +8,7 @@
 //   loss=PROBABILITY,at=sensor|acs     per sample, or per frame of the ACS; counted=no: the numbers
 //                                      of the samples do not show it
 //   free-running                       the time series sensor starts with its next own sample
-//   start-jitter=SECONDS               ... and anywhere within so long after the trigger
+//   start-jitter=SECONDS               standard deviation of its start from shot to shot
 //   exciter-gain=FACTOR                times the acceleration that a volt should give
 //   NAME=PROBABILITY                   per sample, of a stamp (stamp_faults.hpp)
 //

@@ -93,7 +93,7 @@ TEST(Excitation, AnExciterThatIsTooLivelyIsSwitchedOff) {
 TEST(Excitation, AnAmplifierThatIsTurnedUpStopsTheRunWithinTheFirstStep) {
   const auto folder = fresh_folder("excitation-turned-up");
   LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n", "1");
-  settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "50"});
+  settings.bench_arguments.insert(settings.bench_arguments.end(), {"--fault", "exciter-gain=50"});
   LiveBench bench(folder, settings);
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   EXPECT_EQ(run.wait(patience).value_or(0), 1);

@@ -1,6 +1,8 @@
 // A run by series time stamping over bad instruments: every shot that fails is repeated, and the
 // run reaches its result.
 #include <chrono>
+#include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -53,11 +55,31 @@ protected:
         << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n";
   }
 
-  nlohmann::json run() {
-    ProgramRun& run = laboratory_->start(
+  nlohmann::json run(int status = 0) {
+    run_ = &laboratory_->start(
         "dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
-    EXPECT_EQ(run.wait(patience), 0) << run.errors();
+    EXPECT_EQ(run_->wait(patience), status) << run_->errors();
     return read_json(folder_ / "result.json");
+  }
+
+  // Magnitude and phase of every step lie within four standard uncertainties of the truth.
+  void expect_covered(const nlohmann::json& result) const {
+    const auto truth = read_json(folder_ / "truth.json");
+    std::size_t compared = 0;
+    for (const auto& expected : truth["transfer_function"]) {
+      for (const auto& point : result["points"]) {
+        if (point["frequency_hz"] != expected["frequency_hz"]) {
+          continue;
+        }
+        ++compared;
+        EXPECT_NEAR(point["magnitude"].get<double>(), expected["magnitude"].get<double>(),
+                    4.0 * point["u_magnitude"].get<double>());
+        const double phase = point["phase_rad"].get<double>() - expected["phase_rad"].get<double>();
+        EXPECT_LE(std::abs(std::remainder(phase, 2.0 * std::numbers::pi)),
+                  4.0 * point["u_phase_rad"].get<double>());
+      }
+    }
+    EXPECT_EQ(compared, 2U);
   }
 
   static void expect_complete(const nlohmann::json& result) {
@@ -74,6 +96,7 @@ protected:
   std::optional<ProgramRun> virtual_bench_;
   std::optional<Laboratory> laboratory_;
   ProgramRun* dso_ = nullptr;
+  ProgramRun* run_ = nullptr;
 };
 
 TEST_F(SeriesFaults, ShotsSpoiledByABadLineAreRepeatedUntilTheStepHasAll) {
@@ -85,10 +108,10 @@ TEST_F(SeriesFaults, ShotsSpoiledByABadLineAreRepeatedUntilTheStepHasAll) {
 }
 
 TEST_F(SeriesFaults, ASensorThatRunsFreeIsNoticedAndCorrected) {
-  start("free", {"--tss-free-running"});
+  start("free", {"--fault", "free-running"});
   const auto result = run();
   ASSERT_FALSE(result.is_discarded());
-  const auto truth = read_json(folder_ / "truth.json");
+  expect_covered(result);
   for (const auto& point : result["points"]) {
     EXPECT_THAT(point["series_start"].get<std::string>(),
                 AnyOf(HasSubstr("uniform over one sample"), HasSubstr("undecided")));
@@ -96,6 +119,37 @@ TEST_F(SeriesFaults, ASensorThatRunsFreeIsNoticedAndCorrected) {
     EXPECT_GT(point["u_phase_rad"].get<double>(), 0.01); // four shots of a start that is not known
   }
   EXPECT_EQ(result["points"][1]["series_start"], "uniform over one sample after the trigger");
+}
+
+TEST_F(SeriesFaults, AStartThatScattersIsCoveredByTheUncertainty) {
+  start("jitter", {"--fault", "start-jitter=50e-6"});
+  const auto result = run();
+  ASSERT_FALSE(result.is_discarded());
+  expect_covered(result);
+  EXPECT_GT(result["points"][1]["u_phase_rad"].get<double>(), 0.01); // 160 Hz: 50 mrad a shot
+}
+
+TEST_F(SeriesFaults, ASensorAtItsEndStopsIsRefused) {
+  start("over-range", {"--fault", "over-range=80,at=sensor"});
+  const auto result = run(1);
+  ASSERT_FALSE(result.is_discarded());
+  ASSERT_EQ(result["points"].size(), 2U);
+  for (const auto& point : result["points"]) {
+    EXPECT_FALSE(point["valid"].get<bool>()) << point;
+    EXPECT_THAT(point["problem"].get<std::string>(),
+                HasSubstr("tss/acceleration_z is over its range"));
+  }
+  EXPECT_THAT(run_->output(), HasSubstr("tss/acceleration_z is over its range"));
+}
+
+TEST_F(SeriesFaults, SamplesThatASeriesLostAreSeen) {
+  start("loss", {"--fault", "loss=0.01,at=sensor,counted=no"});
+  const auto result = run();
+  ASSERT_FALSE(result.is_discarded());
+  ASSERT_EQ(result["points"].size(), 2U);
+  for (const auto& point : result["points"]) {
+    EXPECT_NE(point["flags"], nlohmann::json::array()) << point;
+  }
 }
 
 } // namespace

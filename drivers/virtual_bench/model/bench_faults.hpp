@@ -38,7 +38,7 @@ struct SampleLoss {
 // When a time series sensor takes the first sample of a series, after the trigger.
 struct SeriesStart {
   bool free_running = false; // with its next own sample: uniform over one sample
-  double jitter_s = 0.0;     // width of a uniform delay
+  double jitter_s = 0.0;     // standard deviation from shot to shot
 };
 
 struct BenchFaults {

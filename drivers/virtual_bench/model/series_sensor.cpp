@@ -35,7 +35,7 @@ void SeriesSensor::trigger(double edge_s) {
     first_sample_s_ += random_.uniform() / real_rate_hz();
   }
   if (settings_.start.jitter_s > 0.0) {
-    first_sample_s_ += settings_.start.jitter_s * random_.uniform();
+    first_sample_s_ += random_.normal(settings_.start.jitter_s);
   }
 }
 

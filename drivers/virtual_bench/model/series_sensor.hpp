@@ -3,9 +3,9 @@
 //
 // Sample n is taken at edge + latency + n / (nominal rate * rate_factor) and shows the acceleration
 // of `delay` earlier, with the response, noise and quantisation of the sensor. Latency is 0, for a
-// sensor that runs free uniform over one sample, and with start jitter uniform over that. A sample
-// that is lost is missing in the series, which goes on until it is full. A trigger during a series
-// is ignored. One thread.
+// sensor that runs free uniform over one sample; start jitter scatters it from shot to shot. A
+// sample that is lost is missing in the series, which goes on until it is full. A trigger during a
+// series is ignored. One thread.
 #pragma once
 
 #include <cstdint>

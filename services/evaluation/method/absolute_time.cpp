@@ -103,7 +103,8 @@ Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records)
   const auto interval = records.interval(0, step);
   if (!interval) {
     return [results = results_without_value(recipe_->steps[step], roles_.dut,
-                                            no_sine(recipe_->steps[step], roles_.excitation))] {
+                                            no_sine(recipe_->steps[step], roles_.excitation,
+                                                    records.of(roles_.excitation.source)))] {
       return results;
     };
   }

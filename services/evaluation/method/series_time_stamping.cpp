@@ -34,7 +34,8 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
   const RecipeStep& planned = recipe_->steps[step];
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return results_without_value(planned, roles_.dut, no_sine(planned, roles_.sync_acs));
+    return results_without_value(
+        planned, roles_.dut, no_sine(planned, roles_.sync_acs, records.of(roles_.sync_acs.source)));
   }
   const SourceInterval acs = records.samples(roles_.sync_acs.source, *interval);
   SeriesStepOutput evaluated =

@@ -1,8 +1,16 @@
 #include "services/evaluation/method/step_task.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
 #include <fmt/format.h>
 
 namespace dyncal::services {
+namespace {
+
+constexpr double max_distrusted_part = 0.2; // of the stamps: with more they are the likely reason
+
+} // namespace
 
 StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
                         const ExcitationProgress& excitation,
@@ -23,7 +31,18 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
   return task;
 }
 
-std::string no_sine(const RecipeStep& step, const ChannelName& sync) {
+std::string no_sine(const RecipeStep& step, const ChannelName& sync, const SourceRecord& record) {
+  const auto flags = record.flags();
+  const auto distrusted = static_cast<double>(
+      std::count_if(flags.begin(), flags.end(), [](std::uint8_t flag) { return flag != 0; }));
+  const double part = flags.empty() ? 0.0 : distrusted / static_cast<double>(flags.size());
+  if (part > max_distrusted_part) {
+    return fmt::format(
+        "no steady sine of {} Hz was found in {}: {:.0f} % of its time stamps are not "
+        "trusted; has its clock lost its fix, or does it lose samples that its "
+        "numbers do not show?",
+        step.frequency_text_hz, sync.text(), 100.0 * part);
+  }
   return fmt::format("no steady sine of {} Hz was found in {}; is the sync signal connected?",
                      step.frequency_text_hz, sync.text());
 }

@@ -27,7 +27,8 @@ struct StepTask {
                                       const ExcitationProgress& excitation,
                                       const std::vector<SourceInterval>& sources);
 
-// Why a step has no interval in the source of this sync channel.
-[[nodiscard]] std::string no_sine(const RecipeStep& step, const ChannelName& sync);
+// Why a step has no interval in the source of this sync channel, whose record this is.
+[[nodiscard]] std::string no_sine(const RecipeStep& step, const ChannelName& sync,
+                                  const SourceRecord& record);
 
 } // namespace dyncal::services

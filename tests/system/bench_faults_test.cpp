@@ -1,0 +1,185 @@
+// What is wrong with a bench is seen by whoever reads the result of a live run: the value is
+// covered by its uncertainty, carries a flag, or is refused with the reason.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/live_bench.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+
+constexpr const char* axis = "acceleration_z";
+
+struct Case {
+  const char* name;
+  std::vector<std::string> faults; // of the virtual bench
+  enum class Seen { covered, flagged, refused };
+  Seen seen = Seen::covered;
+  const char* flag = "";     // its name, as in the legend
+  const char* sentence = ""; // of the flag, or of the refusal
+};
+
+LiveBenchSettings settings_of(const std::filesystem::path& folder,
+                              const std::vector<std::string>& faults) {
+  LiveBenchSettings settings{.bench_arguments = {"--speed", "8", "--seed", "12", "--frequencies",
+                                                 "40,125", "--levels", "20", "--adc-file",
+                                                 folder / "adc.json"},
+                             .excitation = "frequencies_hz = [\"40\", \"125\"]\nlevel = "
+                                           "20.0\nsettling_s = 0.4\nduration_s = 2.0\n",
+                             .source_dau = "time_base = \"local\"",
+                             .rest = "[corrections]\nadc = { file = \"adc.json\", channel = "
+                                     "\"ADC1\" }\n"};
+  for (const std::string& fault : faults) {
+    settings.bench_arguments.insert(settings.bench_arguments.end(), {"--fault", fault});
+  }
+  return settings;
+}
+
+// Largest deviation of magnitude and phase in standard uncertainties.
+double deviation(const nlohmann::json& point, const nlohmann::json& truth) {
+  for (const auto& expected : truth["transfer_function"]) {
+    if (expected["channel"] == axis && expected["frequency_hz"] == point["frequency_hz"]) {
+      const double magnitude =
+          point["magnitude"].get<double>() - expected["magnitude"].get<double>();
+      const double phase =
+          std::remainder(point["phase_rad"].get<double>() - expected["phase_rad"].get<double>(),
+                         2.0 * std::numbers::pi);
+      return std::max(std::abs(magnitude) / point["u_magnitude"].get<double>(),
+                      std::abs(phase) / point["u_phase_rad"].get<double>());
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void expect_seen(const Case& fault, const nlohmann::json& point, const nlohmann::json& truth) {
+  ASSERT_EQ(point["valid"].get<bool>(), fault.seen != Case::Seen::refused) << point;
+  if (fault.seen == Case::Seen::refused) {
+    EXPECT_THAT(point["problem"].get<std::string>(), HasSubstr(fault.sentence));
+    return;
+  }
+  if (fault.seen == Case::Seen::flagged) {
+    EXPECT_THAT(point["flag_names"].dump(), HasSubstr(fault.flag)) << point;
+    EXPECT_THAT(point["flags"].dump(), HasSubstr(fault.sentence)) << point;
+  } else {
+    EXPECT_EQ(point["flags"], nlohmann::json::array()) << point;
+  }
+  EXPECT_LE(deviation(point, truth), 4.0) << point;
+}
+
+// On the terminal too.
+void expect_told(const Case& fault, const std::string& output) {
+  if (fault.seen == Case::Seen::refused) {
+    EXPECT_THAT(output, HasSubstr(fault.sentence));
+  } else if (fault.seen == Case::Seen::flagged) {
+    EXPECT_THAT(output, HasSubstr(std::string(fault.flag) + " (")); // the legend
+    EXPECT_THAT(output, HasSubstr(fault.sentence));
+  }
+}
+
+class BenchFault : public testing::TestWithParam<Case> {};
+
+TEST_P(BenchFault, IsSeenInTheResult) {
+  const Case& fault = GetParam();
+  const auto folder = fresh_folder(std::string("bench-fault-") + fault.name);
+  const LiveBench bench(folder, settings_of(folder, fault.faults));
+  ProgramRun run("dyncal",
+                 {"run", bench.bench_file(), "--json", folder / "result.json", "--domain",
+                  std::to_string(own_dds_domain()), "--dds", "fastdds"},
+                 folder);
+  const auto status = run.wait(patience);
+  ASSERT_TRUE(status) << run.errors();
+  const auto result = read_json(folder / "result.json");
+  const auto truth = bench.truth();
+  ASSERT_FALSE(result.is_discarded() || truth.is_discarded());
+  std::size_t points = 0;
+  for (const auto& point : result["points"]) {
+    if (point["channel"] == std::string("dau/") + axis) {
+      expect_seen(fault, point, truth);
+      ++points;
+    }
+  }
+  EXPECT_EQ(points, 2U);
+  expect_told(fault, run.output());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Live, BenchFault,
+    testing::Values(Case{.name = "none", .faults = {}},
+                    Case{.name = "sensor_over_range",
+                         .faults = {"over-range=27,at=sensor"},
+                         .seen = Case::Seen::refused,
+                         .sentence = "dau/acceleration_z is over its range"},
+                    Case{.name = "reference_over_range",
+                         .faults = {"over-range=19,at=reference"},
+                         .seen = Case::Seen::refused,
+                         .sentence = "acs/reference is over its range"},
+                    Case{.name = "sync_over_range",
+                         .faults = {"over-range=9,at=sync_acs"},
+                         .seen = Case::Seen::flagged,
+                         .flag = "over_range",
+                         .sentence = "acs/sync: over range"},
+                    Case{.name = "sensor_stuck",
+                         .faults = {"stuck=50,at=sensor"},
+                         .seen = Case::Seen::refused,
+                         .sentence = "dau/acceleration_z repeats the same value"},
+                    Case{.name = "reference_stuck",
+                         .faults = {"stuck=1000,at=reference"},
+                         .seen = Case::Seen::refused,
+                         .sentence = "acs/reference repeats the same value"},
+                    Case{.name = "drift",
+                         .faults = {"drift=0.02,at=sensor", "drift=0.02,at=reference"}},
+                    Case{.name = "lost_and_counted",
+                         .faults = {"loss=0.01,at=sensor"},
+                         .seen = Case::Seen::flagged,
+                         .flag = "samples_lost",
+                         .sentence = "dau: samples lost"},
+                    // The unit numbers what it has; its stamps then contradict its numbers.
+                    Case{.name = "lost_and_not_counted",
+                         .faults = {"loss=0.01,at=sensor,counted=no"},
+                         .seen = Case::Seen::refused,
+                         .sentence = "of its time stamps are not trusted"},
+                    Case{.name = "frames_of_the_acs_lost",
+                         .faults = {"loss=0.1,at=acs"},
+                         .seen = Case::Seen::flagged,
+                         .flag = "samples_lost",
+                         .sentence = "acs: samples lost"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
+// A sensor that somebody has published, and a generator that goes where nobody knows it.
+TEST(BenchResponse, ResultOfASensorFromAFileAgreesWithItAndOutsideItNothingIsExcited) {
+  const auto folder = fresh_folder("bench-response");
+  std::ofstream(folder / "response.csv")
+      << "frequency_hz,magnitude,phase_rad\n20,0.82,-0.21\n40,0.80,-0.43\n80,0.75,-0.9\n"
+         "125,0.66,-1.5\n";
+  LiveBenchSettings settings = settings_of(folder, {});
+  settings.bench_arguments.insert(settings.bench_arguments.end(),
+                                  {"--response", folder / "response.csv"});
+  LiveBench bench(folder, settings);
+  bench.tell_generator(":SOURce1:FREQuency 126");
+  EXPECT_THAT(bench.ask_generator(":SYSTem:ERRor?"), HasSubstr("Data out of range"));
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
+  std::size_t points = 0;
+  const auto result = read_json(folder / "result.json");
+  for (const auto& point : result["points"]) {
+    if (point["channel"] == std::string("dau/") + axis) {
+      const bool at_40 = point["frequency_hz"] == 40.0;
+      EXPECT_NEAR(point["magnitude"].get<double>(), at_40 ? 0.80 : 0.66,
+                  4.0 * point["u_magnitude"].get<double>());
+      EXPECT_NEAR(point["phase_rad"].get<double>(), at_40 ? -0.43 : -1.5,
+                  4.0 * point["u_phase_rad"].get<double>());
+      ++points;
+    }
+  }
+  EXPECT_EQ(points, 2U);
+}
+
+} // namespace
+} // namespace dyncal::tests
