@@ -100,6 +100,9 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
     if (block->end_of_stream) {
       inputs.erase(behind);
     }
+    if (const auto source = evaluator.source_of_clock_alone()) {
+      std::erase_if(inputs, [&](const auto& input) { return input->source() != *source; });
+    }
   }
   outcome.interrupted = stop.stop_requested();
   if (!evaluator.finished()) {
@@ -151,7 +154,8 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   RunOutcome outcome = outcome_of(*recipe);
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
-                              std::thread::hardware_concurrency(), 1, max_evaluations)});
+                              std::thread::hardware_concurrency(), 1, max_evaluations),
+                          .clock_to_the_end = true});
   auto inputs = open_inputs(*bench, evaluator, outcome);
   if (!inputs) {
     return fail(inputs.error());

@@ -1,6 +1,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -27,7 +28,8 @@ Evaluation with_temperature(Evaluation evaluation, std::optional<double> degc) {
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
-      summary_(*recipe_), evaluations_(limits.evaluations_at_once) {
+      summary_(*recipe_), clock_to_the_end_(limits.clock_to_the_end),
+      evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);
@@ -104,10 +106,27 @@ void RunEvaluator::keep_needed_channels(SourceRecord& source) const {
 
 void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
   SourceRecord* record = records_.find(source);
-  if (record != nullptr && !finished_ && record->add(block) && clock_ &&
-      clock_->source() == source) {
+  if (record == nullptr || finished_ || !record->add(block)) {
+    return;
+  }
+  if (clock_ && clock_->source() == source) {
     clock_->add(block);
   }
+  if (source_of_clock_alone()) {
+    record->forget_before(std::numeric_limits<std::int64_t>::max());
+  }
+}
+
+bool RunEvaluator::has_all_steps() const {
+  const ExcitationProgress& excitation = records_.excitation();
+  return next_step_ >= excitation.steps_expected() &&
+         (excitation.ended() || next_step_ >= recipe_->steps.size());
+}
+
+std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
+  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() &&
+                       !records_.of(clock_->source()).ended();
+  return goes_on ? std::optional(clock_->source()) : std::nullopt;
 }
 
 bool RunEvaluator::is_evaluated(std::uint32_t step) const {
@@ -168,13 +187,12 @@ EvaluationOutput RunEvaluator::take_output() {
   if (finished_ || !undescribed().empty()) {
     return output;
   }
-  records_.search();
-  evaluate_next_steps(output);
-  records_.forget_before_step(next_step_);
-  const ExcitationProgress& excitation = records_.excitation();
-  const bool all_steps = next_step_ >= excitation.steps_expected() &&
-                         (excitation.ended() || next_step_ >= recipe_->steps.size());
-  if (all_steps || excitation.is_cut_short()) {
+  if (!has_all_steps()) {
+    records_.search();
+    evaluate_next_steps(output);
+    records_.forget_before_step(next_step_);
+  }
+  if (records_.excitation().is_cut_short() || (has_all_steps() && !source_of_clock_alone())) {
     finish(output);
   }
   return output;

@@ -38,6 +38,9 @@ struct EvaluationLimits {
   // caller's goes on to take samples; 0: in the caller's. The results are the same.
   std::size_t evaluations_at_once = 0;
   std::size_t samples_of_a_source = SourceRecord::default_capacity; // held; see source_record.hpp
+  // The sample clock is followed to the end of its source, not only to the last step: for records
+  // that are there already.
+  bool clock_to_the_end = false;
 };
 
 class RunEvaluator {
@@ -70,6 +73,9 @@ public:
 
   // Evaluates what can be evaluated and hands over what is new.
   [[nodiscard]] EvaluationOutput take_output();
+  // The source whose sample clock is followed although every step has been evaluated; nothing as
+  // long as steps are missing. Samples of other sources have no use any more.
+  [[nodiscard]] std::optional<std::string> source_of_clock_alone() const;
   // Everything of this run has been handed over.
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.
@@ -80,6 +86,7 @@ private:
   [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;
   [[nodiscard]] bool is_evaluated(std::uint32_t step) const;
+  [[nodiscard]] bool has_all_steps() const;
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
@@ -92,6 +99,7 @@ private:
   LevelWatch level_watch_;
   TransferSummary summary_;
   std::size_t next_step_ = 0; // not evaluated yet
+  bool clock_to_the_end_;
   bool finished_ = false;
   EvaluationQueue evaluations_; // the last member: it waits for those that look at the others
 };

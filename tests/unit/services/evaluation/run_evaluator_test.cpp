@@ -21,10 +21,10 @@ namespace {
 using testing::HasSubstr;
 
 EvaluationOutput evaluate(const tests::SyntheticRun& run, const wire::Measurement& measurement,
-                          std::size_t evaluations_at_once = 0) {
+                          const EvaluationLimits& limits = {}) {
   auto recipe = parse_recipe(measurement);
   EXPECT_TRUE(recipe) << recipe.error().message;
-  RunEvaluator evaluator(std::move(*recipe), {.evaluations_at_once = evaluations_at_once});
+  RunEvaluator evaluator(std::move(*recipe), limits);
   EXPECT_TRUE(tests::describe(evaluator, run.acs_description()));
   EXPECT_TRUE(tests::describe(evaluator, run.dau_description()));
   EvaluationOutput all;
@@ -244,7 +244,8 @@ TEST(RunEvaluator, GivesTheSameResultsFromThreadsOfTheirOwn) {
   run.lost_block = 22;
   const EvaluationOutput here = evaluate(run, run.measurement());
   for (const std::size_t at_once : {1U, 3U}) {
-    const EvaluationOutput elsewhere = evaluate(run, run.measurement(), at_once);
+    const EvaluationOutput elsewhere =
+        evaluate(run, run.measurement(), {.evaluations_at_once = at_once});
     ASSERT_EQ(elsewhere.results.size(), here.results.size());
     for (std::size_t i = 0; i < here.results.size(); ++i) {
       EXPECT_TRUE(message_of(elsewhere.results[i]) == message_of(here.results[i]))
@@ -264,6 +265,37 @@ TEST(RunEvaluator, GivesTheSameResultsFromThreadsOfTheirOwn) {
       report->clock.u_mean_interval_s = 0.0;
     }
     EXPECT_TRUE(message_of(other) == message_of(own));
+  }
+}
+
+// What was recorded after the last step of the recipe belongs to the sample clock alone.
+TEST(RunEvaluator, FollowsTheSampleClockToTheEndOfARecordWhenAsked) {
+  tests::SyntheticRun run;
+  const wire::Measurement measurement = run.measurement();
+  run.steps = {{"40", 10.0}, {"80", 10.0}, {"100", 10.0}, {"125", 10.0}};
+  run.lost_block = 150; // of 50 samples in the third step
+  const EvaluationOutput to_the_last_step = evaluate(run, measurement);
+  for (const std::size_t at_once : {0U, 2U}) {
+    const EvaluationOutput to_the_end =
+        evaluate(run, measurement, {.evaluations_at_once = at_once, .clock_to_the_end = true});
+    ASSERT_EQ(to_the_end.results.size(), 2U);
+    ASSERT_EQ(to_the_last_step.results.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_TRUE(message_of(to_the_end.results[i]) == message_of(to_the_last_step.results[i]));
+    }
+    ASSERT_EQ(to_the_end.clock_reports.size(), 1U);
+    ASSERT_EQ(to_the_last_step.clock_reports.size(), 1U);
+    const ClockReport& whole = to_the_end.clock_reports[0];
+    const ClockReport& part = to_the_last_step.clock_reports[0];
+    std::uint64_t sent = 0;
+    for (const wire::SampleBlock& block : run.dau_blocks()) {
+      sent += block.sample_count();
+    }
+    EXPECT_EQ(whole.clock.intervals, sent - 2); // two stretches
+    EXPECT_LT(part.clock.intervals, whole.clock.intervals * 2 / 3);
+    EXPECT_EQ(whole.clock.lost, 50U);
+    EXPECT_EQ(part.clock.lost, 0U);
+    EXPECT_THAT(sentences_of(whole.flags), testing::Contains("samples lost"));
   }
 }
 
