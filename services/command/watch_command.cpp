@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <set>
@@ -111,6 +112,14 @@ std::string function_line(const wire::TransferFunction& function, const std::vec
   return fmt::format("{}: group delay {} ms (u {}){}", head, ms.value, ms.u, flags_text(flags));
 }
 
+std::string clock_line(const wire::SampleClockReport& report, const std::vector<Flag>& flags) {
+  const double u_hz = report.u_mean_interval_s() * report.mean_rate_hz() * report.mean_rate_hz();
+  const RoundedValue hz = round_by_uncertainty(report.mean_rate_hz(), u_hz);
+  return fmt::format("{} {}: sample clock of {}: {} Hz (u {}), {} lost{}", report.bench().c_str(),
+                     report.run().c_str(), report.source().c_str(), hz.value,
+                     std::isnan(u_hz) ? "not known" : hz.u, report.lost(), flags_text(flags));
+}
+
 std::string run_line(const wire::ServiceStatus& status) {
   const std::string line =
       fmt::format("{} {}: {} {}, {} results", status.bench().c_str(), status.run().c_str(),
@@ -197,6 +206,7 @@ struct Readers {
   bus::Reader<wire::Excitation> excitation;
   bus::Reader<wire::CalibrationResult> results;
   bus::Reader<wire::TransferFunction> functions;
+  bus::Reader<wire::SampleClockReport> clocks;
 };
 
 Expected<Readers> open_readers(bus::Participant& participant, const std::string& bench,
@@ -206,11 +216,12 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
   auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
   auto results = participant.reader(bus::topics::calibration_result, bench, wake_up);
   auto functions = participant.reader(bus::topics::transfer_function, bench, wake_up);
-  if (const auto error = first_error(sources, services, excitation, results, functions)) {
+  auto clocks = participant.reader(bus::topics::sample_clock_report, bench, wake_up);
+  if (const auto error = first_error(sources, services, excitation, results, functions, clocks)) {
     return fail(*error);
   }
-  return Readers{std::move(*sources), std::move(*services), std::move(*excitation),
-                 std::move(*results), std::move(*functions)};
+  return Readers{std::move(*sources), std::move(*services),  std::move(*excitation),
+                 std::move(*results), std::move(*functions), std::move(*clocks)};
 }
 
 void take_all(Readers& readers, Screen& screen) {
@@ -244,6 +255,13 @@ void take_all(Readers& readers, Screen& screen) {
     if (info.valid) {
       const auto flags = flags_from_message(function.flags(), function.flag_names());
       screen.append(function_line(function, flags));
+      screen.explain(flags);
+    }
+  });
+  readers.clocks.take([&](const wire::SampleClockReport& report, const bus::SampleInfo& info) {
+    if (info.valid) {
+      const auto flags = flags_from_message(report.flags(), report.flag_names());
+      screen.append(clock_line(report, flags));
       screen.explain(flags);
     }
   });

@@ -152,6 +152,28 @@ INSTANTIATE_TEST_SUITE_P(
                          .sentence = "acs: samples lost"}),
     [](const auto& one) { return std::string(one.param.name); });
 
+// Flags of results and of the sample clock reach whoever watches.
+TEST(BenchFaultWatched, FlagsAreOnTheBus) {
+  const auto folder = fresh_folder("bench-fault-watched");
+  LiveBench bench(folder, settings_of(folder, {"loss=0.01,at=sensor"}));
+  std::filesystem::create_directories(folder / "watch");
+  ProgramRun watch("dyncal",
+                   {"watch", "--bench", "live", "--domain", std::to_string(own_dds_domain()),
+                    "--dds", "cyclonedds"},
+                   folder / "watch");
+  ASSERT_TRUE(watch.wait_for_output_text("live/dau: running", patience));
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
+  ASSERT_TRUE(watch.wait_for_output_text("sample clock of dau", patience)) << watch.output();
+  ASSERT_TRUE(watch.wait_for_output_text("flag samples_lost", patience)) << watch.output();
+  const std::string output = watch.output();
+  const std::string from_clock = output.substr(output.find("sample clock of dau"));
+  EXPECT_THAT(from_clock.substr(0, from_clock.find('\n')),
+              testing::AllOf(HasSubstr(" lost, "), HasSubstr("clock_uncertainty_unknown"),
+                             HasSubstr("samples_lost (samples lost)")));
+  EXPECT_THAT(output, HasSubstr("samples_lost (dau: samples lost)"));
+}
+
 // A sensor that somebody has published, and a generator that goes where nobody knows it.
 TEST(BenchResponse, ResultOfASensorFromAFileAgreesWithItAndOutsideItNothingIsExcited) {
   const auto folder = fresh_folder("bench-response");

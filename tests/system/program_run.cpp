@@ -117,8 +117,17 @@ double ProgramRun::cpu_s() {
 }
 
 bool ProgramRun::wait_for_error_text(const std::string& text, std::chrono::seconds limit) {
+  return wait_for_text(errors_, text, limit);
+}
+
+bool ProgramRun::wait_for_output_text(const std::string& text, std::chrono::seconds limit) {
+  return wait_for_text(output_, text, limit);
+}
+
+bool ProgramRun::wait_for_text(const std::filesystem::path& file, const std::string& text,
+                               std::chrono::seconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
-  while (errors().find(text) == std::string::npos) {
+  while (read(file).find(text) == std::string::npos) {
     if (std::chrono::steady_clock::now() > deadline) {
       return false;
     }

@@ -31,6 +31,8 @@ public:
   std::optional<int> wait(std::chrono::nanoseconds limit);
   // True as soon as standard error contains the text.
   bool wait_for_error_text(const std::string& text, std::chrono::seconds limit);
+  // The same of standard output.
+  bool wait_for_output_text(const std::string& text, std::chrono::seconds limit);
 
   [[nodiscard]] std::string output() const;
   [[nodiscard]] std::string errors() const;
@@ -38,6 +40,8 @@ public:
   [[nodiscard]] double seconds() const; // since it was started, until it was seen to end
 
 private:
+  static bool wait_for_text(const std::filesystem::path& file, const std::string& text,
+                            std::chrono::seconds limit);
   void check_result() const;
 
   std::optional<std::filesystem::path> result_; // that it is to write

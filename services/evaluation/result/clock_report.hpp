@@ -1,7 +1,7 @@
 // What a run tells of the sample clock of its sensor. Of series time stamping, whose samples have
 // no stamps, the rate is known and `clock.intervals` is 0. A NaN `clock.u_mean_interval_s`: nothing
-// is known of it, as of a clock of the source's own, whose rate nobody states. The bus carries no
-// flags. Plain data; any thread.
+// is known of it, as of a clock of the source's own, whose rate nobody states. Plain data; any
+// thread.
 #pragma once
 
 #include <string>

@@ -140,6 +140,8 @@ wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& repo
   message.software(software_version());
   write_numbers(report.clock, message);
   write_lists(report.clock, message);
+  message.flags() = sentences_of(report.flags);
+  message.flag_names() = names_of(report.flags);
   return message;
 }
 
@@ -148,7 +150,8 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   report.source = message.source().to_string();
   read_numbers(message, report.clock);
   read_lists(message, report.clock);
-  if (std::isnan(report.clock.u_mean_interval_s)) {
+  report.flags = flags_from_message(message.flags(), message.flag_names());
+  if (report.flags.empty() && std::isnan(report.clock.u_mean_interval_s)) { // of an older writer
     report.flags.push_back(make_flag(ResultFlag::clock_uncertainty_unknown));
   }
   return report;

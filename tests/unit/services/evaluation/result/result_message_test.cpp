@@ -109,7 +109,7 @@ TEST(TransferFunctionMessage, CarriesPointsAndGroupDelay) {
   EXPECT_FALSE(from_message(to_message({}, function)).group_delay);
 }
 
-TEST(ClockReportMessage, CarriesNumbersAndLists) {
+TEST(ClockReportMessage, CarriesNumbersListsAndFlags) {
   ClockReport report{.source = "dau", .clock = {}};
   report.clock.intervals = 1000;
   report.clock.median_s = 1e-3;
@@ -119,6 +119,8 @@ TEST(ClockReportMessage, CarriesNumbersAndLists) {
   report.clock.over_temperature = {{25.0, 996953.7, 12.0, 4}};
   report.clock.allan = {{1.0, 1e-6}};
   report.clock.lost = 5;
+  report.flags = {make_flag(ResultFlag::clock_uncertainty_unknown),
+                  make_flag(ResultFlag::samples_lost)};
   const wire::SampleClockReport message = to_message({}, report);
   const ClockReport read = from_message(message);
   EXPECT_TRUE(to_message({}, read) == message);
@@ -126,6 +128,17 @@ TEST(ClockReportMessage, CarriesNumbersAndLists) {
   EXPECT_EQ(read.clock.histogram.at(0).count, 12U);
   EXPECT_DOUBLE_EQ(read.clock.quantile_50_s, 1e-3);
   EXPECT_EQ(read.clock.lost, 5U);
+  EXPECT_EQ(read.flags, report.flags);
+}
+
+// Writers of before had no flags.
+TEST(ClockReportMessage, OfAnOlderWriterIsFlaggedByItsUncertainty) {
+  wire::SampleClockReport message;
+  message.u_mean_interval_s(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(from_message(message).flags,
+            std::vector{make_flag(ResultFlag::clock_uncertainty_unknown)});
+  message.u_mean_interval_s(1e-9);
+  EXPECT_TRUE(from_message(message).flags.empty());
 }
 
 } // namespace
