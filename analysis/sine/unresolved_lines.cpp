@@ -10,15 +10,11 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double resolved = 1.5; // distance in 1 / T
+constexpr double apart = 1.5; // distance of lines in 1 / T
 constexpr int max_multiple = 10;
 constexpr std::array mains_hz{50.0, 60.0};
-constexpr std::array hum_hz{50.0, 100.0, 150.0, 60.0, 120.0, 180.0};
-constexpr double usable_part_of_rate = 0.45;
-
-double folded(double line_hz, double rate_hz) {
-  return rate_hz > 0.0 ? std::abs(line_hz - rate_hz * std::round(line_hz / rate_hz)) : line_hz;
-}
+constexpr std::size_t min_samples = 16;
+constexpr double mains_wander_rel = 1e-3; // 50 mHz at 50 Hz
 
 double leakage(double distance_hz, double duration_s) {
   const double turns = std::abs(distance_hz) * duration_s;
@@ -31,14 +27,19 @@ double leakage(double distance_hz, double duration_s) {
 
 } // namespace
 
-std::vector<UnresolvedLine> unresolved_lines(double frequency_hz, double duration_s,
-                                             double rate_hz) {
+double folded_hz(double line_hz, double rate_hz) {
+  return rate_hz > 0.0 ? std::abs(line_hz - rate_hz * std::round(line_hz / rate_hz)) : line_hz;
+}
+
+std::vector<UnresolvedLine> unresolved_lines(double frequency_hz, double duration_s, double rate_hz,
+                                             double resolved) {
   std::vector<UnresolvedLine> result;
   if (!(frequency_hz > 0.0 && duration_s > 0.0)) {
     return result;
   }
   const auto consider = [&](LineKind kind, double line_hz, int order) {
-    const double distance = std::abs(folded(line_hz, rate_hz) - folded(frequency_hz, rate_hz));
+    const double distance =
+        std::abs(folded_hz(line_hz, rate_hz) - folded_hz(frequency_hz, rate_hz));
     const bool known = std::any_of(result.begin(), result.end(), [&](const UnresolvedLine& other) {
       return std::abs(other.line_hz - line_hz) * duration_s < resolved;
     });
@@ -65,48 +66,78 @@ LineUncertainty line_uncertainty(const UnresolvedLine& line, double line_amplitu
   if (!(signal_amplitude > 0.0)) {
     return {};
   }
-  const double u = line_amplitude * leakage(line.distance_hz, duration_s) /
-                   (std::numbers::sqrt2 * signal_amplitude);
+  const double wander_hz = line.kind == LineKind::mains ? mains_wander_rel * line.line_hz : 0.0;
+  const double distance_hz = std::max(0.0, line.distance_hz - wander_hz);
+  const double u =
+      line_amplitude * leakage(distance_hz, duration_s) / (std::numbers::sqrt2 * signal_amplitude);
   return {u, u};
 }
 
-std::vector<HumLine> resolved_hum(const Frequency& frequency, const SineFit& fit,
-                                  std::int64_t phase_origin_ns,
-                                  std::span<const std::int64_t> stamps_ns,
-                                  std::span<const double> values) {
-  std::vector<HumLine> result;
-  if (stamps_ns.size() < 2 || values.size() != stamps_ns.size()) {
-    return result;
+bool is_resolved(double line_hz, int order, double frequency_hz, double duration_s,
+                 double rate_hz) {
+  const double line = folded_hz(line_hz, rate_hz);
+  const double margin_hz = apart / duration_s;
+  if (line < margin_hz || 0.5 * rate_hz - line < 0.5 * margin_hz) {
+    return false;
   }
-  const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
-  const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
+  for (int k = 1; k < (order > 0 ? order : max_multiple + 1); ++k) {
+    if (std::abs(line - folded_hz(k * frequency_hz, rate_hz)) < margin_hz) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::optional<LineAmplitude> measure_line(double line_hz, std::span<const std::int64_t> stamps_ns,
+                                          std::span<const double> residuals) {
+  if (residuals.size() < min_samples || stamps_ns.size() != residuals.size()) {
+    return std::nullopt;
+  }
+  constexpr std::size_t block = 512;
+  std::array<double, block> sine{}, cosine{};
+  const Frequency frequency = Frequency::from_hz(line_hz);
+  double s = 0.0, c = 0.0, ss = 0.0, sc = 0.0, cc = 0.0, e = 0.0, ee = 0.0, es = 0.0, ec = 0.0;
+  for (std::size_t first = 0; first < residuals.size(); first += block) {
+    const std::size_t n = std::min(block, residuals.size() - first);
+    fill_sine_cosine(frequency, stamps_ns.front(), stamps_ns.subspan(first, n), sine.data(),
+                     cosine.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const double r = residuals[first + i];
+      s += sine[i];
+      c += cosine[i];
+      ss += sine[i] * sine[i];
+      sc += sine[i] * cosine[i];
+      cc += cosine[i] * cosine[i];
+      e += r;
+      ee += r * r;
+      es += r * sine[i];
+      ec += r * cosine[i];
+    }
+  }
+  const double n = static_cast<double>(residuals.size());
+  const double a = ss - s * s / n, b = sc - s * c / n, d = cc - c * c / n;
+  const double u = es - s * e / n, v = ec - c * e / n;
+  const double determinant = a * d - b * b;
+  if (!(determinant > 1e-3 * n * n)) { // n^2 / 4 where nothing is in the way
+    return std::nullopt;
+  }
+  const double in_sine = (d * u - b * v) / determinant;
+  const double in_cosine = (a * v - b * u) / determinant;
+  const double rest = ee - e * e / n - in_sine * u - in_cosine * v;
+  return LineAmplitude{std::hypot(in_sine, in_cosine),
+                       std::sqrt(std::max(0.0, rest) / (n - 3.0) * 0.5 * (a + d) / determinant)};
+}
+
+std::vector<double> residuals_of(const Frequency& frequency, const SineFit& fit,
+                                 std::int64_t phase_origin_ns,
+                                 std::span<const std::int64_t> stamps_ns,
+                                 std::span<const double> values) {
   std::vector<double> sine(values.size()), cosine(values.size()), residuals(values.size());
   fill_sine_cosine(frequency, phase_origin_ns, stamps_ns, sine.data(), cosine.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     residuals[i] = values[i] - fit.offset - fit.sine * sine[i] - fit.cosine * cosine[i];
   }
-  const std::span<const double> channel[] = {residuals};
-  for (const double line : hum_hz) {
-    const double f = frequency.hz();
-    const double distance = std::abs(line - f * std::max(1.0, std::round(line / f)));
-    if (line > usable_part_of_rate * rate_hz || distance * duration_s < resolved ||
-        line * duration_s < resolved) {
-      continue;
-    }
-    const auto lines = fit_sine(Frequency::from_hz(line), phase_origin_ns, stamps_ns, channel);
-    if (lines) {
-      result.push_back({line, lines->front().amplitude(), lines->front().u_amplitude()});
-    } else if (lines.error().code == ErrorCode::no_excitation) {
-      // Not seen: what a fit of pure noise cannot show is four times its uncertainty at most.
-      double squares = 0.0;
-      for (const double residual : residuals) {
-        squares += residual * residual;
-      }
-      const double n = static_cast<double>(residuals.size());
-      result.push_back({line, 0.0, 2.0 * std::sqrt(2.0 * squares) / n});
-    }
-  }
-  return result;
+  return residuals;
 }
 
 } // namespace dyncal::analysis

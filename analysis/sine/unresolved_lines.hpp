@@ -10,15 +10,17 @@
 //   u(A) / A = u(theta) = h L(d) / (sqrt(2) A)
 //
 // h has to come from where the line is resolved: the same channel at another step or between two
-// steps (`resolved_hum`, one more record each). Where it never was, there is no bound, and the step
-// needs a flag. Lines farther away are fitted beside the signal (disturbances.hpp).
+// steps (`measure_line`). Where it never was, there is no bound, and the step needs a flag. Lines
+// farther away are fitted beside the signal (disturbances.hpp). Of the mains, whose frequency
+// wanders, d counts as smaller by 1e-3 of the line's.
 //
 // Uneven stamps fold less than this says; fs is their mean rate, and what the lines do to such a
-// record is bounded all the same. `resolved_hum` fails never: what cannot be fitted is left out.
-// Any thread.
+// record is bounded all the same. Nothing fails: what cannot be told from something else is left
+// out. Any thread.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,9 +38,10 @@ struct UnresolvedLine {
   double distance_hz = 0.0; // of what sampling makes of it, from the excitation
 };
 
-// The nearest first; empty: none. Multiples of the excitation that are mains lines too are mains.
+// The nearest first; empty: none. `resolved`: how many 1 / T away a line must be to be none of
+// them. Multiples of the excitation that are mains lines too are mains.
 [[nodiscard]] std::vector<UnresolvedLine> unresolved_lines(double frequency_hz, double duration_s,
-                                                           double rate_hz);
+                                                           double rate_hz, double resolved = 1.5);
 
 struct LineUncertainty { // standard uncertainties, of magnitude and phase alike
   double u_magnitude_rel = 0.0;
@@ -47,17 +50,29 @@ struct LineUncertainty { // standard uncertainties, of magnitude and phase alike
 [[nodiscard]] LineUncertainty line_uncertainty(const UnresolvedLine& line, double line_amplitude,
                                                double signal_amplitude, double duration_s);
 
-struct HumLine {
-  double line_hz = 0.0;
+// Where sampling at `rate_hz` puts a line: from 0 to half the rate.
+[[nodiscard]] double folded_hz(double line_hz, double rate_hz);
+
+// Whether a line stands apart from the constant, half the rate, the excitation and its multiples up
+// to the tenth; of a harmonic `order` (0: a line of the mains) from those below it.
+[[nodiscard]] bool is_resolved(double line_hz, int order, double frequency_hz, double duration_s,
+                               double rate_hz);
+
+struct LineAmplitude {
   double amplitude = 0.0;
-  double u_amplitude = 0.0;
+  double u_component = 0.0; // standard uncertainty of its sine and of its cosine part
 };
 
-// Amplitudes of 50, 100, 150, 60, 120 and 180 Hz beside the fitted sine, where they are resolved
-// and below half the rate, seen or not: `amplitude` + 2 `u_amplitude` is an upper limit.
-[[nodiscard]] std::vector<HumLine> resolved_hum(const Frequency& frequency, const SineFit& fit,
-                                                std::int64_t phase_origin_ns,
-                                                std::span<const std::int64_t> stamps_ns,
-                                                std::span<const double> values);
+// Of a line in what a fit has left of a record, seen or not. Nothing where it cannot be told from
+// the constant.
+[[nodiscard]] std::optional<LineAmplitude> measure_line(double line_hz,
+                                                        std::span<const std::int64_t> stamps_ns,
+                                                        std::span<const double> residuals);
+
+// The values without the sine that was fitted to them, and without its offset.
+[[nodiscard]] std::vector<double> residuals_of(const Frequency& frequency, const SineFit& fit,
+                                               std::int64_t phase_origin_ns,
+                                               std::span<const std::int64_t> stamps_ns,
+                                               std::span<const double> values);
 
 } // namespace dyncal::analysis

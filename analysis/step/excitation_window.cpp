@@ -16,6 +16,8 @@ constexpr std::int64_t max_frame_ns = 100'000'000;
 constexpr double max_periods = 50.0;   // more, and a frequency 1e-3 off would fade within the frame
 constexpr std::size_t min_samples = 8; // of a frame that can be judged
 constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
+constexpr double louder_than_hum = 1.3;    // in amplitude
+constexpr double off_phase = 0.5;          // likewise: ten decibels of noise are 0.32
 constexpr double phase_margin_rad = 0.15;
 constexpr double steady_phase_margin_rad = 0.02; // of frames that the sine fills from end to end
 
@@ -107,11 +109,19 @@ void ExcitationWindowFinder::finish() {
   close_frame();
   if (!ended_) {
     close_run();
+    ended_ = candidate_.has_value();
   }
 }
 
 std::optional<ExcitationWindow> ExcitationWindowFinder::window() const {
-  return steady_part();
+  auto window = steady_part();
+  if (candidate_ && (!window || window->amplitude <= louder_than_hum * candidate_->amplitude)) {
+    window = candidate_;
+  }
+  if (window) {
+    window->ended = ended_;
+  }
+  return window;
 }
 
 void ExcitationWindowFinder::close_frame() {
@@ -202,6 +212,10 @@ bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad
 
 void ExcitationWindowFinder::take(const Frame& frame) {
   if (run_.empty()) {
+    ended_ = candidate_ && is_quiet(frame);
+    if (ended_) {
+      return;
+    }
     if (starts(frame)) {
       run_.push_back(frame);
     }
@@ -214,11 +228,17 @@ void ExcitationWindowFinder::take(const Frame& frame) {
     return;
   }
   const Frame last = run_.back();
+  const bool cut_off = is_cut_off_by(frame);
   close_run();
-  if (ended_) {
-    return;
+  ended_ = candidate_ && (cut_off || is_quiet(frame));
+  if (!ended_) {
+    restart_run(last, frame);
   }
-  // What came before the last frame may have been the edge of this excitation.
+}
+
+// What came before the last frame may have been the edge of this excitation.
+void ExcitationWindowFinder::restart_run(const Frame& last, const Frame& frame) {
+  double unwrapped_rad = 0.0;
   run_.push_back(last);
   if (continues(frame, unwrapped_rad)) {
     run_.push_back(frame);
@@ -231,12 +251,26 @@ void ExcitationWindowFinder::take(const Frame& frame) {
   }
 }
 
-// Keeps the run when it holds a step, forgets it otherwise.
+// The run cannot go on with this frame, whatever it holds: it is too late.
+bool ExcitationWindowFinder::is_cut_off_by(const Frame& frame) const {
+  const double frame_s = static_cast<double>(frame_ns_) * 1e-9;
+  return static_cast<double>(frame.index - run_.back().index - 1) * frame_s > settings_.max_gap_s ||
+         static_cast<double>(frame.index - run_.front().index) * frame_s > settings_.max_duration_s;
+}
+
+// Nothing is excited in this frame as the candidate was.
+bool ExcitationWindowFinder::is_quiet(const Frame& frame) const {
+  return std::hypot(frame.amplitude, std::numbers::sqrt2 * frame.residual_rms) <
+         off_phase * candidate_->amplitude;
+}
+
+// The run is over. If it holds a step, it may be the one that is searched.
 void ExcitationWindowFinder::close_run() {
-  ended_ = steady_part().has_value();
-  if (!ended_) {
-    run_.clear();
+  const auto window = steady_part();
+  if (window && (!candidate_ || window->amplitude > louder_than_hum * candidate_->amplitude)) {
+    candidate_ = window;
   }
+  run_.clear();
 }
 
 // Whether the phase over these frames of the run advances as a frequency within the tolerance does.
@@ -325,7 +359,6 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
   window.end_ns = (last.index + 1) * frame_ns_;
   window.excited_begin_ns = std::max(first_stamp_ns_, run_.front().index * frame_ns_);
   window.off_ns = (run_.back().index + 1) * frame_ns_;
-  window.ended = ended_;
   window.amplitude = plateau;
   window.frequency_offset_rel =
       (last.phase_rad - first.phase_rad) /

@@ -11,7 +11,9 @@
 // excited, and its phase advances as the nominal frequency's: two frames of a sine a few percent
 // off are no step. It is up to two frames at each end shorter than the excitation. Lost samples
 // leave frames thinner or empty; an excitation goes on across a gap when its phase does. An
-// off-phase must last 0.2 s.
+// off-phase must last 0.2 s. The excitation has ended when a frame of less than half its amplitude
+// follows; until then a steady run that is louder takes its place, for mains hum on the channel is
+// a sine too, and beside 50 Hz one of the step's frequency.
 //
 // Units: stamps int64 ns of any epoch; the window is half-open. Cost: about one sine and cosine a
 // sample; memory: the samples of one frame and some 80 bytes a frame of the excitation. Samples
@@ -92,6 +94,9 @@ private:
   [[nodiscard]] bool starts(const Frame& frame) const;
   [[nodiscard]] bool continues(const Frame& frame, double& unwrapped_rad) const;
   void close_run();
+  void restart_run(const Frame& last, const Frame& frame);
+  [[nodiscard]] bool is_cut_off_by(const Frame& frame) const;
+  [[nodiscard]] bool is_quiet(const Frame& frame) const;
   struct Frames { // of the run, [begin, end)
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -114,6 +119,7 @@ private:
   std::vector<std::int64_t> stamps_ns_; // of the open frame
   std::vector<double> values_;
   std::vector<Frame> run_;
+  std::optional<ExcitationWindow> candidate_; // whose run is over, but perhaps not the step
   bool ended_ = false;
   std::uint64_t ignored_samples_ = 0;
 };

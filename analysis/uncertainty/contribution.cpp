@@ -35,6 +35,8 @@ constexpr std::array rows{
     Row{ContributionKind::shots, "shots: noise and scatter of series and trigger", false,
         Repeats::anew},
     Row{ContributionKind::trace_clock, "clock of the oscilloscope", false, Repeats::common_delay},
+    Row{ContributionKind::mains_hum, "mains hum in", true, Repeats::anew},
+    Row{ContributionKind::folded_harmonic, "folded harmonics of", true, Repeats::common},
     Row{ContributionKind::other, "other", false, Repeats::common}};
 
 constexpr bool in_order() {

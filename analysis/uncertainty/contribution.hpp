@@ -45,7 +45,9 @@ enum class ContributionKind {
   series_start,       // from trigger to first sample of a triggered series
   shots,              // noise and scatter over the shots of a step
   trace_clock,        // rate of the oscilloscope's clock, from the middle of a trace to its trigger
-  other               // a row that this version does not know; its subject is its name
+  mains_hum,       // a mains line too near the excitation to be told from it; subject: the channel
+  folded_harmonic, // a harmonic that sampling folds onto the excitation; subject: the channel
+  other            // a row that this version does not know; its subject is its name
 };
 
 enum class Repeats { anew, common, common_delay };

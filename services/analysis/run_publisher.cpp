@@ -74,6 +74,9 @@ void RunPublisher::publish(const Recipe& recipe, const EvaluationOutput& output)
     write(writers_.result, to_message(recipe, result), write_limit);
     ++results_;
   }
+  for (const StepResult& result : output.settled) { // again: not counted
+    write(writers_.result, to_message(recipe, result), write_limit);
+  }
   for (const TransferFunction& function : output.transfer_functions) {
     write(writers_.transfer_function, to_message(recipe, function), write_limit);
     ++transfer_functions_;

@@ -76,6 +76,12 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, Ru
 
 void collect(EvaluationOutput output, RunOutcome& outcome) {
   std::move(output.results.begin(), output.results.end(), std::back_inserter(outcome.results));
+  for (StepResult& settled : output.settled) {
+    *std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
+      return one.channel == settled.channel && one.step == settled.step &&
+             one.repetition == settled.repetition;
+    }) = std::move(settled);
+  }
   std::move(output.transfer_functions.begin(), output.transfer_functions.end(),
             std::back_inserter(outcome.transfer_functions));
   std::move(output.clock_reports.begin(), output.clock_reports.end(),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
 namespace dyncal::services {
@@ -162,6 +163,10 @@ std::optional<std::string> RunEvaluator::excess_of_level() {
 void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutput& output) {
   for (StepResult& result : results) {
     summary_.add(result);
+    line_bounds_.add(result);
+    if (result.provisional) {
+      provisional_.push_back(result);
+    }
     output.results.push_back(std::move(result));
   }
 }
@@ -198,9 +203,20 @@ EvaluationOutput RunEvaluator::take_output() {
   return output;
 }
 
+void RunEvaluator::settle_results(EvaluationOutput& output) {
+  for (StepResult& provisional : provisional_) {
+    StepResult result = line_bounds_.settled(std::move(provisional));
+    redo_monte_carlo_check(recipe_->monte_carlo_trials, result);
+    summary_.add(result);
+    output.settled.push_back(std::move(result));
+  }
+  provisional_.clear();
+}
+
 void RunEvaluator::finish(EvaluationOutput& output) {
   finished_ = true;
   take_results(evaluations_.take_all(), output);
+  settle_results(output);
   output.transfer_functions = summary_.transfer_functions();
   if (clock_) {
     output.clock_reports = clock_->reports(records_.of(clock_->source()).lost());

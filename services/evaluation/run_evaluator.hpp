@@ -8,6 +8,9 @@
 // of it in a source, when a source has ended without it, or when the run is over. The same samples
 // give the same results bit for bit.
 //
+// A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
+// the end of the run, when all steps tell how large that line may be (line_bounds.hpp).
+//
 // What depends on the method is asked of it (method/method.hpp). Belongs to one thread.
 #pragma once
 
@@ -20,6 +23,7 @@
 #include "services/evaluation/clock_report_builder.hpp"
 #include "services/evaluation/evaluation_queue.hpp"
 #include "services/evaluation/level_watch.hpp"
+#include "services/evaluation/line_bounds.hpp"
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
@@ -31,6 +35,9 @@ struct EvaluationOutput {
   std::vector<StepResult> results;
   std::vector<TransferFunction> transfer_functions; // at the end of the run
   std::vector<ClockReport> clock_reports;           // at the end of the run
+  // At the end of the run: those that were provisional, to take the place of what was handed over
+  // with the same channel, step and repetition.
+  std::vector<StepResult> settled;
 };
 
 struct EvaluationLimits {
@@ -90,6 +97,7 @@ private:
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
+  void settle_results(EvaluationOutput& output);
   void finish(EvaluationOutput& output);
 
   std::shared_ptr<const Recipe> recipe_;
@@ -98,6 +106,8 @@ private:
   std::optional<ClockReportBuilder> clock_;
   LevelWatch level_watch_;
   TransferSummary summary_;
+  LineBounds line_bounds_;
+  std::vector<StepResult> provisional_;
   std::size_t next_step_ = 0; // not evaluated yet
   bool clock_to_the_end_;
   bool finished_ = false;

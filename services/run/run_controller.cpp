@@ -184,8 +184,11 @@ Expected<void> RunController::analysis_is_alive() const {
 // it.
 bool RunController::everything_has_come() const {
   const auto& analysis = messages_->analysis();
+  const auto& results = outcome_.results;
   return analysis && analysis->arm() == wire::ARM_FINISHED &&
-         outcome_.results.size() >= analysis->results_published() &&
+         results.size() >= analysis->results_published() &&
+         std::none_of(results.begin(), results.end(),
+                      [](const StepResult& one) { return one.provisional; }) &&
          outcome_.transfer_functions.size() >= analysis->transfer_functions_published() &&
          outcome_.clock_reports.size() >= analysis->clock_reports_published();
 }

@@ -1,5 +1,7 @@
 #include "services/evaluation/method/monte_carlo_check.hpp"
 
+#include <complex>
+
 #include "analysis/method/transfer_check.hpp"
 
 namespace dyncal::services {
@@ -16,6 +18,24 @@ void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoi
     return;
   }
   result.monte_carlo = *drawn;
+}
+
+void redo_monte_carlo_check(std::uint64_t max_trials, StepResult& result) {
+  if (!result.monte_carlo) {
+    return;
+  }
+  result.monte_carlo.reset();
+  const std::span<const analysis::ChannelFit> fits(result.fits); // that of the sensor is the last
+  add_monte_carlo_check(max_trials,
+                        {.channel = result.channel,
+                         .h = std::polar(result.magnitude, result.phase_rad),
+                         .magnitude = result.magnitude,
+                         .u_magnitude = result.u_magnitude,
+                         .phase_rad = result.phase_rad,
+                         .u_phase_rad = result.u_phase_rad,
+                         .budget = result.budget,
+                         .dut = fits.back()},
+                        fits.first(fits.size() - 1), result);
 }
 
 } // namespace dyncal::services

@@ -19,4 +19,7 @@ namespace dyncal::services {
 void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoint& point,
                            std::span<const analysis::ChannelFit> link, StepResult& result);
 
+// Again for a result that had a check and has another budget now.
+void redo_monte_carlo_check(std::uint64_t max_trials, StepResult& result);
+
 } // namespace dyncal::services

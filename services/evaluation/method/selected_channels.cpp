@@ -36,6 +36,11 @@ const std::string& SelectedChannels::unit(std::size_t i) const {
   return description(i).unit;
 }
 
+StepSamples SelectedChannels::quiet_samples() const {
+  return source_.quiet_record ? select_samples(*source_.quiet_record, source_.quiet, columns_)
+                              : StepSamples{};
+}
+
 SourceSamples SelectedChannels::summary() const {
   SourceSamples summary;
   summary.source = record().source();

@@ -41,6 +41,9 @@ public:
     return record().description().channels[columns_[i]];
   }
 
+  // Of the time before the step in which nothing was excited; no samples where it is not known.
+  [[nodiscard]] StepSamples quiet_samples() const;
+
   [[nodiscard]] SourceSamples summary() const;
 
 private:

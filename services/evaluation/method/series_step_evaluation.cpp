@@ -10,6 +10,7 @@
 
 #include "analysis/method/series_stamping.hpp"
 #include "services/contract/digest.hpp"
+#include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
@@ -233,15 +234,49 @@ analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChann
   return input;
 }
 
+std::vector<std::int64_t> series_stamps_ns(const std::vector<ShotRecord::Shot>& shots,
+                                           double real_rate_hz) {
+  std::vector<std::int64_t> stamps_ns(shots.front().series->samples);
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / real_rate_hz);
+  }
+  return stamps_ns;
+}
+
+// What every shot shows of the lines, of which none may tell any from the excitation.
+ChannelLines lines_of_shots(const SeriesStepInput& input,
+                            const std::vector<ShotRecord::Shot>& shots,
+                            const EvaluatedSeries& evaluated, const ChannelName& channel,
+                            std::size_t column) {
+  const std::vector<std::int64_t> stamps_ns =
+      series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
+  ChannelLines lines;
+  for (const ShotRecord::Shot& shot : shots) {
+    const std::span<const double> values[] = {shot.series->channel(column)};
+    const analysis::Frequency& frequency = evaluated.result.sync_acs.frequency;
+    const auto fit = analysis::fit_sine(frequency, 0, stamps_ns, values);
+    if (!fit) {
+      continue;
+    }
+    ChannelLines of_shot =
+        check_lines(*input.task.recipe, {"the sensor"},
+                    {.channel = channel.text(), .frequency = frequency, .fit = fit->front()},
+                    stamps_ns, values[0]);
+    if (lines.channel.empty()) {
+      lines = std::move(of_shot);
+    } else {
+      lines.measured.insert(lines.measured.end(), of_shot.measured.begin(), of_shot.measured.end());
+    }
+  }
+  return lines;
+}
+
 // The first shot in which something is found speaks for the step.
 SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotRecord::Shot>& shots,
                         const EvaluatedSeries& evaluated, const ChannelName& channel,
                         std::size_t column) {
-  const double interval_ns = 1e9 / evaluated.result.rate.real_rate_hz;
-  std::vector<std::int64_t> stamps_ns(shots.front().series->samples);
-  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
-    stamps_ns[i] = std::llround(static_cast<double>(i) * interval_ns);
-  }
+  const std::vector<std::int64_t> stamps_ns =
+      series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
   const analysis::ChannelFit sine{
       .channel = channel.text(), .frequency = input.task.step().frequency, .fit = {}};
   for (const ShotRecord::Shot& shot : shots) {
@@ -274,6 +309,9 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
   const SignalCheck reference = check_signal(evaluated.result.reference, acs, 0);
   SignalCheck sync = check_signal(evaluated.result.sync_acs, acs, 1);
   sync.refusal.clear(); // it carries phase only
+  const std::vector<ChannelLines> common_lines{
+      check_lines(*task.recipe, {"the reference"}, evaluated.result.reference, acs, 0),
+      check_lines(*task.recipe, {"the ACS sync", false}, evaluated.result.sync_acs, acs, 1)};
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < roles.dut.size(); ++i) {
     StepResult result = result_head(task.step(), roles.dut[i]);
@@ -284,6 +322,9 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
     add_check(reference, result);
     add_check(sync, result);
     add_check(check_shots(input, shots, evaluated, roles.dut[i], column), result);
+    std::vector<ChannelLines> lines = common_lines;
+    lines.push_back(lines_of_shots(input, shots, evaluated, roles.dut[i], column));
+    add_lines(std::move(lines), result);
     results.push_back(std::move(result));
   }
   return results;

@@ -1,6 +1,9 @@
 #include "services/evaluation/method/step_results.hpp"
 
+#include <algorithm>
+
 #include "services/evaluation/method/level_check.hpp"
+#include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 
@@ -34,6 +37,19 @@ std::vector<SignalCheck> check_common(const StepInput& input,
     }
   }
   return checks;
+}
+
+// Lines beside the excitation in the channels that all results share.
+std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput& input,
+                                          const std::vector<analysis::ChannelFit>& fits) {
+  const LineSubject subjects[] = {
+      {"the reference"}, {"the ACS sync", false}, {"the DAU sync", false}};
+  std::vector<ChannelLines> lines;
+  for (std::size_t i = 0; i < input.common.size(); ++i) {
+    lines.push_back(check_lines(*task.recipe, subjects[std::min<std::size_t>(i, 2)], fits[i],
+                                *input.common[i].selected, input.common[i].index));
+  }
+  return lines;
 }
 
 } // namespace
@@ -100,6 +116,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     return results_without_value(task.step(), input.dut, step.error().message);
   }
   const std::vector<SignalCheck> common = check_common(input, step->common_fits);
+  const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size(); ++i) {
     StepResult& result =
@@ -112,6 +129,10 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     add_check(
         check_signal(step->points[i].dut, *input.first_dut.selected, input.first_dut.index + i),
         result);
+    std::vector<ChannelLines> lines = common_lines;
+    lines.push_back(check_lines(*task.recipe, {"the sensor"}, step->points[i].dut,
+                                *input.first_dut.selected, input.first_dut.index + i));
+    add_lines(std::move(lines), result);
     if (result.valid) {
       add_monte_carlo_check(task.recipe->monte_carlo_trials, step->points[i], step->common_fits,
                             result);

@@ -16,7 +16,9 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
                         const ExcitationProgress& excitation,
                         const std::vector<SourceInterval>& sources) {
   StepTask task{std::move(recipe), index};
-  for (const auto& [record, interval] : sources) {
+  for (const SourceInterval& source : sources) {
+    const auto& record = source.record;
+    const TimeInterval& interval = source.interval;
     if (record->lost_in(interval).all() > 0) {
       task.flags.push_back(flag_of_source(ResultFlag::samples_lost, record->source()));
     }

@@ -65,21 +65,34 @@ std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
   return search == searches_.end() ? std::nullopt : search->steps.interval(step);
 }
 
+std::shared_ptr<const SourceRecord> RunRecords::part_of(const SourceRecord& whole,
+                                                        const TimeInterval& interval) const {
+  return copies_
+             ? std::make_shared<const SourceRecord>(whole.part(interval))
+             : std::shared_ptr<const SourceRecord>(std::shared_ptr<const SourceRecord>(), &whole);
+}
+
 SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {
   const SourceRecord& whole = of(source);
-  if (copies_) {
-    return {std::make_shared<const SourceRecord>(whole.part(interval)), interval};
+  SourceInterval samples{part_of(whole, interval), interval};
+  for (const Search& search : searches_) {
+    if (std::find(search.sources.begin(), search.sources.end(), source) == search.sources.end()) {
+      continue;
+    }
+    if (const auto quiet = search.steps.quiet_before(interval)) {
+      samples.quiet = *quiet;
+      samples.quiet_record = part_of(whole, *quiet);
+    }
   }
-  return {std::shared_ptr<const SourceRecord>(std::shared_ptr<const SourceRecord>(), &whole),
-          interval};
+  return samples;
 }
 
 void RunRecords::forget_before_step(std::size_t next_step) {
   for (const Search& search : searches_) {
     std::int64_t needed = search.steps.needed_from_ns();
     for (std::size_t step = next_step; step < search.steps.step(); ++step) {
-      if (const auto interval = search.steps.interval(step)) {
-        needed = std::min(needed, interval->begin_ns);
+      if (const auto from_ns = search.steps.needed_for(step)) {
+        needed = std::min(needed, *from_ns);
       }
     }
     for (const std::string& source : search.sources) {

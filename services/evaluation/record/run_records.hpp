@@ -26,10 +26,13 @@ struct SearchedChannel {
   std::vector<std::string> sources;
 };
 
-// The samples of one source in one step. Passes into another thread when it holds a copy.
+// The samples of one source in one step, and those from before it, where nothing was excited: empty
+// where none are known. Passes into another thread when it holds copies.
 struct SourceInterval {
   std::shared_ptr<const SourceRecord> record;
   TimeInterval interval;
+  std::shared_ptr<const SourceRecord> quiet_record{};
+  TimeInterval quiet{};
 };
 
 class RunRecords {
@@ -73,6 +76,9 @@ private:
     std::vector<std::string> sources;
     StepSearch steps;
   };
+
+  [[nodiscard]] std::shared_ptr<const SourceRecord> part_of(const SourceRecord& whole,
+                                                            const TimeInterval& interval) const;
 
   ExcitationProgress excitation_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;

@@ -8,6 +8,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr double ns_per_s = 1e9;
+constexpr std::int64_t max_quiet_ns = 2'000'000'000;
 
 std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
@@ -48,7 +49,7 @@ void StepSearch::take_whole_record(bool complete) {
   const auto stamps = record_.stamps_ns();
   if (complete && step_ == 0 && !stamps.empty()) {
     const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
-    found_[0] = {*first, *last};
+    found_[0] = {{*first, *last}};
     step_ = 1;
   }
 }
@@ -88,10 +89,20 @@ void StepSearch::accept(const analysis::ExcitationWindow& window) {
   const std::int64_t begin = recipe_.settling_from_data ? window.begin_ns : planned_begin;
   const std::int64_t end = std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1;
   if (end > begin) {
-    found_[step_] = {begin, end};
+    found_[step_] = {{begin, end}, quiet_time(window)};
   }
   search_from_ns_ = window.off_ns;
   search_step(step_ + 1);
+}
+
+std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWindow& window) const {
+  const std::int64_t frame_ns = finder_->frame_ns();
+  TimeInterval quiet{window.excited_begin_ns - frame_ns - max_quiet_ns,
+                     window.excited_begin_ns - frame_ns - 1};
+  if (search_from_ns_ > quiet.begin_ns - frame_ns) {
+    quiet.begin_ns = search_from_ns_ + frame_ns;
+  }
+  return quiet.end_ns > quiet.begin_ns ? std::optional(quiet) : std::nullopt;
 }
 
 void StepSearch::give_up_step() {
@@ -112,7 +123,23 @@ void StepSearch::give_up_step() {
 
 std::optional<TimeInterval> StepSearch::interval(std::size_t step) const {
   const auto found = found_.find(step);
-  return found == found_.end() ? std::nullopt : std::optional(found->second);
+  return found == found_.end() ? std::nullopt : std::optional(found->second.interval);
+}
+
+std::optional<TimeInterval> StepSearch::quiet_before(const TimeInterval& interval) const {
+  const auto found = std::find_if(found_.begin(), found_.end(), [&](const auto& one) {
+    return one.second.interval.begin_ns == interval.begin_ns;
+  });
+  return found == found_.end() ? std::nullopt : found->second.quiet;
+}
+
+std::optional<std::int64_t> StepSearch::needed_for(std::size_t step) const {
+  const auto found = found_.find(step);
+  if (found == found_.end()) {
+    return std::nullopt;
+  }
+  const Found& one = found->second;
+  return one.quiet ? one.quiet->begin_ns : one.interval.begin_ns;
 }
 
 } // namespace dyncal::services

@@ -33,6 +33,11 @@ public:
   // found from the data, from the beginning of the excitation. Empty until the step's excitation is
   // over.
   [[nodiscard]] std::optional<TimeInterval> interval(std::size_t step) const;
+  // Of the step that has this interval: up to two seconds before its excitation began, a frame of
+  // the search away from it and from the excitation before. Empty where there is no such time.
+  [[nodiscard]] std::optional<TimeInterval> quiet_before(const TimeInterval& interval) const;
+  // The first instant of interest for this step, quiet time before it included.
+  [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
   // The step whose excitation is searched now.
   [[nodiscard]] std::size_t step() const { return step_; }
   // Takes what there is of the step searched, or passes over it when there is nothing; the search
@@ -42,10 +47,17 @@ public:
   [[nodiscard]] std::int64_t needed_from_ns() const { return search_from_ns_; }
 
 private:
+  struct Found {
+    TimeInterval interval;
+    std::optional<TimeInterval> quiet{};
+  };
+
   void search_step(std::size_t step);
   void take_whole_record(bool complete);
   void feed();
   void accept(const analysis::ExcitationWindow& window);
+  [[nodiscard]] std::optional<TimeInterval>
+  quiet_time(const analysis::ExcitationWindow& window) const;
 
   const Recipe& recipe_;
   const SourceRecord& record_;
@@ -55,7 +67,7 @@ private:
   std::int64_t search_from_ns_;
   std::uint64_t fed_ = 0; // samples of the record, counted from its very first
   std::optional<analysis::ExcitationWindowFinder> finder_;
-  std::map<std::size_t, TimeInterval> found_;
+  std::map<std::size_t, Found> found_;
 };
 
 } // namespace dyncal::services

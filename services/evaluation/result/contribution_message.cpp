@@ -31,6 +31,8 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::series_start, wire::CONTRIBUTION_SERIES_START},
     {ContributionKind::shots, wire::CONTRIBUTION_SHOTS},
     {ContributionKind::trace_clock, wire::CONTRIBUTION_TRACE_CLOCK},
+    {ContributionKind::mains_hum, wire::CONTRIBUTION_MAINS_HUM},
+    {ContributionKind::folded_harmonic, wire::CONTRIBUTION_FOLDED_HARMONIC},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 

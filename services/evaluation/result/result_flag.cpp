@@ -85,6 +85,15 @@ constexpr std::array rows{
         "the uncertainty of the reference is not stated",
         "u holds without it; name the calibration of the reference as corrections.reference, or "
         "state uncertainty.reference_magnitude_rel and .reference_phase_rad"},
+    Row{ResultFlag::mains_not_separated, "mains_not_separated",
+        "cannot be told from the excitation",
+        "u holds nothing for hum here: the channel never showed it apart from an excitation in "
+        "this "
+        "run; add a step at another frequency, or take a frequency farther from the mains"},
+    Row{ResultFlag::harmonic_not_separated, "harmonic_not_separated",
+        "falls on the excitation at this sample rate",
+        "u holds nothing for distortion folded there: no step of this run shows that harmonic by "
+        "itself; choose another frequency or sample rate, or add a step at a lower frequency"},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

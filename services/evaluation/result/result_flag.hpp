@@ -34,6 +34,8 @@ enum class ResultFlag {
   answers_before_excitation,
   adc_not_calibrated,
   reference_uncertainty_not_stated,
+  mains_not_separated,
+  harmonic_not_separated,
   from_message // read from the bus, and not known to this version
 };
 

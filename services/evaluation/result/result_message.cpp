@@ -153,6 +153,7 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   message.flag_names() = names_of(result.flags);
   message.temperature_valid(result.temperature_degc.has_value());
   message.temperature_degc(result.temperature_degc.value_or(0.0));
+  message.provisional(result.provisional);
   message.software(software_version());
   message.recipe_sha256(recipe.sha256);
   message.data_sha256(result.data_sha256);
@@ -200,6 +201,7 @@ StepResult from_message(const wire::CalibrationResult& message) {
     result.temperature_degc = message.temperature_degc();
   }
   result.data_sha256 = message.data_sha256();
+  result.provisional = message.provisional();
   if (!message.series_start().empty()) {
     result.series = SeriesFinding{message.sample_rate_hz(), message.u_sample_rate_hz(),
                                   message.series_start(), message.series_start_scatter_s()};

@@ -16,6 +16,7 @@
 #include "analysis/method/start_latency.hpp"
 #include "analysis/method/transfer_check.hpp"
 #include "analysis/method/transfer_point.hpp"
+#include "services/evaluation/result/channel_lines.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
 namespace dyncal::services {
@@ -68,6 +69,9 @@ struct StepResult {
   std::optional<double> temperature_degc; // mean of the recipe's channel during the step
   std::optional<SeriesFinding> series;    // series time stamping
   std::optional<analysis::TransferCheck> monte_carlo;
+  // Lines beside the excitation are flagged, and settled at the end of the run (line_bounds.hpp).
+  bool provisional = false;
+  std::vector<ChannelLines> lines; // for that, within the evaluation: no message has them
 };
 
 } // namespace dyncal::services

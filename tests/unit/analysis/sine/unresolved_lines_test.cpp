@@ -74,11 +74,13 @@ TEST(UnresolvedLines, HumKnownFromAnotherStepIsCovered) {
   const std::span<const double> quiet_channel[] = {quiet};
   const auto at_other = fit_sine(Frequency::from_hz(80.0), 0, stamps_ns, quiet_channel);
   ASSERT_TRUE(at_other);
-  const auto seen = resolved_hum(Frequency::from_hz(80.0), at_other->front(), 0, stamps_ns, quiet);
-  ASSERT_GE(seen.size(), 1u);
-  EXPECT_EQ(seen[0].line_hz, 50.0);
-  EXPECT_NEAR(seen[0].amplitude, 1e-3, 4.0 * seen[0].u_amplitude);
-  EXPECT_LT(seen[0].u_amplitude, 1e-4);
+  const auto residuals =
+      residuals_of(Frequency::from_hz(80.0), at_other->front(), 0, stamps_ns, quiet);
+  ASSERT_TRUE(is_resolved(50.0, 0, 80.0, duration_s, 1000.0));
+  const auto seen = measure_line(50.0, stamps_ns, residuals);
+  ASSERT_TRUE(seen);
+  EXPECT_NEAR(seen->amplitude, 1e-3, 4.0 * seen->u_component);
+  EXPECT_LT(seen->u_component, 1e-4);
 
   for (const double frequency_hz : {50.0, 50.2, 50.5, 50.7}) {
     int covered = 0;
@@ -92,7 +94,7 @@ TEST(UnresolvedLines, HumKnownFromAnotherStepIsCovered) {
       const auto lines = unresolved_lines(frequency_hz, duration_s, 1000.0);
       ASSERT_EQ(lines.size(), 1u);
       const auto hum =
-          line_uncertainty(lines[0], seen[0].amplitude, fit->front().amplitude(), duration_s);
+          line_uncertainty(lines[0], seen->amplitude, fit->front().amplitude(), duration_s);
       const double error = std::abs(fit->front().amplitude() - 1.0);
       const double u = fit->front().u_amplitude();
       covered += error <= 2.0 * std::hypot(u, hum.u_magnitude_rel);
@@ -105,22 +107,51 @@ TEST(UnresolvedLines, HumKnownFromAnotherStepIsCovered) {
   }
 }
 
-TEST(UnresolvedLines, WhatIsNotSeenHasALimit) {
+TEST(UnresolvedLines, ALineOfNoiseIsAsLargeAsItsUncertaintySays) {
   std::vector<std::int64_t> stamps_ns;
   double phase_rad = 0.0;
-  for (unsigned seed = 1; seed < 50; ++seed) {
+  double squares = 0.0;
+  constexpr unsigned runs = 200;
+  for (unsigned seed = 1; seed <= runs; ++seed) {
     const auto values =
         record({.amplitude = 0.0, .frequency_hz = 80.0}, seed, stamps_ns, phase_rad);
     const std::span<const double> channel[] = {values};
     const auto fit = fit_sine(Frequency::from_hz(80.0), 0, stamps_ns, channel);
     ASSERT_TRUE(fit);
-    const auto hum = resolved_hum(Frequency::from_hz(80.0), fit->front(), 0, stamps_ns, values);
-    ASSERT_EQ(hum.size(), 6u);
-    for (const HumLine& line : hum) {
-      EXPECT_LT(line.amplitude + 2.0 * line.u_amplitude, 2.5e-4);
-      EXPECT_GT(line.amplitude + 2.0 * line.u_amplitude, 1e-5);
-    }
+    const auto line =
+        measure_line(200.0, stamps_ns,
+                     residuals_of(Frequency::from_hz(80.0), fit->front(), 0, stamps_ns, values));
+    ASSERT_TRUE(line);
+    squares += line->amplitude * line->amplitude / (2.0 * line->u_component * line->u_component);
   }
+  EXPECT_NEAR(squares / runs, 1.0, 0.25); // chi-squared of 400 degrees of freedom
+}
+
+TEST(UnresolvedLines, ALineIsResolvedApartFromTheExcitationAndItsMultiples) {
+  EXPECT_TRUE(is_resolved(200.0, 0, 78.0, duration_s, 1000.0));
+  EXPECT_FALSE(is_resolved(200.0, 0, 80.0, duration_s, 1000.0));  // its tenth harmonic, folded
+  EXPECT_FALSE(is_resolved(200.0, 0, 100.3, duration_s, 1000.0)); // its second harmonic
+  EXPECT_FALSE(is_resolved(200.0, 0, 200.5, duration_s, 1000.0));
+  EXPECT_FALSE(is_resolved(999.8, 0, 80.0, duration_s, 1000.0)); // folded to the constant
+  EXPECT_TRUE(is_resolved(4 * 80.0, 4, 80.0, duration_s, 1000.0));
+  EXPECT_FALSE(is_resolved(4 * 200.0, 4, 200.0, duration_s, 1000.0)); // folded onto itself
+}
+
+TEST(UnresolvedLines, TheMainsMayWanderTowardsTheExcitation) {
+  const auto lines = unresolved_lines(50.04, duration_s, 1000.0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NEAR(line_uncertainty(lines[0], 1.0, 1.0, duration_s).u_phase_rad,
+              1.0 / std::numbers::sqrt2, 1e-12);
+}
+
+TEST(UnresolvedLines, NothingIsMeasuredInAFewSamplesOrOfAConstant) {
+  const std::vector<std::int64_t> few{0, 1'000'000, 2'000'000};
+  EXPECT_FALSE(measure_line(50.0, few, std::vector<double>(3, 0.1)));
+  std::vector<std::int64_t> stamps_ns;
+  for (int i = 0; i < 100; ++i) {
+    stamps_ns.push_back(20'000'000LL * i);
+  }
+  EXPECT_FALSE(measure_line(50.0, stamps_ns, std::vector<double>(100, 0.1)));
 }
 
 } // namespace

@@ -240,6 +240,21 @@ TEST(ExcitationWindow, FindsNothingInNoiseOrInAnotherSine) {
       80.0));
 }
 
+// Hum of half a percent is a clean sine where nothing is excited, and beside 50 Hz it looks like
+// the step's; the step begins at any instant of a frame.
+TEST(ExcitationWindow, IsNotTheHumBeforeTheExcitation) {
+  for (const double f : {49.8, 49.9, 50.0, 50.1, 50.2}) {
+    for (int k = 0; k < 40; ++k) {
+      const Part hum{50.0, 5e-3, 0.5 + 2.5e-3 * k, 0.1 * k};
+      const Stream stream =
+          record({hum, {f, 1.0, 2.0, 1.3 * k, 0.005}, hum}, {.rate_hz = 1000.0, .noise = 3e-4});
+      const auto window = search(stream, f);
+      ASSERT_TRUE(window.has_value()) << f << " Hz, " << k;
+      expect_within_part(*window, stream, 1, f);
+    }
+  }
+}
+
 // A frame that holds the end of one step and the beginning of the next may pass for a sine that is
 // a little off, with any phases; the step must not fall in two there.
 TEST(ExcitationWindow, FindsWholeStepsOfPeriodsLongerThanTheirPauses) {

@@ -20,8 +20,10 @@ namespace {
 
 using testing::HasSubstr;
 
+// Settled results stand among all results; `first`, if given, has these as they came first.
 EvaluationOutput evaluate(const tests::SyntheticRun& run, const wire::Measurement& measurement,
-                          const EvaluationLimits& limits = {}) {
+                          const EvaluationLimits& limits = {},
+                          std::vector<StepResult>* first = nullptr) {
   auto recipe = parse_recipe(measurement);
   EXPECT_TRUE(recipe) << recipe.error().message;
   RunEvaluator evaluator(std::move(*recipe), limits);
@@ -31,6 +33,7 @@ EvaluationOutput evaluate(const tests::SyntheticRun& run, const wire::Measuremen
   const auto collect = [&] {
     EvaluationOutput output = evaluator.take_output();
     all.results.insert(all.results.end(), output.results.begin(), output.results.end());
+    all.settled.insert(all.settled.end(), output.settled.begin(), output.settled.end());
     if (!output.transfer_functions.empty()) {
       all.transfer_functions = output.transfer_functions;
       all.clock_reports = output.clock_reports;
@@ -48,6 +51,16 @@ EvaluationOutput evaluate(const tests::SyntheticRun& run, const wire::Measuremen
     collect();
   }
   EXPECT_TRUE(evaluator.finished());
+  if (first != nullptr) {
+    *first = all.results;
+  }
+  for (const StepResult& settled : all.settled) {
+    for (StepResult& result : all.results) {
+      if (result.channel == settled.channel && result.step == settled.step) {
+        result = settled;
+      }
+    }
+  }
   return all;
 }
 
@@ -93,6 +106,65 @@ TEST(RunEvaluator, TakesTheUncertaintyOfAnAdcThatIsNotCalibratedIntoTheBudget) {
   for (const StepResult& result : evaluate(run, measurement).results) {
     EXPECT_THAT(sentences_of(result.flags), testing::IsEmpty());
     EXPECT_GT(result.u_phase_rad, 2.0 * std::numbers::pi * result.frequency_hz * 1e-5);
+  }
+}
+
+const analysis::Contribution* hum_of_sensor(const StepResult& result) {
+  const auto found = std::find_if(result.budget.begin(), result.budget.end(), [](const auto& row) {
+    return row.kind == analysis::ContributionKind::mains_hum && row.subject == "the sensor";
+  });
+  return found == result.budget.end() ? nullptr : &*found;
+}
+
+TEST(RunEvaluator, BoundsHumBesideAStepByOtherStepsAndByQuietTime) {
+  const tests::SyntheticRun others{.steps = {{"40"}, {"50.1"}, {"80"}}, .sensor_hum = 0.1};
+  const tests::SyntheticRun alone{.steps = {{"50.1"}}, .off_s = 1.0, .sensor_hum = 0.1};
+  for (const tests::SyntheticRun* run : {&others, &alone}) {
+    for (const std::size_t in_background : {0U, 2U}) {
+      std::vector<StepResult> all_first;
+      const EvaluationOutput output = evaluate(*run, run->measurement(), in_background, &all_first);
+      ASSERT_EQ(output.settled.size(), 1U);
+      const StepResult& settled = output.settled.front();
+      const StepResult& first = all_first.at(run->steps.size() / 2);
+      EXPECT_TRUE(first.provisional);
+      EXPECT_THAT(sentences_of(first.flags),
+                  testing::Contains("dau/acceleration_z: hum at 50 Hz cannot be told from the "
+                                    "excitation"));
+      EXPECT_FALSE(settled.provisional);
+      EXPECT_THAT(sentences_of(settled.flags), testing::IsEmpty());
+      EXPECT_EQ(settled.step, first.step);
+      EXPECT_EQ(settled.magnitude, first.magnitude);
+      const analysis::Contribution* hum = hum_of_sensor(settled);
+      ASSERT_NE(hum, nullptr);
+      EXPECT_NEAR(hum->u_phase_rad, 0.1 / 9.5 / std::numbers::sqrt2, 0.1 * hum->u_phase_rad);
+      EXPECT_NEAR(settled.u_phase_rad, std::hypot(first.u_phase_rad, hum->u_phase_rad),
+                  0.01 * settled.u_phase_rad);
+      EXPECT_LT(std::abs(settled.magnitude - 0.95), 2.0 * settled.u_magnitude);
+      ASSERT_FALSE(output.transfer_functions.empty());
+      const auto& points = output.transfer_functions.front().points;
+      EXPECT_NEAR(points.at(points.size() / 2).mean.phase.u, settled.u_phase_rad,
+                  0.02 * settled.u_phase_rad);
+    }
+  }
+}
+
+TEST(RunEvaluator, IsTheSameBesideTheMainsHoweverTheStreamWasCut) {
+  tests::SyntheticRun run{.steps = {{"40"}, {"50.1"}, {"60.2"}}, .sensor_hum = 0.02};
+  const EvaluationOutput coarse = evaluate(run);
+  run.block_samples = 7;
+  const EvaluationOutput fine = evaluate(run);
+  ASSERT_EQ(coarse.settled.size(), 2U);
+  ASSERT_EQ(fine.settled.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(message_of(coarse.settled[i]), message_of(fine.settled[i]));
+  }
+}
+
+TEST(RunEvaluator, AsksNobodyToWaitForAStepFarFromAnyLine) {
+  const EvaluationOutput output = evaluate(tests::SyntheticRun{});
+  EXPECT_TRUE(output.settled.empty());
+  for (const StepResult& result : output.results) {
+    EXPECT_FALSE(result.provisional);
   }
 }
 

@@ -38,6 +38,17 @@ public:
     result_.write(result);
     ++results_;
   }
+  // The same key comes once more, settled, and is not counted again.
+  void publish_provisional_result(std::uint32_t step, bool settled) {
+    wire::CalibrationResult result;
+    result.bench(bench_);
+    result.run(run_);
+    result.channel("dau/acceleration_x");
+    result.step(step);
+    result.provisional(!settled);
+    result_.write(result);
+    results_ += settled ? 0 : 1;
+  }
   void publish_transfer_function(const std::string& channel) {
     wire::TransferFunction function;
     function.bench(bench_);

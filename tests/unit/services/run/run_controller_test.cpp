@@ -298,6 +298,19 @@ TEST_F(RunControllerTest, WaitsForResultsThatFinishedOvertakes) {
   EXPECT_EQ(clock_.elapsed(), 9s);
 }
 
+TEST_F(RunControllerTest, WaitsUntilNoResultIsProvisionalAnyMore) {
+  play_analysis();
+  clock_.at(7s, [this] { analysis_.publish_provisional_result(1, false); });
+  clock_.at(8s, [this] { finish(); });
+  clock_.at(9s, [this] { analysis_.publish_provisional_result(1, true); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  ASSERT_EQ(outcome->results.size(), 1U);
+  EXPECT_FALSE(outcome->results[0].provisional);
+  EXPECT_EQ(clock_.elapsed(), 9s);
+}
+
 TEST_F(RunControllerTest, GivesUpJustAfterItsLimitWhenTheLastResultsDoNotCome) {
   play_analysis();
   std::chrono::nanoseconds excitation_done{};

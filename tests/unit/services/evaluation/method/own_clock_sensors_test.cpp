@@ -96,6 +96,11 @@ std::vector<StepResult> evaluate(RunEvaluator& evaluator,
     }
     const EvaluationOutput output = evaluator.take_output();
     results.insert(results.end(), output.results.begin(), output.results.end());
+    for (const StepResult& settled : output.settled) {
+      *std::find_if(results.begin(), results.end(), [&](const StepResult& one) {
+        return one.channel == settled.channel && one.step == settled.step;
+      }) = settled;
+    }
   }
   EXPECT_TRUE(evaluator.finished());
   return results;

@@ -1,0 +1,45 @@
+// Which lines a channel could not tell from the excitation of a step, and what the step and the
+// quiet time before it tell of those that some step of the recipe cannot tell: for the end of the
+// run, where one bounds the other (line_bounds.hpp).
+//
+// Measured are only lines that a step of the recipe may need, at the sample rate this channel has.
+// In quiet time an excitation that dies away is no hum: of its two halves the quieter one counts
+// where they differ. Plain functions, any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "analysis/method/transfer_point.hpp"
+#include "services/evaluation/method/selected_channels.hpp"
+#include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/result/channel_lines.hpp"
+#include "services/evaluation/result/step_result.hpp"
+
+namespace dyncal::services {
+
+// What a channel is in the evaluation.
+struct LineSubject {
+  std::string name;
+  bool counts_in_magnitude = true;
+};
+
+[[nodiscard]] ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
+                                       const analysis::ChannelFit& fit,
+                                       std::span<const std::int64_t> stamps_ns,
+                                       std::span<const double> values);
+
+// Channel `index` of what was selected, and of the quiet time before.
+[[nodiscard]] ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
+                                       const analysis::ChannelFit& fit,
+                                       const SelectedChannels& selected, std::size_t index);
+
+// Gives a valid result its lines, and a flag for each that could not be told: it is provisional
+// then.
+void add_lines(std::vector<ChannelLines> lines, StepResult& result);
+
+// "dau/dos: hum at 50 Hz cannot be told from the excitation".
+[[nodiscard]] Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& line);
+
+} // namespace dyncal::services
