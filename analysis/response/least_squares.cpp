@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 
 #include <Eigen/QR>
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include "analysis/sine/robust_weights.hpp"
 
@@ -18,6 +20,31 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
 }
+
+// Ceres reports searches that it gives up through glog, whatever its options say.
+class Silence {
+public:
+  Silence() {
+    const std::lock_guard lock(mutex);
+    if (users++ == 0) {
+      level_before = FLAGS_minloglevel;
+      FLAGS_minloglevel = google::GLOG_FATAL;
+    }
+  }
+  ~Silence() {
+    const std::lock_guard lock(mutex);
+    if (--users == 0) {
+      FLAGS_minloglevel = level_before;
+    }
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+private:
+  static inline std::mutex mutex;
+  static inline int users = 0;
+  static inline int level_before = 0;
+};
 
 // With a loss every residual is a cost of its own, for the loss belongs to a block; without one a
 // single block is faster.
@@ -109,6 +136,7 @@ ceres::Solver::Options solver_options(const Strategy& strategy) {
 Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
   Expected<LeastSquaresSolution> best = fail(ErrorCode::not_converged, "the model was not fitted");
   double lowest = std::numeric_limits<double>::infinity();
+  const Silence silence;
   for (const Strategy& strategy : strategies) {
     LeastSquaresSolution solution;
     solution.parameters = description.start;
@@ -128,6 +156,9 @@ Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
     lowest = summary.final_cost;
     solution.iterations = static_cast<int>(summary.iterations.size());
     best = std::move(solution);
+    if (description.search == Search::quick) {
+      break;
+    }
   }
   return best;
 }

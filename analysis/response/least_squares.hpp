@@ -1,11 +1,11 @@
-// Nonlinear least squares on model level (some ten to ten thousand residuals). No program uses it
-// yet.
+// Nonlinear least squares on model level (some ten to ten thousand residuals).
 //
 //   minimise 1/2 sum_i rho(r_i(x)^2),   C(x*) = s^2 (J'J)^-1
 //
 // Ceres searches (Levenberg-Marquardt, Levenberg from a narrow trust region, dogleg; dense QR; the
 // lowest of the three minima counts); full Gauss-Newton steps then bring the minimum to the limit
-// of double precision, which the cost alone cannot show.
+// of double precision, which the cost alone cannot show. Search::quick takes the first strategy
+// alone: for telling many starting points apart.
 //
 // Residuals of a problem with known uncertainties are divided by them (r_i has unit variance): s^2
 // = 1. For residuals in the unit of the data s^2 = rss / (n - p). With a robust loss C =
@@ -36,6 +36,8 @@ enum class ResidualVariance {
   estimated // from the residuals
 };
 
+enum class Search { thorough, quick };
+
 struct LeastSquaresProblem {
   std::size_t residuals = 0;
   std::vector<double> start;
@@ -46,6 +48,7 @@ struct LeastSquaresProblem {
       evaluate;
   Loss loss = Loss::none;
   ResidualVariance variance = ResidualVariance::known;
+  Search search = Search::thorough;
 };
 
 struct LeastSquaresSolution {

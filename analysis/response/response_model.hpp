@@ -1,45 +1,51 @@
-// Parametric models of a measured frequency response, fitted with full covariance. No program uses
-// them yet.
+// Parametric models of a frequency response.
 //
-//   H(f) = +-g e^{-i 2 pi f tau} [1 / (1 + i f / fc)] [1 / (1 - (f / f0)^2 + 2 i zeta f / f0)]
+//   H(f) = +-g [e^{-i 2 pi f tau}] [1 / (1 + i f / fc)] [1 / (1 - (f / f0)^2 + 2 i zeta f / f0)]
 //
-// Brackets are chosen by the kind: a pure delay; a first-order low pass (the front end of an ADC);
-// a second-order system (seismic transducer, the digital low-pass filter of a MEMS sensor); both.
-// psi = arg H is lead, tau > 0 a delay, the sign of g the polarity.
+// Brackets are chosen by the kind: a delay; a first-order low pass (the front end of an ADC); a
+// second-order system (seismic transducer, the low-pass filter of a MEMS sensor). psi = arg H is
+// lead, tau > 0 a delay, the sign of g the polarity.
 //
-// Residuals are (ln|H_i| - ln|H|) / u_rel and the phase difference modulo 2 pi / u_phase, whitened
-// with diag(u_i^2) and what is common: u_gain to all magnitudes, u_delay w and u_phase to all
-// phases. The search starts from the group delay and a few corner frequencies; the best end is
-// taken. A robust loss (Huber, Tukey) acts on the residuals without the common parts, which it
-// therefore refuses. chi_squared / degrees_of_freedom far above 1: the model is not the sensor's.
-//
-// Fails as least_squares.hpp and group_delay.hpp do; invalid_argument (uncertainties not positive).
-// Any thread.
+// response_fit.hpp finds the parameters. Plain functions, any thread.
 #pragma once
 
+#include <array>
 #include <complex>
-#include <span>
-#include <string>
+#include <string_view>
 #include <vector>
-
-#include "analysis/base/error.hpp"
-#include "analysis/response/least_squares.hpp"
 
 namespace dyncal::analysis {
 
-enum class ResponseKind { delay, first_order, second_order, second_and_first_order };
+enum class ResponseKind { // in the order of their number of parameters
+  gain,
+  delay, // every kind has a gain
+  first_order,
+  first_order_with_delay,
+  second_order,
+  second_order_with_delay,
+  second_and_first_order_with_delay
+};
+
+inline constexpr std::array all_response_kinds{ResponseKind::gain,
+                                               ResponseKind::delay,
+                                               ResponseKind::first_order,
+                                               ResponseKind::first_order_with_delay,
+                                               ResponseKind::second_order,
+                                               ResponseKind::second_order_with_delay,
+                                               ResponseKind::second_and_first_order_with_delay};
+
+[[nodiscard]] std::string_view to_string(ResponseKind kind); // for people
+[[nodiscard]] std::string_view name_of(ResponseKind kind);   // for programs: "second_order"
+[[nodiscard]] std::size_t parameter_count(ResponseKind kind);
+[[nodiscard]] bool has_delay(ResponseKind kind);
+[[nodiscard]] bool has_first_order(ResponseKind kind);
+[[nodiscard]] bool has_second_order(ResponseKind kind);
 
 struct ResponsePoint {
   double frequency_hz = 0.0;
   std::complex<double> h;
   double u_magnitude_rel = 0.0; // independent from point to point
   double u_phase_rad = 0.0;
-};
-
-struct CommonResponseUncertainty {
-  double gain_rel = 0.0;
-  double delay_s = 0.0;
-  double phase_rad = 0.0;
 };
 
 struct ResponseParameters {
@@ -53,19 +59,9 @@ struct ResponseParameters {
 [[nodiscard]] std::complex<double> response_at(const ResponseParameters& parameters,
                                                double frequency_hz);
 
-struct FittedResponse {
-  ResponseParameters parameters;
-  std::vector<std::string> names; // of the free parameters, in the order of the covariance
-  std::vector<double> values;
-  std::vector<double> u;
-  std::vector<double> covariance; // row by row, common parts included
-  double chi_squared = 0.0;
-  double degrees_of_freedom = 0.0;
-};
-
-[[nodiscard]] Expected<FittedResponse> fit_response(ResponseKind kind,
-                                                    std::span<const ResponsePoint> points,
-                                                    const CommonResponseUncertainty& common = {},
-                                                    Loss loss = Loss::none);
+// d ln H / d parameter, in the order gain, delay_s, corner_hz, resonance_hz, damping as far as the
+// kind has them: of ln|H| the real, of the phase the imaginary part.
+[[nodiscard]] std::vector<std::complex<double>>
+log_slopes(ResponseKind kind, const ResponseParameters& parameters, double frequency_hz);
 
 } // namespace dyncal::analysis

@@ -1,5 +1,7 @@
-// The judge from outside: nonlinear problems of the NIST Statistical Reference Datasets of the sine
-// and exponential kind, from both of their starting points, to nine digits.
+// The judge from outside: nonlinear problems of the NIST Statistical Reference Datasets (StRD) of
+// the sine and exponential kind, from both of their starting points, to nine digits. It is the
+// solver of `dyncal model`; tests/system/reference_datasets_test.cpp judges `dyncal fit` by a
+// problem of the same collection.
 #include "analysis/response/least_squares.hpp"
 
 #include <algorithm>
