@@ -21,9 +21,11 @@ constexpr double taps_per_width = 4.0; // times rate / (stop - cutoff)
 using Complex = std::complex<double>;
 
 Complex polynomial_at(const std::vector<double>& coefficients, double w) {
+  const Complex step = std::polar(1.0, -w);
   Complex sum;
-  for (std::size_t k = 0; k < coefficients.size(); ++k) {
-    sum += coefficients[k] * std::polar(1.0, -w * static_cast<double>(k));
+  for (auto coefficient = coefficients.rbegin(); coefficient != coefficients.rend();
+       ++coefficient) {
+    sum = sum * step + *coefficient;
   }
   return sum;
 }
@@ -180,18 +182,20 @@ private:
   void add_errors() {
     constexpr int intervals = 4000;
     const double gain = std::abs(response_.parameters.gain);
+    const double nyquist = 0.5 * filter_.rate_hz;
     double squares = 0.0;
     for (int i = 0; i <= intervals; ++i) {
-      const double frequency_hz = 0.5 * filter_.rate_hz * i / intervals;
-      const Complex value = analysis::response_at(filter_, frequency_hz);
-      squares += std::norm(value * gain) / (intervals + 1.0);
-      if (frequency_hz <= filter_.cutoff_hz) {
-        const Complex whole =
-            value * model(frequency_hz) *
-            std::polar(1.0, angle(frequency_hz) * static_cast<double>(filter_.delay_samples));
-        filter_.ripple = std::max(filter_.ripple, std::abs(whole - 1.0));
-      } else if (frequency_hz >= filter_.stop_hz && filter_.stop_hz < 0.5 * filter_.rate_hz) {
-        filter_.stop_gain = std::max(filter_.stop_gain, std::abs(value) * gain);
+      const double passed_hz = filter_.cutoff_hz * i / intervals;
+      const Complex whole =
+          analysis::response_at(filter_, passed_hz) * model(passed_hz) *
+          std::polar(1.0, angle(passed_hz) * static_cast<double>(filter_.delay_samples));
+      filter_.ripple = std::max(filter_.ripple, std::abs(whole - 1.0));
+      const double anywhere_hz = nyquist * i / intervals;
+      squares += std::norm(analysis::response_at(filter_, anywhere_hz) * gain) / (intervals + 1.0);
+      const double stopped_hz = filter_.stop_hz + (nyquist - filter_.stop_hz) * i / intervals;
+      if (filter_.stop_hz < nyquist) {
+        filter_.stop_gain = std::max(filter_.stop_gain,
+                                     std::abs(analysis::response_at(filter_, stopped_hz)) * gain);
       }
     }
     filter_.noise_gain = std::sqrt(squares);

@@ -133,6 +133,15 @@ ceres::Solver::Options solver_options(const Strategy& strategy) {
   return options;
 }
 
+// Near enough for Gauss-Newton steps, or given up.
+ceres::Solver::Options quick_options(const Strategy& strategy) {
+  ceres::Solver::Options options = solver_options(strategy);
+  options.max_num_iterations = 60;
+  options.function_tolerance = 1e-8;
+  options.parameter_tolerance = 1e-8;
+  return options;
+}
+
 Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
   Expected<LeastSquaresSolution> best = fail(ErrorCode::not_converged, "the model was not fitted");
   double lowest = std::numeric_limits<double>::infinity();
@@ -143,8 +152,9 @@ Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
     ceres::Problem problem;
     add_residuals(problem, description, solution.parameters.data());
     ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(strategy), &problem, &summary);
-    if (summary.termination_type != ceres::CONVERGENCE) {
+    const bool quick = description.search == Search::quick;
+    ceres::Solve(quick ? quick_options(strategy) : solver_options(strategy), &problem, &summary);
+    if (quick ? !summary.IsSolutionUsable() : summary.termination_type != ceres::CONVERGENCE) {
       if (!best) {
         best = fail(ErrorCode::not_converged, "the model was not fitted: " + summary.message);
       }
@@ -156,7 +166,7 @@ Expected<LeastSquaresSolution> search(const LeastSquaresProblem& description) {
     lowest = summary.final_cost;
     solution.iterations = static_cast<int>(summary.iterations.size());
     best = std::move(solution);
-    if (description.search == Search::quick) {
+    if (quick) {
       break;
     }
   }

@@ -99,25 +99,23 @@ void add_rivals(ResponseChoice& choice) {
 
 Expected<ResponseChoice> choose_response(std::span<const ResponsePoint> points,
                                          const CommonResponseUncertainty& common,
-                                         std::span<const ResponseKind> kinds) {
+                                         std::optional<ResponseKind> wanted) {
   ResponseChoice choice;
-  for (const ResponseKind kind : kinds) {
+  for (const ResponseKind kind : all_response_kinds) {
     choice.candidates.push_back(candidate_of(kind, points, common));
   }
-  const std::vector<std::size_t> by_size = best_of_each_size(choice.candidates);
-  if (by_size.empty()) {
-    const auto undetermined =
-        std::find_if(choice.candidates.begin(), choice.candidates.end(),
-                     [](const ResponseCandidate& candidate) { return candidate.fit.has_value(); });
-    if (undetermined != choice.candidates.end()) {
-      return fail(ErrorCode::ill_conditioned, "the measured values do not determine " +
-                                                  undetermined->fit->undetermined.front());
+  if (wanted) {
+    choice.chosen = static_cast<std::size_t>(*wanted);
+    if (!choice.best().fit) {
+      return fail(ErrorCode::not_converged, choice.best().problem);
     }
-    return fail(ErrorCode::not_converged, choice.candidates.empty()
-                                              ? "no model was asked for"
-                                              : choice.candidates.front().problem);
+  } else {
+    const std::vector<std::size_t> by_size = best_of_each_size(choice.candidates);
+    if (by_size.empty()) {
+      return fail(ErrorCode::not_converged, choice.candidates.front().problem);
+    }
+    choice.chosen = choose(choice.candidates, by_size);
   }
-  choice.chosen = choose(choice.candidates, by_size);
   choice.fits = choice.best().probability >= min_probability;
   add_rivals(choice);
   return choice;

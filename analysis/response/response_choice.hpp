@@ -46,13 +46,14 @@ struct ResponseChoice {
   std::size_t chosen = 0;
   bool fits = false;
   std::optional<ResponseRivalry> simpler; // the best with fewer parameters
-  std::optional<ResponseRivalry> richer;  // the best with more, which is not better than chance
+  std::optional<ResponseRivalry> richer;  // of those with more, the least likely by chance
 
   [[nodiscard]] const ResponseCandidate& best() const { return candidates[chosen]; }
 };
 
+// `wanted`: this kind is chosen, whatever the values say; fails when it could not be fitted.
 [[nodiscard]] Expected<ResponseChoice>
 choose_response(std::span<const ResponsePoint> points, const CommonResponseUncertainty& common = {},
-                std::span<const ResponseKind> kinds = all_response_kinds);
+                std::optional<ResponseKind> wanted = std::nullopt);
 
 } // namespace dyncal::analysis

@@ -17,12 +17,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t max_parameters = 5;
-constexpr double max_log_u = 0.5;               // of a parameter that counts as determined
+constexpr double max_log_u = 0.5; // of a frequency that counts as determined; of zeta if below 1
 constexpr double other_delay_chi_squared = 9.0; // above the lowest
 constexpr double alike_chi_squared = 1.0;       // the smaller delay is taken
 
-// Free parameters: ln|g|, then tau / scale, ln fc, ln f0, ln zeta as far as the kind has them.
-// Logarithms keep them positive.
+// Free parameters: ln|g|, then tau / scale, ln fc, ln f0, zeta as far as the kind has them.
+// Logarithms keep frequencies positive; zeta may come out below 0, as chance has it, when it is
+// nearly 0.
 struct Layout {
   ResponseKind kind;
   double delay_scale_s;
@@ -65,7 +66,7 @@ LogResponse<T> log_response(const Layout& layout, const T* x, double frequency_h
   if (has_second_order(layout.kind)) {
     const T ratio = bounded_exp(T(std::log(frequency_hz)) - x[layout.second()]);
     const T real = T(1.0) - ratio * ratio;
-    const T imaginary = T(2.0) * bounded_exp(x[layout.second() + 1]) * ratio;
+    const T imaginary = T(2.0) * x[layout.second() + 1] * ratio;
     result.log_magnitude -= T(0.5) * log(real * real + imaginary * imaginary);
     result.phase_rad -= atan2(imaginary, real);
   }
@@ -125,7 +126,7 @@ std::vector<double> free_parameters(const Layout& layout, const ResponseParamete
   }
   if (has_second_order(layout.kind)) {
     x.push_back(std::log(start.resonance_hz));
-    x.push_back(std::log(start.damping));
+    x.push_back(start.damping);
   }
   return x;
 }
@@ -260,7 +261,9 @@ std::vector<ResponseResidual> residuals_of(const ResponseParameters& parameters,
 void find_undetermined(const Layout& layout, const LeastSquaresSolution& solution,
                        FittedResponse& result) {
   for (std::size_t k = layout.first(); k < layout.size(); ++k) {
-    if (!(solution.u(k) <= max_log_u)) {
+    const bool is_damping = has_second_order(layout.kind) && k + 1 == layout.size();
+    const double unit = is_damping ? std::max(1.0, std::abs(solution.parameters[k])) : 1.0;
+    if (!(solution.u(k) <= max_log_u * unit)) {
       result.undetermined.push_back(result.names[k]);
     }
   }
@@ -289,7 +292,7 @@ FittedResponse describe(const Layout& layout, bool inverted, const LeastSquaresS
   if (has_second_order(layout.kind)) {
     const std::size_t k = layout.second();
     result.parameters.resonance_hz = take("resonance_hz", std::exp(x[k]), std::exp(x[k]));
-    result.parameters.damping = take("damping", std::exp(x[k + 1]), std::exp(x[k + 1]));
+    result.parameters.damping = take("damping", x[k + 1], 1.0);
   }
   for (std::size_t a = 0; a < x.size(); ++a) {
     for (std::size_t b = 0; b < x.size(); ++b) {

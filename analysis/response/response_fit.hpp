@@ -55,7 +55,7 @@ struct FittedResponse {
   double chi_squared = 0.0;
   double degrees_of_freedom = 0.0;
   std::vector<ResponseResidual> residuals; // of each point
-  std::vector<std::string> undetermined;   // parameters known no better than to half of them
+  std::vector<std::string> undetermined;   // known no better than to half of them (zeta: 0.5)
   std::vector<OtherDelay> other_delays;    // by chi_squared
 };
 

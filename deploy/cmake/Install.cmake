@@ -23,7 +23,8 @@ install(TARGETS
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT programs)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
-install(FILES services/report/result.schema.json DESTINATION ${data} COMPONENT programs)
+install(FILES services/model/model.schema.json services/report/result.schema.json
+  DESTINATION ${data} COMPONENT programs)
 install(CODE "
   set(root \"${PROJECT_SOURCE_DIR}\")
   set(made \"${made}\")

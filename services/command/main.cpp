@@ -11,6 +11,7 @@
 #include "services/command/demo_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
+#include "services/command/model_command.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
@@ -160,6 +161,52 @@ void add_compare(CLI::App& app, CompareCommand& compare) {
   command->add_flag("--json", compare.json, "print JSON");
 }
 
+void add_model_filter(CLI::App& command, ModelCommand& model) {
+  command
+      .add_option("--filter", model.filter,
+                  "design a filter that undoes the response, with a low pass: fir or iir")
+      ->check(CLI::IsMember({"fir", "iir"}));
+  command
+      .add_option("--rate-hz", model.rate_hz,
+                  "sample rate of the filter (default: the sensor's, as measured)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--cutoff-hz", model.cutoff_hz,
+                  "end of the filter's pass band (default: the highest fitted frequency)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--taps", model.taps,
+                  "coefficients b of the filter (default: by the width of the transition)")
+      ->check(CLI::Range(2, 513));
+  command
+      .add_option("--delay-samples", model.delay_samples,
+                  "by how many samples the filter's output may be late (default: that with the "
+                  "smallest error)")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void add_model(CLI::App& app, ModelCommand& model) {
+  CLI::App* command = app.add_subcommand(
+      "model", "fit gain, delay, first and second order to results; a filter that undoes the "
+               "response");
+  command
+      ->add_option("RESULT.json", model.results,
+                   "result of dyncal run or analyse; several are joined")
+      ->required();
+  command->add_option("--channel", model.channels,
+                      "channel to fit (repeatable; default: all that respond)");
+  command->add_option("--kind", model.kind, "the model (default: what the values support)")
+      ->check(CLI::IsMember(model_kind_names()))
+      ->capture_default_str();
+  command->add_flag("--include-flagged", model.include_flagged,
+                    "also fit values whose flags say that they may be wrong beyond u");
+  command->add_option("--json", model.json,
+                      "write models, covariances and filters to this file as JSON");
+  command->add_option("--figures", model.figures,
+                      "write figures of the residuals (SVG and CSV) into this folder");
+  add_model_filter(*command, model);
+}
+
 void add_triaxial(CLI::App& app, TriaxialCommand& triaxial) {
   CLI::App* command = app.add_subcommand(
       "triaxial",
@@ -207,6 +254,7 @@ struct Commands {
   FitCommand fit;
   std::string guarded_generator;
   IntervalsCommand intervals;
+  ModelCommand model;
   RunCommand run;
   WatchCommand watch;
 };
@@ -217,6 +265,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (app.got_subcommand("triaxial")) {
     return run_triaxial(commands.triaxial);
+  }
+  if (app.got_subcommand("model")) {
+    return run_model(commands.model);
   }
   if (app.got_subcommand("fit")) {
     return run_fit(commands.fit);
@@ -256,6 +307,7 @@ int main(int argc, char** argv) {
   add_watch(app, commands.watch);
   add_analyse(app, commands.analyse);
   add_compare(app, commands.compare);
+  add_model(app, commands.model);
   add_triaxial(app, commands.triaxial);
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);

@@ -45,6 +45,7 @@ FLOORS = {
         ["evaluation"],
         ["run"],
         ["report"],
+        ["model"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "virtual_bench"],
         ["replay"],
         ["command"],

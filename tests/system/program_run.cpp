@@ -21,12 +21,12 @@ std::string read(const std::filesystem::path& path) {
 
 constexpr int status_not_checked = 77;
 
-// Of dyncal's commands that write a result; the other commands have an option of the same name.
+// Of dyncal's commands that write a file; other commands have an option of the same name.
 std::optional<std::filesystem::path> result_of(const std::vector<std::string>& arguments) {
   const auto is = [&](const char* command) {
     return !arguments.empty() && arguments.front() == command;
   };
-  if (!is("run") && !is("analyse") && !is("demo")) {
+  if (!is("run") && !is("analyse") && !is("demo") && !is("model")) {
     return std::nullopt;
   }
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
@@ -55,6 +55,8 @@ services::ChildProcess started(const std::filesystem::path& program,
 ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder)
     : result_(result_of(arguments)),
+      schema_(!arguments.empty() && arguments.front() == "model" ? DYNCAL_MODEL_SCHEMA
+                                                                 : DYNCAL_RESULT_SCHEMA),
       output_(folder / (std::filesystem::path(program).filename().string() + ".out")),
       errors_(folder / (std::filesystem::path(program).filename().string() + ".err")),
       began_(std::chrono::steady_clock::now()),
@@ -86,9 +88,8 @@ void ProgramRun::check_result() const {
     return;
   }
   const std::filesystem::path output = result_->string() + ".check";
-  auto check =
-      started(DYNCAL_PYTHON, {"-B", DYNCAL_CHECK_RESULT, DYNCAL_RESULT_SCHEMA, result_->string()},
-              {output, output});
+  auto check = started(DYNCAL_PYTHON, {"-B", DYNCAL_CHECK_RESULT, schema_, result_->string()},
+                       {output, output});
   const auto exit = check.wait_for(std::chrono::seconds(60));
   if (exit && exit->status == status_not_checked) {
     std::cerr << read(output);

@@ -45,6 +45,7 @@ private:
   void check_result() const;
 
   std::optional<std::filesystem::path> result_; // that it is to write
+  std::string schema_;                          // of it
   std::filesystem::path output_;
   std::filesystem::path errors_;
   std::chrono::steady_clock::time_point began_;

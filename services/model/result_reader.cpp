@@ -1,0 +1,221 @@
+#include "services/model/result_reader.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace dyncal::services {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+// Thrown and caught in this file: the sentence is the error.
+struct BadKey {
+  std::string sentence;
+};
+
+// One object of the file and its place there.
+class Node {
+public:
+  Node(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
+    if (!json_.is_object()) {
+      throw BadKey{fmt::format("{} is not an object", place_)};
+    }
+  }
+
+  [[nodiscard]] double number(const char* key) const {
+    const Json& value = at(key);
+    if (value.is_null()) {
+      return not_known;
+    }
+    if (!value.is_number()) {
+      throw BadKey{fmt::format("{}.{} is not a number", place_, key)};
+    }
+    return value.get<double>();
+  }
+  [[nodiscard]] std::string text(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_string()) {
+      throw BadKey{fmt::format("{}.{} is not a text", place_, key)};
+    }
+    return value.get<std::string>();
+  }
+  [[nodiscard]] bool boolean(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_boolean()) {
+      throw BadKey{fmt::format("{}.{} is neither true nor false", place_, key)};
+    }
+    return value.get<bool>();
+  }
+  [[nodiscard]] std::vector<std::string> texts(const char* key) const {
+    std::vector<std::string> result;
+    for (const Json& value : array(key)) {
+      if (!value.is_string()) {
+        throw BadKey{fmt::format("{}.{} is not a list of texts", place_, key)};
+      }
+      result.push_back(value.get<std::string>());
+    }
+    return result;
+  }
+  [[nodiscard]] std::vector<Node> nodes(const char* key) const {
+    std::vector<Node> result;
+    for (const Json& value : array(key)) {
+      result.emplace_back(
+          value, fmt::format("{}{}{}[{}]", place_, place_.empty() ? "" : ".", key, result.size()));
+    }
+    return result;
+  }
+  [[nodiscard]] Node node(const char* key) const { return {at(key), key}; }
+  [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }
+
+private:
+  [[nodiscard]] const Json& at(const char* key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end()) {
+      throw BadKey{fmt::format("{}{}{} is missing", place_, place_.empty() ? "" : ".", key)};
+    }
+    return *found;
+  }
+  [[nodiscard]] const Json& array(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_array()) {
+      throw BadKey{fmt::format("{}.{} is not a list", place_, key)};
+    }
+    return value;
+  }
+
+  const Json& json_;
+  std::string place_;
+};
+
+analysis::Distribution parse_distribution(const std::string& name) {
+  using analysis::Distribution;
+  for (const Distribution one : {Distribution::normal, Distribution::rectangular,
+                                 Distribution::triangular, Distribution::arcsine}) {
+    if (to_string(one) == name) {
+      return one;
+    }
+  }
+  return Distribution::normal;
+}
+
+analysis::Repeats parse_repeats(const Node& row) {
+  using analysis::Repeats;
+  const std::string name = row.text("repeats");
+  for (const Repeats one : {Repeats::anew, Repeats::common, Repeats::common_delay}) {
+    if (to_string(one) == name) {
+      return one;
+    }
+  }
+  throw BadKey{
+      fmt::format("the budget has repeats = '{}', which this version does not know", name)};
+}
+
+analysis::Contribution contribution_of(const Node& row) {
+  const analysis::NamedKind named = analysis::parse_contribution_name(row.text("name"));
+  analysis::Contribution result;
+  result.kind = named.kind;
+  result.subject = named.subject;
+  result.distribution = parse_distribution(row.text("distribution"));
+  result.repeats = parse_repeats(row);
+  const double freedom = row.number("degrees_of_freedom");
+  result.degrees_of_freedom =
+      std::isfinite(freedom) ? freedom : analysis::infinite_degrees_of_freedom;
+  result.u_magnitude_rel = row.number("u_magnitude_rel");
+  result.u_phase_rad = row.number("u_phase_rad");
+  result.u_lasting_magnitude_rel = row.number("u_lasting_magnitude_rel");
+  return result;
+}
+
+SinglePoint point_of(const Node& point) {
+  SinglePoint result{point.text("channel"),      point.number("frequency_hz"),
+                     point.number("level_m_s2"), point.number("magnitude"),
+                     point.number("phase_rad"),  {}};
+  for (const Node& row : point.nodes("budget")) {
+    result.budget.push_back(contribution_of(row));
+  }
+  return result;
+}
+
+TransferValue value_of(const Node& value) {
+  return {.channel = value.text("channel"),
+          .frequency_text_hz = value.text("frequency_text_hz"),
+          .frequency_hz = value.number("frequency_hz"),
+          .level_m_s2 = value.number("level_m_s2"),
+          .magnitude = value.number("magnitude"),
+          .expanded_magnitude = value.number("U_magnitude"),
+          .phase_rad = value.number("phase_rad"),
+          .expanded_phase_rad = value.number("U_phase_rad"),
+          .u_independent_phase_rad = value.number("u_independent_phase_rad"),
+          .unit = value.text("unit"),
+          .flag_names = value.texts("flag_names")};
+}
+
+void check_schema(const Node& root) {
+  if (!root.has("schema")) {
+    throw BadKey{"there is no key 'schema', so it is not a result that dyncal 0.2 or later wrote "
+                 "with --json; evaluate the run again"};
+  }
+  const Node schema = root.node("schema");
+  const std::string name = schema.text("name");
+  if (name != "dyncal-result") {
+    throw BadKey{
+        fmt::format("the schema is '{}', but a model is fitted to a 'dyncal-result', which "
+                    "dyncal run and dyncal analyse write with --json",
+                    name)};
+  }
+}
+
+ResultContents contents_of(const Node& root) {
+  check_schema(root);
+  ResultContents contents;
+  for (const Node& channel : root.nodes("channels")) {
+    if (channel.boolean("responds")) {
+      contents.channels_that_respond.push_back(channel.text("channel"));
+    }
+  }
+  for (const Node& value : root.nodes("transfer_function")) {
+    contents.values.push_back(value_of(value));
+  }
+  for (const Node& point : root.nodes("points")) {
+    if (point.boolean("valid")) {
+      contents.points.push_back(point_of(point));
+    }
+  }
+  for (const Node& clock : root.nodes("sample_clock")) {
+    contents.source_rates_hz.emplace_back(clock.text("source"), clock.number("mean_rate_hz"));
+  }
+  return contents;
+}
+
+} // namespace
+
+Expected<ResultContents> read_result(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: cannot read this result file; does it exist, and may you read it?",
+                            path.string()));
+  }
+  const Json json = Json::parse(stream, nullptr, false);
+  if (json.is_discarded()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: not JSON; give a file that dyncal run or dyncal analyse wrote "
+                            "with --json",
+                            path.string()));
+  }
+  try {
+    ResultContents contents = contents_of(Node(json, ""));
+    contents.file = path.string();
+    return contents;
+  } catch (const BadKey& bad) {
+    return fail(ErrorCode::bad_file, fmt::format("{}: {}", path.string(), bad.sentence));
+  }
+}
+
+} // namespace dyncal::services
