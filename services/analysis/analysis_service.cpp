@@ -58,29 +58,18 @@ void AnalysisService::serve(const std::stop_token& stop) {
 }
 
 void AnalysisService::take_messages() {
-  readers_->description.take(
-      [&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
-        if (info.valid) {
-          benches_[description.bench().to_string()][description.source().to_string()].description =
-              description;
-        }
-      });
-  readers_->status.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
-    if (info.valid) {
-      benches_[status.bench().to_string()][status.source().to_string()].status = status;
-    } else {
-      benches_[status.bench().to_string()].erase(status.source().to_string());
-    }
+  readers_->description.take([&](const wire::SourceDescription& description) {
+    benches_[description.bench().to_string()][description.source().to_string()].description =
+        description;
+  });
+  readers_->status.take([&](const wire::SourceStatus& status) {
+    benches_[status.bench().to_string()][status.source().to_string()].status = status;
   });
   readers_->measurement.take(
-      [&](const wire::Measurement& measurement, const bus::SampleInfo& info) {
-        if (info.valid) {
-          take_measurement(measurement);
-        }
-      });
-  readers_->excitation.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
+      [&](const wire::Measurement& measurement) { take_measurement(measurement); });
+  readers_->excitation.take([&](const wire::Excitation& excitation) {
     const auto session = runs_.find({excitation.bench().to_string(), excitation.run().to_string()});
-    if (info.valid && session != runs_.end()) {
+    if (session != runs_.end()) {
       session->second->announce(excitation);
     }
   });

@@ -95,9 +95,9 @@ void SourceStreams::take_samples(Instant now, RunEvaluator& evaluator) {
 
 template <class Message>
 void SourceStreams::take(bus::Reader<Message>& reader, Instant now, RunEvaluator& evaluator) {
-  reader.take([&](const Message& message, const bus::SampleInfo& info) {
+  reader.take([&](const Message& message) {
     const auto found = streams_.find(message.source().to_string());
-    if (!info.valid || found == streams_.end()) {
+    if (found == streams_.end()) {
       return;
     }
     Stream& stream = found->second;

@@ -47,18 +47,11 @@ struct ParticipantOptions {
 
 enum class WriteOutcome { written, timed_out, failed };
 
-struct SampleInfo {
-  bool valid = true; // false: only the key members are set, the instance has ended
-  // The writer's clock; 0: not known, Cyclone DDS leaves it out of some repeated packets.
-  std::int64_t source_utc_ns = 0;
-};
-
 // What an adapter implements; use Writer<T> and Reader<T>.
 class UntypedWriter {
 public:
   virtual ~UntypedWriter() = default;
   virtual WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) = 0;
-  virtual bool unregister(const void* sample) = 0;
   [[nodiscard]] virtual int matched_readers() const = 0;
   virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
 };
@@ -66,7 +59,7 @@ public:
 class UntypedReader {
 public:
   virtual ~UntypedReader() = default;
-  virtual std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) = 0;
+  virtual std::size_t take(const std::function<void(const void*)>& consume) = 0;
   [[nodiscard]] virtual int matched_writers() const = 0;
 };
 
@@ -93,7 +86,6 @@ public:
   WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) {
     return untyped_->write(&sample, limit);
   }
-  bool unregister(const T& sample) { return untyped_->unregister(&sample); }
   [[nodiscard]] int matched_readers() const { return untyped_->matched_readers(); }
   // Acknowledged by all readers that are there; true as well if there is none.
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) {
@@ -108,12 +100,11 @@ template <class T>
 class Reader {
 public:
   explicit Reader(std::unique_ptr<UntypedReader> untyped) : untyped_(std::move(untyped)) {}
-  // Hands over everything that has come, in order, and returns how many that were.
+  // Hands over everything that has come, in order, and returns how many that were. That another
+  // tool on the bus has ended an instance is not handed over: dyncal ends none.
   template <class Consume>
   std::size_t take(Consume&& consume) {
-    return untyped_->take([&](const void* sample, const SampleInfo& info) {
-      consume(*static_cast<const T*>(sample), info);
-    });
+    return untyped_->take([&](const void* sample) { consume(*static_cast<const T*>(sample)); });
   }
   [[nodiscard]] int matched_writers() const { return untyped_->matched_writers(); }
 

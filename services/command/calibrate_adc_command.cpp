@@ -63,12 +63,9 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline &&
          !stop.stop_requested()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 100ms);
-    descriptions->take(
-        [&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
-          if (info.valid) {
-            time_bases[description.source().to_string()] = description.time_base();
-          }
-        });
+    descriptions->take([&](const wire::SourceDescription& description) {
+      time_bases[description.source().to_string()] = description.time_base();
+    });
   }
   if (stop.stop_requested()) {
     return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");

@@ -225,38 +225,28 @@ Expected<Readers> open_readers(bus::Participant& participant, const std::string&
 }
 
 void take_all(Readers& readers, Screen& screen) {
-  readers.sources.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
+  readers.sources.take([&](const wire::SourceStatus& status) {
     const std::string key = fmt::format("1 {}/{}", status.bench().c_str(), status.source().c_str());
-    screen.replace(key, info.valid ? source_line(status)
-                                   : fmt::format("{}/{}: gone", status.bench().c_str(),
-                                                 status.source().c_str()));
+    screen.replace(key, source_line(status));
   });
-  readers.services.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
-    if (info.valid) {
-      screen.replace(fmt::format("2 {} {} {}", status.bench().c_str(), status.run().c_str(),
-                                 status.service().c_str()),
-                     run_line(status));
-    }
+  readers.services.take([&](const wire::ServiceStatus& status) {
+    screen.replace(fmt::format("2 {} {} {}", status.bench().c_str(), status.run().c_str(),
+                               status.service().c_str()),
+                   run_line(status));
   });
-  readers.excitation.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
-    if (info.valid) {
-      screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()),
-                     step_line(excitation));
-    }
+  readers.excitation.take([&](const wire::Excitation& excitation) {
+    screen.replace(fmt::format("3 {} {}", excitation.bench().c_str(), excitation.run().c_str()),
+                   step_line(excitation));
   });
-  readers.results.take([&](const wire::CalibrationResult& result, const bus::SampleInfo& info) {
-    if (info.valid) {
-      const auto flags = flags_from_message(result.flags(), result.flag_names());
-      screen.append(result_line(result, flags));
-      screen.explain(flags);
-    }
+  readers.results.take([&](const wire::CalibrationResult& result) {
+    const auto flags = flags_from_message(result.flags(), result.flag_names());
+    screen.append(result_line(result, flags));
+    screen.explain(flags);
   });
-  readers.functions.take([&](const wire::TransferFunction& function, const bus::SampleInfo& info) {
-    if (info.valid) {
-      const auto flags = flags_from_message(function.flags(), function.flag_names());
-      screen.append(function_line(function, flags));
-      screen.explain(flags);
-    }
+  readers.functions.take([&](const wire::TransferFunction& function) {
+    const auto flags = flags_from_message(function.flags(), function.flag_names());
+    screen.append(function_line(function, flags));
+    screen.explain(flags);
   });
   readers.clocks.take([&](const wire::SampleClockReport& report, const bus::SampleInfo& info) {
     if (info.valid) {

@@ -142,11 +142,7 @@ void TriggeredBench::report() {
 }
 
 void TriggeredBench::follow_excitation() {
-  excitation_.take([&](const wire::Excitation& excitation, const bus::SampleInfo& info) {
-    if (info.valid) {
-      follow(excitation);
-    }
-  });
+  excitation_.take([&](const wire::Excitation& excitation) { follow(excitation); });
 }
 
 void TriggeredBench::follow(const wire::Excitation& excitation) {

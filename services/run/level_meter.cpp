@@ -41,13 +41,13 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
 }
 
 void LevelMeter::take(double bench_time_s) {
-  descriptions_.take([&](const wire::SourceDescription& description, const bus::SampleInfo& info) {
-    if (info.valid && description.source() == reference_.source) {
+  descriptions_.take([&](const wire::SourceDescription& description) {
+    if (description.source() == reference_.source) {
       record_.describe(from_message(description));
     }
   });
-  samples_.take([&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
-    if (info.valid && block.source() == reference_.source) {
+  samples_.take([&](const wire::SampleBlock& block) {
+    if (block.source() == reference_.source) {
       record_.add(view_block(block));
     }
   });

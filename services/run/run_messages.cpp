@@ -60,8 +60,8 @@ void RunMessages::wait_for_acknowledgments(std::chrono::nanoseconds limit) {
 template <class Message, class Result, class SameKey>
 void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
                               SameKey same_key) {
-  reader.take([&](const Message& message, const bus::SampleInfo& info) {
-    if (!info.valid || message.run().to_string() != run_) {
+  reader.take([&](const Message& message) {
+    if (message.run().to_string() != run_) {
       return;
     }
     Result result = from_message(message);
@@ -78,10 +78,10 @@ void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>&
 void RunMessages::take_sources(RunOutcome& outcome) {
   const std::vector<std::string> of_run =
       outcome.recipe ? outcome.recipe->sources() : std::vector<std::string>{};
-  endpoints_.sources.take([&](const wire::SourceDescription& message, const bus::SampleInfo& info) {
+  endpoints_.sources.take([&](const wire::SourceDescription& message) {
     RunSource source{message.source().to_string(), from_wire(message.kind()), message.software(),
                      from_message(message)};
-    if (!info.valid || std::find(of_run.begin(), of_run.end(), source.source) == of_run.end()) {
+    if (std::find(of_run.begin(), of_run.end(), source.source) == of_run.end()) {
       return;
     }
     const auto known =
@@ -104,8 +104,8 @@ void RunMessages::take(RunOutcome& outcome) {
               [](const auto& a, const auto& b) { return a.channel == b.channel; });
   take_newest(endpoints_.clock_reports, outcome.clock_reports,
               [](const auto& a, const auto& b) { return a.source == b.source; });
-  endpoints_.status.take([&](const wire::ServiceStatus& status, const bus::SampleInfo& info) {
-    if (info.valid && status.run().to_string() == run_) {
+  endpoints_.status.take([&](const wire::ServiceStatus& status) {
+    if (status.run().to_string() == run_) {
       analysis_ = status;
       analysis_heard_ = clock_->now();
       outcome.analysis_dds = status.dds();

@@ -27,8 +27,8 @@ void ShotCounter::begin(const std::string& run, std::uint32_t step) {
 }
 
 void ShotCounter::take(bus::Reader<wire::TriggeredRecord>& reader, Numbers& numbers) const {
-  reader.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
-    if (info.valid && record.sample_count() > 0 && record.step() == step_ && record.run() == run_) {
+  reader.take([&](const wire::TriggeredRecord& record) {
+    if (record.sample_count() > 0 && record.step() == step_ && record.run() == run_) {
       numbers.insert({record.session(), record.shot()});
     }
   });

@@ -110,8 +110,8 @@ SourceService::Implementation::add(SourceOptions source) {
 }
 
 void SourceService::Implementation::take_commands(const std::string& bench, BenchReaders& readers) {
-  readers.command.take([&](const dyncal::wire::Command& command, const bus::SampleInfo& info) {
-    if (!info.valid || command.kind() != wire::COMMAND_ARM || command.bench() != bench) {
+  readers.command.take([&](const dyncal::wire::Command& command) {
+    if (command.kind() != wire::COMMAND_ARM || command.bench() != bench) {
       return;
     }
     for (auto& channel : channels_) {
@@ -126,14 +126,13 @@ void SourceService::Implementation::take_commands(const std::string& bench, Benc
 void SourceService::Implementation::take_measurements(const std::string& bench,
                                                       BenchReaders& readers) {
   auto running = readers.running;
-  readers.measurement.take(
-      [&](const dyncal::wire::Measurement& measurement, const bus::SampleInfo& info) {
-        const std::string run = measurement.run().c_str();
-        std::erase(running, run);
-        if (info.valid && measurement.state() == wire::MEASUREMENT_RUNNING) {
-          running.push_back(run);
-        }
-      });
+  readers.measurement.take([&](const dyncal::wire::Measurement& measurement) {
+    const std::string run = measurement.run().c_str();
+    std::erase(running, run);
+    if (measurement.state() == wire::MEASUREMENT_RUNNING) {
+      running.push_back(run);
+    }
+  });
   if (running == readers.running) {
     return;
   }

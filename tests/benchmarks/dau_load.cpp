@@ -142,8 +142,8 @@ public:
 
   void take() {
     wake_up_->wait_until(Clock::now() + std::chrono::milliseconds(100));
-    reader_.take([&](const wire::SampleBlock& block, const bus::SampleInfo&) { add(block); });
-    status_.take([&](const wire::SourceStatus& status, const bus::SampleInfo&) {
+    reader_.take([&](const wire::SampleBlock& block) { add(block); });
+    status_.take([&](const wire::SourceStatus& status) {
       const std::string name = std::string(status.bench().c_str()) + "/" + status.source().c_str();
       lost_by_account_[name] =
           status.lost_in_device() + status.lost_in_transit() + status.dropped_in_service();

@@ -151,10 +151,7 @@ int read_stream(bus::Participant& participant, const Options& options) {
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
   std::uint64_t taken = 0;
-  const auto consume = [&](const wire::SampleBlock& block, const bus::SampleInfo& info) {
-    if (!info.valid) {
-      return;
-    }
+  const auto consume = [&](const wire::SampleBlock& block) {
     const auto finding = continuity[block.source().to_string()].add(services::view_block(block));
     if (finding.first) {
       begun_late += block.block();

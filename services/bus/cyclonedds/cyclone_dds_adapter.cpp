@@ -125,12 +125,6 @@ public:
     });
   }
 
-  // Disposed as well: that is what readers of both vendors hear of.
-  bool unregister(const void* sample) override {
-    return dds_dispose(writer_.get(), sample) == DDS_RETCODE_OK &&
-           dds_unregister_instance(writer_.get(), sample) == DDS_RETCODE_OK;
-  }
-
   [[nodiscard]] int matched_readers() const override {
     dds_publication_matched_status_t status{};
     dds_get_publication_matched_status(writer_.get(), &status);
@@ -158,7 +152,7 @@ public:
       : participant_(std::move(participant)), wake_up_(std::move(wake_up)), type_(type),
         sample_(type.create(), type.destroy), topic_(topic), reader_(reader) {}
 
-  std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) override {
+  std::size_t take(const std::function<void(const void*)>& consume) override {
     std::size_t taken = 0;
     ddsi_serdata* serdata = nullptr;
     dds_sample_info_t info;
@@ -168,11 +162,10 @@ public:
       if (!read) {
         participant_->malformed->add(type_.name);
       }
-      if (!read || (!info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE)) {
-        continue;
+      if (read && info.valid_data) {
+        ++taken;
+        consume(sample_.get());
       }
-      ++taken;
-      consume(sample_.get(), SampleInfo{info.valid_data, info.source_timestamp});
     }
     return taken;
   }

@@ -169,14 +169,6 @@ public:
     });
   }
 
-  // Disposed as well: that is what readers of both vendors hear of.
-  bool unregister(const void* sample) override {
-    void* data = const_cast<void*>(sample);
-    // Registered anew: an instance is forgotten once all of its samples are acknowledged.
-    const dds::InstanceHandle_t handle = writer_->register_instance(data);
-    return handle.isDefined() && writer_->dispose(data, handle) == ReturnCode::RETCODE_OK;
-  }
-
   [[nodiscard]] int matched_readers() const override {
     dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
@@ -207,7 +199,7 @@ public:
   FastDdsReader(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Subscriber* subscriber,
                 const TypeSupport& type, std::unique_ptr<RingOnData> listener)
       : participant_(std::move(participant)), subscriber_(subscriber),
-        listener_(std::move(listener)), type_(type), sample_(type.create(), type.destroy) {}
+        listener_(std::move(listener)), sample_(type.create(), type.destroy) {}
   ~FastDdsReader() override {
     if (reader_ != nullptr) {
       subscriber_->delete_datareader(reader_);
@@ -222,18 +214,14 @@ public:
     return reader_ != nullptr;
   }
 
-  std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) override {
+  std::size_t take(const std::function<void(const void*)>& consume) override {
     std::size_t taken = 0;
     dds::SampleInfo info;
     while (reader_->take_next_sample(sample_.get(), &info) == ReturnCode::RETCODE_OK) {
       if (info.valid_data) {
-        remember_key(info.instance_handle);
-      } else if (info.instance_state == dds::ALIVE_INSTANCE_STATE ||
-                 !recall_key(info.instance_handle)) {
-        continue;
+        ++taken;
+        consume(sample_.get());
       }
-      ++taken;
-      consume(sample_.get(), SampleInfo{info.valid_data, info.source_timestamp.to_ns()});
     }
     return taken;
   }
@@ -245,40 +233,11 @@ public:
   }
 
 private:
-  // The end of an instance comes without its key (get_key_value() does nothing in 2.9), so the keys
-  // seen are kept.
-  void remember_key(const dds::InstanceHandle_t& instance) {
-    if (keys_.contains(instance)) {
-      return;
-    }
-    if (keys_.size() >= max_keys) {
-      keys_.clear();
-    }
-    std::string payload(max_key_payload_bytes, '\0');
-    payload.resize(type_.serialize_key(sample_.get(), payload.data(), payload.size()));
-    keys_.emplace(instance, std::move(payload));
-  }
-
-  bool recall_key(const dds::InstanceHandle_t& instance) {
-    const auto known = keys_.find(instance);
-    if (known == keys_.end()) {
-      return false;
-    }
-    // A sample of zeros behind the key: the rest of the members is empty.
-    const bool read = type_.deserialize(sample_.get(), known->second.data(), known->second.size());
-    keys_.erase(known);
-    return read;
-  }
-
-  static constexpr std::size_t max_keys = 100'000;
-
   std::shared_ptr<FastDdsParticipantHandle> participant_;
   dds::Subscriber* subscriber_;
   std::unique_ptr<RingOnData> listener_;
   dds::DataReader* reader_ = nullptr;
-  const TypeSupport& type_;
   std::unique_ptr<void, void (*)(void*)> sample_;
-  std::map<dds::InstanceHandle_t, std::string> keys_;
 };
 
 class FastDdsParticipant : public UntypedParticipant {

@@ -127,16 +127,6 @@ bool MemoryExchange::make_room(MemoryWriterState& writer, const std::string& key
   return true;
 }
 
-void MemoryExchange::end_instance(MemoryWriterState& writer, MemoryMessage message) {
-  const std::lock_guard lock(mutex_);
-  forget(writer, message.key);
-  message.number = writer.next_number++;
-  const auto sent = std::make_shared<MemoryMessage>(std::move(message));
-  for (const auto& link : writer.links) {
-    send(writer, *link, sent);
-  }
-}
-
 void MemoryExchange::forget(MemoryWriterState& writer, const std::string& key) {
   for (const std::uint64_t number : writer.numbers_of_key[key]) {
     writer.history.erase(number);
@@ -193,19 +183,11 @@ bool MemoryExchange::accepts(const MemoryReaderState& reader, const MemoryMessag
 }
 
 void MemoryExchange::accept(MemoryReaderState& reader, const MemoryMessagePointer& message) {
-  if (!message->valid) {
-    if (reader.alive.erase(message->key) > 0) {
-      reader.queue.push_back(message);
-    }
-    return;
-  }
-  reader.alive.insert(message->key);
   if (reader.qos.keep_all) {
     ++reader.untaken[message->key];
   } else {
-    std::erase_if(reader.queue, [&](const MemoryMessagePointer& other) {
-      return other->valid && other->key == message->key;
-    });
+    std::erase_if(reader.queue,
+                  [&](const MemoryMessagePointer& other) { return other->key == message->key; });
   }
   reader.queue.push_back(message);
 }
@@ -255,7 +237,7 @@ std::shared_ptr<const MemoryMessage> MemoryExchange::take_next(MemoryReaderState
   const MemoryMessagePointer message = reader.queue.front();
   reader.queue.pop_front();
   if (const auto untaken = reader.untaken.find(message->key);
-      message->valid && untaken != reader.untaken.end() && --untaken->second == 0) {
+      untaken != reader.untaken.end() && --untaken->second == 0) {
     reader.untaken.erase(untaken);
   }
   for (const auto& writer : writers_) {

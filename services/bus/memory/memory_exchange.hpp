@@ -26,11 +26,9 @@
 namespace dyncal::bus {
 
 struct MemoryMessage {
-  bool valid = true; // false: the instance has ended, the payload is its key
   std::string key;
   std::string payload;
   std::uint64_t number = 0;
-  std::int64_t source_utc_ns = 0;
   int in_transit_to = 0; // readers that have not accepted it
 };
 using MemoryMessagePointer = std::shared_ptr<MemoryMessage>;
@@ -48,7 +46,6 @@ struct MemoryEndpoint {
 struct MemoryReaderState : MemoryEndpoint {
   std::deque<MemoryMessagePointer> queue;
   std::map<std::string, int> untaken; // of each key, where all are kept
-  std::set<std::string> alive;        // instances that have not ended
 };
 
 struct MemoryLink {
@@ -79,7 +76,6 @@ public:
 
   // Returns false if the writer has no room for the message now.
   bool write(MemoryWriterState& writer, MemoryMessage message);
-  void end_instance(MemoryWriterState& writer, MemoryMessage message);
   [[nodiscard]] bool all_acknowledged(const MemoryWriterState& writer);
   [[nodiscard]] int matched_readers(const MemoryWriterState& writer);
   [[nodiscard]] int matched_writers(const MemoryReaderState& reader);

@@ -28,18 +28,6 @@ public:
     return written ? WriteOutcome::written : WriteOutcome::timed_out;
   }
 
-  bool unregister(const void* sample) override {
-    std::string payload(max_key_payload_bytes, '\0');
-    payload.resize(type_.serialize_key(sample, payload.data(), payload.size()));
-    auto message = message_with(std::move(payload));
-    if (!message) {
-      return false;
-    }
-    message->valid = false;
-    exchange_->end_instance(*state_, std::move(*message));
-    return true;
-  }
-
   [[nodiscard]] int matched_readers() const override { return exchange_->matched_readers(*state_); }
 
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
@@ -55,7 +43,6 @@ private:
     MemoryMessage message;
     message.key = canonical_key(*key);
     message.payload = std::move(payload);
-    message.source_utc_ns = exchange_->clock().utc_now_ns();
     return message;
   }
 
@@ -85,7 +72,7 @@ public:
         sample_(type.create(), type.destroy), state_(exchange_->open_reader(std::move(endpoint))) {}
   ~MemoryReader() override { exchange_->close(state_); }
 
-  std::size_t take(const std::function<void(const void*, const SampleInfo&)>& consume) override {
+  std::size_t take(const std::function<void(const void*)>& consume) override {
     std::size_t taken = 0;
     while (const auto message = exchange_->take_next(*state_)) {
       if (!decode(message->payload)) {
@@ -93,7 +80,7 @@ public:
         continue;
       }
       ++taken;
-      consume(sample_.get(), SampleInfo{message->valid, message->source_utc_ns});
+      consume(sample_.get());
     }
     return taken;
   }

@@ -110,7 +110,7 @@ protected:
     const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     bool ended = false;
     while (!ended && std::chrono::steady_clock::now() < deadline) {
-      reader_->take([&](const dyncal::wire::SampleBlock& block, const bus::SampleInfo&) {
+      reader_->take([&](const dyncal::wire::SampleBlock& block) {
         blocks.push_back(block);
         ended = ended || block.end_of_stream();
       });

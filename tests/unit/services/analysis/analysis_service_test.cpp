@@ -86,9 +86,9 @@ TEST_F(AnalysisServiceTest, ArmsARunWhoseSourceComesLate) {
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
 }
 
-TEST_F(AnalysisServiceTest, RefusesARunWhoseSourceHasLeft) {
-  play_sources();
-  acs_.leave();
+TEST_F(AnalysisServiceTest, RefusesARunWhoseSourceNeverCame) {
+  dau_.describe();
+  dau_.report(wire::SOURCE_RUNNING);
   publish("r1", wire::MEASUREMENT_PLANNED);
   serve_for(RunSession::arm_limit);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_WAITING);

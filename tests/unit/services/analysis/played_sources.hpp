@@ -48,17 +48,15 @@ public:
   void report(wire::SourceState state, const std::string& message = "") {
     statuses_.write(status(state, message));
   }
-  void leave() { statuses_.unregister(status(wire::SOURCE_ENDED, "")); }
 
   // An empty block that answers every run that asked; returns how many commands came.
   std::size_t answer_commands() {
     std::set<std::string> runs;
-    const std::size_t commands =
-        commands_.take([&](const wire::Command& command, const bus::SampleInfo&) {
-          if (command.target().to_string() == name() && command.kind() == wire::COMMAND_ARM) {
-            runs.insert(command.run());
-          }
-        });
+    const std::size_t commands = commands_.take([&](const wire::Command& command) {
+      if (command.target().to_string() == name() && command.kind() == wire::COMMAND_ARM) {
+        runs.insert(command.run());
+      }
+    });
     for (const std::string& run : runs) {
       answer(run);
     }
@@ -140,11 +138,7 @@ private:
   }
   template <class T>
   static void take(bus::Reader<T>& reader, std::vector<T>& all) {
-    reader.take([&](const T& message, const bus::SampleInfo& info) {
-      if (info.valid) {
-        all.push_back(message);
-      }
-    });
+    reader.take([&](const T& message) { all.push_back(message); });
   }
 
   bus::Participant participant_;

@@ -90,7 +90,7 @@ protected:
     std::vector<T> samples;
     bool last = false;
     EXPECT_TRUE(wait_for([&] {
-      reader.take([&](const T& sample, const SampleInfo&) {
+      reader.take([&](const T& sample) {
         if (sample.target() == "last") {
           last = true;
         } else {
@@ -105,7 +105,7 @@ protected:
   // Two writers have no order between them: the malformed message may come after the good one.
   [[nodiscard]] bool comes_to_be_counted(Reader<wire::Command>& reader) {
     return wait_for([&] {
-      reader.take([](const wire::Command&, const SampleInfo&) {});
+      reader.take([](const wire::Command&) {});
       return reading_.malformed_messages() >= 1;
     });
   }

@@ -41,8 +41,7 @@ TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
   constexpr std::size_t values = 5000; // 40 kB
   std::vector<std::uint64_t> numbers;
   const auto take = [&] {
-    reader.take([&](const wire::SampleBlock& block, const SampleInfo& info) {
-      ASSERT_TRUE(info.valid);
+    reader.take([&](const wire::SampleBlock& block) {
       EXPECT_EQ(block, this->block(block.block(), "dau", values));
       EXPECT_TRUE(info.source_utc_ns == 0 || info.source_utc_ns > 1'600'000'000'000'000'000)
           << info.source_utc_ns;
@@ -70,9 +69,7 @@ TEST_P(BusExchange, GivesALateJoinerTheMostRecentBlocksAndHoldsNoMore) {
   auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   std::vector<std::uint64_t> numbers;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
-      numbers.push_back(block.block());
-    });
+    reader.take([&](const wire::SampleBlock& block) { numbers.push_back(block.block()); });
     return !numbers.empty() && numbers.back() == blocks - 1;
   })) << numbers.size();
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(late_joiner_blocks));
@@ -99,7 +96,7 @@ TEST_P(BusExchange, HoldsTheWriterBackWhenBlocksAreNotTakenAndLosesNone) {
   EXPECT_LE(written, static_cast<std::uint64_t>(late_joiner_blocks + untaken_blocks + 200));
   std::uint64_t next = 0;
   const auto take = [&] {
-    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
+    reader.take([&](const wire::SampleBlock& block) {
       EXPECT_EQ(block.block(), next);
       next = block.block() + 1;
     });
@@ -125,7 +122,7 @@ TEST_P(BusExchange, GivesALateJoinerTheNewestStateOfEveryKey) {
   auto reader = this->reader<wire::SourceStatus>(topics::source_status, Profile::state);
   std::map<std::string, std::vector<std::uint64_t>> seen;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const wire::SourceStatus& sample, const SampleInfo&) {
+    reader.take([&](const wire::SourceStatus& sample) {
       seen[sample.source().to_string()].push_back(sample.received());
     });
     return seen.size() == 3;
@@ -150,7 +147,7 @@ TEST_P(BusExchange, KeepsTheResultsOfThousandsOfKeys) {
   auto reader = this->reader<wire::CalibrationResult>(topics::calibration_result, Profile::results);
   std::map<std::uint32_t, double> frequencies;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const wire::CalibrationResult& sample, const SampleInfo&) {
+    reader.take([&](const wire::CalibrationResult& sample) {
       frequencies[sample.step()] = sample.frequency_hz();
     });
     return frequencies.size() == steps;
@@ -165,8 +162,7 @@ TEST_P(BusExchange, GivesNoOldCommandsToALateJoiner) {
   ASSERT_TRUE(wait_for_match(writer, reader));
   std::vector<std::string> runs;
   const auto take = [&] {
-    reader.take(
-        [&](const wire::Command& sample, const SampleInfo&) { runs.push_back(sample.run()); });
+    reader.take([&](const wire::Command& sample) { runs.push_back(sample.run()); });
     return !runs.empty();
   };
   // One side may match before the other: commands are repeated until they are answered.
@@ -192,52 +188,12 @@ TEST_P(BusExchange, CarriesKeysOf1And64Characters) {
   }
   std::map<std::string, std::uint64_t> next;
   ASSERT_TRUE(wait_for([&] {
-    reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
+    reader.take([&](const wire::SampleBlock& block) {
       EXPECT_EQ(block.block(), next[block.source().to_string()]++);
     });
     return next[shortest] == 20 && next[longest] == 20;
   }));
   EXPECT_EQ(next.size(), 2U);
-}
-
-TEST_P(BusExchange, SaysWhichInstanceHasEndedAndNothingElseOfIt) {
-  auto writer = this->writer<wire::SourceStatus>(topics::source_status, Profile::state);
-  auto reader = this->reader<wire::SourceStatus>(topics::source_status, Profile::state);
-  wire::SourceStatus status;
-  status.bench(bench_);
-  status.message("still here");
-  for (const char* source : {"first", "second", "third"}) {
-    status.source(source);
-    ASSERT_EQ(writer.write(status), WriteOutcome::written);
-  }
-  std::size_t alive = 0;
-  std::vector<std::string> ended;
-  const auto take = [&] {
-    reader.take([&](const wire::SourceStatus& sample, const SampleInfo& info) {
-      if (info.valid) {
-        ++alive;
-        return;
-      }
-      EXPECT_EQ(sample.bench().to_string(), bench_);
-      EXPECT_EQ(sample.message(), "");
-      ended.push_back(sample.source().to_string());
-    });
-    return alive == 3;
-  };
-  ASSERT_TRUE(wait_for(take));
-  status.source("second");
-  EXPECT_TRUE(writer.unregister(status));
-  ASSERT_TRUE(wait_for([&] {
-    take();
-    return !ended.empty();
-  }));
-  EXPECT_EQ(ended, std::vector<std::string>{"second"});
-  // It may begin again.
-  ASSERT_EQ(writer.write(status), WriteOutcome::written);
-  EXPECT_TRUE(wait_for([&] {
-    take();
-    return alive == 4;
-  }));
 }
 
 TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
@@ -250,8 +206,7 @@ TEST_P(BusExchange, SaysNothingOfInstancesWhenAWriterGoes) {
   ASSERT_EQ(writer->write(status), WriteOutcome::written);
   std::size_t valid = 0;
   ASSERT_TRUE(wait_for([&] {
-    reader.take(
-        [&](const wire::SourceStatus&, const SampleInfo& info) { valid += info.valid ? 1U : 0U; });
+    reader.take([&](const wire::SourceStatus&) { ++valid; });
     return valid == 1;
   }));
   writer.reset();
@@ -286,9 +241,7 @@ TEST_P(BusExchange, RingsForWhatComesAndForWhatWasThere) {
     const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     while (!got) {
       ASSERT_TRUE(bell_->wait_until(deadline)) << "block " << expected << " came without a ring";
-      reader.take([&](const wire::SampleBlock& block, const SampleInfo&) {
-        got = block.block() == expected;
-      });
+      reader.take([&](const wire::SampleBlock& block) { got = block.block() == expected; });
     }
   }
 }
@@ -307,12 +260,8 @@ TEST_P(BusExchange, KeepsPartitionsApartAndReadsAllWithAStar) {
   std::vector<std::string> of_one;
   std::vector<std::string> of_all;
   ASSERT_TRUE(wait_for([&] {
-    one.take([&](const wire::Command& sample, const SampleInfo&) {
-      of_one.push_back(sample.target().to_string());
-    });
-    all.take([&](const wire::Command& sample, const SampleInfo&) {
-      of_all.push_back(sample.target().to_string());
-    });
+    one.take([&](const wire::Command& sample) { of_one.push_back(sample.target().to_string()); });
+    all.take([&](const wire::Command& sample) { of_all.push_back(sample.target().to_string()); });
     return of_one.size() == 1 && of_all.size() == 2;
   }));
   EXPECT_EQ(of_one, std::vector<std::string>{"dau"});
@@ -333,8 +282,7 @@ TEST_P(BusExchange, LetsParticipantsGoBeforeTheirWritersAndReaders) {
             .value());
   }
   ASSERT_EQ(writer->write(block(0)), WriteOutcome::written);
-  EXPECT_TRUE(wait_for(
-      [&] { return reader->take([](const wire::SampleBlock&, const SampleInfo&) {}) == 1; }));
+  EXPECT_TRUE(wait_for([&] { return reader->take([](const wire::SampleBlock&) {}) == 1; }));
 }
 
 } // namespace

@@ -83,7 +83,7 @@ TEST_P(BusParticipant, JoinsByPeersAloneOnTheLoopbackInterface) {
   std::size_t taken = 0;
   const auto deadline = std::chrono::steady_clock::now() + tests::patience;
   while (taken == 0 && bell->wait_until(deadline)) {
-    taken = reader->take([](const wire::Command&, const SampleInfo&) {});
+    taken = reader->take([](const wire::Command&) {});
   }
   EXPECT_EQ(taken, 1U);
 }

@@ -43,8 +43,7 @@ protected:
   }
   static std::vector<std::uint32_t> take(Reader<wire::Command>& reader) {
     std::vector<std::uint32_t> steps;
-    reader.take(
-        [&](const wire::Command& one, const SampleInfo&) { steps.push_back(number_of(one)); });
+    reader.take([&](const wire::Command& one) { steps.push_back(number_of(one)); });
     return steps;
   }
   bool rang() { return bell_->wait_until(Clock::Instant::min()); }
@@ -174,7 +173,7 @@ TEST_F(MemoryNetworkTest, CarriesMessagesBetweenThreads) {
   std::map<std::string, std::uint32_t> next;
   const auto deadline = std::chrono::steady_clock::now() + 60s;
   while ((next["first"] < messages || next["second"] < messages) && bell_->wait_until(deadline)) {
-    reader.take([&](const wire::Command& one, const SampleInfo&) {
+    reader.take([&](const wire::Command& one) {
       EXPECT_EQ(number_of(one), next[one.target().to_string()]++);
     });
   }

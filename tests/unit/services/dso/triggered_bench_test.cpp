@@ -108,24 +108,24 @@ shots = {}
   }
 
   void take() {
-    traces_.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
+    traces_.take([&](const wire::TriggeredRecord& record) {
       take_marks(record, info);
-      if (info.valid && record.sample_count() > 0) {
+      if (record.sample_count() > 0) {
         EXPECT_EQ(record.values().size(), 10'000U);
         trace_shots_[record.step()].insert(record.shot());
       }
     });
-    series_.take([&](const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
+    series_.take([&](const wire::TriggeredRecord& record) {
       take_marks(record, info);
-      if (info.valid && record.sample_count() > 0) {
+      if (record.sample_count() > 0) {
         EXPECT_EQ(record.run(), "run-1");
         EXPECT_EQ(record.sample_count(), 200U);
         EXPECT_EQ(record.values().size(), 200U);
         series_shots_[record.step()].insert(record.shot());
       }
     });
-    status_.take([&](const wire::SourceStatus& status, const bus::SampleInfo& info) {
-      if (info.valid && status.source() == "dso") {
+    status_.take([&](const wire::SourceStatus& status) {
+      if (status.source() == "dso") {
         status_seen_ = status;
         if (!status.message().empty()) {
           messages_.insert(status.message());
@@ -134,11 +134,11 @@ shots = {}
     });
   }
 
-  void take_marks(const wire::TriggeredRecord& record, const bus::SampleInfo& info) {
-    if (info.valid && record.acknowledged_run() == "run-1") {
+  void take_marks(const wire::TriggeredRecord& record) {
+    if (record.acknowledged_run() == "run-1") {
       answered_.insert(record.source().to_string());
     }
-    if (info.valid && record.end_of_stream()) {
+    if (record.end_of_stream()) {
       ended_.insert(record.source().to_string());
     }
   }

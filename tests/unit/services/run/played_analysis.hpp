@@ -68,8 +68,8 @@ private:
   template <class T>
   std::vector<T> take(bus::Reader<T>& reader) {
     std::vector<T> all;
-    reader.take([&](const T& message, const bus::SampleInfo& info) {
-      if (info.valid && message.run().to_string() == run_) {
+    reader.take([&](const T& message) {
+      if (message.run().to_string() == run_) {
         all.push_back(message);
       }
     });

@@ -136,21 +136,10 @@ public:
 
 private:
   void take() {
-    descriptions_.take([&](const wire::SourceDescription& message, const bus::SampleInfo& info) {
-      if (info.valid) {
-        descriptions.push_back(message);
-      }
-    });
-    statuses_.take([&](const wire::SourceStatus& message, const bus::SampleInfo& info) {
-      if (info.valid) {
-        statuses.push_back(message);
-      }
-    });
-    samples_.take([&](const wire::SampleBlock& message, const bus::SampleInfo& info) {
-      if (info.valid) {
-        blocks.push_back(message);
-      }
-    });
+    descriptions_.take(
+        [&](const wire::SourceDescription& message) { descriptions.push_back(message); });
+    statuses_.take([&](const wire::SourceStatus& message) { statuses.push_back(message); });
+    samples_.take([&](const wire::SampleBlock& message) { blocks.push_back(message); });
   }
 
   std::string bench_;
