@@ -51,8 +51,8 @@ void AnalysisService::serve(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     clock.wait(*context_.wake_up, clock.now() + max_wait);
     take_messages();
-    for (auto& [key, session] : runs_) {
-      session->work(benches_[key.first]);
+    for (const RunKey& key : order_) {
+      runs_.at(key)->work(benches_[key.first], run_before(key));
     }
   }
 }
@@ -95,24 +95,47 @@ void AnalysisService::take_measurement(const wire::Measurement& measurement) {
 }
 
 void AnalysisService::begin_run(const RunKey& key, const wire::Measurement& measurement) {
+  if (!make_room(key.first)) {
+    spdlog::error("bench {}, run {}: not served, {} runs of this bench have not ended", key.first,
+                  key.second, kept_runs);
+    return;
+  }
   auto session = RunSession::create(context_, measurement);
   if (!session) {
     spdlog::error("bench {}, run {}: {}", key.first, key.second, session.error().message);
     return;
   }
-  drop_old_runs(key.first);
   runs_.emplace(key, std::move(*session));
   order_.push_back(key);
 }
 
-void AnalysisService::drop_old_runs(const std::string& bench) {
+bool AnalysisService::make_room(const std::string& bench) {
   const auto of_bench = [&](const RunKey& key) { return key.first == bench; };
   while (static_cast<std::size_t>(std::count_if(order_.begin(), order_.end(), of_bench)) >=
          kept_runs) {
-    const auto oldest = std::find_if(order_.begin(), order_.end(), of_bench);
+    const auto oldest = std::find_if(order_.begin(), order_.end(), [&](const RunKey& key) {
+      return of_bench(key) && runs_.at(key)->finished();
+    });
+    if (oldest == order_.end()) {
+      return false;
+    }
     runs_.erase(*oldest);
     order_.erase(oldest);
   }
+  return true;
+}
+
+RunSession* AnalysisService::run_before(const RunKey& key) {
+  for (const RunKey& earlier : order_) {
+    if (earlier == key) {
+      break;
+    }
+    RunSession& session = *runs_.at(earlier);
+    if (earlier.first == key.first && !session.finished()) {
+      return &session;
+    }
+  }
+  return nullptr;
 }
 
 } // namespace dyncal::services

@@ -1,8 +1,10 @@
 // The analysis service: learns benches, sources and recipes from DDS alone and keeps one RunSession
 // for every run it hears of.
 //
-// Only runs that are PLANNED when they are first heard of are evaluated: of one that began before,
-// samples are lost. Finished runs are kept for late joiners, the newest `kept_runs` of every bench.
+// Runs of one bench are served one after the other (run_session.hpp); benches know nothing of each
+// other. Only runs that are PLANNED when they are first heard of are evaluated: of one that began
+// before, samples are lost. Finished runs are kept for late joiners, the newest `kept_runs` of
+// every bench.
 //
 // serve() runs in the caller's thread until `stop` is requested; nothing else may be called
 // meanwhile.
@@ -46,7 +48,10 @@ private:
   void take_messages();
   void take_measurement(const wire::Measurement& measurement);
   void begin_run(const RunKey& key, const wire::Measurement& measurement);
-  void drop_old_runs(const std::string& bench);
+  // Drops the oldest finished runs beyond kept_runs; false: none of them is finished.
+  bool make_room(const std::string& bench);
+  // Null if none of the runs of this bench that began earlier goes on.
+  [[nodiscard]] RunSession* run_before(const RunKey& key);
 
   bus::Participant participant_;
   AnalysisContext context_; // of participant_

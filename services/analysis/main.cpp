@@ -2,13 +2,12 @@
 // the results.
 #include <unistd.h>
 
-#include <array>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "services/analysis/analysis_service.hpp"
+#include "services/bus/host_network.hpp"
 #include "services/program/program.hpp"
 #include "services/version.hpp"
 
@@ -27,10 +26,8 @@ int main(int argc, char** argv) {
   if (!participant) {
     return services::report_error(participant.error());
   }
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
   services::AnalysisIdentity identity;
-  identity.host = host.data();
+  identity.host = bus::host_name();
   identity.process_id = static_cast<std::uint32_t>(getpid());
   identity.service =
       fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);

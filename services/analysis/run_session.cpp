@@ -32,7 +32,8 @@ RunSession::RunSession(const AnalysisContext& context, const wire::Measurement& 
                        RunPublisher publisher)
     : participant_(context.participant), clock_(context.clock), wake_up_(context.wake_up),
       bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
-      publisher_(std::move(publisher)), measurement_(measurement.state()), created_(clock_.now()),
+      conductor_(measurement.conductor()), publisher_(std::move(publisher)),
+      measurement_(measurement.state()), created_(clock_.now()), arms_since_(created_),
       last_heard_of_run_(created_), last_progress_(created_), next_command_(created_),
       next_status_(created_ + status_interval) {}
 
@@ -74,13 +75,17 @@ void RunSession::announce(const wire::Excitation& excitation) {
   }
 }
 
-void RunSession::work(const KnownSources& sources) {
+void RunSession::work(const KnownSources& sources, RunSession* before) {
   if (finished()) {
     return;
   }
   const Instant now = clock_.now();
-  take_samples(sources, now);
-  if (status_.arm == wire::ARM_WAITING) {
+  if (before != nullptr) {
+    wait_for_bench(*before, now);
+  } else {
+    take_samples(sources, now);
+  }
+  if (status_.arm == wire::ARM_WAITING && before == nullptr) {
     arm(sources, now);
   }
   if (status_.arm == wire::ARM_ARMED) {
@@ -92,6 +97,34 @@ void RunSession::work(const KnownSources& sources) {
     publisher_.publish(status_);
     next_status_ = now + status_interval;
   }
+}
+
+// Nothing is taken meanwhile: the samples are those of the run before.
+void RunSession::wait_for_bench(RunSession& before, Instant now) {
+  arms_since_ = now;
+  if (status_.message.empty()) {
+    status_.message = fmt::format("waiting for run '{}' of this bench to end", before.run_);
+    publisher_.publish(status_);
+  }
+  if (!before.excitation_over() && before.last_heard_of_run_ > created_) {
+    refuse(fmt::format("bench '{}' is in use by run '{}'{}; wait for its end, or end it there",
+                       bench_, before.run_,
+                       before.conductor_.empty() ? "" : " of " + before.conductor_));
+  } else if (now - created_ > bench_limit) {
+    before.give_way_to(run_);
+  }
+}
+
+void RunSession::give_way_to(const std::string& next) {
+  const bool died = !excitation_over();
+  if (died && status_.health == wire::HEALTH_OK) {
+    report_failure(fmt::format("nothing was heard of this run for {} s; its bench was given to "
+                               "run '{}'",
+                               bench_limit.count(), next));
+  }
+  evaluator_->end_of_excitation(died);
+  evaluator_->finish_now();
+  evaluate(clock_.now());
 }
 
 void RunSession::take_samples(const KnownSources& sources, Instant now) {
@@ -112,10 +145,11 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
   const std::string missing = streams_->what_is_missing(sources);
   if (missing.empty()) {
     status_.arm = wire::ARM_ARMED;
+    status_.message.clear();
     last_progress_ = now;
     spdlog::info("bench {}, run {}: armed", bench_, run_);
     publisher_.publish(status_);
-  } else if (now - created_ > arm_limit) {
+  } else if (now - arms_since_ > arm_limit) {
     refuse(missing);
   }
 }

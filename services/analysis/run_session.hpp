@@ -10,6 +10,11 @@
 // over and nothing was published for `quiet_limit`, or nothing was heard of the run for
 // `runner_limit`, it ends with what there is.
 //
+// One bench, one run: what one run excites, another would take for its own. A run that finds
+// another of its bench before it waits for the end of that one for `bench_limit`, and is refused as
+// soon as that one shows that it lives. A run of which nothing was heard for so long has died, and
+// is ended.
+//
 // Belongs to the service's one thread. Its results stay readable for late joiners until it is
 // destroyed; services/analysis/README.md describes the states.
 #pragma once
@@ -39,6 +44,7 @@ struct AnalysisContext {
 class RunSession {
 public:
   static constexpr std::chrono::seconds arm_limit{6};
+  static constexpr std::chrono::seconds bench_limit{5};
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds quiet_limit{8};
   static constexpr std::chrono::seconds runner_limit{15};
@@ -54,8 +60,9 @@ public:
 
   void update(const wire::Measurement& measurement);
   void announce(const wire::Excitation& excitation);
-  // Does what is due: takes samples, asks sources to answer, evaluates, publishes.
-  void work(const KnownSources& sources);
+  // Does what is due: takes samples, asks sources to answer, evaluates, publishes. `before`: the
+  // run before it on its bench, null if that one is finished.
+  void work(const KnownSources& sources, RunSession* before = nullptr);
 
 private:
   using Instant = bus::Clock::Instant;
@@ -64,6 +71,9 @@ private:
              RunPublisher publisher);
   void prepare(const wire::Measurement& measurement);
   void take_samples(const KnownSources& sources, Instant now);
+  void wait_for_bench(RunSession& before, Instant now);
+  // Ends this run for the next one.
+  void give_way_to(const std::string& next);
   void arm(const KnownSources& sources, Instant now);
   void watch_sources(Instant now);
   void watch_level();
@@ -81,6 +91,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::string bench_;
   std::string run_;
+  std::string conductor_;
   RunPublisher publisher_;
   RunState status_;
   wire::MeasurementState measurement_;
@@ -88,6 +99,7 @@ private:
   std::unique_ptr<RunEvaluator> evaluator_; // until the run is finished or refused
   std::optional<SourceStreams> streams_;    // as long
   Instant created_;
+  Instant arms_since_; // since when it has the bench to itself
   Instant last_heard_of_run_;
   Instant last_progress_;
   Instant next_command_;

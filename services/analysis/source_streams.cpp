@@ -75,8 +75,8 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
   if (readers.contains(kind)) {
     return {};
   }
-  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)), bus::Profile::samples,
-                                             bench_, wake_up_);
+  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)),
+                                             bus::Profile::live_samples, bench_, wake_up_);
   if (!reader) {
     return fail(reader.error());
   }
@@ -96,11 +96,14 @@ void SourceStreams::take_samples(Instant now, RunEvaluator& evaluator) {
 template <class Message>
 void SourceStreams::take(bus::Reader<Message>& reader, Instant now, RunEvaluator& evaluator) {
   reader.take([&](const Message& message) {
-    const auto found = streams_.find(message.source().to_string());
+    // Another bench's block in this bench's partition is not of this bench.
+    const auto found =
+        message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
     if (found == streams_.end()) {
       return;
     }
     Stream& stream = found->second;
+    stream.twins.add(message.session());
     stream.answered = stream.answered || message.acknowledged_run() == run_;
     if (stream.answered) {
       stream.last_sent = now;
@@ -150,6 +153,9 @@ std::string SourceStreams::what_is_missing(const KnownSources& known) const {
       return fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
                          reason_given_by(source));
     }
+    if (stream.twins.twins()) {
+      return two_send_as(name);
+    }
     if (!stream.described) {
       return fmt::format("source '{}' of bench '{}' has not described its channels yet{}", name,
                          bench_, reason_given_by(source));
@@ -163,10 +169,19 @@ std::string SourceStreams::what_is_missing(const KnownSources& known) const {
   return "";
 }
 
+std::string SourceStreams::two_send_as(const std::string& source) const {
+  return fmt::format("two services send as source '{}' of bench '{}'; end one of them, or give it "
+                     "another name",
+                     source, bench_);
+}
+
 std::optional<std::string> SourceStreams::lost_source(Instant now, Instant watched_from,
                                                       std::chrono::seconds silence_limit,
                                                       bool may_not_end) const {
   for (const auto& [name, stream] : streams_) {
+    if (stream.twins.twins()) {
+      return two_send_as(name);
+    }
     if (stream.ended && may_not_end) {
       return fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_);
     }

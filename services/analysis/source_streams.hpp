@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "services/analysis/known_sources.hpp"
+#include "services/analysis/twin_watch.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
@@ -52,8 +53,10 @@ private:
     bool ended = false;
     bool triggered = false; // sends a record for each shot, and may be silent between them
     Instant last_sent;
+    TwinWatch twins;
   };
 
+  [[nodiscard]] std::string two_send_as(const std::string& source) const;
   [[nodiscard]] Expected<void> describe(Stream& stream, const wire::SourceDescription& description,
                                         RunEvaluator& evaluator);
   void hand_over(const std::string& source, const wire::SampleBlock& block,

@@ -65,11 +65,11 @@ std::string to_string(Vendor vendor) {
 
 std::vector<Vendor> vendors_in_this_build() {
   return {
-#ifdef DYNCAL_HAVE_FAST_DDS
-      Vendor::fast_dds,
-#endif
 #ifdef DYNCAL_HAVE_CYCLONE_DDS
       Vendor::cyclone_dds,
+#endif
+#ifdef DYNCAL_HAVE_FAST_DDS
+      Vendor::fast_dds,
 #endif
   };
 }

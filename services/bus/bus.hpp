@@ -1,11 +1,13 @@
 // The bus: typed messages of idl/dyncal.idl over DDS, whichever vendor carries them.
 //
 // A process has one Participant, kept for as long as it runs; writers and readers keep it alive.
-// They are made from it for one topic, one of four QoS profiles and one partition (the bench; "*"
+// They are made from it for one topic, one of the QoS profiles and one partition (the bench; "*"
 // reads all benches). T is a struct of the contract. No vendor's name or type appears here.
 //
 // QoS profiles (idl/README.md has the exact settings), all reliable:
-//   samples  keep all, transient local with bounded depth: a late joiner gets the newest blocks
+//   samples  keep all, transient local with bounded depth: a late joiner gets the newest blocks,
+//            unless it reads live_samples: what a run needs is the stream from now on, and minutes
+//            of blocks before it would hold up its beginning on a slow or lossy link
 //   results  transient local, the newest of every key
 //   state    transient local, the newest of every key
 //   command  volatile, every one
@@ -34,7 +36,7 @@ namespace dyncal::bus {
 enum class Vendor { fast_dds, cyclone_dds };
 
 struct ParticipantOptions {
-  Vendor vendor = Vendor::fast_dds;
+  Vendor vendor = Vendor::cyclone_dds;
   int domain = 0;
   std::string name;               // shown by discovery tools
   std::vector<std::string> peers; // addresses to find others at when multicast cannot be used
@@ -166,6 +168,8 @@ private:
 // those of this build.
 [[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& name);
 [[nodiscard]] std::string to_string(Vendor vendor);
+// The first is the default of --dds: Cyclone DDS where there is a choice, because one malformed
+// packet ends every program with Fast DDS 2.9.
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();
 
 } // namespace dyncal::bus

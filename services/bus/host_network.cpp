@@ -1,6 +1,7 @@
 #include "services/bus/host_network.hpp"
 
 #include <arpa/inet.h>
+#include <array>
 #include <ifaddrs.h>
 #include <memory>
 #include <netdb.h>
@@ -18,6 +19,11 @@ std::string text_of(const sockaddr* address) {
 }
 
 } // namespace
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
 
 services::Expected<std::string> interface_address(const std::string& name_or_address) {
   ifaddrs* list = nullptr;

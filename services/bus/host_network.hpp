@@ -1,5 +1,5 @@
-// The host's network: interfaces, addresses of peers, and how large a socket's receive buffer may
-// be.
+// The host's network: its name, interfaces, addresses of peers, and how large a socket's receive
+// buffer may be.
 //
 // All functions ask the operating system anew, throw nothing and may be called from any thread.
 // resolve_peers() may wait for a name server.
@@ -11,6 +11,9 @@
 #include "services/error.hpp"
 
 namespace dyncal::bus {
+
+// As the host calls itself; "unknown" if it has no name.
+[[nodiscard]] std::string host_name();
 
 // IPv4 address of an interface given by name ("eth0") or by one of this machine's addresses. Fails
 // (network) naming those there are.

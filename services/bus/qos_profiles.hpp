@@ -32,6 +32,8 @@ struct QosProfile {
   switch (profile) {
   case Profile::samples:
     return {true, true, late_joiner_blocks, untaken_blocks};
+  case Profile::live_samples:
+    return {false, true, late_joiner_blocks, untaken_blocks};
   case Profile::command:
     return {false, true, untaken_commands, untaken_commands};
   case Profile::results:

@@ -24,8 +24,7 @@ SourceBlock view_block(const wire::SampleBlock& message) {
           .stamps_ns = message.stamps_ns(),
           .stamp_uncertainty_ns = message.stamp_uncertainty_ns(),
           .flags = message.stamp_flags(),
-          .values = message.values(),
-          .received_utc_ns = message.received_utc_ns()};
+          .values = message.values()};
 }
 
 SourceBlock view_block(const drivers::SampleBlock& block, std::uint64_t session,
@@ -39,8 +38,7 @@ SourceBlock view_block(const drivers::SampleBlock& block, std::uint64_t session,
           .stamps_ns = block.stamps_ns,
           .stamp_uncertainty_ns = block.stamp_uncertainty_ns,
           .flags = block.flags,
-          .values = block.values,
-          .received_utc_ns = block.received_utc_ns};
+          .values = block.values};
 }
 
 } // namespace dyncal::services

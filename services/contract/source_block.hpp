@@ -30,7 +30,6 @@ struct SourceBlock {
   std::span<const std::uint32_t> stamp_uncertainty_ns{};
   std::span<const std::uint8_t> flags{};
   std::span<const double> values{};
-  std::int64_t received_utc_ns = 0;
 
   // Whether the sizes of its arrays agree with each other and its clock runs.
   [[nodiscard]] bool is_consistent() const;

@@ -8,7 +8,8 @@
 
 namespace dyncal::bus {
 
-enum class Profile { samples, results, state, command };
+// `live_samples` is for readers of samples that want none of those before them.
+enum class Profile { samples, live_samples, results, state, command };
 
 template <class T>
 struct Topic {

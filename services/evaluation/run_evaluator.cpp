@@ -143,7 +143,7 @@ void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
 }
 
 void RunEvaluator::announce(const StepAnnouncement& announcement) {
-  records_.excitation().announce(announcement);
+  records_.announce(announcement);
 }
 
 void RunEvaluator::end_of_excitation(bool aborted) {

@@ -17,7 +17,7 @@ class App;
 namespace dyncal::services {
 
 struct NetworkOptions {
-  std::string dds = "fastdds";
+  std::string dds; // as parse_vendor() takes it
   int domain = 0;
   std::vector<std::string> peers;
   bool no_multicast = false;

@@ -33,7 +33,8 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const Ben
   if (!descriptions) {
     return fail(descriptions.error());
   }
-  auto samples = participant.reader(bus::topics::acs_samples, bench.bench, wake_up);
+  auto samples = participant.reader<wire::SampleBlock>(
+      bus::topics::acs_samples, bus::Profile::live_samples, bench.bench, wake_up);
   if (!samples) {
     return fail(samples.error());
   }

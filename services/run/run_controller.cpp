@@ -4,7 +4,9 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include "services/bus/host_network.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/run/run_plan.hpp"
 
@@ -34,14 +36,17 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   }
   measurement_ = to_message(*recipe);
   measurement_.planned_utc_ns(clock_.utc_now_ns());
+  measurement_.conductor(fmt::format("{}:{}", bus::host_name(), getpid()));
   outcome_ = outcome_of(*recipe);
-  if (const auto ready = open_messages().and_then([&] { return open_excitation(); }); !ready) {
-    return fail(ready.error());
+  if (const auto opened = open_messages(); !opened) {
+    return fail(opened.error());
   }
   set_state(wire::MEASUREMENT_PLANNED);
-  if (const auto armed = wait_until_armed(stop); !armed) {
+  // Only a run that is armed has the bench to itself: until then the generator may be another's.
+  if (const auto ready = wait_until_armed(stop).and_then([&] { return open_excitation(); });
+      !ready) {
     set_state(wire::MEASUREMENT_ABORTED);
-    return fail(armed.error());
+    return fail(ready.error());
   }
   set_state(wire::MEASUREMENT_RUNNING);
   outcome_.began_utc_ns = clock_.utc_now_ns();
@@ -115,7 +120,9 @@ Expected<void> RunController::open_excitation() {
 Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
   const Instant began = clock_.now();
   while (!stop.stop_requested()) {
-    follow("waiting for the analysis");
+    const auto& analysis = messages_->analysis();
+    follow(analysis && !analysis->message().empty() ? analysis->message()
+                                                    : "waiting for the analysis");
     if (const auto answer = answer_of_analysis(began)) {
       return *answer;
     }

@@ -41,7 +41,7 @@ public:
   using ShowProgress = std::function<void(const RunProgress&)>;
 
   static constexpr std::chrono::seconds answer_limit{4};    // for an analysis service to answer
-  static constexpr std::chrono::seconds armed_limit{9};     // until it has armed or refused the run
+  static constexpr std::chrono::seconds armed_limit{14};    // until it has armed or refused the run
   static constexpr std::chrono::seconds analysis_limit{10}; // between two of its messages
   static constexpr std::chrono::seconds results_limit{25};  // from the last result to the next
 

@@ -8,11 +8,13 @@ namespace dyncal::services {
 
 Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
                                           std::shared_ptr<bus::WakeUp> wake_up) {
-  auto traces = participant.reader(bus::topics::dso_record, bench, wake_up);
+  auto traces = participant.reader<wire::TriggeredRecord>(
+      bus::topics::dso_record, bus::Profile::live_samples, bench, wake_up);
   if (!traces) {
     return fail(traces.error());
   }
-  auto series = participant.reader(bus::topics::tss_record, bench, wake_up);
+  auto series = participant.reader<wire::TriggeredRecord>(
+      bus::topics::tss_record, bus::Profile::live_samples, bench, wake_up);
   if (!series) {
     return fail(series.error());
   }

@@ -1,5 +1,6 @@
-// One end of a stream of sample blocks for bus_netns_test.sh: writes two sources, with the shortest
-// and the longest name there can be, or reads them and says what is missing.
+// One end of what bus_netns_test.sh and results_netns_test.sh send over a lossy link. Blocks:
+// writes two sources, with the shortest and the longest name there can be, or reads them and says
+// what is missing.
 //
 //   bus_stream_peer write --blocks N --rate HZ --readers N --readers-at-half M
 //     waits for N readers, writes half, waits for M readers, writes the rest, then waits to be
@@ -7,12 +8,18 @@
 //   bus_stream_peer read [--until-killed]
 //     until both sources have said that they are at their end, or for ever
 //
-// A reader prints "begun" once it has a tenth of the blocks; then, and a writer, one line of
-// figures. Exit status 0: all written in time, or all read, in order, from block 0 on.
+//   bus_stream_peer write-results
+//     writes results, then waits to be ended
+//   bus_stream_peer read-results
+//     until every one of them has come
+//
+// A reader of blocks prints "begun" once it has a tenth of the blocks; then, and a writer, one line
+// of figures. Exit status 0: all written in time, or all read, in order, from block 0 on.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "services/bus/bus.hpp"
@@ -193,6 +200,44 @@ int read_stream(bus::Participant& participant, const Options& options) {
   return ended == source_names().size() && lost == 0 && wrong == 0 ? 0 : 1;
 }
 
+constexpr std::uint32_t result_count = 150;
+constexpr std::size_t result_bytes = 3000; // three fragments in both vendors
+
+int write_results(bus::Participant& participant) {
+  auto writer = participant.writer(bus::topics::calibration_result, bench).value();
+  wire::CalibrationResult result;
+  result.bench(bench);
+  result.run("r");
+  result.channel("dau/acceleration_z");
+  result.problem(std::string(result_bytes, 'p'));
+  for (std::uint32_t step = 0; step < result_count; ++step) {
+    result.step(step);
+    if (writer.write(result) != bus::WriteOutcome::written) {
+      std::printf("result %u was not written\n", step);
+      return 1;
+    }
+  }
+  wait_until_ended();
+  return 0;
+}
+
+int read_results(bus::Participant& participant) {
+  auto bell = std::make_shared<bus::WakeUp>();
+  auto reader = participant.reader(bus::topics::calibration_result, "*", bell).value();
+  std::set<std::uint32_t> steps;
+  const auto give_up = Clock::now() + patience;
+  while (steps.size() < result_count && Clock::now() < give_up) {
+    bell->wait_until(Clock::now() + 100ms);
+    reader.take([&](const wire::CalibrationResult& result) {
+      if (result.problem().size() == result_bytes) {
+        steps.insert(result.step());
+      }
+    });
+  }
+  std::printf("read %zu of %u results\n", steps.size(), result_count);
+  return steps.size() == result_count ? 0 : 1;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -216,8 +261,10 @@ int main(int argc, char** argv) {
   write->add_option("--readers-at-half", options.readers_at_half);
   auto* read = app.add_subcommand("read")->fallthrough();
   read->add_flag("--until-killed", options.until_killed);
+  auto* write_all_results = app.add_subcommand("write-results")->fallthrough();
+  auto* read_all_results = app.add_subcommand("read-results")->fallthrough();
   CLI11_PARSE(app, argc, argv);
-  if (write->parsed()) {
+  if (write->parsed() || write_all_results->parsed()) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   }
 
@@ -233,6 +280,12 @@ int main(int argc, char** argv) {
   if (!participant) {
     std::fprintf(stderr, "%s\n", participant.error().message.c_str());
     return 2;
+  }
+  if (write_all_results->parsed()) {
+    return write_results(*participant);
+  }
+  if (read_all_results->parsed()) {
+    return read_results(*participant);
   }
   return write->parsed() ? write_stream(*participant, options) : read_stream(*participant, options);
 }

@@ -177,12 +177,6 @@ TEST_F(FailureLine, PortInUse) {
               HasSubstr(port));
 }
 
-TEST_F(FailureLine, GeneratorThatIsNotThere) {
-  EXPECT_THAT(run_line(bench_text + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"
-                                    "level_per_volt = 50.0\n"),
-              HasSubstr("127.0.0.1:9"));
-}
-
 TEST_F(FailureLine, SensorIdThatIsNone) {
   const auto bench = write(folder / "bench.toml", replaced(bench_text, "0xbccb0100", "sensor-1"));
   EXPECT_THAT(line_of("dyncal-dau", {bench}), HasSubstr("must be a sensor id"));

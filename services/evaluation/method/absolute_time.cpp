@@ -102,11 +102,9 @@ bool AbsoluteTime::is_complete(std::size_t step, const RunRecords& records) cons
 Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records) {
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return [results = results_without_value(recipe_->steps[step], roles_.dut,
-                                            no_sine(recipe_->steps[step], roles_.excitation,
-                                                    records.of(roles_.excitation.source)))] {
-      return results;
-    };
+    return [results = results_without_value(
+                recipe_->steps[step], roles_.dut,
+                no_sine(records, recipe_->steps[step], roles_.excitation))] { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);
   std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);

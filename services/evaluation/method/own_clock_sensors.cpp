@@ -15,8 +15,7 @@ bool sensors_have_sent(const Recipe& recipe, const RunRecords& records, std::siz
   return !interval || std::all_of(sources.begin(), sources.end(), [&](const std::string& name) {
     const SourceRecord& sensor = records.of(name);
     const auto stamps = sensor.stamps_ns();
-    return (!stamps.empty() && stamps.back() >= interval->end_ns) ||
-           records.excitation().is_over_in(sensor, step);
+    return (!stamps.empty() && stamps.back() >= interval->end_ns) || records.is_over_in(name, step);
   });
 }
 

@@ -23,7 +23,7 @@ bool SeriesTimeStamping::is_complete(std::size_t step, const RunRecords& records
   const ExcitationProgress& excitation = records.excitation();
   const bool all_there = excitation.is_announced_over(step) &&
                          shots_.of_step(recipe_->steps[step].step).size() >= roles_.shots;
-  return all_there || excitation.is_over_in(records.of(roles_.sync_acs.source), step);
+  return all_there || records.is_over_in(roles_.sync_acs.source, step);
 }
 
 Evaluation SeriesTimeStamping::evaluation(std::size_t step, const RunRecords& records) {
@@ -34,8 +34,7 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
   const RecipeStep& planned = recipe_->steps[step];
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return results_without_value(
-        planned, roles_.dut, no_sine(planned, roles_.sync_acs, records.of(roles_.sync_acs.source)));
+    return results_without_value(planned, roles_.dut, no_sine(records, planned, roles_.sync_acs));
   }
   const SourceInterval acs = records.samples(roles_.sync_acs.source, *interval);
   SeriesStepOutput evaluated =

@@ -27,8 +27,9 @@ struct StepTask {
                                       const ExcitationProgress& excitation,
                                       const std::vector<SourceInterval>& sources);
 
-// Why a step has no interval in the source of this sync channel, whose record this is.
-[[nodiscard]] std::string no_sine(const RecipeStep& step, const ChannelName& sync,
-                                  const SourceRecord& record);
+// Why a step has no interval in the source of this sync channel: what is known of the source, the
+// connection of sync only where nothing else is.
+[[nodiscard]] std::string no_sine(const RunRecords& records, const RecipeStep& step,
+                                  const ChannelName& sync);
 
 } // namespace dyncal::services

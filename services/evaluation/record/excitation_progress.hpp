@@ -24,8 +24,6 @@ struct StepAnnouncement {
   enum class State { excited, done, aborted };
   std::uint32_t step = 0; // as the recipe numbers it
   State state = State::excited;
-  std::int64_t window_begin_utc_ns = 0;
-  std::int64_t window_end_utc_ns = 0; // known when it is over
 };
 
 [[nodiscard]] StepAnnouncement from_message(const wire::Excitation& excitation);
@@ -46,17 +44,14 @@ public:
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool is_cut_short() const { return cut_short_; }
   [[nodiscard]] std::size_t steps_expected() const;
-  [[nodiscard]] bool is_announced_over(std::size_t step) const {
-    return over_utc_ns_.contains(step);
-  }
+  [[nodiscard]] bool is_announced_over(std::size_t step) const { return over_.contains(step); }
   // The step that is excited now, by what was announced.
   [[nodiscard]] std::optional<std::size_t> excited_step() const;
   [[nodiscard]] bool is_broken_off(std::size_t step) const { return broken_off_.contains(step); }
-  [[nodiscard]] bool is_over_in(const SourceRecord& source, std::size_t step) const;
 
 private:
   const Recipe& recipe_;
-  std::map<std::size_t, std::int64_t> over_utc_ns_; // host time at which the excitation was over
+  std::set<std::size_t> over_;
   std::set<std::size_t> broken_off_;
   std::size_t steps_announced_ = 0;
   bool ended_ = false;

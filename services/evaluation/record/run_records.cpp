@@ -1,6 +1,7 @@
 #include "services/evaluation/record/run_records.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace dyncal::services {
 
@@ -35,13 +36,52 @@ std::vector<std::string> RunRecords::undescribed() const {
   return names;
 }
 
+void RunRecords::announce(const StepAnnouncement& announcement) {
+  excitation_.announce(announcement);
+  for (const auto& [name, source] : records_) {
+    for (std::size_t step = 0; step < excitation_.steps_expected(); ++step) {
+      if (excitation_.is_announced_over(step)) {
+        newest_when_over_ns_[name].emplace(
+            step, source->newest_stamp_ns().value_or(std::numeric_limits<std::int64_t>::max()));
+      }
+    }
+  }
+}
+
+// The clock of a source that restarts may begin anew, and that of one that has sent nothing begins
+// with its first sample.
+void RunRecords::follow_restarts() {
+  for (auto& [name, steps] : newest_when_over_ns_) {
+    const auto newest = of(name).newest_stamp_ns();
+    for (auto& [step, newest_then] : steps) {
+      newest_then = std::min(newest_then, newest.value_or(newest_then));
+    }
+  }
+}
+
+bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
+  const SourceRecord& record = of(source);
+  if (excitation_.is_cut_short() || record.ended()) {
+    return true;
+  }
+  const auto steps = newest_when_over_ns_.find(source);
+  const auto newest = record.newest_stamp_ns();
+  if (steps == newest_when_over_ns_.end() || !newest) {
+    return false;
+  }
+  const auto then = steps->second.find(step);
+  return then != steps->second.end() && then->second <= *newest &&
+         *newest - then->second > grace.count();
+}
+
 void RunRecords::search() {
+  follow_restarts();
   const std::size_t expected = excitation_.steps_expected();
   for (std::size_t i = 0; i < searches_.size() && expected > 0; ++i) {
     StepSearch& steps = searches_[i].steps;
-    const SourceRecord& source = of(searches_[i].source);
+    const std::string& source = searches_[i].source;
     steps.advance(expected - 1);
-    while (steps.step() < expected && excitation_.is_over_in(source, steps.step())) {
+    while (steps.step() < expected && is_over_in(source, steps.step())) {
       steps.give_up_step();
       steps.advance(expected - 1);
     }

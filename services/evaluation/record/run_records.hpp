@@ -5,7 +5,9 @@
 // thread; the recipe must outlive it.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,6 +44,7 @@ public:
              std::size_t capacity = SourceRecord::default_capacity);
 
   [[nodiscard]] ExcitationProgress& excitation() { return excitation_; }
+  void announce(const StepAnnouncement& announcement);
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
 
   // Null for a source that is not of the run.
@@ -50,6 +53,11 @@ public:
   [[nodiscard]] const SourceRecord& of(const std::string& source) const;
   // Sources that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const;
+
+  // Whether nothing of the step can come from the source any more: it has gone on for `grace` of
+  // its own time since the step was announced to be over. No host's clock is looked at.
+  [[nodiscard]] bool is_over_in(const std::string& source, std::size_t step) const;
+  static constexpr std::chrono::nanoseconds grace = std::chrono::seconds(5);
 
   // Searches the samples that have come since the last call; passes over steps that are over in the
   // source and show nothing.
@@ -79,9 +87,12 @@ private:
 
   [[nodiscard]] std::shared_ptr<const SourceRecord> part_of(const SourceRecord& whole,
                                                             const TimeInterval& interval) const;
+  void follow_restarts();
 
   ExcitationProgress excitation_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
+  // By source and step: its newest stamp when the step was announced to be over.
+  std::map<std::string, std::map<std::size_t, std::int64_t>> newest_when_over_ns_;
   std::vector<Search> searches_;
   bool copies_ = false;
 };

@@ -61,7 +61,6 @@ bool SourceRecord::add(const SourceBlock& block) {
   if (finding.new_session) {
     restart();
   }
-  newest_received_utc_ns_ = std::max(newest_received_utc_ns_, block.received_utc_ns);
   ended_ = block.end_of_stream;
   if (use == BlockUse::unusable || block.samples == 0) {
     return false;

@@ -98,8 +98,8 @@ public:
   [[nodiscard]] std::uint64_t unusable_blocks() const {
     return continuity_.counts().unusable_blocks;
   }
-  // Host clock of the source's service at its newest block; 0 before the first.
-  [[nodiscard]] std::int64_t newest_received_utc_ns() const { return newest_received_utc_ns_; }
+  // Nothing before the first sample of its session.
+  [[nodiscard]] std::optional<std::int64_t> newest_stamp_ns() const { return newest_ns_; }
 
 private:
   struct Gap { // what was lost lies between these stamps, both excluded
@@ -143,7 +143,6 @@ private:
   std::uint64_t forgotten_ = 0;
   std::uint64_t overflowed_ = 0;
   std::uint32_t restarts_ = 0;
-  std::int64_t newest_received_utc_ns_ = 0;
   bool ended_ = false;
 };
 

@@ -36,6 +36,7 @@ protected:
     wire::Measurement measurement = synthetic_.measurement();
     measurement.run(run);
     measurement.state(state);
+    measurement.conductor("lab-pc:17");
     return measurement;
   }
   void publish(const std::string& run, wire::MeasurementState state) {
@@ -150,32 +151,57 @@ TEST_F(AnalysisServiceTest, SurvivesAMalformedMessage) {
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
 }
 
-// As it is: both runs are armed and evaluated from the same samples, each as if it were alone.
-// Nothing keeps the second from being excited into the first.
-TEST_F(AnalysisServiceTest, ArmsTwoRunsOnOneBench) {
+TEST_F(AnalysisServiceTest, RefusesASecondRunOfABenchWhileTheFirstIsAlive) {
   play_sources();
   publish("r1", wire::MEASUREMENT_PLANNED);
   serve_for(1s);
   publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
   publish("r2", wire::MEASUREMENT_PLANNED);
   serve_for(1s);
-  publish("r2", wire::MEASUREMENT_RUNNING);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_WAITING);
+  EXPECT_EQ(newest_status_of("r2").message(), "waiting for run 'r1' of this bench to end");
+  publish("r1", wire::MEASUREMENT_RUNNING); // as every 2 s
   serve_for(1s);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
+  EXPECT_EQ(newest_status_of("r2").message(),
+            "bench 'synthetic' is in use by run 'r1' of lab-pc:17; wait for its end, or end it "
+            "there");
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
-  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
   EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
 }
 
-TEST_F(AnalysisServiceTest, EvaluatesARunThatGoesOnWhileAnotherIsRefused) {
+TEST_F(AnalysisServiceTest, EndsARunThatHasDiedForTheNextOneOfItsBench) {
   play_sources();
   publish("r1", wire::MEASUREMENT_PLANNED);
-  wire::Measurement other = measurement("r2", wire::MEASUREMENT_PLANNED);
-  other.sync_dau("nobody/sync");
-  measurements_.write(other);
-  serve_for(RunSession::arm_limit + 500ms);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(RunSession::bench_limit);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
-  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
-  EXPECT_THAT(newest_status_of("r2").message(), testing::StartsWith("source 'nobody'"));
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_WAITING);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
+  EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(newest_status_of("r1").message(),
+            "nothing was heard of this run for 5 s; its bench was given to run 'r2'");
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r2").message(), "");
+}
+
+TEST_F(AnalysisServiceTest, LetsARunThatIsOverFinishBeforeTheNextOneOfItsBench) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_DONE);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(RunSession::bench_limit + 1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
+  EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
 }
 
 } // namespace

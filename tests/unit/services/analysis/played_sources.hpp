@@ -22,7 +22,10 @@ constexpr const char* played_run = "r1";
 class PlayedSource {
 public:
   PlayedSource(bus::MemoryNetwork& network, const wire::SourceDescription& description)
-      : description_(description), participant_(network.join(name())),
+      : PlayedSource(network, description, description.source().to_string()) {}
+  PlayedSource(bus::MemoryNetwork& network, const wire::SourceDescription& description,
+               const std::string& host)
+      : description_(description), participant_(network.join(host)),
         descriptions_(participant_
                           .writer<wire::SourceDescription>(bus::topics::source_description,
                                                            bus::Profile::state, played_bench)

@@ -243,6 +243,37 @@ TEST_F(RunSessionTest, FailsARunWhoseSourceIsSilentJustAfterItsLimit) {
             "source 'dau' of bench 'synthetic' has sent nothing for 5 s");
 }
 
+TEST_F(RunSessionTest, FailsARunWhoseSourceHasATwin) {
+  arm_and_run();
+  wire::SourceDescription other = acs_.description();
+  other.session(other.session() + 1);
+  PlayedSource twin(network_, other, "another host");
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+    run_for(100ms, {&acs_, &dau_});
+    run_for(100ms, {&twin, &dau_});
+  }
+  run_for(100ms, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(published_.newest_status().message(),
+            "two services send as source 'acs' of bench 'synthetic'; end one of them, or give it "
+            "another name");
+}
+
+TEST_F(RunSessionTest, DoesNotTakeBlocksThatNameAnotherBench) {
+  arm_and_run();
+  run_for(1s, {&acs_, &dau_});
+  std::vector<wire::SampleBlock> foreign(1);
+  foreign[0].bench("b3");
+  foreign[0].source("dau");
+  foreign[0].session(dau_.description().session());
+  foreign[0].end_of_stream(true);
+  session_->announce({});
+  dau_.send(foreign);
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+}
+
 TEST_F(RunSessionTest, DoesNotWatchSourcesBeforeTheRunBegins) {
   arm();
   clock_.advance(2 * RunSession::silence_limit);

@@ -109,14 +109,14 @@ shots = {}
 
   void take() {
     traces_.take([&](const wire::TriggeredRecord& record) {
-      take_marks(record, info);
+      take_marks(record);
       if (record.sample_count() > 0) {
         EXPECT_EQ(record.values().size(), 10'000U);
         trace_shots_[record.step()].insert(record.shot());
       }
     });
     series_.take([&](const wire::TriggeredRecord& record) {
-      take_marks(record, info);
+      take_marks(record);
       if (record.sample_count() > 0) {
         EXPECT_EQ(record.run(), "run-1");
         EXPECT_EQ(record.sample_count(), 200U);

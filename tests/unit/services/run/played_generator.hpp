@@ -25,6 +25,7 @@ struct PlayedInstrument {
   double amplitude_v = 0.0;
   bool on = false;
   bool connected = false;
+  int connections = 0;
   bool confirmed = true; // what was set is in effect
   // A call that fails, by its name, from its n-th time on.
   std::string failing_call;
@@ -40,6 +41,7 @@ class PlayedGenerator : public drivers::generator::Generator {
 public:
   explicit PlayedGenerator(PlayedInstrument& instrument) : instrument_(instrument) {
     instrument_.connected = true;
+    ++instrument_.connections;
     instrument_.on = false;
   }
   ~PlayedGenerator() override {

@@ -234,8 +234,7 @@ TEST_F(SeriesRun, AStepWaitsForShotsThatComeAfterTheEndOfItsExcitation) {
   for (const wire::SampleBlock& block : blocks) {
     tests::feed(*evaluator_, block);
   }
-  evaluator_->announce(
-      {.step = 1, .state = StepAnnouncement::State::done, .window_end_utc_ns = 1'000'000'000});
+  evaluator_->announce({.step = 1, .state = StepAnnouncement::State::done});
   for (std::uint64_t number = 1; number <= 5; ++number) {
     EXPECT_TRUE(evaluator_->take_output().results.empty()) << number;
     add(shot(number, 1, 40.0));

@@ -1,0 +1,26 @@
+// Notices two services that send as one source: their sessions take turns.
+//
+// A service that restarts changes the session once and never back; blocks of the session that it
+// left may still come late, once. Plain data, one thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace dyncal::services {
+
+class TwinWatch {
+public:
+  static constexpr int min_returns = 2;
+
+  // The session of a message of the source, in the order of reception.
+  void add(std::uint64_t session);
+  [[nodiscard]] bool twins() const { return returns_ >= min_returns; }
+
+private:
+  std::optional<std::uint64_t> session_;
+  std::optional<std::uint64_t> left_; // the session before
+  int returns_ = 0;                   // to a session that had been left
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,36 @@
+#include "services/analysis/twin_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace dyncal::services {
+namespace {
+
+TwinWatch watch(const std::vector<std::uint64_t>& sessions) {
+  TwinWatch twins;
+  for (const std::uint64_t session : sessions) {
+    twins.add(session);
+  }
+  return twins;
+}
+
+TEST(TwinWatch, TakesNewSessionsForRestarts) {
+  EXPECT_FALSE(watch({7, 7, 7}).twins());
+  EXPECT_FALSE(watch({7, 7, 8, 8, 9, 10}).twins());
+}
+
+TEST(TwinWatch, LetsTheLastBlocksOfTheSessionBeforeComeLate) {
+  EXPECT_FALSE(watch({7, 8, 7, 7}).twins());
+}
+
+TEST(TwinWatch, SeesSessionsThatTakeTurns) {
+  EXPECT_TRUE(watch({7, 8, 7, 8}).twins());
+  EXPECT_TRUE(watch({7, 7, 8, 8, 8, 7, 8}).twins());
+}
+
+TEST(TwinWatch, SeesATwinOfASourceThatHasRestarted) {
+  EXPECT_TRUE(watch({7, 8, 7, 9, 7, 9, 7}).twins());
+}
+
+} // namespace
+} // namespace dyncal::services
