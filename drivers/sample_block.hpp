@@ -38,6 +38,7 @@ struct ChannelDescription {
 struct SourceDescription {
   std::string device;
   std::string serial;
+  std::string firmware{}; // "": not known
   std::string driver;
   std::vector<ChannelDescription> channels; // in the order of the columns of a block
   double nominal_rate_hz = 0.0;             // 0: not known

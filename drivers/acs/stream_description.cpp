@@ -102,6 +102,7 @@ StreamDescription parse_members(const Json& object, std::string& problem) {
   }
   stream.source.device = root.optional<std::string>("device", "");
   stream.source.serial = root.optional<std::string>("serial", "");
+  stream.source.firmware = root.optional<std::string>("firmware", "");
   stream.source.driver = "socket";
   stream.source.stamp_instant = StampInstant::conversion;
   const std::string values = root.required<std::string>("values");

@@ -1,5 +1,6 @@
 #include "drivers/link/scpi_answer.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -87,6 +88,23 @@ std::string scpi_decimal(double value) {
   const auto [end, status] =
       std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed);
   return status == std::errc() ? std::string(text, end) : std::string("0");
+}
+
+InstrumentIdentity parse_instrument_identity(std::string_view answer) {
+  std::vector<std::string> fields;
+  for (std::size_t begin = 0; begin <= answer.size();) {
+    const std::size_t end = std::min(answer.find(',', begin), answer.size());
+    const std::string_view field = answer.substr(begin, end - begin);
+    const std::size_t first = std::min(field.find_first_not_of(" \t\r\n"), field.size());
+    const std::size_t last = field.find_last_not_of(" \t\r\n");
+    fields.emplace_back(first < field.size() ? field.substr(first, last - first + 1) : "");
+    begin = end + 1;
+  }
+  if (fields.size() != 4) {
+    return {std::string(answer), "", ""};
+  }
+  const auto known = [](const std::string& text) { return text == "0" ? "" : text; };
+  return {fields[0] + " " + fields[1], known(fields[2]), known(fields[3])};
 }
 
 std::string shown(std::string_view answer) {

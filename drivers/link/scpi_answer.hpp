@@ -38,6 +38,15 @@ struct InstrumentError {
 // instruments do not understand.
 [[nodiscard]] std::string scpi_decimal(double value);
 
+// The answer to *IDN? (IEEE 488.2 10.14): "maker,model,serial number,firmware", the last two "0"
+// where there is none. An answer without its four fields is all maker and model.
+struct InstrumentIdentity {
+  std::string device; // maker and model
+  std::string serial;
+  std::string firmware;
+};
+[[nodiscard]] InstrumentIdentity parse_instrument_identity(std::string_view answer);
+
 // As much of an answer as belongs in a message.
 [[nodiscard]] std::string shown(std::string_view answer);
 

@@ -77,6 +77,7 @@ SeriesHeader header_from(const nlohmann::json& line) {
   Series& series = header.series;
   series.device = line.value("device", "");
   series.serial = line.value("serial", "");
+  series.firmware = line.value("firmware", "");
   series.shot = whole(line.at("shot"));
   series.nominal_rate_hz = line.at("nominal_rate_hz").get<double>();
   series.samples = whole(line.at("samples"));
@@ -138,6 +139,8 @@ Expected<void> read_key(std::string_view line, Series& series, std::string& unit
     series.device = value;
   } else if (key == "serial") {
     series.serial = value;
+  } else if (key == "firmware") {
+    series.firmware = value;
   } else if (key == "unit") {
     unit = value;
   } else if (key == "nominal_rate_hz" && number) {

@@ -24,6 +24,7 @@ namespace dyncal::drivers::tss {
 struct Series {
   std::string device;
   std::string serial;
+  std::string firmware;
   std::uint64_t shot = 0;
   double nominal_rate_hz = 0.0;
   double first_sample_s = 0.0; // traces in files: after the trigger, negative before it

@@ -77,6 +77,7 @@ SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings)
   return {.bench = bench.bench,
           .source = settings.name,
           .kind = kind_of(bench.method, settings.name),
+          .identity = settings.identity,
           .silent_after =
               settings.is<FileSourceSettings>() ? std::chrono::seconds(0) : std::chrono::seconds(2),
           .when_full = WhenFull::wait};

@@ -1,9 +1,9 @@
 #include "services/bench/adc_file_writer.hpp"
 
-#include <fstream>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "services/output/output_file.hpp"
 
 namespace dyncal::services {
 
@@ -25,12 +25,7 @@ Expected<void> write_adc_file(const std::filesystem::path& path, const AdcFileHe
                     {"u_Phase", point.u_phase_lag_rad}});
   }
   const Json file = {{"MeataData", about}, {"FitResults", {{head.channel, frequencies}}}};
-  std::ofstream stream(path);
-  stream << file.dump(1) << '\n';
-  if (!stream.flush()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", path.string()));
-  }
-  return {};
+  return write_output_file(path, file.dump(1) + '\n');
 }
 
 } // namespace dyncal::services

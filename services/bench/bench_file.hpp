@@ -38,7 +38,7 @@ struct ExcitationSettings {
   double duration_s = 3.0;
   // Of the measured level from the planned one, without a flag; left out: what a recipe takes.
   std::optional<double> level_deviation_rel;
-  bool settling_from_data = false;  // settling_s is the longest that may be left out
+  bool settling_from_data = false; // settling_s is the longest that may be left out
   bool whole_record =
       false; // evaluate each record as a whole: one step, nothing searched, nothing left out
 };

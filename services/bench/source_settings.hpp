@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/sample_block.hpp"
+#include "services/contract/device_identity.hpp"
 
 namespace dyncal::services {
 
@@ -80,6 +81,7 @@ using DriverSettings =
 struct SourceSettings {
   std::string name;
   DriverSettings driver;
+  DeviceIdentity identity;
   std::map<std::string, std::string> channels; // device's name -> ours
   std::map<std::string, std::string> units;    // our name -> D-SI
   drivers::TimeBase time_base = drivers::TimeBase::utc;

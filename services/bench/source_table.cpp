@@ -55,6 +55,9 @@ SourceSettings read_source(TomlTable table, const std::string& name,
   const std::string driver =
       table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
   source.driver = read_driver(table, driver, folder);
+  source.identity = {.device = table.text("device"),
+                     .serial = table.text("serial"),
+                     .firmware = table.text("firmware")};
   source.channels = table.text_map("channels");
   read_units(table, source);
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";

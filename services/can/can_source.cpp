@@ -58,6 +58,7 @@ SourceOptions options_of(const std::string& bench, const SourceSettings& setting
   return {.bench = bench,
           .source = settings.name,
           .kind = SourceKind::can,
+          .identity = settings.identity,
           .silent_after = log ? std::chrono::seconds(0) : std::chrono::seconds(2),
           .when_full = log ? WhenFull::wait : WhenFull::drop};
 }

@@ -158,6 +158,7 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
     return fail(recipe.error());
   }
   RunOutcome outcome = outcome_of(*recipe);
+  outcome.adc_file = adc_file_of(*bench);
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
@@ -178,6 +179,9 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
 } // namespace
 
 int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
+    return report_error(possible.error());
+  }
   keep_memory_for_samples();
   const auto outcome = analyse(command, stop);
   if (!outcome) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "drivers/generator/scpi_generator.hpp"
 #include "drivers/link/stop_signal.hpp"
 #include "services/device_error.hpp"
+#include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -163,12 +163,7 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
        {{"first_s", delay.histogram.first_s},
         {"width_s", delay.histogram.width_s},
         {"counts", delay.histogram.counts}}}};
-  std::ofstream file(command.output);
-  file << json.dump(1) << '\n';
-  if (!file.flush()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string()));
-  }
-  return {};
+  return write_output_file(command.output, json.dump(1) + '\n');
 }
 
 } // namespace

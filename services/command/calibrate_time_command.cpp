@@ -1,7 +1,6 @@
 #include "services/command/calibrate_time_command.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "analysis/instrument/pulse_edges.hpp"
 #include "analysis/instrument/stamp_deviation.hpp"
 #include "services/command/pulse_file.hpp"
+#include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/stamp_deviation.hpp"
 
@@ -260,10 +260,10 @@ figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPu
 }
 
 Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
-  std::ofstream file(command.output);
-  file << result_json(command, evaluated).dump(1) << '\n';
-  if (!file.flush()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be written", command.output.string()));
+  if (auto written =
+          write_output_file(command.output, result_json(command, evaluated).dump(1) + '\n');
+      !written) {
+    return written;
   }
   fmt::print("wrote {}\n", command.output.string());
   if (!evaluated.deviation) {

@@ -18,6 +18,7 @@
 #include "services/demo/demo_bench.hpp"
 #include "services/demo/truth_check.hpp"
 #include "services/demo/vendor_assignment.hpp"
+#include "services/output/output_file.hpp"
 #include "services/program/child_process.hpp"
 
 namespace dyncal::services {
@@ -222,13 +223,14 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
                                 .can_interface = command.can_interface,
                                 .can_bus = command.can_bus};
   // As "dyncal calibrate dso-delay" would have found it; the paper's value.
-  std::ofstream(demo.folder / "dso-delay.json") << R"({"value_s": 236e-9, "u_s": 1e-9})" << '\n';
-  std::ofstream bench_file(demo.folder / "bench.toml");
-  bench_file << demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty);
-  if (!bench_file.flush()) {
-    return fail(cannot_write(demo.folder / "bench.toml"));
+  if (auto written = write_output_file(demo.folder / "dso-delay.json",
+                                       "{\"value_s\": 236e-9, \"u_s\": 1e-9}\n");
+      !written) {
+    return written;
   }
-  return {};
+  return write_output_file(
+      demo.folder / "bench.toml",
+      demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty));
 }
 
 Expected<void> start_services(Demo& demo) {

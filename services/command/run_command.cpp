@@ -2,12 +2,15 @@
 
 #include <array>
 #include <ctime>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
+#include "services/contract/digest.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
 
@@ -30,6 +33,16 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
   return read_adc_file(*bench.corrections.adc);
 }
 
+std::optional<AdcFile> adc_file_of(const BenchFile& bench) {
+  if (!bench.corrections.adc) {
+    return std::nullopt;
+  }
+  std::ifstream file(bench.corrections.adc->file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return AdcFile{bench.corrections.adc->file.string(), bench.corrections.adc->channel,
+                 sha256_hex(text)};
+}
+
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
@@ -39,6 +52,10 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   if (!adc) {
     return fail(adc.error());
   }
+  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
+    return fail(possible.error());
+  }
+  const std::optional<AdcFile> adc_file = adc_file_of(*bench);
   NetworkOptions network = command.network;
   add_network_settings(bench->network, network);
   auto participant = join_network(network, "dyncal-run");
@@ -54,8 +71,13 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   if (!outcome) {
     return outcome;
   }
+  outcome->adc_file = adc_file;
   if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
-    return fail(shown.error());
+    Error error = shown.error();
+    if (outcome->output_may_be_on) {
+      error.message += "; " + output_warning();
+    }
+    return fail(std::move(error));
   }
   return outcome;
 }

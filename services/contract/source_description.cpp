@@ -28,6 +28,7 @@ drivers::SourceDescription from_message(const wire::SourceDescription& message) 
   drivers::SourceDescription description;
   description.device = message.device();
   description.serial = message.serial();
+  description.firmware = message.firmware();
   description.driver = message.driver();
   for (const wire::ChannelDescription& channel : message.channels()) {
     description.channels.push_back({channel.name(), channel.quantity(), channel.unit(),

@@ -15,6 +15,7 @@ namespace dyncal::services::dau {
 struct PlannedSource {
   std::string bench;
   std::string source;
+  DeviceIdentity identity;
   drivers::smartup::SensorSettings settings;
 };
 

@@ -33,8 +33,10 @@ Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceServ
     endpoint.listen = planned.listen;
     endpoint.observer = watch.get();
     for (PlannedSource& source : planned.sources) {
-      auto publisher =
-          service.add({.bench = source.bench, .source = source.source, .kind = SourceKind::dau});
+      auto publisher = service.add({.bench = source.bench,
+                                    .source = source.source,
+                                    .kind = SourceKind::dau,
+                                    .identity = source.identity});
       if (!publisher) {
         return fail(publisher.error());
       }

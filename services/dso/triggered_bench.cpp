@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "analysis/base/frequency.hpp"
+#include "drivers/link/scpi_answer.hpp"
 #include "drivers/utc_clock.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/topics.hpp"
@@ -39,6 +40,7 @@ Expected<Publishers> add_sources(SourceService& service, const BenchFile& bench,
   SourceOptions options{.bench = bench.bench,
                         .source = oscilloscope.name,
                         .kind = SourceKind::dso,
+                        .identity = oscilloscope.identity,
                         .silent_after = 0s,
                         .ring = ring,
                         .session = random_session()};
@@ -48,6 +50,7 @@ Expected<Publishers> add_sources(SourceService& service, const BenchFile& bench,
   }
   options.source = sensor.name;
   options.kind = SourceKind::tss;
+  options.identity = sensor.identity;
   auto second = service.add(options);
   if (!second) {
     return fail(second.error());
@@ -188,7 +191,10 @@ void TriggeredBench::try_to_connect() {
 
 void TriggeredBench::describe_oscilloscope() {
   drivers::SourceDescription description;
-  description.device = device_.oscilloscope_identity();
+  const auto identity = drivers::parse_instrument_identity(device_.oscilloscope_identity());
+  description.device = identity.device;
+  description.serial = identity.serial;
+  description.firmware = identity.firmware;
   description.driver = "oscilloscope";
   description.stamp_instant = drivers::StampInstant::trigger_edge;
   description.channels.push_back({.name = "sync", .quantity = "Voltage", .unit = R"(\volt)"});
@@ -201,6 +207,7 @@ void TriggeredBench::describe_sensor(const drivers::tss::Series& series) {
   drivers::SourceDescription description;
   description.device = series.device;
   description.serial = series.serial;
+  description.firmware = series.firmware;
   description.driver = "series";
   description.stamp_instant = drivers::StampInstant::trigger_edge;
   description.nominal_rate_hz = series.nominal_rate_hz;

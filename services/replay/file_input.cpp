@@ -49,7 +49,7 @@ Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& setti
     return fail(ErrorCode::bad_file,
                 fmt::format("source '{}': {}", settings.name, described.error().message));
   }
-  input->description_ = std::move(*described);
+  input->description_ = with_identity(std::move(*described), settings.identity);
   input->thread_ = std::jthread([raw = input.get()] { raw->read(); });
   return input;
 }

@@ -98,6 +98,7 @@ drivers::SourceDescription describe(const SourceSettings& source,
   drivers::SourceDescription description;
   description.device = series.device;
   description.serial = series.serial;
+  description.firmware = series.firmware;
   description.driver = "files of shots";
   description.nominal_rate_hz = series.nominal_rate_hz;
   for (const drivers::ChannelDescription& one : series.channels) {
@@ -107,7 +108,7 @@ drivers::SourceDescription describe(const SourceSettings& source,
     channel.unit = unit == source.units.end() ? one.unit : unit->second;
     description.channels.push_back(std::move(channel));
   }
-  return description;
+  return with_identity(std::move(description), source.identity);
 }
 
 TriggeredRecord record_of(const StepAndShot& number, drivers::tss::Series series) {

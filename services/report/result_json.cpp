@@ -3,13 +3,13 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/uncertainty/coverage.hpp"
+#include "services/output/output_file.hpp"
 #include "services/report/clock_json.hpp"
 #include "services/report/expanded_uncertainty.hpp"
 #include "services/report/flag_legend.hpp"
@@ -275,7 +275,7 @@ Json head_json(const RunOutcome& outcome) {
       {"sources", sources_json(outcome)}};
   if (outcome.recipe) {
     json["roles"] = roles_json(*outcome.recipe);
-    json["corrections"] = corrections_json(*outcome.recipe);
+    json["corrections"] = corrections_json(*outcome.recipe, outcome.adc_file);
   }
   return json;
 }
@@ -312,12 +312,7 @@ nlohmann::ordered_json result_json(const RunOutcome& outcome) {
 }
 
 Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-  std::ofstream stream(path);
-  stream << json.dump(1) << '\n';
-  if (!stream.flush()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: cannot write this file", path.string()));
-  }
-  return {};
+  return write_output_file(path, json.dump(1) + '\n');
 }
 
 } // namespace dyncal::services

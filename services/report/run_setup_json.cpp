@@ -66,6 +66,7 @@ Json source_json(const RunSource& source) {
           {"kind", to_string(source.kind)},
           {"device", text_or_null(description.device)},
           {"serial", text_or_null(description.serial)},
+          {"firmware", text_or_null(description.firmware)},
           {"driver", text_or_null(description.driver)},
           {"software", text_or_null(source.software)},
           {"nominal_rate_hz", known_or_null(description.nominal_rate_hz)},
@@ -193,10 +194,15 @@ nlohmann::ordered_json roles_json(const Recipe& recipe) {
   return json;
 }
 
-nlohmann::ordered_json corrections_json(const Recipe& recipe) {
+nlohmann::ordered_json corrections_json(const Recipe& recipe,
+                                        const std::optional<AdcFile>& adc_file) {
   Json json{{"reference_delay_s", json_number(recipe.reference_delay_s)}};
   if (const auto* stamped = std::get_if<SampleStampingRoles>(&recipe.roles)) {
     json["adc_calibration"] = adc_json(stamped->adc_calibration);
+    json["adc_file"] = adc_file ? Json{{"path", adc_file->path},
+                                       {"channel", adc_file->channel},
+                                       {"sha256", adc_file->sha256}}
+                                : Json(nullptr);
   }
   if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles)) {
     json["dso_delay_s"] = json_number(series->dso_delay_s);

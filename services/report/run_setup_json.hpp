@@ -13,7 +13,8 @@ namespace dyncal::services {
 [[nodiscard]] nlohmann::ordered_json sources_json(const RunOutcome& outcome);
 [[nodiscard]] nlohmann::ordered_json roles_json(const Recipe& recipe);
 // As numbers, as the recipe has them for all steps.
-[[nodiscard]] nlohmann::ordered_json corrections_json(const Recipe& recipe);
+[[nodiscard]] nlohmann::ordered_json corrections_json(const Recipe& recipe,
+                                                      const std::optional<AdcFile>& adc_file);
 // What they do to arg H at one frequency.
 [[nodiscard]] nlohmann::ordered_json applied_corrections_json(const Recipe& recipe,
                                                               const RecipeStep& step);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "services/output/output_file.hpp"
 #include "services/report/result_json.hpp"
 #include "services/report/result_table.hpp"
 #include "services/report/run_figures.hpp"
@@ -23,14 +24,40 @@ std::size_t steps_with_a_result(const RunOutcome& outcome) {
   return steps.size();
 }
 
+// Results that took hours are not lost with a full disk.
+Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::path& path) {
+  const nlohmann::ordered_json json = result_json(outcome);
+  auto written = write_json(path, json);
+  if (written) {
+    return written;
+  }
+  std::error_code unknown;
+  const std::filesystem::path refuge = std::filesystem::temp_directory_path(unknown) /
+                                       fmt::format("dyncal-{}-{}.json", outcome.bench, outcome.run);
+  if (!unknown && write_json(refuge, json)) {
+    written.error().message += fmt::format("; the results are in {}", refuge.string());
+  }
+  return written;
+}
+
 } // namespace
+
+Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
+                             const std::optional<std::filesystem::path>& figures) {
+  if (json) {
+    if (auto possible = check_output_file(*json); !possible) {
+      return possible;
+    }
+  }
+  return figures ? check_output_folder(*figures) : Expected<void>{};
+}
 
 Expected<void> show_outcome(const RunOutcome& outcome,
                             const std::optional<std::filesystem::path>& json,
                             const std::optional<std::filesystem::path>& figures) {
   fmt::print("bench {}, run {}{}\n", outcome.bench, outcome.run, result_table(outcome));
   if (json) {
-    if (const auto written = write_json(*json, result_json(outcome)); !written) {
+    if (const auto written = write_results(outcome, *json); !written) {
       return fail(written.error());
     }
   }

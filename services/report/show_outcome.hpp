@@ -11,7 +11,12 @@
 
 namespace dyncal::services {
 
-// Prints the table and writes the files asked for. Fails (bad_file) when one cannot be written.
+// Before the run: fails (bad_file) when what show_outcome() is to write could not be written now.
+[[nodiscard]] Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
+                                           const std::optional<std::filesystem::path>& figures);
+
+// Prints the table and writes the files asked for. Fails (bad_file) when one cannot be written; the
+// results are then kept in the folder for temporary files, if they can be, and the error says so.
 [[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome,
                                           const std::optional<std::filesystem::path>& json,
                                           const std::optional<std::filesystem::path>& figures);

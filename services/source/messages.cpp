@@ -49,6 +49,7 @@ dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uin
   message.kind(to_wire(source.kind));
   message.device(description.device);
   message.serial(description.serial);
+  message.firmware(description.firmware);
   message.driver(description.driver);
   message.software(software);
   for (const auto& channel : description.channels) {

@@ -19,9 +19,9 @@ bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDe
 }
 
 bool same_description(const drivers::SourceDescription& a, const drivers::SourceDescription& b) {
-  return a.device == b.device && a.serial == b.serial && a.driver == b.driver &&
-         a.nominal_rate_hz == b.nominal_rate_hz && a.time_base == b.time_base &&
-         a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
+  return a.device == b.device && a.serial == b.serial && a.firmware == b.firmware &&
+         a.driver == b.driver && a.nominal_rate_hz == b.nominal_rate_hz &&
+         a.time_base == b.time_base && a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
          a.stamp_uncertainty_s == b.stamp_uncertainty_s &&
          std::ranges::equal(a.channels, b.channels, same_channel);
 }
@@ -34,7 +34,8 @@ SourcePublisher::SourcePublisher(SourceOptions options, std::shared_ptr<bus::Wak
   state_.last_offer = Clock::now();
 }
 
-void SourcePublisher::describe(const drivers::SourceDescription& description) {
+void SourcePublisher::describe(const drivers::SourceDescription& reported) {
+  const drivers::SourceDescription description = with_identity(reported, options_.identity);
   {
     const std::lock_guard lock(mutex_);
     if (description_ && same_description(*description_, description)) {

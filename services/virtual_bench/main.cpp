@@ -3,7 +3,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <fmt/core.h>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sys/prctl.h>
@@ -13,6 +12,7 @@
 #include "drivers/virtual_bench/can/can_line.hpp"
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/truth.hpp"
+#include "services/output/output_file.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 
 namespace {
@@ -41,20 +41,8 @@ void stop_on_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-// Whole or not at all: a reader that polls for the file never sees half of it.
-Expected<void> write_file(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty()) {
-    return {};
-  }
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream(unfinished, std::ios::binary) << text << std::flush;
-  std::error_code problem;
-  std::filesystem::rename(unfinished, path, problem);
-  if (problem) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: cannot be written ({})", path.string(), problem.message()));
-  }
-  return {};
+Expected<void> write_if_named(const std::filesystem::path& path, const std::string& text) {
+  return path.empty() ? Expected<void>{} : dyncal::services::write_output_file(path, text);
 }
 
 Expected<void> record(device::VirtualBench& bench, const BenchOptions& options) {
@@ -94,7 +82,7 @@ Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
     return fail(ErrorCode::device, sender.error().message);
   }
   auto part = std::make_unique<CanPart>(options, std::move(*sender));
-  if (auto written = write_file(options.dbc_file, part->sensor.dbc()); !written) {
+  if (auto written = write_if_named(options.dbc_file, part->sensor.dbc()); !written) {
     return fail(written.error());
   }
   return part;
@@ -133,7 +121,7 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     ports["dso"] = server.triggered()->scope_port();
     ports["tss"] = server.triggered()->sensor_port();
   }
-  if (auto written = write_file(options.ports_file, ports.dump() + "\n"); !written) {
+  if (auto written = write_if_named(options.ports_file, ports.dump() + "\n"); !written) {
     return written;
   }
   fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n",
@@ -157,12 +145,12 @@ Expected<void> run(BenchOptions options) {
     options.bench.utc_origin_ns = dyncal::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
-  if (auto written = write_file(options.truth_file,
-                                device::truth_json(bench, options.programme.frequencies_hz));
+  if (auto written = write_if_named(options.truth_file,
+                                    device::truth_json(bench, options.programme.frequencies_hz));
       !written) {
     return written;
   }
-  if (auto written = write_file(
+  if (auto written = write_if_named(
           options.adc_file, device::adc_calibration_json(bench, options.programme.frequencies_hz));
       !written) {
     return written;

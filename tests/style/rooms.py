@@ -36,6 +36,7 @@ FLOORS = {
     ],
     "services": [
         ["."],
+        ["output"],
         ["contract", "report/figures"],
         ["bench", "bus"],
         ["bus/cyclonedds", "bus/fastdds", "bus/memory", "program"],

@@ -26,6 +26,13 @@ struct RunSource {
   drivers::SourceDescription description;
 };
 
+// The file that the sync ADC was corrected by.
+struct AdcFile {
+  std::string path;
+  std::string channel; // its input and path, as the file names them
+  std::string sha256;
+};
+
 struct RunOutcome {
   std::string bench;
   std::string run;
@@ -33,6 +40,7 @@ struct RunOutcome {
   std::string recipe_sha256;
   std::size_t planned_steps = 0;
   std::optional<Recipe> recipe;    // what was planned
+  std::optional<AdcFile> adc_file; // nothing: not corrected
   std::int64_t began_utc_ns = 0;   // 0: not known
   std::int64_t ended_utc_ns = 0;   // 0: not known
   std::vector<RunSource> sources;  // those of the recipe

@@ -34,6 +34,19 @@ TEST(ScpiAnswer, AnInstrumentErrorKeepsItsCodeAndWords) {
   EXPECT_FALSE(parse_instrument_error("0.000000e+00").has_value());
 }
 
+TEST(ScpiAnswer, AnIdentityHasItsFourFields) {
+  const auto known = parse_instrument_identity("RIGOL TECHNOLOGIES,MSO5072, MS5A1 ,00.01.03\n");
+  EXPECT_EQ(known.device, "RIGOL TECHNOLOGIES MSO5072");
+  EXPECT_EQ(known.serial, "MS5A1");
+  EXPECT_EQ(known.firmware, "00.01.03");
+  const auto without = parse_instrument_identity("maker,model,0,0");
+  EXPECT_EQ(without.serial, "");
+  EXPECT_EQ(without.firmware, "");
+  const auto other = parse_instrument_identity("an old scope");
+  EXPECT_EQ(other.device, "an old scope");
+  EXPECT_EQ(other.serial, "");
+}
+
 TEST(ScpiAnswer, OnlyBlocksOfDefiniteLengthAreBlocks) {
   EXPECT_EQ(parse_block_digit_count("#9").value(), 9U);
   EXPECT_FALSE(parse_block_digit_count("#0").has_value());

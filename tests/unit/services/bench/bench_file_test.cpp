@@ -31,6 +31,8 @@ channels = { Data_11 = "sync" }
 [sources.acs]
 driver = "socket"
 address = "127.0.0.1:5026"
+serial = "PTB-4"
+firmware = "2.1"
 units = { reference = "m/s^2" }
 [method]
 kind = "sample-timestamping"
@@ -67,6 +69,9 @@ TEST(BenchFile, GivesWhatTheFileSays) {
   EXPECT_EQ(file->source("dau")->as<SmartupSourceSettings>()->sensor, 0xbccb0100U);
   EXPECT_EQ(file->source("dau")->channels.at("Data_11"), "sync");
   EXPECT_EQ(file->source("acs")->units.at("reference"), R"(\metre\second\tothe{-2})");
+  EXPECT_EQ(file->source("acs")->identity.device, "");
+  EXPECT_EQ(file->source("acs")->identity.serial, "PTB-4");
+  EXPECT_EQ(file->source("acs")->identity.firmware, "2.1");
   EXPECT_EQ(file->method.dut.front().text(), "dau/acceleration_z");
   EXPECT_EQ(file->sha256.size(), 64U);
 }
@@ -82,7 +87,7 @@ std::string with_uncertainty(const std::string& line) {
 
 TEST(BenchFile, RefusesAnUncertaintyThatIsNotPlausible) {
   EXPECT_THAT(problem_of(with_uncertainty("reference_magnitude_rel = 50")),
-              HasSubstr("bench.toml:28: key 'uncertainty.reference_magnitude_rel' = 50 is not "
+              HasSubstr("bench.toml:30: key 'uncertainty.reference_magnitude_rel' = 50 is not "
                         "plausible"));
   EXPECT_THAT(problem_of(with_uncertainty("reference_magnitude_rel = 0.51")),
               HasSubstr("per cent"));
@@ -138,7 +143,7 @@ TEST(BenchFile, ReadsTheCalibrationOfTheReference) {
 
 TEST(BenchFile, RefusesAUnitThatIsNone) {
   EXPECT_THAT(problem_of(replaced(complete, "\"m/s^2\"", "\"furlong\"")),
-              HasSubstr("bench.toml:20: key 'sources.acs.units' gives channel 'reference'"));
+              HasSubstr("bench.toml:22: key 'sources.acs.units' gives channel 'reference'"));
 }
 
 TEST(BenchFile, RefusesAKeyWithTheWrongUnit) {

@@ -89,8 +89,11 @@ inline services::RunOutcome example_outcome() {
   outcome.analysis_dds = "fastdds";
   outcome.analysis_software = "dyncal 1.2.3";
   outcome.analysis_host = "lab-pc";
-  drivers::SourceDescription acs{
-      .device = "8-channel ADC", .serial = "42", .driver = "socket", .channels = {}};
+  drivers::SourceDescription acs{.device = "8-channel ADC",
+                                 .serial = "42",
+                                 .firmware = "2.1",
+                                 .driver = "socket",
+                                 .channels = {}};
   acs.channels = {{"reference", "acceleration", R"(\metre\second\tothe{-2})", -50.0, 50.0, 0.0},
                   {"sync", "", R"(\volt)"}};
   outcome.sources = {{"acs", services::SourceKind::acs, "dyncal 1.2.3", acs}};

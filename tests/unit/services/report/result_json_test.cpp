@@ -38,6 +38,7 @@ TEST(ResultJson, TellsWhoMeasuredWhatAndWhen) {
   EXPECT_EQ(json["ended_utc"], "2023-11-14T22:14:20.000000000Z");
   const auto& source = json["sources"][0];
   EXPECT_EQ(source["serial"], "42");
+  EXPECT_EQ(source["firmware"], "2.1");
   EXPECT_TRUE(source["tick_s"].is_null()); // not known
   EXPECT_EQ(source["channels"][0]["quantity"], "acceleration");
   EXPECT_EQ(source["channels"][0]["unit"], R"(\metre\second\tothe{-2})");
@@ -110,7 +111,7 @@ TEST(ResultJson, InfiniteDegreesOfFreedomAreNull) {
 
 TEST(ResultJson, AFileThatCannotBeWrittenIsAnError) {
   EXPECT_THAT(write_json("/nowhere/result.json", {}).error().message,
-              HasSubstr("/nowhere/result.json: cannot write"));
+              HasSubstr("/nowhere/result.json: cannot be written"));
 }
 
 } // namespace

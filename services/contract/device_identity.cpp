@@ -1,0 +1,19 @@
+#include "services/contract/device_identity.hpp"
+
+#include <utility>
+
+namespace dyncal::services {
+
+drivers::SourceDescription with_identity(drivers::SourceDescription description,
+                                         const DeviceIdentity& identity) {
+  for (const auto& [stated, member] : {std::pair(&identity.device, &description.device),
+                                       std::pair(&identity.serial, &description.serial),
+                                       std::pair(&identity.firmware, &description.firmware)}) {
+    if (!stated->empty()) {
+      *member = *stated;
+    }
+  }
+  return description;
+}
+
+} // namespace dyncal::services
