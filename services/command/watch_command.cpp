@@ -248,12 +248,10 @@ void take_all(Readers& readers, Screen& screen) {
     screen.append(function_line(function, flags));
     screen.explain(flags);
   });
-  readers.clocks.take([&](const wire::SampleClockReport& report, const bus::SampleInfo& info) {
-    if (info.valid) {
-      const auto flags = flags_from_message(report.flags(), report.flag_names());
-      screen.append(clock_line(report, flags));
-      screen.explain(flags);
-    }
+  readers.clocks.take([&](const wire::SampleClockReport& report) {
+    const auto flags = flags_from_message(report.flags(), report.flag_names());
+    screen.append(clock_line(report, flags));
+    screen.explain(flags);
   });
 }
 
