@@ -46,6 +46,7 @@ std::string head(const ChannelModel& model) {
 std::string candidates(const analysis::ResponseChoice& choice) {
   std::string text = fmt::format("  {:<34} {:>10} {:>4} {:>8} {:>9} {:>9}\n", "model", "chi2", "nu",
                                  "P", "AIC", "BIC");
+  bool open = false;
   for (std::size_t i = 0; i < choice.candidates.size(); ++i) {
     const analysis::ResponseCandidate& one = choice.candidates[i];
     const char mark = i == choice.chosen ? '>' : ' ';
@@ -53,13 +54,14 @@ std::string candidates(const analysis::ResponseChoice& choice) {
       text += fmt::format("{} {:<34} {}\n", mark, to_string(one.kind), one.problem);
       continue;
     }
-    text += fmt::format(
-        "{} {:<34} {:>10.5g} {:>4} {:>8} {:>9.5g} {:>9.5g}{}\n", mark, to_string(one.kind),
-        one.fit->chi_squared, one.fit->degrees_of_freedom, probability_column(one.probability),
-        one.aic, one.bic,
-        one.fit->undetermined.empty()
-            ? ""
-            : fmt::format("  {} not determined", fmt::join(one.fit->undetermined, ", ")));
+    text += fmt::format("{} {:<34} {:>10.5g} {:>4} {:>8} {:>9.5g} {:>9.5g}{}\n", mark,
+                        to_string(one.kind), one.fit->chi_squared, one.fit->degrees_of_freedom,
+                        probability_column(one.probability), one.aic, one.bic,
+                        one.fit->undetermined.empty() ? "" : "  *");
+    open = open || !one.fit->undetermined.empty();
+  }
+  if (open) {
+    text += "  * the values do not determine all of its parameters\n";
   }
   return text;
 }
@@ -97,18 +99,19 @@ std::string parameters(const ChannelModel& model) {
 
 std::string filter_text(const ChannelModel& model) {
   const analysis::CompensationFilter& filter = *model.filter;
-  std::string text = fmt::format(
-      "\n  {} filter of {} taps{} at {:.6g} Hz: passes to {:g} Hz{}; output late by {} samples "
-      "({:.4g} ms)\n  ripple {:.1e}, noise of the sensor times {:.2g}\n",
-      filter.a.size() == 1 ? "FIR" : "IIR", filter.b.size(),
-      filter.a.size() == 1 ? "" : fmt::format(" and {} poles", filter.a.size() - 1), filter.rate_hz,
-      filter.cutoff_hz,
-      filter.stop_hz < 0.5 * filter.rate_hz
-          ? fmt::format(", stops from {:g} Hz by {:.0f} dB", filter.stop_hz,
-                        -20.0 * std::log10(filter.stop_gain))
-          : "",
-      filter.delay_samples, 1e3 * filter.delay_samples / filter.rate_hz, filter.ripple,
-      filter.noise_gain);
+  std::string text =
+      fmt::format("\n  {} filter of {} taps{} at {:.6g} Hz: passes to {:g} Hz{}\n",
+                  filter.a.size() == 1 ? "FIR" : "IIR", filter.b.size(),
+                  filter.a.size() == 1 ? "" : fmt::format(" and {} poles", filter.a.size() - 1),
+                  filter.rate_hz, filter.cutoff_hz,
+                  filter.stop_hz < 0.5 * filter.rate_hz
+                      ? fmt::format(", stops from {:g} Hz by {:.0f} dB", filter.stop_hz,
+                                    -20.0 * std::log10(filter.stop_gain))
+                      : "");
+  text += fmt::format("  output late by {} samples ({:.4g} ms), ripple {:.1e}, noise of the sensor "
+                      "times {:.2g}\n",
+                      filter.delay_samples, 1e3 * filter.delay_samples / filter.rate_hz,
+                      filter.ripple, filter.noise_gain);
   text += fmt::format("  {:>10} {:>12} {:>9} {:>14} {:>9}   error of the compensated response\n",
                       "f / Hz", "|C H| - 1", "U", "arg / deg", "U");
   for (const analysis::CompensatedPoint& point : model.compensated) {
