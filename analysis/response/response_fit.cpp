@@ -322,8 +322,8 @@ Expected<void> check(ResponseKind kind, std::span<const ResponsePoint> points,
   }
   if (2 * points.size() <= parameter_count(kind)) {
     return fail(ErrorCode::too_few_samples, "a model of " + std::to_string(parameter_count(kind)) +
-                                                " parameters needs more than " +
-                                                std::to_string(points.size()) + " frequencies");
+                                                " parameters needs more frequencies than " +
+                                                std::to_string(points.size()));
   }
   return {};
 }

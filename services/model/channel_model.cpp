@@ -222,9 +222,8 @@ Expected<ChannelModel> model_channel(MeasuredResponse measured, const ModelReque
   }
   auto choice = analysis::choose_response(measured.points(), measured.common, request.kind);
   if (!choice) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: {} at {} frequencies: {}", files_of(measured), measured.channel,
-                            measured.values.size(), choice.error().message));
+    return fail(ErrorCode::bad_file, fmt::format("{}: {}: {}", files_of(measured), measured.channel,
+                                                 choice.error().message));
   }
   ChannelModel model{std::move(measured), std::move(*choice), {}, {}, {}};
   warn_of_fit(request, model);

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -99,6 +101,7 @@ std::vector<double> drawn_anew_magnitude_rel(const std::vector<RawValue>& raw) {
   }
   const auto means = analysis::means_of_repetitions(repeated);
   std::vector<double> result;
+  result.reserve(raw.size());
   for (std::size_t i = 0; i < raw.size(); ++i) {
     result.push_back(means[i] ? means[i]->u_magnitude / means[i]->magnitude
                               : raw[i].value.u_magnitude_rel);
@@ -240,9 +243,8 @@ std::vector<std::string> channels_of(const std::vector<ResultContents>& files) {
 
 std::string file_names(const std::vector<ResultContents>& files) {
   std::vector<std::string> names;
-  for (const ResultContents& contents : files) {
-    names.push_back(contents.file);
-  }
+  std::transform(files.begin(), files.end(), std::back_inserter(names),
+                 [](const ResultContents& contents) { return contents.file; });
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -303,7 +305,14 @@ Expected<std::vector<MeasuredResponse>>
 read_responses(const std::vector<std::filesystem::path>& files,
                const ResponseSelection& selection) {
   std::vector<ResultContents> contents;
+  std::set<std::filesystem::path> read;
   for (const std::filesystem::path& file : files) {
+    std::error_code ignored;
+    if (!read.insert(std::filesystem::weakly_canonical(file, ignored)).second) {
+      return fail(
+          ErrorCode::bad_argument,
+          fmt::format("{}: this result is given twice, and would count twice", file.string()));
+    }
     auto one = read_result(file);
     if (!one) {
       return fail(one.error());

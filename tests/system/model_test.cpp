@@ -220,6 +220,8 @@ TEST_F(Model, SaysInOneLineWhatIsWrong) {
   };
   EXPECT_THAT(error_of({folder / "none.json"}), HasSubstr("none.json: cannot read this result"));
   EXPECT_THAT(error_of({folder / "bench.toml"}), HasSubstr("not JSON"));
+  EXPECT_THAT(error_of({result, folder / "." / "result.json"}),
+              HasSubstr("result.json: this result is given twice"));
   EXPECT_THAT(error_of({result, "--channel", "dau/other"}),
               HasSubstr("there is no channel 'dau/other'; the channels are: dau/acceleration"));
   EXPECT_THAT(error_of({result, "--rate-hz", "100"}), HasSubstr("add --filter fir"));
@@ -249,7 +251,7 @@ TEST_F(Model, SaysInOneLineWhatIsWrong) {
                                                           json["transfer_function"].end());
                         }),
                         "--kind", "second_order"}),
-              HasSubstr("a model of 3 parameters needs more than 1 frequencies"));
+              HasSubstr("a model of 3 parameters needs more frequencies than 1"));
 }
 
 TEST_F(Model, LeavesOutWhatIsFlaggedOrNullAndSaysSo) {
