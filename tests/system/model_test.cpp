@@ -128,6 +128,17 @@ protected:
     EXPECT_EQ(run.errors(), "");
     return run.output();
   }
+  // Of a Python script; 77: a module that it needs is not installed.
+  void expect_status(int expected, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "-B");
+    ProgramRun script(DYNCAL_PYTHON, arguments, folder);
+    const auto status = script.wait(patience);
+    if (status == 77) {
+      std::cerr << script.output();
+    } else {
+      EXPECT_EQ(status, expected) << script.output() << script.errors();
+    }
+  }
   std::string error_of(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "model");
     ProgramRun run("dyncal", arguments, folder);
@@ -185,13 +196,25 @@ TEST_F(Model, FindsTheSensorInAnAnalysedRecordAndUndoesIt) {
     EXPECT_TRUE(std::filesystem::exists(
         folder / "figures" / (std::string("model-residuals-dau-acceleration") + ending)));
   }
-  ProgramRun against(DYNCAL_PYTHON, {"-B", DYNCAL_MODEL_CHECK, folder / "model.json"}, folder);
-  const auto status = against.wait(patience);
-  if (status == 77) {
-    std::cerr << against.output();
-  } else {
-    EXPECT_EQ(status, 0) << against.output() << against.errors();
-  }
+  expect_status(0, {DYNCAL_MODEL_CHECK, folder / "model.json"});
+}
+
+// The schema holds every file that these tests write (program_run.cpp); here, what it refuses.
+TEST_F(Model, TheSchemaOfItsFileRefusesOtherKeys) {
+  output_of({analysed(), "--json", folder / "model.json", "--filter", "fir"});
+  const auto json = read_json(folder / "model.json");
+  const auto expect_refused = [&](const auto& change) {
+    auto changed = json;
+    change(changed);
+    std::ofstream(folder / "changed.json") << changed;
+    expect_status(1, {DYNCAL_CHECK_RESULT, DYNCAL_MODEL_SCHEMA, folder / "changed.json"});
+  };
+  expect_status(0, {DYNCAL_CHECK_RESULT, DYNCAL_MODEL_SCHEMA, folder / "model.json"});
+  expect_refused([](auto& file) { file["schema"]["version"] = 2; });
+  expect_refused([](auto& file) { file["models"][0]["chi_square"] = 1.0; });
+  expect_refused([](auto& file) { file["models"][0].erase("covariance"); });
+  expect_refused([](auto& file) { file["models"][0]["filter"].erase("Ub"); });
+  expect_refused([](auto& file) { file["models"][0]["parameters"][0]["u"] = "nan"; });
 }
 
 TEST_F(Model, JoinsResultsAndDesignsAnIirFilter) {
