@@ -7,15 +7,14 @@
 // A is 1 (FIR) or the poles of a digital Butterworth low pass (IIR), chosen beforehand and so
 // without uncertainty: the filter is stable whatever the response. B minimises
 //
-//   sum |H (C - e^{-iwD} / H)|^2 (pass band)  +  0.1^2 sum |C|^2 / g^2 (stop band)
+//   sum |H (C - e^{-iwD} / H)|^2 (pass band)  +  0.1^2 sum |C g|^2 (stop band)
 //
-// between which the target falls off as a raised cosine with little weight. B is linear in the
-// target, so its covariance follows from that of the parameters by the Jacobian:
+// between which the target falls off as a raised cosine with little weight. The covariance of B
+// follows from that of the parameters, U_b = J U J' with J = d b / d(parameters) of target and
+// weights, and has their number as its rank.
 //
-//   U_b = J U J',   J = M d(e^{-iwD} / H) / d(parameters)
-//
-// of rank p. D is the whole number of samples by which the output is late; unless it is given, the
-// one with the smallest error is taken. `ripple` is what the design leaves, max |C H e^{iwD} - 1|.
+// D is the whole number of samples by which the output is late; unless it is given, the one with
+// the smallest error is taken. `ripple` is what the design leaves, max |C H e^{iwD} - 1|.
 //
 // Fails: invalid_argument (the sentence names the setting). Any thread.
 #pragma once
