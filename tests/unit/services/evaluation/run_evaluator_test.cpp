@@ -122,7 +122,8 @@ TEST(RunEvaluator, BoundsHumBesideAStepByOtherStepsAndByQuietTime) {
   for (const tests::SyntheticRun* run : {&others, &alone}) {
     for (const std::size_t in_background : {0U, 2U}) {
       std::vector<StepResult> all_first;
-      const EvaluationOutput output = evaluate(*run, run->measurement(), in_background, &all_first);
+      const EvaluationOutput output =
+          evaluate(*run, run->measurement(), {.evaluations_at_once = in_background}, &all_first);
       ASSERT_EQ(output.settled.size(), 1U);
       const StepResult& settled = output.settled.front();
       const StepResult& first = all_first.at(run->steps.size() / 2);
