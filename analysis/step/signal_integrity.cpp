@@ -18,6 +18,7 @@ constexpr double resolved = 1.5;           // distance of lines in 1 / T
 constexpr std::uint64_t min_equal = 5;     // values at an extreme: fewer are chance
 constexpr double model_error = 0.05;       // of the amplitude, of a sine fitted to a clipped one
 constexpr std::uint64_t min_stuck_run = 4; // samples
+constexpr double fine_resolution = 0.02;   // of the amplitude
 
 // The record, and what is fitted to it.
 struct Model {
@@ -194,6 +195,23 @@ double shortening(double part) {
   return x * x * x / (3.0 * std::numbers::pi);
 }
 
+// Where steps are fine: a sine of a few steps may well end one step below its range.
+double upper_end(const Model& model, const SignalExpectation& expected) {
+  const bool is_fine = expected.resolution < fine_resolution * model.fit.amplitude();
+  return expected.range_high - (is_fine ? 1.5 : 0.5) * expected.resolution;
+}
+
+// The record's own values `first` .. `end` - 1 are equal: how far the whole model moves meanwhile.
+double movement(const Model& model, std::size_t first, std::size_t end) {
+  double lowest = model.at(first);
+  double highest = lowest;
+  for (std::size_t i = first + 1; i < end; ++i) {
+    lowest = std::min(lowest, model.at(i));
+    highest = std::max(highest, model.at(i));
+  }
+  return highest - lowest;
+}
+
 void measure_limits(const Model& model, const SignalExpectation& expected,
                     SignalIntegrity& integrity) {
   const double n = static_cast<double>(model.values.size());
@@ -205,7 +223,7 @@ void measure_limits(const Model& model, const SignalExpectation& expected,
   }));
   const double at_high =
       part(std::count_if(model.values.begin(), model.values.end(),
-                         [&](double v) { return v >= expected.range_high - half; }));
+                         [&](double v) { return v >= upper_end(model, expected); }));
   integrity.at_range_part = at_low + at_high;
   const double noise = residual_sd(model);
   const auto clipped = [&](double extreme) {
@@ -224,6 +242,8 @@ void measure_runs(const Model& model, const SignalExpectation& expected,
   const auto [low, high] = std::minmax_element(model.values.begin(), model.values.end());
   const double natural =
       2.0 * expected.resolution + 6.0 * model.neighbour_noise + 0.02 * model.fit.amplitude();
+  const double natural_repeat =
+      2.0 * expected.resolution + 8.0 * model.neighbour_noise + 0.1 * model.fit.amplitude();
   std::uint64_t stuck = 0;
   for (std::size_t first = 0; first < model.values.size();) {
     const double value = model.values[first];
@@ -237,10 +257,15 @@ void measure_runs(const Model& model, const SignalExpectation& expected,
     const std::uint64_t length = end - first;
     integrity.longest_run = std::max(integrity.longest_run, length);
     const bool at_an_end = (integrity.clipped_part > 0.0 && (value == *low || value == *high)) ||
-                           value <= expected.range_low || value >= expected.range_high;
+                           value <= expected.range_low || value >= upper_end(model, expected);
     if (length >= min_stuck_run && highest - lowest > natural && !at_an_end) {
       integrity.longest_stuck = std::max(integrity.longest_stuck, length);
       stuck += length;
+    }
+    if (length > 1 && length < min_stuck_run && !at_an_end &&
+        movement(model, first, end) > natural_repeat) {
+      integrity.longest_repeat = std::max(integrity.longest_repeat, length);
+      ++integrity.repeats;
     }
     first = end;
   }
@@ -283,7 +308,8 @@ IntegrityFindings judge_integrity(const SignalIntegrity& integrity,
   IntegrityFindings findings;
   findings.over_range = integrity.at_range_part > thresholds.at_range_part ||
                         integrity.clipped_part > thresholds.clipped_part;
-  findings.stuck = integrity.longest_stuck >= thresholds.stuck_run;
+  findings.stuck =
+      integrity.longest_stuck >= thresholds.stuck_run || integrity.repeats >= thresholds.repeats;
   findings.distorted =
       integrity.thd > thresholds.thd && integrity.thd > thresholds.thd_in_u * integrity.u_thd;
   findings.noisy = integrity.residual_over_expected > thresholds.residual_ratio;

@@ -5,15 +5,17 @@
 //                                           half the rate are met where sampling folds them to
 //   THD = sqrt(sum |P_k|^2) / |P|           residual = standard deviation of e
 //
-// At a limit: values within half a resolution of an end of the stated range; and, stated or not,
-// values equal to the record's own extreme where the fitted sine goes on, when they are more than
-// steps q and noise explain. Their parts p of the record shorten the amplitude by x^3 / (3 pi), x =
-// pi p, at each end (`clipping_rel`).
+// At a limit: values within half a resolution of an end of the stated range, where steps are
+// below 2 % of the amplitude within one and a half of the upper one, for the highest code of many
+// converters is one step below it; and, stated or not, values equal to the record's own extreme
+// where the fitted sine goes on, when they are more than steps q and noise explain. Their parts p
+// of the record shorten the amplitude by x^3 / (3 pi), x = pi p, at each end (`clipping_rel`).
 //
 // Stuck: a run of equal values during which the fitted sine moves by more than two steps, six times
-// the noise of neighbouring values and a fiftieth of the amplitude. Shorter than four samples is
-// none. Harmonics that sampling folds onto the signal, onto the mean or onto each other are left
-// out. Levels are those of the values, `thd` and `clipping_rel` relative.
+// the noise of neighbouring values and a fiftieth of the amplitude. Of two or three samples it is a
+// repeat, when sine and harmonics move by more than two steps, eight times that noise and a tenth
+// of the amplitude. Harmonics that sampling folds onto the signal, onto the mean or onto each other
+// are left out. Levels are those of the values, `thd` and `clipping_rel` relative.
 //
 // Fails as sine_fit.hpp does. Any thread.
 #pragma once
@@ -43,6 +45,8 @@ struct SignalIntegrity {
   std::uint64_t longest_run = 0;   // of equal values, whatever the signal does
   std::uint64_t longest_stuck = 0; // while the signal moves
   double stuck_part = 0.0;         // of all samples, in such runs
+  std::uint64_t repeats = 0;       // shorter runs
+  std::uint64_t longest_repeat = 0;
   double thd = 0.0;
   double u_thd = 0.0; // what noise alone gives
   double residual_sd = 0.0;
@@ -58,8 +62,9 @@ struct IntegrityThresholds {
   double at_range_part = 5e-4;
   double clipped_part = 2e-3;
   std::uint64_t stuck_run = 4;
-  double thd = 0.05;     // ISO 16063-21: up to 5 % for most frequencies
-  double thd_in_u = 6.0; // and this many times what noise gives
+  std::uint64_t repeats = 2; // a single one may be chance
+  double thd = 0.05;         // ISO 16063-21: up to 5 % for most frequencies
+  double thd_in_u = 6.0;     // and this many times what noise gives
   double residual_ratio = 2.0;
   double refused_clipping_rel = 1e-3;
   double refused_stuck_part = 2e-3;

@@ -223,6 +223,7 @@ constexpr std::array<Fault, 8> known_faults{{
 
 std::vector<std::string> forms() {
   std::vector<std::string> all;
+  all.reserve(known_faults.size());
   for (const Fault& fault : known_faults) {
     all.emplace_back(fault.form);
   }

@@ -64,7 +64,8 @@ SignalCheck check_signal(const analysis::ChannelFit& fit, std::span<const std::i
   if (findings.stuck) {
     check.flags.push_back(
         of_channel(ResultFlag::values_stuck, fit.channel,
-                   fmt::format("up to {} samples long", integrity->longest_stuck)));
+                   fmt::format("up to {} samples long",
+                               std::max(integrity->longest_stuck, integrity->longest_repeat))));
   }
   if (findings.distorted) {
     check.flags.push_back(of_channel(ResultFlag::distorted, fit.channel,

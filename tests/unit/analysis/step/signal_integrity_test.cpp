@@ -159,6 +159,44 @@ TEST(SignalIntegrity, StuckValuesAreFound) {
   }
 }
 
+// The highest code of two's complement is one step below the range that a description states. A
+// drift brings only a few of the last periods there.
+TEST(SignalIntegrity, HighestCodeIsTheUpperEndOfTheRange) {
+  Sensor sensor;
+  Series series = series_of(sensor, 3);
+  const double range = 20.0 * sensor.resolution * std::round(1.0 / sensor.resolution);
+  std::size_t at_the_end = 0;
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    const double drift = 11.0 * static_cast<double>(i) / static_cast<double>(sensor.samples);
+    const double value =
+        sensor.resolution * std::round((series.values[i] + drift) / sensor.resolution);
+    series.values[i] = std::min(value, range - sensor.resolution);
+    at_the_end += series.values[i] < value ? 1 : 0;
+  }
+  ASSERT_GT(at_the_end, 10U);
+  const auto integrity = integrity_of(sensor, series, {.range_low = -range, .range_high = range});
+  EXPECT_GE(integrity.at_range_part * static_cast<double>(sensor.samples),
+            static_cast<double>(at_the_end));
+  EXPECT_TRUE(judge_integrity(integrity).over_range);
+}
+
+TEST(SignalIntegrity, ShortRunsThatComeAgainAreFound) {
+  for (const std::size_t length : {2U, 3U}) {
+    const Sensor sensor;
+    Series series = series_of(sensor, 4);
+    for (std::size_t begin = 37; begin + length < series.values.size(); begin += 101) {
+      for (std::size_t i = begin + 1; i < begin + length; ++i) {
+        series.values[i] = series.values[begin];
+      }
+    }
+    const auto integrity = integrity_of(sensor, series);
+    EXPECT_EQ(integrity.longest_repeat, length);
+    EXPECT_EQ(integrity.longest_stuck, 0U);
+    EXPECT_TRUE(judge_integrity(integrity).stuck);
+    EXPECT_FALSE(judge_integrity(integrity).refused);
+  }
+}
+
 TEST(SignalIntegrity, DistortionIsMeasuredWhereverSamplingFoldsIt) {
   for (const double frequency_hz : {20.0, 80.3, 230.7, 310.1}) {
     const Sensor sensor{.frequency_hz = frequency_hz, .second_harmonic = 0.8};
