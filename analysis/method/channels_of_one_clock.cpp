@@ -41,11 +41,8 @@ FitNoise fit_noise(const ChannelFit& channel, double jitter_s) {
 
 QuantisationUncertainty quantisation(const RecordedChannel& recorded) {
   const SineFit& fit = recorded.result.fit;
-  const double duration_s =
-      static_cast<double>(recorded.stamps_ns.back() - recorded.stamps_ns.front()) * 1e-9;
-  const double periods = std::max(1.0, recorded.result.frequency.hz() * duration_s);
   return quantisation_uncertainty(fit.amplitude(), fit.residual_sd(), recorded.samples.resolution,
-                                  static_cast<double>(fit.samples) / periods);
+                                  recorded.result.frequency, recorded.stamps_ns);
 }
 
 struct SensorNoise {

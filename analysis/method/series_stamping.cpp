@@ -105,7 +105,8 @@ Repetition shot_result(const SineFit& series, const TriggerPhase& trigger, bool 
 // Steps of the sensor's converter that its noise does not hide, at their largest over the shots:
 // they err alike in all of them.
 Contribution quantisation_row(const SeriesStampingInput& input, std::size_t channel,
-                              const std::vector<CleanedFit>& fits, double samples_per_period) {
+                              const std::vector<CleanedFit>& fits, const Frequency& apparent,
+                              std::span<const std::int64_t> stamps_ns) {
   Contribution row{.kind = ContributionKind::quantisation,
                    .subject = "the sensor",
                    .distribution = Distribution::rectangular};
@@ -113,7 +114,7 @@ Contribution quantisation_row(const SeriesStampingInput& input, std::size_t chan
     const SineFit& fit = fits[j].fit;
     const QuantisationUncertainty steps = quantisation_uncertainty(
         fit.amplitude(), fit.residual_sd(), found_resolution(input.shots[j].series[channel]),
-        samples_per_period);
+        apparent, stamps_ns);
     if (fit.amplitude() > 0.0) {
       row.u_magnitude_rel = std::max(row.u_magnitude_rel, steps.u_amplitude / fit.amplitude());
       row.u_phase_rad = std::max(row.u_phase_rad, steps.u_phase_rad);
@@ -185,11 +186,8 @@ Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std:
   if (!fits) {
     return fail(of_channel(shots.input.channels[c], fits.error()));
   }
-  const double duration_s = static_cast<double>(shots.stamps.back() - shots.stamps.front()) * 1e-9;
-  const double samples_per_period = static_cast<double>(shots.stamps.size()) /
-                                    std::max(1.0, shots.apparent_frequency.hz() * duration_s);
   Budget budget;
-  budget.add(quantisation_row(shots.input, c, *fits, samples_per_period));
+  budget.add(quantisation_row(shots.input, c, *fits, shots.apparent_frequency, shots.stamps));
   budget.append(shots.common);
   SeriesChannelResult channel{shots.input.channels[c], {}, {}, budget.rows()};
   for (std::size_t j = 0; j < fits->size(); ++j) {

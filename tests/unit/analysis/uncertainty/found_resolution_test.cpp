@@ -97,9 +97,8 @@ TEST(FoundResolution, AFewStepsWithoutNoiseAreCovered) {
     const SineFit& sine = fit->front();
     const double step = found_resolution(values);
     ASSERT_NEAR(step, 1.0, 1e-9);
-    const double periods = converter.frequency_hz * 2.0;
-    const auto steps =
-        quantisation_uncertainty(sine.amplitude(), sine.residual_sd(), step, 2000.0 / periods);
+    const auto steps = quantisation_uncertainty(sine.amplitude(), sine.residual_sd(), step,
+                                                Frequency::from_hz(converter.frequency_hz), stamps);
     const double error = std::abs(sine.amplitude() - converter.amplitude);
     covered += error <= 2.0 * std::hypot(sine.u_amplitude(), steps.u_amplitude);
     hidden += error > 5.0 * sine.u_amplitude();
