@@ -293,11 +293,7 @@ Expected<SignalIntegrity> measure_integrity(const Frequency& frequency,
                   integrity.amplitude;
   integrity.u_thd =
       std::sqrt(of_noise * std::sqrt(static_cast<double>(model->harmonics))) / integrity.amplitude;
-  if (expected.noise_sd > 0.0) {
-    integrity.residual_over_expected =
-        integrity.residual_sd /
-        std::hypot(expected.noise_sd, expected.resolution / std::sqrt(12.0));
-  }
+  integrity.noise_sd = std::max(model->neighbour_noise, expected.resolution / std::sqrt(12.0));
   measure_limits(*model, expected, integrity);
   measure_runs(*model, expected, integrity);
   return integrity;
@@ -312,7 +308,6 @@ IntegrityFindings judge_integrity(const SignalIntegrity& integrity,
       integrity.longest_stuck >= thresholds.stuck_run || integrity.repeats >= thresholds.repeats;
   findings.distorted =
       integrity.thd > thresholds.thd && integrity.thd > thresholds.thd_in_u * integrity.u_thd;
-  findings.noisy = integrity.residual_over_expected > thresholds.residual_ratio;
   findings.refused =
       (findings.over_range && integrity.clipping_rel > thresholds.refused_clipping_rel) ||
       (findings.stuck && integrity.stuck_part > thresholds.refused_stuck_part);

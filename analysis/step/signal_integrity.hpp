@@ -1,5 +1,6 @@
 // Is the series of one channel during one step what its sensor felt? End stops, stuck values,
-// distortion and noise, as plain numbers, and the judgement of them.
+// distortion and residual, as plain numbers, and the judgement of them. Nobody states the noise of
+// a channel: what the residual is held against is the noise of its neighbouring samples.
 //
 //   y = C + P + sum(P_k, k = 2..10) + e     P_k at k f on the true stamps, so that harmonics above
 //                                           half the rate are met where sampling folds them to
@@ -33,7 +34,6 @@ struct SignalExpectation {
   double range_low = -std::numeric_limits<double>::infinity(); // of the sensor, in its unit
   double range_high = std::numeric_limits<double>::infinity();
   double resolution = 0.0; // one step of the converter; 0: none, or far below the noise
-  double noise_sd = 0.0;   // standard deviation of the residual; 0: not known
 };
 
 struct SignalIntegrity {
@@ -50,7 +50,7 @@ struct SignalIntegrity {
   double thd = 0.0;
   double u_thd = 0.0; // what noise alone gives
   double residual_sd = 0.0;
-  double residual_over_expected = 0.0; // 0: nothing was expected
+  double noise_sd = 0.0; // of neighbouring residuals, and at least that of the steps; 0: no noise
 };
 
 [[nodiscard]] Expected<SignalIntegrity> measure_integrity(const Frequency& frequency,
@@ -65,7 +65,6 @@ struct IntegrityThresholds {
   std::uint64_t repeats = 2; // a single one may be chance
   double thd = 0.05;         // ISO 16063-21: up to 5 % for most frequencies
   double thd_in_u = 6.0;     // and this many times what noise gives
-  double residual_ratio = 2.0;
   double refused_clipping_rel = 1e-3;
   double refused_stuck_part = 2e-3;
 };
@@ -74,9 +73,8 @@ struct IntegrityFindings {
   bool over_range = false;
   bool stuck = false;
   bool distorted = false;
-  bool noisy = false;
   bool refused = false; // the value cannot be saved
-  [[nodiscard]] bool any() const { return over_range || stuck || distorted || noisy; }
+  [[nodiscard]] bool any() const { return over_range || stuck || distorted; }
 };
 
 [[nodiscard]] IntegrityFindings judge_integrity(const SignalIntegrity& integrity,

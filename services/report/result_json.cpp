@@ -88,6 +88,18 @@ Json samples_json(const StepResult& result) {
   return samples;
 }
 
+Json signals_json(const StepResult& result) {
+  Json signals = Json::array();
+  for (const ChannelSignal& signal : result.signals) {
+    signals.push_back({{"channel", signal.channel},
+                       {"thd", json_number(signal.thd)},
+                       {"u_thd", json_number(signal.u_thd)},
+                       {"residual_rel", json_number(signal.residual)},
+                       {"residual_over_noise", json_number(signal.over_noise)}});
+  }
+  return signals;
+}
+
 void add_flags(const std::vector<Flag>& flags, Json& json) {
   json["flags"] = sentences_of(flags);
   json["flag_names"] = names_of(flags);
@@ -161,6 +173,7 @@ Json point_json(const RunOutcome& outcome, const StepResult& result) {
   Json point = point_head(result);
   add_flags(result.flags, point);
   point["budget"] = budget_json(result);
+  point["signals"] = signals_json(result);
   point["data_sha256"] = result.data_sha256;
   if (result.valid) {
     add_expanded(magnitude_uncertainty(result), phase_uncertainty(result), point);

@@ -271,7 +271,7 @@ ChannelLines lines_of_shots(const SeriesStepInput& input,
   return lines;
 }
 
-// The first shot in which something is found speaks for the step.
+// The first shot in which something is found speaks for the step, or else the very first.
 SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotRecord::Shot>& shots,
                         const EvaluatedSeries& evaluated, const ChannelName& channel,
                         std::size_t column) {
@@ -279,14 +279,18 @@ SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotReco
       series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
   const analysis::ChannelFit sine{
       .channel = channel.text(), .frequency = input.task.step().frequency, .fit = {}};
+  std::optional<SignalCheck> first;
   for (const ShotRecord::Shot& shot : shots) {
     SignalCheck check = check_signal(sine, stamps_ns, shot.series->channel(column),
                                      input.sensor.description().channels[column]);
     if (!check.flags.empty()) {
       return check;
     }
+    if (!first) {
+      first = std::move(check);
+    }
   }
-  return {};
+  return *first;
 }
 
 std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedChannels& acs,

@@ -32,6 +32,15 @@ Flag of_channel(ResultFlag kind, const std::string& channel, const std::string& 
   return {kind, fmt::format("{}: {}: {}", channel, to_string(kind), how_much)};
 }
 
+ChannelSignal signal_of(const std::string& channel, const analysis::SignalIntegrity& integrity) {
+  return {.channel = channel,
+          .thd = integrity.thd,
+          .u_thd = integrity.u_thd,
+          .residual = integrity.residual_sd / integrity.amplitude,
+          .over_noise = integrity.noise_sd > 0.0 ? integrity.residual_sd / integrity.noise_sd
+                                                 : ChannelSignal::not_known};
+}
+
 std::string refusal_of(const std::string& channel, const analysis::SignalIntegrity& integrity,
                        const analysis::IntegrityFindings& findings) {
   if (findings.over_range) {
@@ -51,11 +60,16 @@ SignalCheck check_signal(const analysis::ChannelFit& fit, std::span<const std::i
                          const drivers::ChannelDescription& description) {
   const auto integrity = analysis::measure_integrity(fit.frequency, stamps_ns, values,
                                                      expectation_of(description, values));
+  SignalCheck check{.signal = {.channel = fit.channel}, .flags = {}, .refusal = {}};
   if (!integrity) {
-    return {}; // too short for harmonics beside the sine that was fitted to it
+    if (integrity.error().code != analysis::ErrorCode::no_excitation) {
+      check.flags.push_back(
+          of_channel(ResultFlag::signal_not_judged, fit.channel, integrity.error().message));
+    }
+    return check;
   }
+  check.signal = signal_of(fit.channel, *integrity);
   const analysis::IntegrityFindings findings = analysis::judge_integrity(*integrity);
-  SignalCheck check;
   if (findings.over_range) {
     check.flags.push_back(of_channel(
         ResultFlag::over_range, fit.channel,

@@ -2,8 +2,10 @@
 // distortion (analysis/step/signal_integrity.hpp), against the range and the resolution that the
 // channel's description states.
 //
-// Gives flags, and a refusal where no uncertainty covers what was lost: a value that hides clipping
-// or stuck samples of more than a thousandth. Plain functions, any thread.
+// Gives numbers, flags, and a refusal where no uncertainty covers what was lost: a value that hides
+// clipping or stuck samples of more than a thousandth. A channel without a sine that stands out of
+// its noise has no numbers; one that cannot be judged for another reason has a flag that gives it.
+// Plain functions, any thread.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +16,13 @@
 #include "analysis/method/transfer_point.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/evaluation/method/selected_channels.hpp"
+#include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
 namespace dyncal::services {
 
 struct SignalCheck {
+  ChannelSignal signal;
   std::vector<Flag> flags;
   std::string refusal; // one sentence; empty: the value stands
 };

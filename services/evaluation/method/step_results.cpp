@@ -77,6 +77,7 @@ std::vector<StepResult> results_without_value(const RecipeStep& step,
 }
 
 void add_check(const SignalCheck& check, StepResult& result) {
+  result.signals.push_back(check.signal);
   result.flags.insert(result.flags.end(), check.flags.begin(), check.flags.end());
   if (check.refusal.empty() || !result.valid) {
     return;

@@ -53,7 +53,7 @@ struct StepInput {
 [[nodiscard]] std::vector<StepResult> make_results(const StepTask& task, const StepInput& input,
                                                    const analysis::Expected<EvaluatedStep>& step);
 
-// Flags what a check has found; takes the value away where it refuses it.
+// Gives the numbers of a check, flags what it has found; takes the value away where it refuses it.
 void add_check(const SignalCheck& check, StepResult& result);
 
 // Flags a level that is off the plan and samples that were left out, and adds up what was lost.

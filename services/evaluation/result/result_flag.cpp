@@ -94,6 +94,9 @@ constexpr std::array rows{
         "falls on the excitation at this sample rate",
         "u holds nothing for distortion folded there: no step of this run shows that harmonic by "
         "itself; choose another frequency or sample rate, or add a step at a lower frequency"},
+    Row{ResultFlag::signal_not_judged, "signal_not_judged", "signal not judged",
+        "end stops, stuck values and distortion could not be looked for in this channel for the "
+        "reason given, so look at its record; the value and its u stand without that check"},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

@@ -36,6 +36,7 @@ enum class ResultFlag {
   reference_uncertainty_not_stated,
   mains_not_separated,
   harmonic_not_separated,
+  signal_not_judged,
   from_message // read from the bus, and not known to this version
 };
 

@@ -80,6 +80,16 @@ wire::SourceSamples samples_message(const SourceSamples& samples) {
   return message;
 }
 
+wire::SignalQuality signal_message(const ChannelSignal& signal) {
+  wire::SignalQuality message;
+  message.channel(signal.channel);
+  message.thd(signal.thd);
+  message.u_thd(signal.u_thd);
+  message.residual_rel(signal.residual);
+  message.residual_over_noise(signal.over_noise);
+  return message;
+}
+
 wire::MonteCarloCheck check_message(const analysis::TransferCheck& drawn) {
   wire::MonteCarloCheck message;
   message.trials(drawn.magnitude.trials);
@@ -154,6 +164,9 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   message.temperature_valid(result.temperature_degc.has_value());
   message.temperature_degc(result.temperature_degc.value_or(0.0));
   message.provisional(result.provisional);
+  for (const ChannelSignal& signal : result.signals) {
+    message.signals().push_back(signal_message(signal));
+  }
   message.software(software_version());
   message.recipe_sha256(recipe.sha256);
   message.data_sha256(result.data_sha256);
@@ -202,6 +215,10 @@ StepResult from_message(const wire::CalibrationResult& message) {
   }
   result.data_sha256 = message.data_sha256();
   result.provisional = message.provisional();
+  for (const wire::SignalQuality& signal : message.signals()) {
+    result.signals.push_back({signal.channel(), signal.thd(), signal.u_thd(), signal.residual_rel(),
+                              signal.residual_over_noise()});
+  }
   if (!message.series_start().empty()) {
     result.series = SeriesFinding{message.sample_rate_hz(), message.u_sample_rate_hz(),
                                   message.series_start(), message.series_start_scatter_s()};

@@ -17,6 +17,7 @@
 #include "analysis/method/transfer_check.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "services/evaluation/result/channel_lines.hpp"
+#include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
 namespace dyncal::services {
@@ -62,6 +63,7 @@ struct StepResult {
   std::string unit; // D-SI, output per input
   std::vector<analysis::ChannelFit> fits;
   std::vector<analysis::Contribution> budget;
+  std::vector<ChannelSignal> signals; // of reference, syncs and the channel
   std::vector<SourceSamples> samples;
   std::uint64_t lost = 0; // all that was lost of any source
   std::vector<Flag> flags;

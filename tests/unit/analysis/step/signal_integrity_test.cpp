@@ -93,8 +93,7 @@ TEST(SignalIntegrity, CleanSeriesRaiseNoAlarm) {
     const Series series = series_of(sensor, static_cast<unsigned>(run) + 1);
     SignalExpectation expected{.range_low = sensor.offset - 2.5,
                                .range_high = sensor.offset + 2.5,
-                               .resolution = sensor.resolution,
-                               .noise_sd = std::hypot(sensor.noise, 0.3 * sensor.resolution)};
+                               .resolution = sensor.resolution};
     const auto integrity = measure_integrity(Frequency::from_hz(sensor.frequency_hz),
                                              series.stamps_ns, series.values, expected);
     if (!integrity) {
@@ -108,8 +107,7 @@ TEST(SignalIntegrity, CleanSeriesRaiseNoAlarm) {
     if (findings.any()) {
       which << "\nq " << sensor.resolution << ", noise " << sensor.noise << ", n " << sensor.samples
             << ", f " << sensor.frequency_hz << ": range " << findings.over_range << ", stuck "
-            << findings.stuck << ", distorted " << findings.distorted << ", noisy "
-            << findings.noisy;
+            << findings.stuck << ", distorted " << findings.distorted;
     }
   }
   EXPECT_GT(judged, 0.9 * runs());
@@ -210,13 +208,22 @@ TEST(SignalIntegrity, DistortionIsMeasuredWhereverSamplingFoldsIt) {
   EXPECT_LT(integrity_of(folded, series_of(folded, 3)).thd, 0.01);
 }
 
-TEST(SignalIntegrity, NoiseIsHeldAgainstWhatWasExpected) {
+TEST(SignalIntegrity, TheResidualOfWhiteNoiseIsTheNoiseOfItsNeighbours) {
   const Sensor sensor{.noise = 0.5};
-  const SignalIntegrity integrity = integrity_of(sensor, series_of(sensor, 4), {.noise_sd = 0.02});
-  EXPECT_NEAR(integrity.residual_over_expected, 25.0, 1.0);
-  EXPECT_TRUE(judge_integrity(integrity).noisy);
-  EXPECT_FALSE(judge_integrity(integrity).refused);
-  EXPECT_FALSE(judge_integrity(integrity_of(sensor, series_of(sensor, 4))).noisy);
+  const SignalIntegrity integrity = integrity_of(sensor, series_of(sensor, 4));
+  EXPECT_NEAR(integrity.noise_sd, 0.5, 0.05);
+  EXPECT_NEAR(integrity.residual_sd, integrity.noise_sd, 0.05);
+}
+
+TEST(SignalIntegrity, AWaveBesideTheSineIsResidualAndNotNoise) {
+  const Sensor sensor{.noise = 0.02};
+  Series series = series_of(sensor, 4);
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    series.values[i] += 0.5 * std::sin(0.05 * static_cast<double>(i));
+  }
+  const SignalIntegrity integrity = integrity_of(sensor, series);
+  EXPECT_NEAR(integrity.residual_sd, 0.5 / std::sqrt(2.0), 0.03);
+  EXPECT_LT(integrity.noise_sd, 0.03);
 }
 
 TEST(SignalIntegrity, NothingToFitIsAnError) {

@@ -45,6 +45,8 @@ StepResult example_result() {
                      .not_measured = 5,
                      .first_stamp_ns = 6,
                      .last_stamp_ns = 7}};
+  result.signals = {{"acs/sync", 1e-3, 1e-5, 2e-3, 1.02}};
+  result.provisional = true;
   result.lost = 6;
   result.flags = {flag_of_source(ResultFlag::samples_lost, "dau")};
   result.data_sha256 = "abc";
@@ -70,6 +72,13 @@ TEST(ResultMessage, CarriesWhatReadersNeedOfAResult) {
   EXPECT_EQ(read.samples.at(0).all_lost(), 6U);
   EXPECT_EQ(read.flags.at(0).sentence, "dau: samples lost");
   EXPECT_EQ(read.series.value().start, "with the trigger");
+  EXPECT_TRUE(read.provisional);
+  ASSERT_EQ(read.signals.size(), 1U);
+  EXPECT_EQ(read.signals[0].channel, "acs/sync");
+  EXPECT_EQ(read.signals[0].thd, 1e-3);
+  EXPECT_EQ(read.signals[0].u_thd, 1e-5);
+  EXPECT_EQ(read.signals[0].residual, 2e-3);
+  EXPECT_EQ(read.signals[0].over_noise, 1.02);
 }
 
 TEST(ResultMessage, AResultWithoutAValueHasNoNumbers) {
