@@ -28,11 +28,13 @@ struct Case {
 };
 
 LiveBenchSettings settings_of(const std::filesystem::path& folder,
-                              const std::vector<std::string>& faults) {
+                              const std::vector<std::string>& faults,
+                              const std::string& frequency = "40") {
   LiveBenchSettings settings{.bench_arguments = {"--speed", "8", "--seed", "12", "--frequencies",
-                                                 "40,125", "--levels", "20", "--adc-file",
+                                                 frequency + ",125", "--levels", "20", "--adc-file",
                                                  folder / "adc.json"},
-                             .excitation = "frequencies_hz = [\"40\", \"125\"]\nlevel = "
+                             .excitation = "frequencies_hz = [\"" + frequency +
+                                           "\", \"125\"]\nlevel = "
                                            "20.0\nsettling_s = 0.4\nduration_s = 2.0\n",
                              .source_dau = "time_base = \"local\"",
                              .rest = "[corrections]\nadc = { file = \"adc.json\", channel = "
@@ -160,6 +162,34 @@ INSTANTIATE_TEST_SUITE_P(
                          .flag = "samples_lost",
                          .sentence = "acs: samples lost"}),
     [](const auto& one) { return std::string(one.param.name); });
+
+// Mains hum at the frequency of a step: no sine fit can tell one from the other.
+class HumAtAStep : public testing::TestWithParam<const char*> {};
+
+TEST_P(HumAtAStep, IsCoveredOrSeen) {
+  const std::string channel = GetParam();
+  const auto folder = fresh_folder("bench-fault-hum-" + channel);
+  LiveBench bench(folder, settings_of(folder, {"hum=0.02,at=" + channel}, "50"));
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ASSERT_TRUE(run.wait(patience)) << run.errors();
+  const auto result = read_json(folder / "result.json");
+  const auto truth = bench.truth();
+  ASSERT_FALSE(result.is_discarded() || truth.is_discarded());
+  std::size_t points = 0;
+  for (const auto& point : result["points"]) {
+    if (point["channel"] != std::string("dau/") + axis) {
+      continue;
+    }
+    ++points;
+    if (point["valid"].get<bool>() && point["flags"].empty()) {
+      EXPECT_LE(deviation(point, truth), 4.0) << point;
+    }
+  }
+  EXPECT_EQ(points, 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Channels, HumAtAStep,
+                         testing::Values("sensor", "reference", "sync_acs", "sync_dau"));
 
 // Flags of results and of the sample clock reach whoever watches.
 TEST(BenchFaultWatched, FlagsAreOnTheBus) {
