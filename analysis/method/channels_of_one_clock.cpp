@@ -1,11 +1,12 @@
 #include "analysis/method/channels_of_one_clock.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/sine/disturbances.hpp"
+#include "analysis/sine/sine_solve.hpp"
 #include "analysis/uncertainty/found_resolution.hpp"
 #include "analysis/uncertainty/quantisation.hpp"
 
@@ -68,11 +69,13 @@ std::int64_t middle_ns(std::span<const std::int64_t> stamps_ns) {
   return stamps_ns.front() + (stamps_ns.back() - stamps_ns.front()) / 2;
 }
 
-// All channels with the same stamps at one frequency, about its middle.
-Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
-                                                    double u_frequency_hz,
-                                                    std::span<const std::int64_t> stamps_ns,
-                                                    std::span<const ChannelSamples> all) {
+std::string names_of(std::span<const ChannelSamples> all) {
+  return all.size() > 1 ? all.front().name + " and the channels recorded with it"
+                        : all.front().name;
+}
+
+Expected<std::vector<std::span<const double>>> values_of(std::span<const ChannelSamples> all,
+                                                         std::span<const std::int64_t> stamps_ns) {
   std::vector<std::span<const double>> channels;
   for (const ChannelSamples& channel : all) {
     if (channel.values.size() != stamps_ns.size()) {
@@ -81,27 +84,81 @@ Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
     }
     channels.push_back(channel.values);
   }
-  const std::string who =
-      all.size() > 1 ? all.front().name + " and the channels recorded with it" : all.front().name;
   if (stamps_ns.empty()) {
-    return of_channel(who, {ErrorCode::too_few_samples, "there are no samples in the window"});
+    return of_channel(names_of(all),
+                      {ErrorCode::too_few_samples, "there are no samples in the window"});
   }
-  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, channels);
-  if (!fits) {
-    return of_channel(who, fits.error());
+  return channels;
+}
+
+RecordedChannel recorded_channel(const Frequency& frequency, double u_frequency_hz,
+                                 std::span<const std::int64_t> stamps_ns,
+                                 const ChannelSamples& samples, CleanedFit fit) {
+  RecordedChannel recorded{
+      {samples.name, frequency, u_frequency_hz, middle_ns(stamps_ns), fit.fit, {}},
+      std::move(fit.values),
+      samples,
+      stamps_ns};
+  SignalExpectation expected = samples.expected;
+  double& resolution = recorded.samples.resolution;
+  if (!(resolution > 0.0) || !(expected.resolution > 0.0)) {
+    const double found = found_resolution(samples.values);
+    resolution = resolution > 0.0 ? resolution : found;
+    expected.resolution = expected.resolution > 0.0 ? expected.resolution : found;
   }
+  if (kernel::is_significant(fit.plain.fit)) {
+    recorded.result.integrity =
+        measure_integrity(frequency, fit.plain, stamps_ns, samples.values, expected);
+  }
+  return recorded;
+}
+
+std::vector<RecordedChannel> recorded_channels(const Frequency& frequency, double u_frequency_hz,
+                                               std::span<const std::int64_t> stamps_ns,
+                                               std::span<const ChannelSamples> all,
+                                               std::vector<CleanedFit> fits) {
   std::vector<RecordedChannel> recorded;
   for (std::size_t i = 0; i < all.size(); ++i) {
     recorded.push_back(
-        {{all[i].name, frequency, u_frequency_hz, middle_ns(stamps_ns), (*fits)[i].fit},
-         std::move((*fits)[i].values),
-         all[i],
-         stamps_ns});
-    if (double& resolution = recorded.back().samples.resolution; !(resolution > 0.0)) {
-      resolution = found_resolution(all[i].values);
-    }
+        recorded_channel(frequency, u_frequency_hz, stamps_ns, all[i], std::move(fits[i])));
   }
   return recorded;
+}
+
+// All channels with the same stamps at one frequency, about its middle.
+Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
+                                                    double u_frequency_hz,
+                                                    std::span<const std::int64_t> stamps_ns,
+                                                    std::span<const ChannelSamples> all) {
+  const auto channels = values_of(all, stamps_ns);
+  if (!channels) {
+    return fail(channels.error());
+  }
+  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, *channels);
+  if (!fits) {
+    return of_channel(names_of(all), fits.error());
+  }
+  return recorded_channels(frequency, u_frequency_hz, stamps_ns, all, std::move(*fits));
+}
+
+// The same at the frequency that the first of them, the pilot, has.
+Expected<std::vector<RecordedChannel>>
+fit_channels_of_pilot(const Frequency& nominal, double frequency_search_rel,
+                      std::span<const std::int64_t> stamps_ns,
+                      std::span<const ChannelSamples> all) {
+  const auto channels = values_of(all, stamps_ns);
+  if (!channels) {
+    return fail(channels.error());
+  }
+  auto pilot = fit_pilot_beside_disturbances(nominal, frequency_search_rel, middle_ns(stamps_ns),
+                                             stamps_ns, *channels);
+  if (!pilot) {
+    return of_channel(all.front().name, pilot.error());
+  }
+  return pilot->channels.empty()
+             ? fit_channels(pilot->frequency, pilot->u_frequency_hz, stamps_ns, all)
+             : recorded_channels(pilot->frequency, pilot->u_frequency_hz, stamps_ns, all,
+                                 std::move(pilot->channels));
 }
 
 } // namespace
@@ -111,21 +168,11 @@ Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
                                                        std::span<const std::int64_t> stamps_ns,
                                                        const ChannelSamples& pilot,
                                                        std::span<const ChannelSamples> others) {
-  Frequency frequency = nominal;
-  double u_frequency_hz = 0.0;
-  if (frequency_search_rel > 0.0 && pilot.values.size() == stamps_ns.size() && !stamps_ns.empty()) {
-    const std::array channels{pilot.values};
-    const auto refined = fit_frequency_beside_disturbances(
-        nominal, frequency_search_rel, middle_ns(stamps_ns), stamps_ns, channels);
-    if (!refined) {
-      return of_channel(pilot.name, refined.error());
-    }
-    frequency = refined->frequency;
-    u_frequency_hz = refined->u_frequency_hz;
-  }
   std::vector<ChannelSamples> all{pilot};
   all.insert(all.end(), others.begin(), others.end());
-  auto recorded = fit_channels(frequency, u_frequency_hz, stamps_ns, all);
+  auto recorded = frequency_search_rel > 0.0
+                      ? fit_channels_of_pilot(nominal, frequency_search_rel, stamps_ns, all)
+                      : fit_channels(nominal, 0.0, stamps_ns, all);
   if (!recorded) {
     return fail(recorded.error());
   }

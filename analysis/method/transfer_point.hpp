@@ -7,12 +7,14 @@
 
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/step/signal_integrity.hpp"
 #include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
@@ -21,6 +23,8 @@ struct ChannelSamples {
   std::string name;
   std::span<const double> values;
   double resolution = 0.0; // one quantisation step; 0: not stated
+  // What its integrity is held against; a resolution that is not stated is found in the values.
+  SignalExpectation expected{};
 };
 
 struct ChannelFit { // the sine fitted to one recorded channel
@@ -29,6 +33,8 @@ struct ChannelFit { // the sine fitted to one recorded channel
   double u_frequency_hz = 0.0;
   std::int64_t phase_origin_ns = 0;
   SineFit fit;
+  // Of the samples as they came; empty where the channel is without excitation.
+  std::optional<SignalIntegrity> integrity{};
 };
 
 struct TransferPoint {

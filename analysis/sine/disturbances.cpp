@@ -4,40 +4,54 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <memory>
 #include <numbers>
+#include <optional>
 
 #include "analysis/sine/drift_order.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
+#include "analysis/sine/sine_solve.hpp"
 #include "analysis/sine/sine_values.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
 constexpr int max_harmonic = 10;
-constexpr std::array mains_hz{50.0, 100.0, 150.0, 60.0, 120.0, 180.0};
+constexpr std::array mains_hz{50.0, 60.0};
+constexpr int mains_multiples = 3;
 constexpr double usable_part_of_rate = 0.45;
 constexpr double min_distance = 1.5; // in 1 / T
 constexpr double significant = 4.5;  // standard uncertainties
 
-struct Candidate {
-  Frequency frequency;
-  int harmonic; // 0: a line of the mains
+// The record, as far as it decides what can be looked for.
+struct Extent {
+  double duration_s;
+  double rate_hz;
+
+  explicit Extent(std::span<const std::int64_t> stamps_ns)
+      : duration_s(static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9),
+        rate_hz(static_cast<double>(stamps_ns.size() - 1) / duration_s) {}
+
+  [[nodiscard]] bool can_show(double line_hz) const {
+    return line_hz < usable_part_of_rate * rate_hz;
+  }
+  // A line of the mains, and far enough from the harmonics of f.
+  [[nodiscard]] bool can_tell_hum(double line_hz, double f) const {
+    const double distance = std::abs(line_hz - f * std::max(1.0, std::round(line_hz / f)));
+    return can_show(line_hz) && distance * duration_s > min_distance;
+  }
 };
 
-std::vector<Candidate> candidates(const Frequency& frequency, double rate_hz, double duration_s) {
-  std::vector<Candidate> result;
-  const double f = frequency.hz();
-  for (int k = 2; k <= max_harmonic && k * f < usable_part_of_rate * rate_hz; ++k) {
-    result.push_back({frequency.shifted_by_hz((k - 1) * f), k});
-  }
-  for (const double line : mains_hz) {
-    const double distance = std::abs(line - f * std::max(1.0, std::round(line / f)));
-    if (line < usable_part_of_rate * rate_hz && distance * duration_s > min_distance) {
-      result.push_back({Frequency::from_hz(line), 0});
+ResidualSearch search_of(const Frequency& frequency, const Extent& extent) {
+  ResidualSearch search{.first = {frequency, 2, max_harmonic - 1}};
+  for (const double mains : mains_hz) {
+    for (int k = 1; k <= mains_multiples; ++k) {
+      if (extent.can_tell_hum(k * mains, frequency.hz())) {
+        search.others.push_back({Frequency::from_hz(mains), 1, mains_multiples});
+        break;
+      }
     }
   }
-  return result;
+  return search;
 }
 
 // Sine and cosine of a frequency for some samples at a time, so that they stay in the cache.
@@ -52,10 +66,10 @@ public:
     fill_sine_cosine(frequency, origin_ns, stamps_ns, sine_.data(), cosine_.data());
   }
 
-  // Leaves in `to` the values less offset and line; they may be the same.
-  void remove(std::complex<double> phasor, double offset, const double* values, double* to) const {
+  // Takes the line away.
+  void remove(std::complex<double> phasor, double* values) const {
     for (std::size_t i = 0; i < samples_; ++i) {
-      to[i] = values[i] - offset - phasor.real() * sine_[i] - phasor.imag() * cosine_[i];
+      values[i] = values[i] - phasor.real() * sine_[i] - phasor.imag() * cosine_[i];
     }
   }
 
@@ -79,69 +93,82 @@ void for_each_block(std::size_t samples, Visit visit) {
   }
 }
 
-// The channels without the sine that was fitted and the offset, one after the other.
-std::unique_ptr<double[]> residuals_of(const Frequency& frequency, std::int64_t phase_origin_ns,
-                                       std::span<const std::int64_t> stamps_ns,
-                                       std::span<const std::span<const double>> channels,
-                                       const std::vector<SineFit>& fits) {
-  auto residuals = std::make_unique_for_overwrite<double[]>(channels.size() * stamps_ns.size());
-  std::vector<std::complex<double>> phasors;
-  phasors.reserve(fits.size());
-  for (const SineFit& fit : fits) {
-    phasors.push_back(
-        turned(frequency, {fit.sine, fit.cosine}, stamps_ns.front() - phase_origin_ns));
-  }
-  SineBlock block;
-  for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
-    block.fill(frequency, stamps_ns.front(), stamps_ns.subspan(first, n));
-    for (std::size_t j = 0; j < channels.size(); ++j) {
-      block.remove(phasors[j], fits[j].offset, channels[j].data() + first,
-                   residuals.get() + j * stamps_ns.size() + first);
+bool stands_out(const std::optional<ResidualLine>& line) {
+  return line && line->fit.amplitude() > significant * line->fit.u_amplitude();
+}
+
+// What the lines of a channel say is to be fitted beside the signal.
+ExtendedBasis basis_of(const ResidualSearch& search, const ChannelResiduals& residuals,
+                       const Frequency& frequency, const Extent& extent) {
+  ExtendedBasis basis;
+  const auto& harmonics = residuals.lines.front();
+  for (std::size_t k = 0; k < harmonics.size(); ++k) {
+    const int order = search.first.first_order + static_cast<int>(k);
+    if (extent.can_show(order * frequency.hz()) && stands_out(harmonics[k])) {
+      basis.max_harmonic = order;
     }
-  });
-  return residuals;
+  }
+  for (std::size_t set = 0; set < search.others.size(); ++set) {
+    const auto& lines = residuals.lines[set + 1];
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      const double line_hz = (search.others[set].first_order + static_cast<int>(k)) *
+                             search.others[set].frequency.hz();
+      if (extent.can_tell_hum(line_hz, frequency.hz()) && stands_out(lines[k])) {
+        basis.lines.push_back(Frequency::from_hz(line_hz));
+      }
+    }
+  }
+  return basis;
 }
 
 struct Disturbances { // of one channel
+  PlainChannel plain;
   ExtendedBasis basis;
   DriftEvidence drift;
 };
 
-std::vector<Disturbances> search(const Frequency& frequency, std::int64_t phase_origin_ns,
-                                 std::span<const std::int64_t> stamps_ns,
-                                 std::span<const std::span<const double>> channels,
-                                 const std::vector<SineFit>& fits) {
-  std::vector<Disturbances> found(channels.size());
-  const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
-  const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
-  const std::unique_ptr<double[]> residuals =
-      residuals_of(frequency, phase_origin_ns, stamps_ns, channels, fits);
-  std::vector<std::span<const double>> residual_channels;
-  for (std::size_t j = 0; j < channels.size(); ++j) {
-    const std::span<double> own(residuals.get() + j * stamps_ns.size(), stamps_ns.size());
-    found[j].drift = find_drift(frequency, stamps_ns, own);
-    remove_drift(found[j].drift.polynomial(), stamps_ns, own);
-    residual_channels.emplace_back(own);
+// `fits` about the middle of the record.
+Expected<std::vector<Disturbances>>
+search_residuals(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+                 std::span<const std::span<const double>> channels,
+                 const std::vector<SineFit>& fits) {
+  const Extent extent(stamps_ns);
+  ResidualSearch search = search_of(frequency, extent);
+  auto residuals = reduce_residuals(search, stamps_ns, channels, fits);
+  if (!residuals) {
+    return fail(residuals.error());
   }
-
-  for (const Candidate& candidate : candidates(frequency, rate_hz, duration_s)) {
-    const auto lines = fit_sine(candidate.frequency, phase_origin_ns, stamps_ns, residual_channels);
-    if (!lines) {
-      continue; // such a line cannot be told from a constant in this record
+  std::vector<Disturbances> found(channels.size());
+  std::vector<std::span<const double>> drifts;
+  bool any_drift = false;
+  for (std::size_t j = 0; j < channels.size(); ++j) {
+    const ChannelResiduals& own = (*residuals)[j];
+    found[j].drift = find_drift(frequency.hz() * extent.duration_s, own.time);
+    found[j].plain = plain_channel(fits[j], search.first, own);
+    drifts.push_back(found[j].drift.polynomial());
+    any_drift |= !drifts.back().empty();
+  }
+  if (any_drift) { // lines show better without it
+    search.drifts = drifts;
+    residuals = reduce_residuals(search, stamps_ns, channels, fits);
+    if (!residuals) {
+      return fail(residuals.error());
     }
-    for (std::size_t j = 0; j < channels.size(); ++j) {
-      const SineFit& line = (*lines)[j];
-      if (!(line.amplitude() > significant * line.u_amplitude())) {
-        continue;
-      }
-      if (candidate.harmonic > 0) {
-        found[j].basis.max_harmonic = candidate.harmonic;
-      } else {
-        found[j].basis.lines.push_back(candidate.frequency);
-      }
-    }
+  }
+  for (std::size_t j = 0; j < channels.size(); ++j) {
+    found[j].basis = basis_of(search, (*residuals)[j], frequency, extent);
   }
   return found;
+}
+
+std::vector<SineFit> about_middle(std::vector<SineFit> fits, const Frequency& frequency,
+                                  std::int64_t phase_origin_ns,
+                                  std::span<const std::int64_t> stamps_ns) {
+  const double turns = frequency.reduced_turns(middle_of_record_ns(stamps_ns) - phase_origin_ns);
+  for (SineFit& fit : fits) {
+    kernel::rotate(fit, turns);
+  }
+  return fits;
 }
 
 void remove_disturbances(CleanedFit& result, const Frequency& frequency, const ExtendedFit& fit,
@@ -155,7 +182,7 @@ void remove_disturbances(CleanedFit& result, const Frequency& frequency, const E
         turned(line, {phasor.sine, phasor.cosine}, stamps_ns.front() - phase_origin_ns);
     for_each_block(stamps_ns.size(), [&](std::size_t first, std::size_t n) {
       block.fill(line, stamps_ns.front(), stamps_ns.subspan(first, n));
-      block.remove(about_first, 0.0, result.values.data() + first, result.values.data() + first);
+      block.remove(about_first, result.values.data() + first);
     });
     result.removed_hz.push_back(line.hz());
   };
@@ -169,28 +196,91 @@ void remove_disturbances(CleanedFit& result, const Frequency& frequency, const E
   result.drift_order = static_cast<int>(fit.drift.size());
 }
 
+// What all channels show beside a sine of one frequency, before it is taken out.
+struct Examination {
+  std::vector<SineFit> plain; // about the phase origin
+  std::vector<Disturbances> found;
+};
+
+Expected<Examination> examine(const Frequency& frequency, std::int64_t phase_origin_ns,
+                              std::span<const std::int64_t> stamps_ns,
+                              std::span<const std::span<const double>> channels) {
+  auto plain = fit_sine(frequency, phase_origin_ns, stamps_ns, channels);
+  if (!plain) {
+    return fail(plain.error());
+  }
+  auto found = search_residuals(frequency, stamps_ns, channels,
+                                about_middle(*plain, frequency, phase_origin_ns, stamps_ns));
+  if (!found) {
+    return fail(found.error());
+  }
+  return Examination{std::move(*plain), std::move(*found)};
+}
+
+// One of the channels beside what was found in it.
+CleanedFit clean(const Frequency& frequency, const Examination& examined, std::size_t channel,
+                 std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
+                 std::span<const double> values) {
+  const Disturbances& found = examined.found[channel];
+  CleanedFit result;
+  result.fit = examined.plain[channel];
+  result.plain = found.plain;
+  const auto chosen = choose_drift_order(frequency, found.basis, found.drift, result.fit,
+                                         phase_origin_ns, stamps_ns, values);
+  if (chosen.model) {
+    remove_disturbances(result, frequency, *chosen.model, phase_origin_ns, stamps_ns, values);
+  }
+  add_undetected_drift(chosen, result.fit);
+  return result;
+}
+
+// The frequency on the channels without what was taken out of them; `fit` and `undisturbed` are of
+// the same frequency.
+Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit> undisturbed,
+                                        double search_rel, std::int64_t phase_origin_ns,
+                                        std::span<const std::int64_t> stamps_ns,
+                                        std::span<const std::span<const double>> channels) {
+  constexpr int max_rounds = 3; // each round's disturbances are those at the frequency of the last
+  for (int round = 1;; ++round) {
+    std::vector<std::span<const double>> cleaned(channels.begin(), channels.end());
+    bool any = false;
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      if (!undisturbed[j].values.empty()) {
+        cleaned[j] = undisturbed[j].values;
+        any = true;
+      }
+    }
+    if (!any) {
+      return fit;
+    }
+    auto refined =
+        fit_sine_and_frequency(fit.frequency, search_rel, phase_origin_ns, stamps_ns, cleaned);
+    if (!refined || round == max_rounds ||
+        std::abs(refined->frequency.hz() - fit.frequency.hz()) < 0.01 * refined->u_frequency_hz) {
+      return refined;
+    }
+    fit = std::move(*refined);
+    auto next = fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns, channels);
+    if (!next) {
+      return fail(next.error());
+    }
+    undisturbed = std::move(*next);
+  }
+}
+
 } // namespace
 
 Expected<std::vector<CleanedFit>>
 fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_origin_ns,
                              std::span<const std::int64_t> stamps_ns,
                              std::span<const std::span<const double>> channels) {
-  const auto plain = fit_sine(frequency, phase_origin_ns, stamps_ns, channels);
-  if (!plain) {
-    return fail(plain.error());
+  const auto examined = examine(frequency, phase_origin_ns, stamps_ns, channels);
+  if (!examined) {
+    return fail(examined.error());
   }
-  const std::vector<Disturbances> found =
-      search(frequency, phase_origin_ns, stamps_ns, channels, *plain);
-  std::vector<CleanedFit> result(channels.size());
+  std::vector<CleanedFit> result;
   for (std::size_t j = 0; j < channels.size(); ++j) {
-    result[j].fit = (*plain)[j];
-    const auto chosen = choose_drift_order(frequency, found[j].basis, found[j].drift, (*plain)[j],
-                                           phase_origin_ns, stamps_ns, channels[j]);
-    if (chosen.model) {
-      remove_disturbances(result[j], frequency, *chosen.model, phase_origin_ns, stamps_ns,
-                          channels[j]);
-    }
-    add_undetected_drift(chosen, result[j].fit);
+    result.push_back(clean(frequency, *examined, j, phase_origin_ns, stamps_ns, channels[j]));
   }
   return result;
 }
@@ -198,32 +288,51 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_orig
 Expected<FrequencyFit> fit_frequency_beside_disturbances(
     const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
     std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
-  constexpr int max_rounds = 3; // each round's disturbances are those at the frequency of the last
   auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, channels);
-  for (int round = 0; fit && round < max_rounds; ++round) {
-    const auto undisturbed =
-        fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels);
-    if (!undisturbed) {
-      return fail(undisturbed.error());
-    }
-    std::vector<std::span<const double>> cleaned(channels.begin(), channels.end());
-    bool any = false;
-    for (std::size_t j = 0; j < channels.size(); ++j) {
-      if (!(*undisturbed)[j].values.empty()) {
-        cleaned[j] = (*undisturbed)[j].values;
-        any = true;
-      }
-    }
-    if (!any) {
-      break;
-    }
-    const double before_hz = fit->frequency.hz();
-    fit = fit_sine_and_frequency(fit->frequency, search_rel, phase_origin_ns, stamps_ns, cleaned);
-    if (fit && std::abs(fit->frequency.hz() - before_hz) < 0.01 * fit->u_frequency_hz) {
-      break;
-    }
+  if (!fit) {
+    return fit;
   }
-  return fit;
+  auto undisturbed =
+      fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels);
+  if (!undisturbed) {
+    return fail(undisturbed.error());
+  }
+  return refine_frequency(std::move(*fit), std::move(*undisturbed), search_rel, phase_origin_ns,
+                          stamps_ns, channels);
+}
+
+Expected<PilotFit>
+fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
+                              std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
+                              std::span<const std::span<const double>> channels) {
+  const auto pilot = channels.first(1);
+  auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, pilot);
+  if (!fit) {
+    return fail(fit.error());
+  }
+  auto examined = examine(fit->frequency, phase_origin_ns, stamps_ns, channels);
+  if (!examined) { // perhaps because of another channel
+    examined = examine(fit->frequency, phase_origin_ns, stamps_ns, pilot);
+  }
+  if (!examined) {
+    return fail(examined.error());
+  }
+  std::vector<CleanedFit> cleaned{
+      clean(fit->frequency, *examined, 0, phase_origin_ns, stamps_ns, pilot.front())};
+  if (!cleaned.front().values.empty()) {
+    return refine_frequency(std::move(*fit), std::move(cleaned), search_rel, phase_origin_ns,
+                            stamps_ns, pilot)
+        .map([](const FrequencyFit& refined) {
+          return PilotFit{refined.frequency, refined.u_frequency_hz, {}};
+        });
+  }
+  if (examined->found.size() < channels.size()) {
+    cleaned.clear();
+  }
+  for (std::size_t j = 1; j < examined->found.size(); ++j) {
+    cleaned.push_back(clean(fit->frequency, *examined, j, phase_origin_ns, stamps_ns, channels[j]));
+  }
+  return PilotFit{fit->frequency, fit->u_frequency_hz, std::move(cleaned)};
 }
 
 } // namespace dyncal::analysis

@@ -24,6 +24,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_residuals.hpp"
 
 namespace dyncal::analysis {
 
@@ -32,6 +33,7 @@ struct CleanedFit {
   std::vector<double> removed_hz; // what was fitted beside it
   int drift_order = 0;            // of the polynomial fitted beside it
   std::vector<double> values;     // the samples without it; empty when nothing was removed
+  PlainChannel plain;             // as the samples came
 };
 
 [[nodiscard]] Expected<std::vector<CleanedFit>>
@@ -43,5 +45,18 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_orig
 [[nodiscard]] Expected<FrequencyFit> fit_frequency_beside_disturbances(
     const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
     std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels);
+
+// The frequency of the first channel, beside its disturbances, and all channels at this frequency;
+// these are empty where they remain to be fitted, for the disturbances moved the frequency or
+// another channel cannot be fitted.
+struct PilotFit {
+  Frequency frequency;
+  double u_frequency_hz = 0.0;
+  std::vector<CleanedFit> channels;
+};
+[[nodiscard]] Expected<PilotFit>
+fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
+                              std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
+                              std::span<const std::span<const double>> channels);
 
 } // namespace dyncal::analysis

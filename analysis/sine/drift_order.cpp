@@ -24,10 +24,6 @@ struct UnitTime { // u
   }
 };
 
-std::array<double, orders> legendre(double u) {
-  return {1.0, u, 1.5 * u * u - 0.5, 2.5 * u * u * u - 1.5 * u};
-}
-
 // Coefficients of powers from those of Legendre's polynomials.
 std::array<double, orders> to_powers(const std::array<double, orders>& c) {
   return {c[0] - 0.5 * c[2], c[1] - 1.5 * c[3], 1.5 * c[2], 2.5 * c[3]};
@@ -66,26 +62,21 @@ std::span<const double> DriftEvidence::polynomial() const {
   return std::span(powers).subspan(1, static_cast<std::size_t>(order));
 }
 
-DriftEvidence find_drift(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
-                         std::span<const double> residuals) {
-  const UnitTime time(stamps_ns);
-  std::array<double, orders> projection{}, squares{};
-  double rss = 0.0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const auto polynomials = legendre(time.at(stamps_ns[i]));
-    for (std::size_t k = 0; k < orders; ++k) {
-      projection[k] += polynomials[k] * residuals[i];
-      squares[k] += polynomials[k] * polynomials[k];
-    }
-    rss += residuals[i] * residuals[i];
-  }
+DriftEvidence find_drift(double periods, const TimeSums& residuals) {
+  // Products of the residuals with Legendre's polynomials, and their squares.
+  const auto& [eu0, eu1, eu2, eu3] = residuals.eu;
+  const auto& u = residuals.u;
+  const std::array<double, orders> projection{eu0, eu1, 1.5 * eu2 - 0.5 * eu0,
+                                              2.5 * eu3 - 1.5 * eu1};
+  const std::array<double, orders> squares{u[0], u[2], 2.25 * u[4] - 1.5 * u[2] + 0.25 * u[0],
+                                           6.25 * u[6] - 7.5 * u[4] + 2.25 * u[2]};
   std::array<double, orders> gain{}, coefficients{};
   double explained = 0.0;
-  const double n = static_cast<double>(residuals.size());
   for (std::size_t k = 1; k < orders; ++k) {
     coefficients[k] = squares[k] > 0.0 ? projection[k] / squares[k] : 0.0;
     explained += coefficients[k] * projection[k];
-    const double variance = (rss - explained) / std::max(1.0, n - 3.0 - static_cast<double>(k));
+    const double variance = (residuals.ee - explained) /
+                            std::max(1.0, residuals.samples - 3.0 - static_cast<double>(k));
     gain[k] = variance > 0.0 ? explained / variance : 0.0;
   }
   DriftEvidence result;
@@ -93,7 +84,6 @@ DriftEvidence find_drift(const Frequency& frequency, std::span<const std::int64_
   result.order = static_cast<int>(best);
   std::fill(coefficients.begin() + static_cast<std::ptrdiff_t>(best) + 1, coefficients.end(), 0.0);
   result.powers = to_powers(coefficients);
-  const double periods = frequency.hz() * 2e-9 * time.middle_ns;
   result.decided = periods >= few_periods && best == 0;
   for (std::size_t k = 1; k < orders; ++k) {
     result.decided &= gain[k] < worth_a_look * price * static_cast<double>(k);

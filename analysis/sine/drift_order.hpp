@@ -24,6 +24,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
+#include "analysis/sine/sine_residuals.hpp"
 
 namespace dyncal::analysis {
 
@@ -37,9 +38,7 @@ struct DriftEvidence {
 
   [[nodiscard]] std::span<const double> polynomial() const; // u^1 .. u^order
 };
-[[nodiscard]] DriftEvidence find_drift(const Frequency& frequency,
-                                       std::span<const std::int64_t> stamps_ns,
-                                       std::span<const double> residuals);
+[[nodiscard]] DriftEvidence find_drift(double periods, const TimeSums& residuals);
 
 // Takes powers[0] u + powers[1] u^2 + ... away.
 void remove_drift(std::span<const double> powers, std::span<const std::int64_t> stamps_ns,

@@ -1,9 +1,10 @@
 #include "analysis/step/signal_integrity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
@@ -19,20 +20,7 @@ constexpr std::uint64_t min_equal = 5;     // values at an extreme: fewer are ch
 constexpr double model_error = 0.05;       // of the amplitude, of a sine fitted to a clipped one
 constexpr std::uint64_t min_stuck_run = 4; // samples
 constexpr double fine_resolution = 0.02;   // of the amplitude
-
-// The record, and what is fitted to it.
-struct Model {
-  std::span<const double> values;
-  SineFit fit;
-  std::vector<double> sine, cosine;
-  std::vector<double> fundamental; // with the constant
-  std::vector<double> residuals;   // of the whole model
-  double harmonics_square = 0.0;
-  int harmonics = 0;
-  double neighbour_noise = 0.0; // standard deviation, from neighbouring residuals
-
-  [[nodiscard]] double at(std::size_t i) const { return values[i] - residuals[i]; }
-};
+constexpr double worth_modelling = 3.0;    // standard uncertainties of a harmonic
 
 // Orders whose folded frequencies are apart from the signal, the mean, half the rate (where only
 // one of sine and cosine is sampled) and each other.
@@ -55,93 +43,144 @@ std::vector<int> resolved_harmonics(double frequency_hz, double duration_s, doub
   return orders;
 }
 
-// Projects the residuals on one harmonic and the constant, and takes the harmonic away.
-void take_harmonic(Model& model, int order) {
-  const std::size_t n = model.residuals.size();
-  std::vector<std::complex<double>> waves(n);
-  double s = 0.0, c = 0.0, ss = 0.0, sc = 0.0, cc = 0.0, e = 0.0, es = 0.0, ec = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::complex<double> z(model.cosine[i], model.sine[i]);
-    std::complex<double> power = z;
-    for (int k = 1; k < order; ++k) {
-      power *= z;
+// The model of some samples at a time: the fitted sine and the harmonics that stand out.
+class ModelBlock {
+public:
+  static constexpr std::size_t max_samples = value_block_samples;
+
+  // REQUIRES: at most `max_samples`.
+  void fill(const Frequency& frequency, const SineFit& fit, std::span<const HarmonicLine> harmonics,
+            std::int64_t middle_ns, std::span<const std::int64_t> stamps_ns) {
+    fill_sine_cosine(frequency, middle_ns, stamps_ns, sine_.data(), cosine_.data());
+    for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+      fundamental_[i] = fit.offset + fit.sine * sine_[i] + fit.cosine * cosine_[i];
+      whole_[i] = fundamental_[i];
     }
-    waves[i] = power;
-    const double r = model.residuals[i];
-    s += power.imag();
-    c += power.real();
-    ss += power.imag() * power.imag();
-    sc += power.imag() * power.real();
-    cc += power.real() * power.real();
-    e += r;
-    es += r * power.imag();
-    ec += r * power.real();
+    int order = 1;
+    std::copy_n(sine_.begin(), stamps_ns.size(), power_sine_.begin());
+    std::copy_n(cosine_.begin(), stamps_ns.size(), power_cosine_.begin());
+    for (const HarmonicLine& harmonic : harmonics) {
+      for (; order < harmonic.order; ++order) {
+        for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+          const double s = power_sine_[i];
+          power_sine_[i] = s * cosine_[i] + power_cosine_[i] * sine_[i];
+          power_cosine_[i] = power_cosine_[i] * cosine_[i] - s * sine_[i];
+        }
+      }
+      for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+        whole_[i] +=
+            harmonic.line.fit.sine * power_sine_[i] + harmonic.line.fit.cosine * power_cosine_[i];
+      }
+    }
   }
-  const double count = static_cast<double>(n);
-  const double a = ss - s * s / count, b = sc - s * c / count, d = cc - c * c / count;
-  const double u = es - s * e / count, v = ec - c * e / count;
-  const double determinant = a * d - b * b;
-  if (!(determinant > 1e-6 * count * count)) {
-    return; // it cannot be told from the constant
-  }
-  const double in_sine = (d * u - b * v) / determinant;
-  const double in_cosine = (a * v - b * u) / determinant;
-  for (std::size_t i = 0; i < n; ++i) {
-    model.residuals[i] -= in_sine * waves[i].imag() + in_cosine * waves[i].real();
-  }
-  model.harmonics_square += in_sine * in_sine + in_cosine * in_cosine;
-  ++model.harmonics;
-}
 
-// From second differences, which neither drift nor hum nor harmonics enter.
-double noise_of_neighbours(const std::vector<double>& residuals) {
-  if (residuals.size() < 8) {
-    return 0.0;
-  }
-  std::vector<double> differences(residuals.size() - 2);
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    differences[i] = std::abs(residuals[i] - 2.0 * residuals[i + 1] + residuals[i + 2]);
-  }
-  return mad_to_sd * upper_median(differences) / std::sqrt(6.0);
-}
+  [[nodiscard]] double fundamental(std::size_t i) const { return fundamental_[i]; } // with constant
+  [[nodiscard]] double at(std::size_t i) const { return whole_[i]; }
 
-Expected<Model> fit_model(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
-                          std::span<const double> values) {
-  const std::span<const double> channel[] = {values};
-  const std::int64_t origin_ns = stamps_ns.empty() ? 0 : stamps_ns.front();
-  auto fit = fit_sine(frequency, origin_ns, stamps_ns, channel);
-  if (!fit) {
-    return fail(fit.error());
-  }
-  const std::size_t n = values.size();
-  Model model{values,
-              fit->front(),
-              std::vector<double>(n),
-              std::vector<double>(n),
-              std::vector<double>(n),
-              std::vector<double>(n)};
-  fill_sine_cosine(frequency, origin_ns, stamps_ns, model.sine.data(), model.cosine.data());
-  for (std::size_t i = 0; i < n; ++i) {
-    model.fundamental[i] =
-        model.fit.offset + model.fit.sine * model.sine[i] + model.fit.cosine * model.cosine[i];
-    model.residuals[i] = values[i] - model.fundamental[i];
-  }
-  const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
-  const double rate_hz = static_cast<double>(n - 1) / duration_s;
-  for (const int order : resolved_harmonics(frequency.hz(), duration_s, rate_hz)) {
-    take_harmonic(model, order);
-  }
-  model.neighbour_noise = noise_of_neighbours(model.residuals);
-  return model;
-}
+private:
+  using Row = std::array<double, max_samples>;
+  Row sine_, cosine_, power_sine_, power_cosine_, fundamental_, whole_;
+};
 
-double residual_sd(const Model& model) {
-  double squares = 0.0;
-  for (const double residual : model.residuals) {
-    squares += residual * residual;
+// The record, and what is fitted to it.
+class Model {
+public:
+  Model(const Frequency& frequency, const PlainChannel& channel,
+        std::span<const std::int64_t> stamps_ns, std::span<const double> values)
+      : frequency_(frequency), channel_(channel), stamps_ns_(stamps_ns), values_(values),
+        middle_ns_(middle_of_record_ns(stamps_ns)) {
+    const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
+    const double rate_hz = static_cast<double>(values.size() - 1) / duration_s;
+    const std::vector<int> orders = resolved_harmonics(frequency.hz(), duration_s, rate_hz);
+    double squares = channel.fit.rss;
+    for (const HarmonicLine& harmonic : channel.harmonics) {
+      if (std::find(orders.begin(), orders.end(), harmonic.order) == orders.end()) {
+        continue;
+      }
+      const SineFit& line = harmonic.line.fit;
+      harmonics_square += line.sine * line.sine + line.cosine * line.cosine;
+      squares -= harmonic.line.gain;
+      ++harmonics;
+      if (line.amplitude() > worth_modelling * line.u_amplitude()) {
+        modelled_.push_back(harmonic);
+      }
+    }
+    const double freedom = static_cast<double>(values.size()) - 3.0 - 2.0 * harmonics;
+    residual_sd = std::sqrt(std::max(0.0, squares) / std::max(1.0, freedom));
+    low = values.front();
+    high = values.front();
+    for (const ValueBlock& block : channel.blocks) {
+      low = std::min(low, block.low);
+      high = std::max(high, block.high);
+    }
   }
-  const double freedom = static_cast<double>(model.residuals.size()) - 3.0 - 2.0 * model.harmonics;
-  return std::sqrt(squares / std::max(1.0, freedom));
+
+  [[nodiscard]] const SineFit& fit() const { return channel_.fit; }
+  [[nodiscard]] std::span<const double> values() const { return values_; }
+  [[nodiscard]] const std::vector<ValueBlock>& blocks() const { return channel_.blocks; }
+  // Of block `k` of the values.
+  [[nodiscard]] std::span<const double> block_values(std::size_t k) const {
+    const std::size_t first = k * value_block_samples;
+    return values_.subspan(first, std::min(value_block_samples, values_.size() - first));
+  }
+  // REQUIRES: at most ModelBlock::max_samples.
+  void fill(std::size_t first, std::size_t count, ModelBlock& block) const {
+    block.fill(frequency_, channel_.fit, modelled_, middle_ns_, stamps_ns_.subspan(first, count));
+  }
+
+  // Standard deviation from second differences of the residuals, which neither drift nor hum nor
+  // harmonics enter.
+  [[nodiscard]] double neighbour_noise() const {
+    if (!neighbour_noise_) {
+      neighbour_noise_ = measure_neighbour_noise();
+    }
+    return *neighbour_noise_;
+  }
+
+  double harmonics_square = 0.0;
+  int harmonics = 0;
+  double residual_sd = 0.0;
+  double low = 0.0, high = 0.0; // of the values
+
+private:
+  [[nodiscard]] double measure_neighbour_noise() const {
+    constexpr std::size_t max_places = 4096;
+    if (values_.size() < 8) {
+      return 0.0;
+    }
+    const std::size_t places = values_.size() - 2;
+    const std::size_t stride = std::max<std::size_t>(1, (places + max_places - 1) / max_places);
+    std::vector<double> differences;
+    ModelBlock block;
+    for (std::size_t i = 0; i < places; i += stride) {
+      fill(i, 3, block);
+      const auto residual = [&](std::size_t k) { return values_[i + k] - block.at(k); };
+      differences.push_back(std::abs(residual(0) - 2.0 * residual(1) + residual(2)));
+    }
+    return mad_to_sd * upper_median(differences) / std::sqrt(6.0);
+  }
+
+  const Frequency& frequency_;
+  const PlainChannel& channel_;
+  std::span<const std::int64_t> stamps_ns_;
+  std::span<const double> values_;
+  std::int64_t middle_ns_;
+  std::vector<HarmonicLine> modelled_;
+  mutable std::optional<double> neighbour_noise_;
+};
+
+// Values from `from` to `to`.
+std::uint64_t count_between(const Model& model, double from, double to) {
+  std::uint64_t count = 0;
+  for (std::size_t k = 0; k < model.blocks().size(); ++k) {
+    if (model.blocks()[k].high < from || model.blocks()[k].low > to) {
+      continue;
+    }
+    const auto values = model.block_values(k);
+    count += static_cast<std::uint64_t>(std::count_if(
+        values.begin(), values.end(), [&](double v) { return v >= from && v <= to; }));
+  }
+  return count;
 }
 
 // Values equal to an extreme of the record: how many there are, how many of them while the fitted
@@ -155,39 +194,53 @@ struct AtExtreme {
   double highest = -lowest;
 };
 
-AtExtreme at_extreme(const Model& model, double extreme, double resolution, double noise) {
+AtExtreme at_extreme(const Model& model, double extreme, double resolution) {
+  constexpr double far = 6.0; // where the error function has ended
   AtExtreme found;
-  const double outward = extreme > model.fit.offset ? 1.0 : -1.0;
-  const double margin =
-      2.0 * resolution + 6.0 * model.neighbour_noise + model_error * model.fit.amplitude();
+  const double noise = model.residual_sd;
   const double half = resolution > 0.0 ? 0.5 * resolution : 1e-12 * std::abs(extreme);
+  if (count_between(model, extreme - half, extreme + half) < min_equal) {
+    return found;
+  }
+  const double outward = extreme > model.fit().offset ? 1.0 : -1.0;
+  const double margin =
+      2.0 * resolution + 6.0 * model.neighbour_noise() + model_error * model.fit().amplitude();
   const double scale = 1.0 / (std::numbers::sqrt2 * std::max(noise, 0.1 * resolution + 1e-300));
-  for (std::size_t i = 0; i < model.values.size(); ++i) {
-    if (std::abs(model.values[i] - extreme) <= half) {
-      ++found.count;
-      found.near += outward * (model.fundamental[i] - extreme) > -margin ? 1 : 0;
-      found.lowest = std::min(found.lowest, model.fundamental[i]);
-      found.highest = std::max(found.highest, model.fundamental[i]);
-    }
-    if (resolution > 0.0) {
-      const double distance = model.at(i) - extreme;
-      found.explained +=
-          0.5 * (std::erf((distance + half) * scale) - std::erf((distance - half) * scale));
+  ModelBlock block;
+  for (std::size_t k = 0; k < model.blocks().size(); ++k) {
+    const auto values = model.block_values(k);
+    model.fill(k * value_block_samples, values.size(), block);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::abs(values[i] - extreme) <= half) {
+        const double fundamental = block.fundamental(i);
+        ++found.count;
+        found.near += outward * (fundamental - extreme) > -margin ? 1 : 0;
+        found.lowest = std::min(found.lowest, fundamental);
+        found.highest = std::max(found.highest, fundamental);
+      }
+      const double distance = block.at(i) - extreme;
+      if (resolution > 0.0 && (std::abs(distance) - half) * scale < far) {
+        found.explained +=
+            0.5 * (std::erf((distance + half) * scale) - std::erf((distance - half) * scale));
+      }
     }
   }
   return found;
 }
 
 bool is_clipped(const AtExtreme& found, const Model& model, double resolution) {
-  const double explained = 1.5 * found.explained + 4.0 * std::sqrt(found.explained) + 2.0;
-  if (found.count < min_equal || 2 * found.near < found.count ||
-      static_cast<double>(found.count) < explained) {
+  if (found.count < min_equal) {
     return false;
   }
-  const double noise = model.neighbour_noise;
-  const bool noise_separates = noise > std::max(resolution, 1e-9 * model.fit.amplitude());
-  return noise_separates || found.highest - found.lowest >
-                                1.2 * resolution + 4.0 * noise + 1e-6 * model.fit.amplitude();
+  const double explained = 1.5 * found.explained + 4.0 * std::sqrt(found.explained) + 2.0;
+  if (2 * found.near < found.count || static_cast<double>(found.count) < explained) {
+    return false;
+  }
+  const double noise = model.neighbour_noise();
+  const double amplitude = model.fit().amplitude();
+  const bool noise_separates = noise > std::max(resolution, 1e-9 * amplitude);
+  return noise_separates ||
+         found.highest - found.lowest > 1.2 * resolution + 4.0 * noise + 1e-6 * amplitude;
 }
 
 double shortening(double part) {
@@ -197,106 +250,132 @@ double shortening(double part) {
 
 // Where steps are fine: a sine of a few steps may well end one step below its range.
 double upper_end(const Model& model, const SignalExpectation& expected) {
-  const bool is_fine = expected.resolution < fine_resolution * model.fit.amplitude();
+  const bool is_fine = expected.resolution < fine_resolution * model.fit().amplitude();
   return expected.range_high - (is_fine ? 1.5 : 0.5) * expected.resolution;
-}
-
-// The record's own values `first` .. `end` - 1 are equal: how far the whole model moves meanwhile.
-double movement(const Model& model, std::size_t first, std::size_t end) {
-  double lowest = model.at(first);
-  double highest = lowest;
-  for (std::size_t i = first + 1; i < end; ++i) {
-    lowest = std::min(lowest, model.at(i));
-    highest = std::max(highest, model.at(i));
-  }
-  return highest - lowest;
 }
 
 void measure_limits(const Model& model, const SignalExpectation& expected,
                     SignalIntegrity& integrity) {
-  const double n = static_cast<double>(model.values.size());
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double n = static_cast<double>(model.values().size());
   const double half = 0.5 * expected.resolution;
-  const auto [low, high] = std::minmax_element(model.values.begin(), model.values.end());
-  const auto part = [n](auto count) { return static_cast<double>(count) / n; };
-  const double at_low = part(std::count_if(model.values.begin(), model.values.end(), [&](double v) {
-    return v <= expected.range_low + half;
-  }));
-  const double at_high =
-      part(std::count_if(model.values.begin(), model.values.end(),
-                         [&](double v) { return v >= upper_end(model, expected); }));
+  const auto part = [n](std::uint64_t count) { return static_cast<double>(count) / n; };
+  const double at_low = part(count_between(model, -infinity, expected.range_low + half));
+  const double at_high = part(count_between(model, upper_end(model, expected), infinity));
   integrity.at_range_part = at_low + at_high;
-  const double noise = residual_sd(model);
   const auto clipped = [&](double extreme) {
-    const AtExtreme found = at_extreme(model, extreme, expected.resolution, noise);
+    const AtExtreme found = at_extreme(model, extreme, expected.resolution);
     return is_clipped(found, model, expected.resolution) ? part(found.count) : 0.0;
   };
-  const double clipped_low = clipped(*low);
-  const double clipped_high = clipped(*high);
+  const double clipped_low = clipped(model.low);
+  const double clipped_high = clipped(model.high);
   integrity.clipped_part = clipped_low + clipped_high;
   integrity.clipping_rel =
       shortening(std::max(at_low, clipped_low)) + shortening(std::max(at_high, clipped_high));
 }
 
+// How far the fitted sine, or the whole model, moves during some samples.
+double movement(const Model& model, std::size_t first, std::size_t count,
+                double (ModelBlock::*at)(std::size_t) const) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  ModelBlock block;
+  for (std::size_t i = 0; i < count; i += ModelBlock::max_samples) {
+    const std::size_t n = std::min(ModelBlock::max_samples, count - i);
+    model.fill(first + i, n, block);
+    for (std::size_t k = 0; k < n; ++k) {
+      lowest = std::min(lowest, (block.*at)(k));
+      highest = std::max(highest, (block.*at)(k));
+    }
+  }
+  return highest - lowest;
+}
+
+// Of the run of equal values that begins at `first`.
+std::size_t run_length(std::span<const double> values, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < values.size() && values[end] == values[first]) {
+    ++end;
+  }
+  return end - first;
+}
+
 void measure_runs(const Model& model, const SignalExpectation& expected,
                   SignalIntegrity& integrity) {
-  const auto [low, high] = std::minmax_element(model.values.begin(), model.values.end());
-  const double natural =
-      2.0 * expected.resolution + 6.0 * model.neighbour_noise + 0.02 * model.fit.amplitude();
-  const double natural_repeat =
-      2.0 * expected.resolution + 8.0 * model.neighbour_noise + 0.1 * model.fit.amplitude();
+  const std::span<const double> values = model.values();
   std::uint64_t stuck = 0;
-  for (std::size_t first = 0; first < model.values.size();) {
-    const double value = model.values[first];
-    double lowest = model.fundamental[first];
-    double highest = lowest;
-    std::size_t end = first + 1;
-    for (; end < model.values.size() && model.values[end] == value; ++end) {
-      lowest = std::min(lowest, model.fundamental[end]);
-      highest = std::max(highest, model.fundamental[end]);
+  for (std::size_t first = 0; first < values.size();) {
+    const std::size_t block = first / value_block_samples;
+    if (!model.blocks()[block].repeats) { // only its last value may be repeated, in the next block
+      first = std::max(first, std::min((block + 1) * value_block_samples, values.size()) - 1);
     }
-    const std::uint64_t length = end - first;
+    const double value = values[first];
+    const std::uint64_t length = run_length(values, first);
     integrity.longest_run = std::max(integrity.longest_run, length);
-    const bool at_an_end = (integrity.clipped_part > 0.0 && (value == *low || value == *high)) ||
-                           value <= expected.range_low || value >= upper_end(model, expected);
-    if (length >= min_stuck_run && highest - lowest > natural && !at_an_end) {
-      integrity.longest_stuck = std::max(integrity.longest_stuck, length);
-      stuck += length;
+    const bool at_an_end =
+        (integrity.clipped_part > 0.0 && (value == model.low || value == model.high)) ||
+        value <= expected.range_low || value >= upper_end(model, expected);
+    if (length >= min_stuck_run && !at_an_end) {
+      const double natural = 2.0 * expected.resolution + 6.0 * model.neighbour_noise() +
+                             0.02 * model.fit().amplitude();
+      if (movement(model, first, length, &ModelBlock::fundamental) > natural) {
+        integrity.longest_stuck = std::max(integrity.longest_stuck, length);
+        stuck += length;
+      }
+    } else if (length > 1 && !at_an_end) {
+      const double natural_repeat =
+          2.0 * expected.resolution + 8.0 * model.neighbour_noise() + 0.1 * model.fit().amplitude();
+      if (movement(model, first, length, &ModelBlock::at) > natural_repeat) {
+        integrity.longest_repeat = std::max(integrity.longest_repeat, length);
+        ++integrity.repeats;
+      }
     }
-    if (length > 1 && length < min_stuck_run && !at_an_end &&
-        movement(model, first, end) > natural_repeat) {
-      integrity.longest_repeat = std::max(integrity.longest_repeat, length);
-      ++integrity.repeats;
-    }
-    first = end;
+    first += length;
   }
-  integrity.stuck_part = static_cast<double>(stuck) / static_cast<double>(model.values.size());
+  integrity.stuck_part = static_cast<double>(stuck) / static_cast<double>(values.size());
 }
 
 } // namespace
+
+SignalIntegrity measure_integrity(const Frequency& frequency, const PlainChannel& channel,
+                                  std::span<const std::int64_t> stamps_ns,
+                                  std::span<const double> values,
+                                  const SignalExpectation& expected) {
+  const Model model(frequency, channel, stamps_ns, values);
+  SignalIntegrity integrity;
+  integrity.samples = values.size();
+  integrity.amplitude = model.fit().amplitude();
+  integrity.residual_sd = model.residual_sd;
+  // Noise alone gives every harmonic the square 4 s^2 / n.
+  const double of_noise =
+      4.0 * integrity.residual_sd * integrity.residual_sd / static_cast<double>(values.size());
+  integrity.thd = std::sqrt(std::max(0.0, model.harmonics_square - of_noise * model.harmonics)) /
+                  integrity.amplitude;
+  integrity.u_thd =
+      std::sqrt(of_noise * std::sqrt(static_cast<double>(model.harmonics))) / integrity.amplitude;
+  integrity.noise_sd = std::max(model.neighbour_noise(), expected.resolution / std::sqrt(12.0));
+  measure_limits(model, expected, integrity);
+  measure_runs(model, expected, integrity);
+  return integrity;
+}
 
 Expected<SignalIntegrity> measure_integrity(const Frequency& frequency,
                                             std::span<const std::int64_t> stamps_ns,
                                             std::span<const double> values,
                                             const SignalExpectation& expected) {
-  const auto model = fit_model(frequency, stamps_ns, values);
-  if (!model) {
-    return fail(model.error());
+  const std::span<const double> channel[] = {values};
+  const std::int64_t middle_ns = stamps_ns.empty() ? 0 : middle_of_record_ns(stamps_ns);
+  const auto fit = fit_sine(frequency, middle_ns, stamps_ns, channel);
+  if (!fit) {
+    return fail(fit.error());
   }
-  SignalIntegrity integrity;
-  integrity.samples = values.size();
-  integrity.amplitude = model->fit.amplitude();
-  integrity.residual_sd = residual_sd(*model);
-  // Noise alone gives every harmonic the square 4 s^2 / n.
-  const double of_noise =
-      4.0 * integrity.residual_sd * integrity.residual_sd / static_cast<double>(values.size());
-  integrity.thd = std::sqrt(std::max(0.0, model->harmonics_square - of_noise * model->harmonics)) /
-                  integrity.amplitude;
-  integrity.u_thd =
-      std::sqrt(of_noise * std::sqrt(static_cast<double>(model->harmonics))) / integrity.amplitude;
-  integrity.noise_sd = std::max(model->neighbour_noise, expected.resolution / std::sqrt(12.0));
-  measure_limits(*model, expected, integrity);
-  measure_runs(*model, expected, integrity);
-  return integrity;
+  const ResidualSearch search{.first = {frequency, 2, max_harmonic - 1}};
+  const auto residuals = reduce_residuals(search, stamps_ns, channel, *fit);
+  if (!residuals) {
+    return fail(residuals.error());
+  }
+  return measure_integrity(frequency, plain_channel(fit->front(), search.first, residuals->front()),
+                           stamps_ns, values, expected);
 }
 
 IntegrityFindings judge_integrity(const SignalIntegrity& integrity,

@@ -77,6 +77,11 @@ inline constexpr std::size_t fetched_ahead_samples = 1024;
 inline constexpr std::size_t grid_call_samples = lanes * grid_samples;
 inline constexpr std::size_t grid_call_channels = 4;
 
+// How many sums design_with_time(), residuals_with_time() and each order of line_sums() add to.
+inline constexpr std::size_t design_time_sums = 6;
+inline constexpr std::size_t residual_time_sums = 5;
+inline constexpr std::size_t line_design_sums = 4;
+
 struct SineKernel {
   const char* name;
   // The same sums as fit_block's, by sine_grid.hpp: n a multiple of eight, at most
@@ -121,6 +126,22 @@ struct SineKernel {
   // Of one column with each of `count` others.
   void (*model_products)(const double* one, std::size_t n, const double* columns, std::size_t count,
                          double* products);
+
+  // The sums of these are added to what is there, eight lanes each. Fills sine, cosine and u; sums
+  // of u^1 .. u^6. False when the stamps do not increase strictly within the block.
+  bool (*design_with_time)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
+                           BlockBasis& basis, double* time_sums);
+  // The residuals, zero past the last one up to a multiple of eight; sums of e, e u, e u^2, e u^3
+  // and e^2.
+  void (*residuals_with_time)(const double* values, std::size_t n, const BlockBasis& basis,
+                              const Parameters& start, double* residuals, double* sums);
+  // Of `orders` (a multiple of three) multiples of the phase from `first_order` on: the four sums
+  // of DesignSums each; e sin and e cos each for every channel.
+  void (*line_sums)(const BlockBasis& basis, std::size_t n, std::size_t first_order,
+                    std::size_t orders, const double* const* residuals, std::size_t channels,
+                    double* design, double* const* sums);
+  // The smallest and the largest value; whether any two neighbours are equal.
+  bool (*value_range)(const double* values, std::size_t n, double& low, double& high);
 };
 
 extern const SineKernel baseline_kernel;

@@ -36,6 +36,17 @@ struct Lanes {
         _mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1));
     return _mm_cvtsd_f64(_mm_add_sd(fours, _mm_unpackhi_pd(fours, fours)));
   }
+
+  double minimum() const {
+    const __m256d four = _mm256_min_pd(a, b);
+    const __m128d two = _mm_min_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+    return _mm_cvtsd_f64(_mm_min_sd(two, _mm_unpackhi_pd(two, two)));
+  }
+  double maximum() const {
+    const __m256d four = _mm256_max_pd(a, b);
+    const __m128d two = _mm_max_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+    return _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)));
+  }
 };
 
 inline Lanes operator+(Lanes x, Lanes y) {
@@ -100,6 +111,13 @@ inline Lanes larger_magnitude(Lanes x, Lanes y) {
   return {larger_magnitude_of_four(x.a, y.a), larger_magnitude_of_four(x.b, y.b)};
 }
 
+inline Lanes smaller(Lanes x, Lanes y) {
+  return {_mm256_min_pd(x.a, y.a), _mm256_min_pd(x.b, y.b)};
+}
+inline Lanes larger(Lanes x, Lanes y) {
+  return {_mm256_max_pd(x.a, y.a), _mm256_max_pd(x.b, y.b)};
+}
+
 inline void turn_four(__m256d shifted, __m256d& sine, __m256d& cosine) {
   const __m256i k = _mm256_castpd_si256(shifted);
   const __m256d odd = _mm256_castsi256_pd(_mm256_slli_epi64(k, 63)); // blendv reads the top bit
@@ -126,6 +144,15 @@ struct StepCheck {
   bool increasing() const { return _mm256_movemask_pd(_mm256_castsi256_pd(forward)) == 0xf; }
 };
 
+struct EqualCheck {
+  __m256d equal = _mm256_setzero_pd();
+  void see(Lanes x, Lanes y) {
+    equal = _mm256_or_pd(equal, _mm256_or_pd(_mm256_cmp_pd(x.a, y.a, _CMP_EQ_OQ),
+                                             _mm256_cmp_pd(x.b, y.b, _CMP_EQ_OQ)));
+  }
+  bool any() const { return _mm256_movemask_pd(equal) != 0; }
+};
+
 } // namespace
 
 #include "analysis/sine/kernel/sine_kernel_body.hpp"
@@ -136,9 +163,12 @@ struct StepCheck {
 
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
+#include "analysis/sine/kernel/sine_lines_body.hpp"
+
 namespace dyncal::analysis::kernel {
 const SineKernel avx2_kernel{
-    "avx2",         fit_on_grid,       series_on_grid,  fit_block,
-    design,         design_with_slope, residuals,       residuals_with_slope,
-    design_moments, residual_moments,  model_residuals, model_products};
+    "avx2",           fit_on_grid,         series_on_grid,  fit_block,
+    design,           design_with_slope,   residuals,       residuals_with_slope,
+    design_moments,   residual_moments,    model_residuals, model_products,
+    design_with_time, residuals_with_time, line_sums,       value_range};
 }

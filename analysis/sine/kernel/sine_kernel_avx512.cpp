@@ -30,6 +30,9 @@ struct Lanes {
         _mm256_add_pd(_mm512_castpd512_pd256(fours), _mm512_extractf64x4_pd(fours, 1));
     return _mm256_cvtsd_f64(sum);
   }
+
+  double minimum() const { return _mm512_reduce_min_pd(v); }
+  double maximum() const { return _mm512_reduce_max_pd(v); }
 };
 
 inline Lanes operator+(Lanes a, Lanes b) {
@@ -70,6 +73,13 @@ inline Lanes larger_magnitude(Lanes a, Lanes b) {
   return {_mm512_max_pd(a.v, _mm512_abs_pd(b.v))};
 }
 
+inline Lanes smaller(Lanes a, Lanes b) {
+  return {_mm512_min_pd(a.v, b.v)};
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return {_mm512_max_pd(a.v, b.v)};
+}
+
 inline void turn_quadrants(Lanes shifted, Lanes& sine, Lanes& cosine) {
   const __m512i k = _mm512_castpd_si512(shifted.v);
   const __mmask8 odd = _mm512_test_epi64_mask(k, _mm512_set1_epi64(1));
@@ -90,6 +100,14 @@ struct StepCheck {
   bool increasing() const { return backward == 0; }
 };
 
+struct EqualCheck {
+  __mmask8 equal = 0;
+  void see(Lanes a, Lanes b) {
+    equal = static_cast<__mmask8>(equal | _mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ));
+  }
+  bool any() const { return equal != 0; }
+};
+
 } // namespace
 
 #include "analysis/sine/kernel/sine_kernel_body.hpp"
@@ -100,9 +118,12 @@ struct StepCheck {
 
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
+#include "analysis/sine/kernel/sine_lines_body.hpp"
+
 namespace dyncal::analysis::kernel {
 const SineKernel avx512_kernel{
-    "avx512",       fit_on_grid,       series_on_grid,  fit_block,
-    design,         design_with_slope, residuals,       residuals_with_slope,
-    design_moments, residual_moments,  model_residuals, model_products};
+    "avx512",         fit_on_grid,         series_on_grid,  fit_block,
+    design,           design_with_slope,   residuals,       residuals_with_slope,
+    design_moments,   residual_moments,    model_residuals, model_products,
+    design_with_time, residuals_with_time, line_sums,       value_range};
 }

@@ -46,6 +46,17 @@ struct Lanes {
     return ((v[0][0] + v[0][1]) + (v[1][0] + v[1][1])) +
            ((v[2][0] + v[2][1]) + (v[3][0] + v[3][1]));
   }
+
+  double minimum() const {
+    const auto least = [](Double2 x, Double2 y) { return x < y ? x : y; };
+    const Double2 two = least(least(v[0], v[1]), least(v[2], v[3]));
+    return two[0] < two[1] ? two[0] : two[1];
+  }
+  double maximum() const {
+    const auto most = [](Double2 x, Double2 y) { return x > y ? x : y; };
+    const Double2 two = most(most(v[0], v[1]), most(v[2], v[3]));
+    return two[0] > two[1] ? two[0] : two[1];
+  }
 };
 
 template <class Operation>
@@ -111,6 +122,13 @@ inline Lanes larger_magnitude(const Lanes& x, const Lanes& y) {
   });
 }
 
+inline Lanes smaller(const Lanes& x, const Lanes& y) {
+  return each([&](int i) { return x.v[i] < y.v[i] ? x.v[i] : y.v[i]; });
+}
+inline Lanes larger(const Lanes& x, const Lanes& y) {
+  return each([&](int i) { return x.v[i] > y.v[i] ? x.v[i] : y.v[i]; });
+}
+
 inline void turn_quadrants(const Lanes& shifted, Lanes& sine, Lanes& cosine) {
   for (int i = 0; i < 4; ++i) {
     const Bits2 k = to_bits(shifted.v[i]);
@@ -133,6 +151,16 @@ struct StepCheck {
   bool increasing() const { return all_increase; }
 };
 
+struct EqualCheck {
+  Bits2 equal = {0, 0};
+  void see(const Lanes& x, const Lanes& y) {
+    for (int i = 0; i < 4; ++i) {
+      equal |= x.v[i] == y.v[i];
+    }
+  }
+  bool any() const { return (equal[0] | equal[1]) != 0; }
+};
+
 } // namespace
 
 #include "analysis/sine/kernel/sine_kernel_body.hpp"
@@ -143,9 +171,12 @@ struct StepCheck {
 
 #include "analysis/sine/kernel/sine_model_body.hpp"
 
+#include "analysis/sine/kernel/sine_lines_body.hpp"
+
 namespace dyncal::analysis::kernel {
 const SineKernel baseline_kernel{
-    "baseline",     fit_on_grid,       series_on_grid,  fit_block,
-    design,         design_with_slope, residuals,       residuals_with_slope,
-    design_moments, residual_moments,  model_residuals, model_products};
+    "baseline",       fit_on_grid,         series_on_grid,  fit_block,
+    design,           design_with_slope,   residuals,       residuals_with_slope,
+    design_moments,   residual_moments,    model_residuals, model_products,
+    design_with_time, residuals_with_time, line_sums,       value_range};
 }

@@ -4,6 +4,7 @@
 
 #include "services/contract/digest.hpp"
 #include "services/contract/unit.hpp"
+#include "services/evaluation/method/signal_check.hpp"
 
 namespace dyncal::services {
 
@@ -21,7 +22,8 @@ void SelectedChannels::narrow(const TimeInterval& interval) {
 }
 
 analysis::ChannelSamples SelectedChannels::channel(std::size_t i) const {
-  return {names_[i].text(), samples_.columns[i], description(i).resolution};
+  return {names_[i].text(), samples_.columns[i], description(i).resolution,
+          expectation_of(description(i))};
 }
 
 std::vector<analysis::ChannelSamples> SelectedChannels::channels_from(std::size_t first) const {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/method/series_stamping.hpp"
+#include "analysis/uncertainty/found_resolution.hpp"
 #include "services/contract/digest.hpp"
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/step_results.hpp"
@@ -277,12 +278,17 @@ SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotReco
                         std::size_t column) {
   const std::vector<std::int64_t> stamps_ns =
       series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
-  const analysis::ChannelFit sine{
-      .channel = channel.text(), .frequency = input.task.step().frequency, .fit = {}};
+  const drivers::ChannelDescription& description = input.sensor.description().channels[column];
   std::optional<SignalCheck> first;
   for (const ShotRecord::Shot& shot : shots) {
-    SignalCheck check = check_signal(sine, stamps_ns, shot.series->channel(column),
-                                     input.sensor.description().channels[column]);
+    const std::span<const double> values = shot.series->channel(column);
+    analysis::SignalExpectation expected = expectation_of(description);
+    if (!(expected.resolution > 0.0)) {
+      expected.resolution = analysis::found_resolution(values);
+    }
+    SignalCheck check =
+        check_signal(channel.text(), analysis::measure_integrity(input.task.step().frequency,
+                                                                 stamps_ns, values, expected));
     if (!check.flags.empty()) {
       return check;
     }
@@ -310,8 +316,8 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
       .data_sha256 = digest_of(acs.samples(), shots),
       .common = {},
       .first_dut = {}};
-  const SignalCheck reference = check_signal(evaluated.result.reference, acs, 0);
-  SignalCheck sync = check_signal(evaluated.result.sync_acs, acs, 1);
+  const SignalCheck reference = check_signal(evaluated.result.reference);
+  SignalCheck sync = check_signal(evaluated.result.sync_acs);
   sync.refusal.clear(); // it carries phase only
   const std::vector<ChannelLines> common_lines{
       check_lines(*task.recipe, {"the reference"}, evaluated.result.reference, acs, 0),

@@ -8,14 +8,11 @@
 // Plain functions, any thread.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/method/transfer_point.hpp"
 #include "drivers/sample_block.hpp"
-#include "services/evaluation/method/selected_channels.hpp"
 #include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
@@ -27,14 +24,16 @@ struct SignalCheck {
   std::string refusal; // one sentence; empty: the value stands
 };
 
-// `fit`: the sine that was fitted to the channel; `description`: its range and resolution.
-[[nodiscard]] SignalCheck check_signal(const analysis::ChannelFit& fit,
-                                       std::span<const std::int64_t> stamps_ns,
-                                       std::span<const double> values,
-                                       const drivers::ChannelDescription& description);
+// Of the channel as it was fitted: nothing to say where no sine stands out of it.
+[[nodiscard]] SignalCheck check_signal(const analysis::ChannelFit& fit);
 
-// Channel `index` of what was selected.
-[[nodiscard]] SignalCheck check_signal(const analysis::ChannelFit& fit,
-                                       const SelectedChannels& selected, std::size_t index);
+// Of what was measured, or the reason why it could not be.
+[[nodiscard]] SignalCheck
+check_signal(const std::string& channel,
+             const analysis::Expected<analysis::SignalIntegrity>& integrity);
+
+// The range and the resolution that the description states.
+[[nodiscard]] analysis::SignalExpectation
+expectation_of(const drivers::ChannelDescription& description);
 
 } // namespace dyncal::services

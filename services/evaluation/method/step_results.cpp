@@ -27,11 +27,10 @@ StepResult point_result(const StepTask& task, const ChannelName& channel,
 
 // Of the channels that all results share. Sync carries phase only, which end stops on both sides
 // leave alone: its refusal is none of the results'.
-std::vector<SignalCheck> check_common(const StepInput& input,
-                                      const std::vector<analysis::ChannelFit>& fits) {
+std::vector<SignalCheck> check_common(const std::vector<analysis::ChannelFit>& fits) {
   std::vector<SignalCheck> checks;
-  for (std::size_t i = 0; i < input.common.size(); ++i) {
-    checks.push_back(check_signal(fits[i], *input.common[i].selected, input.common[i].index));
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    checks.push_back(check_signal(fits[i]));
     if (i > 0) {
       checks.back().refusal.clear();
     }
@@ -116,7 +115,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   if (!step) {
     return results_without_value(task.step(), input.dut, step.error().message);
   }
-  const std::vector<SignalCheck> common = check_common(input, step->common_fits);
+  const std::vector<SignalCheck> common = check_common(step->common_fits);
   const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size(); ++i) {
@@ -127,9 +126,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     for (const SignalCheck& check : common) {
       add_check(check, result);
     }
-    add_check(
-        check_signal(step->points[i].dut, *input.first_dut.selected, input.first_dut.index + i),
-        result);
+    add_check(check_signal(step->points[i].dut), result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(check_lines(*task.recipe, {"the sensor"}, step->points[i].dut,
                                 *input.first_dut.selected, input.first_dut.index + i));

@@ -195,6 +195,21 @@ TEST(SignalIntegrity, ShortRunsThatComeAgainAreFound) {
   }
 }
 
+// Wherever a run lies in the blocks that the record is looked at in.
+TEST(SignalIntegrity, RunsAreFoundAcrossBlocks) {
+  const Sensor sensor{.resolution = 0.0, .samples = 3 * value_block_samples + 5};
+  for (const std::size_t length : {1UL, 2UL, 3UL, 7UL, 60UL}) {
+    for (const std::size_t first :
+         {0UL, value_block_samples - 1, value_block_samples, 2 * value_block_samples - 3}) {
+      Series series = series_of(sensor, 6);
+      std::fill_n(series.values.begin() + static_cast<std::ptrdiff_t>(first), length,
+                  series.values[first]);
+      EXPECT_EQ(integrity_of(sensor, series).longest_run, length) << first;
+      EXPECT_EQ(integrity_of(sensor, series).longest_stuck, length > 4 ? length : 0) << first;
+    }
+  }
+}
+
 TEST(SignalIntegrity, DistortionIsMeasuredWhereverSamplingFoldsIt) {
   for (const double frequency_hz : {20.0, 80.3, 230.7, 310.1}) {
     const Sensor sensor{.frequency_hz = frequency_hz, .second_harmonic = 0.8};

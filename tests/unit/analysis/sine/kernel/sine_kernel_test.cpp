@@ -1,5 +1,6 @@
 #include "analysis/sine/kernel/sine_kernel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -102,6 +103,63 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
         EXPECT_TRUE(same_bits(actual_slope, expected_slope));
         (*kernel)->residual_moments(input.pointers[j], n, basis, input.start[j], actual_moments);
         EXPECT_TRUE(same_bits(actual_moments, expected_moments));
+      }
+    }
+  }
+}
+
+// What the functions that add to lanes leave.
+struct LaneResults {
+  BlockBasis basis{};
+  std::vector<double> time = std::vector<double>(design_time_sums * lanes, 1.0);
+  std::vector<double> residuals = std::vector<double>(2 * block_samples);
+  std::vector<double> sums = std::vector<double>(2 * residual_time_sums * lanes, 2.0);
+  std::vector<double> design = std::vector<double>(9 * line_design_sums * lanes, 3.0);
+  std::vector<double> products = std::vector<double>(2 * 9 * 2 * lanes, 4.0);
+  double low[2] = {}, high[2] = {};
+  bool repeats[2] = {};
+
+  LaneResults(const SineKernel& kernel, const BlockInput& input, std::size_t n,
+              std::size_t first_order) {
+    EXPECT_TRUE(kernel.design_with_time(input.stamps.data(), n, input.axis, basis, time.data()));
+    for (std::size_t j = 0; j < 2; ++j) {
+      kernel.residuals_with_time(input.pointers[j], n, basis, input.start[j],
+                                 residuals.data() + j * block_samples,
+                                 sums.data() + j * residual_time_sums * lanes);
+      repeats[j] = kernel.value_range(input.pointers[j], n, low[j], high[j]);
+    }
+    const double* rows[] = {residuals.data(), residuals.data() + block_samples};
+    double* of_channels[] = {products.data(), products.data() + 9 * 2 * lanes};
+    kernel.line_sums(basis, n, first_order, 9, rows, 2, design.data(), of_channels);
+  }
+};
+
+TEST(SineKernel, SumsOfLinesHaveTheSameBitsOnEveryInstructionSet) {
+  for (std::size_t n = 1; n <= block_samples; n += n < 40 ? 1 : 59) {
+    BlockInput input(n, static_cast<unsigned>(n));
+    input.values[1][n / 2] = input.values[1][n > 1 ? n / 2 - 1 : 0]; // equal neighbours
+    input.axis.inverse_scale = 1e-15;
+    for (const std::size_t first_order : {1UL, 2UL, 3UL}) {
+      const LaneResults expected(baseline_kernel, input, n, first_order);
+      EXPECT_EQ(expected.low[0], *std::min_element(input.values[0].begin(), input.values[0].end()));
+      EXPECT_EQ(expected.high[1],
+                *std::max_element(input.values[1].begin(), input.values[1].end()));
+      EXPECT_FALSE(expected.repeats[0]);
+      EXPECT_EQ(expected.repeats[1], n > 1);
+      for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
+        SCOPED_TRACE(std::string((*kernel)->name) + " n = " + std::to_string(n));
+        const LaneResults actual(**kernel, input, n, first_order);
+        EXPECT_TRUE(same_bits(actual.basis, expected.basis));
+        EXPECT_EQ(actual.time, expected.time);
+        EXPECT_EQ(actual.residuals, expected.residuals);
+        EXPECT_EQ(actual.sums, expected.sums);
+        EXPECT_EQ(actual.design, expected.design);
+        EXPECT_EQ(actual.products, expected.products);
+        for (std::size_t j = 0; j < 2; ++j) {
+          EXPECT_EQ(actual.low[j], expected.low[j]);
+          EXPECT_EQ(actual.high[j], expected.high[j]);
+          EXPECT_EQ(actual.repeats[j], expected.repeats[j]);
+        }
       }
     }
   }

@@ -31,9 +31,8 @@ Record record(double amplitude, double noise) {
 }
 
 SignalCheck check(const Record& made) {
-  return check_signal(
-      {.channel = "dau/z", .frequency = analysis::Frequency::from_hz(80.0), .fit = {}},
-      made.stamps_ns, made.values, {});
+  return check_signal("dau/z", analysis::measure_integrity(analysis::Frequency::from_hz(80.0),
+                                                           made.stamps_ns, made.values, {}));
 }
 
 TEST(SignalCheck, GivesDistortionAndResidualAsNumbers) {
