@@ -44,7 +44,7 @@ void RunSession::prepare(const wire::Measurement& measurement) {
     return;
   }
   streams_.emplace(participant_, wake_up_, bench_, run_, recipe->sources());
-  evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe));
+  evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), EvaluationLimits{.ahead = true});
   spdlog::info("bench {}, run {}: {} steps planned, waiting for its sources", bench_, run_,
                measurement.steps().size());
   publisher_.publish(status_);
@@ -175,11 +175,15 @@ void RunSession::watch_level() {
 }
 
 void RunSession::evaluate(Instant now) {
-  const EvaluationOutput output = evaluator_->take_output();
-  if (!output.results.empty()) {
-    last_progress_ = now;
+  bool any = true;
+  while (any) { // results first, then what can wait
+    const EvaluationOutput output = evaluator_->take_output();
+    any = !output.results.empty();
+    if (any) {
+      last_progress_ = now;
+    }
+    publisher_.publish(evaluator_->recipe(), output);
   }
-  publisher_.publish(evaluator_->recipe(), output);
   if (evaluator_->finished()) {
     finish();
   } else {

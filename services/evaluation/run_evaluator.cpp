@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,8 +30,8 @@ Evaluation with_temperature(Evaluation evaluation, std::optional<double> degc) {
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
-      summary_(*recipe_), clock_to_the_end_(limits.clock_to_the_end),
-      evaluations_(limits.evaluations_at_once) {
+      summary_(*recipe_), runs_ahead_(limits.ahead && method_->can_run_ahead()),
+      clock_to_the_end_(limits.clock_to_the_end), evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);
@@ -46,6 +47,7 @@ Expected<void> RunEvaluator::describe(const std::string& source,
     return {};
   }
   record->describe(std::move(description));
+  ahead_.reset();
   if (auto checked = check_channels(*record); !checked) {
     return checked;
   }
@@ -180,11 +182,32 @@ void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < records_.excitation().steps_expected() && records_.is_searched(next_step_) &&
          method_->is_complete(next_step_, records_)) {
     evaluations_.make_room();
-    evaluations_.begin(with_temperature(method_->evaluation(next_step_, records_),
-                                        temperature_of_step(next_step_)));
+    evaluations_.begin(
+        with_temperature(evaluation_of_next_step(), temperature_of_step(next_step_)));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);
+}
+
+Evaluation RunEvaluator::evaluation_of_next_step() {
+  auto ahead = std::exchange(ahead_, std::nullopt);
+  if (ahead && ahead->inputs.step() == next_step_ && ahead->inputs.still_holds(records_)) {
+    ++steps_ready_;
+    return [results = std::move(ahead->results)] { return results; };
+  }
+  return method_->evaluation(next_step_, records_);
+}
+
+void RunEvaluator::evaluate_ahead() {
+  if (!runs_ahead_ || evaluations_.in_background() ||
+      next_step_ >= records_.excitation().steps_expected() || records_.is_searched(next_step_) ||
+      !records_.is_expected(next_step_) || !method_->is_complete(next_step_, records_)) {
+    return;
+  }
+  if (!ahead_ || !ahead_->inputs.still_holds(records_)) {
+    ahead_ =
+        AheadOfEnd{StepSnapshot(records_, next_step_), method_->evaluation(next_step_, records_)()};
+  }
 }
 
 EvaluationOutput RunEvaluator::take_output() {
@@ -193,8 +216,16 @@ EvaluationOutput RunEvaluator::take_output() {
     return output;
   }
   if (!has_all_steps()) {
-    records_.search();
+    if (runs_ahead_) {
+      records_.search(next_step_ + 1); // a result does not wait for the search for the next step
+    } else {
+      records_.search();
+    }
     evaluate_next_steps(output);
+    if (runs_ahead_ && !output.results.empty()) {
+      return output; // they do not wait for the rest, which the next call does
+    }
+    evaluate_ahead();
     records_.forget_before_step(next_step_);
   }
   if (records_.excitation().is_cut_short() || (has_all_steps() && !source_of_clock_alone())) {

@@ -11,6 +11,12 @@
 // A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
 // the end of the run, when all steps tell how large that line may be (line_bounds.hpp).
 //
+// Live (`ahead`) a step is evaluated as soon as its planned samples have come, while it is still
+// excited; its end then only confirms what was expected, and the result is handed over at once,
+// before anything else is done: take again at once what came out with results. An excitation that
+// ends sooner, or samples that change the step afterwards, are evaluated when the step has ended,
+// as without it.
+//
 // What depends on the method is asked of it (method/method.hpp). Belongs to one thread.
 #pragma once
 
@@ -27,6 +33,7 @@
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
+#include "services/evaluation/record/step_snapshot.hpp"
 #include "services/evaluation/transfer_summary.hpp"
 
 namespace dyncal::services {
@@ -48,6 +55,7 @@ struct EvaluationLimits {
   // The sample clock is followed to the end of its source, not only to the last step: for records
   // that are there already.
   bool clock_to_the_end = false;
+  bool ahead = false; // in the caller's thread only: before the end of a step has come
 };
 
 class RunEvaluator {
@@ -83,6 +91,8 @@ public:
   // The source whose sample clock is followed although every step has been evaluated; nothing as
   // long as steps are missing. Samples of other sources have no use any more.
   [[nodiscard]] std::optional<std::string> source_of_clock_alone() const;
+  // Steps whose results were there when their end was found (`ahead`).
+  [[nodiscard]] std::size_t steps_ready() const { return steps_ready_; }
   // Everything of this run has been handed over.
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.
@@ -96,6 +106,8 @@ private:
   [[nodiscard]] bool has_all_steps() const;
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
+  [[nodiscard]] Evaluation evaluation_of_next_step();
+  void evaluate_ahead();
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   void settle_results(EvaluationOutput& output);
   void finish(EvaluationOutput& output);
@@ -108,6 +120,14 @@ private:
   TransferSummary summary_;
   LineBounds line_bounds_;
   std::vector<StepResult> provisional_;
+  struct AheadOfEnd { // the next step as it is expected to be
+    StepSnapshot inputs;
+    std::vector<StepResult> results;
+  };
+
+  bool runs_ahead_;
+  std::optional<AheadOfEnd> ahead_;
+  std::size_t steps_ready_ = 0;
   std::size_t next_step_ = 0; // not evaluated yet
   bool clock_to_the_end_;
   bool finished_ = false;

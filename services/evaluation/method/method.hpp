@@ -47,8 +47,12 @@ public:
   // was searched.
   [[nodiscard]] virtual bool is_complete(std::size_t step, const RunRecords& records) const;
 
-  // REQUIRES: is_complete(step), called once for each step in their order.
+  // REQUIRES: is_complete(step); for the steps in their order, and where can_run_ahead() perhaps
+  // more than once for one of them.
   [[nodiscard]] virtual Evaluation evaluation(std::size_t step, const RunRecords& records) = 0;
+  // Evaluations leave no trace here, so that a step can be evaluated while its end is only
+  // expected, and once more if it comes otherwise.
+  [[nodiscard]] virtual bool can_run_ahead() const { return true; }
 
   // The source whose stamps tell of the sensor's sample clock; empty where there are none.
   [[nodiscard]] virtual std::optional<std::string> clock_source() const { return std::nullopt; }

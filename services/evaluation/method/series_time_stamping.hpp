@@ -26,6 +26,7 @@ public:
   // the samples of the ACS.
   [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
+  [[nodiscard]] bool can_run_ahead() const override { return false; } // rates, kind of start
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
 
 private:

@@ -17,6 +17,14 @@ RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>&
   }
 }
 
+std::vector<std::string> RunRecords::sources() const {
+  std::vector<std::string> names;
+  for (const auto& [name, source] : records_) {
+    names.push_back(name);
+  }
+  return names;
+}
+
 SourceRecord* RunRecords::find(const std::string& source) {
   const auto found = records_.find(source);
   return found == records_.end() ? nullptr : found->second.get();
@@ -74,9 +82,9 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
          *newest - then->second > grace.count();
 }
 
-void RunRecords::search() {
+void RunRecords::search(std::size_t end_step) {
   follow_restarts();
-  const std::size_t expected = excitation_.steps_expected();
+  const std::size_t expected = std::min(excitation_.steps_expected(), end_step);
   for (std::size_t i = 0; i < searches_.size() && expected > 0; ++i) {
     StepSearch& steps = searches_[i].steps;
     const std::string& source = searches_[i].source;
@@ -91,6 +99,12 @@ void RunRecords::search() {
 bool RunRecords::is_searched(std::size_t step) const {
   return std::all_of(searches_.begin(), searches_.end(),
                      [&](const Search& search) { return search.steps.step() > step; });
+}
+
+bool RunRecords::is_expected(std::size_t step) const {
+  return std::all_of(searches_.begin(), searches_.end(), [&](const Search& search) {
+    return search.steps.step() > step || search.steps.interval(step).has_value();
+  });
 }
 
 std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t step) const {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -47,6 +48,7 @@ public:
   void announce(const StepAnnouncement& announcement);
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
 
+  [[nodiscard]] std::vector<std::string> sources() const;
   // Null for a source that is not of the run.
   [[nodiscard]] SourceRecord* find(const std::string& source);
   // REQUIRES: a source of the run.
@@ -59,11 +61,14 @@ public:
   [[nodiscard]] bool is_over_in(const std::string& source, std::size_t step) const;
   static constexpr std::chrono::nanoseconds grace = std::chrono::seconds(5);
 
-  // Searches the samples that have come since the last call; passes over steps that are over in the
-  // source and show nothing.
-  void search();
+  // Searches the samples that have come since the last call for steps before `end_step`; passes
+  // over steps that are over in the source and show nothing.
+  void search(std::size_t end_step = std::numeric_limits<std::size_t>::max());
   // Every search has passed the step.
   [[nodiscard]] bool is_searched(std::size_t step) const;
+  // Every search has passed the step, or knows what it will be if nothing unexpected comes
+  // (step_search.hpp).
+  [[nodiscard]] bool is_expected(std::size_t step) const;
   // Of the step in the clock of one search, in the order of the channels given.
   [[nodiscard]] std::optional<TimeInterval> interval(std::size_t search, std::size_t step) const;
 

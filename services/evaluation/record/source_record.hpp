@@ -36,6 +36,7 @@ struct SampleLoss {
   std::uint64_t overflowed = 0; // came and were dropped before they were evaluated
 
   [[nodiscard]] std::uint64_t all() const { return missing + unusable + overflowed; }
+  friend bool operator==(const SampleLoss&, const SampleLoss&) = default;
 };
 
 class SourceRecord {

@@ -10,26 +10,38 @@ namespace {
 constexpr double ns_per_s = 1e9;
 constexpr std::int64_t max_quiet_ns = 2'000'000'000;
 
+constexpr std::int64_t beginning_of_time = std::numeric_limits<std::int64_t>::min();
+
 std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
+}
+
+// What to evaluate of a step that was excited in this window.
+TimeInterval evaluated_part(const analysis::ExcitationWindow& window, const RecipeStep& step,
+                            bool settling_from_data) {
+  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
+  return {settling_from_data ? window.begin_ns : planned_begin,
+          std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1};
 }
 
 } // namespace
 
 StepSearch::StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel)
     : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)),
-      search_from_ns_(std::numeric_limits<std::int64_t>::min()) {}
+      search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
 
 void StepSearch::search_step(std::size_t step) {
   step_ = step;
   finder_.reset();
+  expected_.reset();
+  expected_until_ns_ = beginning_of_time;
   fed_ = 0;
 }
 
 void StepSearch::advance(std::size_t last_step) {
   if (record_.restarts() != restarts_) {
     restarts_ = record_.restarts();
-    search_from_ns_ = std::numeric_limits<std::int64_t>::min();
+    search_from_ns_ = beginning_of_time;
     search_step(step_);
   }
   if (recipe_.whole_record) {
@@ -38,7 +50,11 @@ void StepSearch::advance(std::size_t last_step) {
   }
   while (step_ <= last_step && step_ < recipe_.steps.size()) {
     feed();
-    if (!finder_ || !finder_->ended()) {
+    if (!finder_) {
+      return;
+    }
+    if (!finder_->ended()) {
+      expect();
       return;
     }
     accept(*finder_->window());
@@ -83,13 +99,26 @@ void StepSearch::feed() {
   }
 }
 
-void StepSearch::accept(const analysis::ExcitationWindow& window) {
+// Looks once a frame: in between, the window that is found so far does not change.
+void StepSearch::expect() {
+  const auto stamps = record_.stamps_ns();
+  if (stamps.empty() || stamps.back() < expected_until_ns_) {
+    return;
+  }
+  expected_until_ns_ = stamps.back() + finder_->frame_ns();
+  expected_.reset();
   const RecipeStep& step = recipe_.steps[step_];
-  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
-  const std::int64_t begin = recipe_.settling_from_data ? window.begin_ns : planned_begin;
-  const std::int64_t end = std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1;
-  if (end > begin) {
-    found_[step_] = {{begin, end}, quiet_time(window)};
+  const auto window = finder_->window();
+  if (window && window->end_ns >= window->begin_ns + to_ns(step.settling_s + step.duration_s)) {
+    expected_ = {evaluated_part(*window, step, recipe_.settling_from_data), quiet_time(*window)};
+  }
+}
+
+void StepSearch::accept(const analysis::ExcitationWindow& window) {
+  const TimeInterval part =
+      evaluated_part(window, recipe_.steps[step_], recipe_.settling_from_data);
+  if (part.end_ns > part.begin_ns) {
+    found_[step_] = {part, quiet_time(window)};
   }
   search_from_ns_ = window.off_ns;
   search_step(step_ + 1);
@@ -122,15 +151,20 @@ void StepSearch::give_up_step() {
 }
 
 std::optional<TimeInterval> StepSearch::interval(std::size_t step) const {
-  const auto found = found_.find(step);
-  return found == found_.end() ? std::nullopt : std::optional(found->second.interval);
+  if (const auto found = found_.find(step); found != found_.end()) {
+    return found->second.interval;
+  }
+  return step == step_ && expected_ ? std::optional(expected_->interval) : std::nullopt;
 }
 
 std::optional<TimeInterval> StepSearch::quiet_before(const TimeInterval& interval) const {
   const auto found = std::find_if(found_.begin(), found_.end(), [&](const auto& one) {
     return one.second.interval.begin_ns == interval.begin_ns;
   });
-  return found == found_.end() ? std::nullopt : found->second.quiet;
+  if (found != found_.end()) {
+    return found->second.quiet;
+  }
+  return expected_ && expected_->interval == interval ? expected_->quiet : std::nullopt;
 }
 
 std::optional<std::int64_t> StepSearch::needed_for(std::size_t step) const {

@@ -30,8 +30,9 @@ public:
   void advance(std::size_t last_step);
 
   // What to evaluate of the step: settling dropped, at most the planned duration; when settling is
-  // found from the data, from the beginning of the excitation. Empty until the step's excitation is
-  // over.
+  // found from the data, from the beginning of the excitation. While the excitation lasts this is
+  // what is expected: empty until all of the planned duration has come, and later samples may
+  // still change it (a step is found when step() has passed it).
   [[nodiscard]] std::optional<TimeInterval> interval(std::size_t step) const;
   // Of the step that has this interval: up to two seconds before its excitation began, a frame of
   // the search away from it and from the excitation before. Empty where there is no such time.
@@ -55,6 +56,7 @@ private:
   void search_step(std::size_t step);
   void take_whole_record(bool complete);
   void feed();
+  void expect();
   void accept(const analysis::ExcitationWindow& window);
   [[nodiscard]] std::optional<TimeInterval>
   quiet_time(const analysis::ExcitationWindow& window) const;
@@ -68,6 +70,8 @@ private:
   std::uint64_t fed_ = 0; // samples of the record, counted from its very first
   std::optional<analysis::ExcitationWindowFinder> finder_;
   std::map<std::size_t, Found> found_;
+  std::optional<Found> expected_;  // of the step that is searched
+  std::int64_t expected_until_ns_; // newest stamp up to which this need not be looked at again
 };
 
 } // namespace dyncal::services

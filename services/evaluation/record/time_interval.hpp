@@ -8,6 +8,7 @@ namespace dyncal::services {
 struct TimeInterval { // both ends included
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
+  friend bool operator==(const TimeInterval&, const TimeInterval&) = default;
 };
 
 } // namespace dyncal::services
