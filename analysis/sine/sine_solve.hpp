@@ -9,7 +9,7 @@
 // The constant is eliminated first (a = SS - S S / n, ...), which keeps 1e-13 down to a fiftieth of
 // a cycle. Since the sums are of e and not of y, the residual sum of squares comes out of EE - d'g
 // with the digits of the noise, not of the offset. Used by every form of the fit (whole record,
-// streaming, refined frequency). No allocation, any thread.
+// refined frequency). No allocation, any thread.
 #pragma once
 
 #include <array>

@@ -16,7 +16,6 @@ set(private
   analysis/sine/frequency_series.hpp
   analysis/sine/sine_pass.hpp
   analysis/sine/sine_solve.hpp
-  analysis/sine/sine_stream_state.hpp
 )
 set(kernel "^analysis/sine/kernel/")
 set(public

@@ -15,9 +15,9 @@ ours:
   scipy curve_fit          four parameters, start value from ours, analytic Jacobian
 
 and, beside the demand, how many times longer the fit takes than reading the samples takes (in the
-caches, and out of them as after a network or a file), and how long after its last sample the result
-of a stream is there. Also checks that all agree. Needs python3-numpy and python3-scipy; says so and
-leaves with status 77 without them. BLAS and the like are held to one thread: ours uses one.
+caches, and out of them as after a network or a file). Also checks that all agree. Needs
+python3-numpy and python3-scipy; says so and leaves with status 77 without them. BLAS and the like
+are held to one thread: ours uses one.
 """
 
 import argparse
@@ -71,30 +71,10 @@ class Ours:
         self.library.dyncal_read.argtypes = [ctypes.c_void_p] * 2 + [ctypes.c_int64] * 2
         self.library.dyncal_read.restype = ctypes.c_double
         self.library.dyncal_flush.argtypes = [ctypes.c_void_p, ctypes.c_int64]
-        self.library.dyncal_last_sample_ns.argtypes = (
-            [ctypes.c_double] + [ctypes.c_void_p] * 2 + [ctypes.c_int64] * 2
-        )
-        self.library.dyncal_last_sample_ns.restype = ctypes.c_double
 
     def flush(self, *arrays):
         for one in arrays:
             self.library.dyncal_flush(one.ctypes.data, one.nbytes)
-
-    def last_sample_us(self, f, t, y, least=25):
-        """The worst of all fillings of the open block, each the best of several."""
-        worst = 0.0
-        for samples in range(640, 704):
-            part = np.ascontiguousarray(y[:, :samples])
-            times = [
-                self.library.dyncal_last_sample_ns(
-                    f, t.ctypes.data, part.ctypes.data, samples, y.shape[0]
-                )
-                for _ in range(least)
-            ]
-            if min(times) < 0:
-                raise RuntimeError("the stream failed")
-            worst = max(worst, min(times))
-        return worst * 1e-3
 
     # What calls the fit: made once for the same arrays, so that little of Python is in the time of
     # one fit.
@@ -243,7 +223,7 @@ def compare(ours, samples, channels, noise):
     return {name: value / samples for name, value in rows.items()}
 
 
-def demands(rows, last_sample_us):
+def demands(rows):
     """What is wanted of 4 channels with 1e5 samples, and what is there."""
     three, four = rows["ours, three parameters"], rows["ours, four parameters"]
     best = min(rows["numpy normal equations"], rows["numpy sums"])
@@ -264,7 +244,6 @@ def demands(rows, last_sample_us):
         ("numpy lstsq against three parameters", rows["numpy lstsq"] / three, ">=", 40),
         ("four parameters against three", four / three, "<=", 3),
         ("scipy curve_fit against four parameters", rows["scipy curve_fit"] / four, ">=", 40),
-        ("last sample to result, us", last_sample_us, "<", 1),
     ]
     for name, value, sign, demand in lines:
         met = value >= demand if sign == ">=" else value <= demand
@@ -302,7 +281,7 @@ def main():
             print(f"  four parameters against three: {four / three:.2f} x")
             if samples == 100_000 and channels == 4:
                 print("  demands")
-                demands(rows, ours.last_sample_us(*series(1000, channels, arguments.noise)))
+                demands(rows)
             table.append({"samples": samples, "channels": channels, "ns_per_sample": rows})
     if arguments.json:
         with open(arguments.json, "w") as file:

@@ -4,7 +4,6 @@
 // samples that come from a network or a file are; without it the data of 1e5 samples stay in the
 // last-level cache and the arithmetic is what is seen. Numbers are CPU time; per sample means all
 // channels of one instant.
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -22,7 +21,6 @@
 
 #include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/sine_stream.hpp"
 #include "tests/benchmarks/only_reading.hpp"
 
 namespace {
@@ -122,73 +120,6 @@ void four_parameters(benchmark::State& state, bool cold) {
   });
 }
 
-void stream_push(benchmark::State& state) {
-  const Frequency frequency = *Frequency::parse("80.02");
-  run(state, false, [&](const Data& data) {
-    SineStream stream(frequency, data.channels.size());
-    constexpr std::size_t packet = 100;
-    std::vector<std::span<const double>> part(data.channels.size());
-    for (std::size_t i = 0; i < data.stamps.size(); i += packet) {
-      const std::size_t n = std::min(packet, data.stamps.size() - i);
-      for (std::size_t j = 0; j < part.size(); ++j) {
-        part[j] = data.channels[j].subspan(i, n);
-      }
-      if (!stream.push({data.stamps.data() + i, n}, part)) {
-        std::abort();
-      }
-    }
-    return stream.samples();
-  });
-}
-
-// From the last sample of a record to A, B, C, their covariance and the residuals; the argument is
-// how many samples the open block holds, 63 being the worst case.
-void stream_last_sample(benchmark::State& state) {
-  const std::size_t samples = 6400 + static_cast<std::size_t>(state.range(0));
-  const Data data(samples + 1, static_cast<std::size_t>(state.range(1)));
-  const Frequency frequency = *Frequency::parse("80.02");
-  SineStream stream(frequency, data.channels.size());
-  std::vector<std::span<const double>> part;
-  for (const auto& one : data.channels) {
-    part.push_back(one.subspan(0, samples));
-  }
-  if (!stream.push({data.stamps.data(), samples}, part)) {
-    std::abort();
-  }
-  std::vector<std::span<const double>> last;
-  for (const auto& one : data.channels) {
-    last.push_back(one.subspan(samples, 1));
-  }
-  for (auto unused : state) {
-    (void)unused;
-    SineStream copy = stream.clone();
-    if (!copy.fit(data.stamps.front())) {
-      std::abort(); // its memory is in the cache, as that of a running stream is
-    }
-    const auto begin = std::chrono::steady_clock::now();
-    if (!copy.push({data.stamps.data() + samples, 1}, last)) {
-      std::abort();
-    }
-    auto fit = copy.fit(data.stamps.front());
-    benchmark::DoNotOptimize(fit);
-    state.SetIterationTime(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  }
-}
-
-void stream_refine(benchmark::State& state) {
-  const Data data(static_cast<std::size_t>(state.range(0)),
-                  static_cast<std::size_t>(state.range(1)));
-  SineStream stream(*Frequency::parse("80"), data.channels.size());
-  if (!stream.push(data.stamps, data.channels)) {
-    std::abort();
-  }
-  for (auto unused : state) {
-    (void)unused;
-    benchmark::DoNotOptimize(stream.fit_with_frequency(1e-3, data.stamps.front()));
-  }
-}
-
 void sizes(benchmark::internal::Benchmark* one) {
   for (const std::int64_t channels : {1, 4}) {
     for (const std::int64_t samples : {1000, 10'000, 100'000, 1'000'000}) {
@@ -209,16 +140,6 @@ BENCHMARK_CAPTURE(four_parameters, cold, true)
     ->Args({100'000, 1})
     ->Args({100'000, 4})
     ->Iterations(200);
-BENCHMARK(stream_push)->Args({100'000, 1})->Args({100'000, 4});
-BENCHMARK(stream_last_sample)
-    ->UseManualTime()
-    ->Args({0, 1})
-    ->Args({62, 1})
-    ->Args({63, 1})
-    ->Args({0, 4})
-    ->Args({62, 4})
-    ->Args({63, 4});
-BENCHMARK(stream_refine)->Args({10'000, 1})->Args({100'000, 4});
 
 // Every kernel that this processor runs, on one block in the first-level cache.
 void kernel_block(benchmark::State& state, const kernel::SineKernel* kernel) {

@@ -1,6 +1,5 @@
 // The fits behind a C interface, for sine_against_python.py. Time spent here is inside of what that
 // script measures.
-#include <chrono>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,7 +9,6 @@
 #endif
 
 #include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/sine_stream.hpp"
 #include "tests/benchmarks/only_reading.hpp"
 
 namespace {
@@ -63,34 +61,6 @@ void dyncal_flush(const void* data, std::int64_t bytes) {
   (void)data;
   (void)bytes;
 #endif
-}
-
-// Nanoseconds from the last sample of a stream to its result; the samples before arrived one by
-// one. -1: failure.
-double dyncal_last_sample_ns(double frequency_hz, const std::int64_t* stamps, const double* values,
-                             std::int64_t samples, std::int64_t count) {
-  SineStream stream(Frequency::from_hz(frequency_hz), static_cast<std::size_t>(count));
-  std::vector<std::span<const double>> part(static_cast<std::size_t>(count));
-  const auto push = [&](std::int64_t i) {
-    for (std::int64_t j = 0; j < count; ++j) {
-      part[static_cast<std::size_t>(j)] = {values + j * samples + i, 1};
-    }
-    return stream.push({stamps + i, 1}, part).has_value();
-  };
-  for (std::int64_t i = 0; i + 1 < samples; ++i) {
-    if (!push(i)) {
-      return -1.0;
-    }
-  }
-  if (!stream.fit(stamps[0])) {
-    return -1.0;
-  }
-  const auto begin = std::chrono::steady_clock::now();
-  const bool pushed = push(samples - 1);
-  const auto fit = stream.fit(stamps[0]);
-  const std::chrono::duration<double, std::nano> duration =
-      std::chrono::steady_clock::now() - begin;
-  return pushed && fit ? duration.count() : -1.0;
 }
 
 // `values` channel by channel; `out` gets sine, cosine, offset, rss of every channel. 0: success.

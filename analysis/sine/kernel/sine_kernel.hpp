@@ -57,7 +57,7 @@ struct ResidualSlopeSums {
   double eus, euc;
 };
 
-// Orders 0..moment_order of u in the block, for series in the frequency (streaming).
+// Orders 0..moment_order of u in the block, for series in the frequency.
 inline constexpr std::size_t moment_order = 6;
 inline constexpr std::size_t moment_count = moment_order + 1;
 struct DesignMoments {
@@ -113,10 +113,6 @@ struct SineKernel {
   void (*residuals_with_slope)(const double* values, std::size_t n, const BlockBasis& basis,
                                const Parameters& start, ResidualSums& sums,
                                ResidualSlopeSums& slope);
-  bool (*design_moments)(const std::int64_t* stamps, std::size_t n, const TimeAxis& axis,
-                         BlockBasis& basis, DesignMoments& moments);
-  void (*residual_moments)(const double* values, std::size_t n, const BlockBasis& basis,
-                           const Parameters& start, ResidualMoments& moments);
   // Models of `count` columns, `block_samples` apart; columns are zero past the last row up to a
   // multiple of eight, and so are the residuals that are left: y - sum of coefficient times column,
   // and the sum of their squares.

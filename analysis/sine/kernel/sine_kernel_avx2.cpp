@@ -167,8 +167,8 @@ struct EqualCheck {
 
 namespace dyncal::analysis::kernel {
 const SineKernel avx2_kernel{
-    "avx2",           fit_on_grid,         series_on_grid,  fit_block,
-    design,           design_with_slope,   residuals,       residuals_with_slope,
-    design_moments,   residual_moments,    model_residuals, model_products,
-    design_with_time, residuals_with_time, line_sums,       value_range};
+    "avx2",          fit_on_grid,       series_on_grid,   fit_block,
+    design,          design_with_slope, residuals,        residuals_with_slope,
+    model_residuals, model_products,    design_with_time, residuals_with_time,
+    line_sums,       value_range};
 }

@@ -8,7 +8,6 @@
 #include <rapidcheck/gtest.h>
 
 #include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/sine_stream.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -93,29 +92,6 @@ RC_GTEST_PROP(SineProperties, AnotherReferenceInstantOnlyTurnsThePhasor, ()) {
   RC_ASSERT(std::abs(std::remainder(there.phase_rad() - turned, 2.0 * std::numbers::pi)) < 1e-11);
   RC_ASSERT(std::abs(there.amplitude() / here.amplitude() - 1.0) < 1e-11);
   RC_ASSERT(std::abs(there.u_phase_rad() / here.u_phase_rad() - 1.0) < 1e-7);
-}
-
-RC_GTEST_PROP(SineProperties, AStreamCutAnywhereGivesTheSameBits, ()) {
-  const DrawnRecord record = drawn_record();
-  const auto push = [&](SineStream& stream, std::size_t begin, std::size_t end) {
-    const std::vector<std::span<const double>> channels{
-        std::span(record.values).subspan(begin, end - begin)};
-    RC_ASSERT(
-        stream.push(std::span(record.stamps_ns).subspan(begin, end - begin), channels).has_value());
-  };
-  SineStream whole(record.frequency, 1);
-  push(whole, 0, record.values.size());
-  SineStream pieces(record.frequency, 1);
-  for (std::size_t begin = 0; begin < record.values.size();) {
-    const std::size_t end =
-        std::min(record.values.size(), begin + *rc::gen::inRange<std::size_t>(1, 150));
-    push(pieces, begin, end);
-    begin = end;
-  }
-  const auto expected = whole.fit(epoch_ns);
-  const auto found = pieces.fit(epoch_ns);
-  RC_ASSERT(expected.has_value() && found.has_value());
-  RC_ASSERT(same_bits(found->front(), expected->front()));
 }
 
 } // namespace

@@ -61,18 +61,11 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
     SlopeSums first_slope{};
     ASSERT_TRUE(baseline_kernel.design_with_slope(input.stamps.data(), n, input.axis, first_basis,
                                                   first, first_slope));
-    DesignMoments first_moments{};
-    BlockBasis unused{};
-    ASSERT_TRUE(
-        baseline_kernel.design_moments(input.stamps.data(), n, input.axis, unused, first_moments));
     for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
       SCOPED_TRACE(std::string((*kernel)->name) + " n = " + std::to_string(n));
       BlockBasis basis{};
       DesignSums sums{};
       SlopeSums slope{};
-      DesignMoments moments{};
-      EXPECT_TRUE((*kernel)->design_moments(input.stamps.data(), n, input.axis, unused, moments));
-      EXPECT_TRUE(same_bits(moments, first_moments));
       EXPECT_TRUE((*kernel)->design(input.stamps.data(), n, input.axis, basis, sums));
       EXPECT_TRUE(same_bits(sums, first));
       EXPECT_TRUE(
@@ -89,11 +82,8 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
       for (std::size_t j = 0; j < input.start.size(); ++j) {
         ResidualSums expected{}, actual{};
         ResidualSlopeSums expected_slope{}, actual_slope{};
-        ResidualMoments expected_moments{}, actual_moments{};
         baseline_kernel.residuals_with_slope(input.pointers[j], n, first_basis, input.start[j],
                                              expected, expected_slope);
-        baseline_kernel.residual_moments(input.pointers[j], n, first_basis, input.start[j],
-                                         expected_moments);
         (*kernel)->residuals(input.pointers[j], n, basis, input.start[j], actual);
         EXPECT_TRUE(same_bits(actual, expected));
         EXPECT_TRUE(same_bits(together[j], expected));
@@ -101,8 +91,6 @@ TEST(SineKernel, GivesTheSameBitsOnEveryInstructionSet) {
                                         actual_slope);
         EXPECT_TRUE(same_bits(actual, expected));
         EXPECT_TRUE(same_bits(actual_slope, expected_slope));
-        (*kernel)->residual_moments(input.pointers[j], n, basis, input.start[j], actual_moments);
-        EXPECT_TRUE(same_bits(actual_moments, expected_moments));
       }
     }
   }
