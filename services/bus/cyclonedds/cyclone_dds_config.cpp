@@ -43,11 +43,8 @@ std::string discovery(const std::string& own_address, const std::vector<std::str
 // "Internal" settings are documented for users of Cyclone DDS but may change with its version.
 std::string internal() {
   return element("Internal",
-                 // Of a message in fragments only the first would carry it. When that one is lost
-                 // and repaired, Fast DDS 2.9 files the message under two keys and its reader
-                 // never returns from take(). Only the end of an instance needs the hash, and
-                 // dyncal ends none.
-                 element("GenerateKeyhash", "false") +
+                 // Without it Fast DDS does not hear of writers and readers that end.
+                 element("GenerateKeyhash", "true") +
                      // Quick repairs: the defaults make a late joiner on Fast DDS wait, and packet
                      // loss stall for seconds.
                      "<HeartbeatInterval min=\"1 ms\" minsched=\"1 ms\" max=\"1 s\">20 "
