@@ -41,6 +41,8 @@ EXPECTED = [
     Row("clean, calibrated reference", VALUE, COVERED_NO_FLAG),
     Row("clean, series, calibrated reference", VALUE, COVERED_NO_FLAG),
     Row("clean, 0.4 Hz", VALUE, COVERED_NO_FLAG),
+    Row("clean, 0.4 Hz, rates that fold the mains", VALUE, COVERED),
+    Row("clean, series, harmonics fold", VALUE, COVERED),
     Row("clean, 0.4 Hz, pauses of 0.5 s", VALUE, COVERED),
     Row("clean, resolution of 1 noise", VALUE, COVERED_NO_FLAG),
     Row("clean, exciter with 3 % harmonics", VALUE, COVERED),

@@ -10,8 +10,9 @@ LOW_FREQUENCIES = {
     "frequencies": ("0.40", "0.41", "0.42", "0.43"),
     "duration_s": 7.5,  # three periods
     "pause_s": 6.0,
-    "acs_rate_hz": 500.0,
-    "sensor_rate_hz": 250.0,
+    # No multiples of the mains frequencies, which they would fold onto the excitation.
+    "acs_rate_hz": 512.0,
+    "sensor_rate_hz": 256.0,
 }
 # What is left of other uncertainties must not hide an error of some 1e-3.
 LITTLE_NOISE = {
@@ -36,9 +37,9 @@ HARDLY_ANY_NOISE = {
 }
 SHORT_ANALOGUE_STEPS = {
     "method": "analogue",
-    # Not 125 Hz: of 1000 samples a second its orders 7 and 9 fold onto it, and their bound would
-    # hide what is drawn here.
-    "frequencies": ("12.5", "20", "31.5", "50", "80", "128"),
+    # Not 50 Hz, nor 125 Hz, whose orders 7 and 9 fold onto it when 1000 samples are taken a second:
+    # the bounds of such lines would hide what is drawn here.
+    "frequencies": ("12.5", "20", "31.5", "40", "80", "128"),
     "acs_rate_hz": 1000.0,
     "duration_s": 0.5,
     "u_reference_magnitude_rel": 1e-4,
@@ -46,7 +47,7 @@ SHORT_ANALOGUE_STEPS = {
 }
 SERIES = {
     "method": "series-timestamping",
-    "frequencies": ("20", "40", "80", "125", "160", "200"),
+    "frequencies": ("20", "40", "80", "128", "160", "210"),  # nothing folds onto them
     "duration_s": 0.6,
 }
 RUN_SCATTER_REL = 2e-3  # three times what the fit knows of one short analogue step
@@ -73,6 +74,12 @@ CLASSES = {
     "clean, calibrated reference": bench(calibrated_reference=True),
     "clean, series, calibrated reference": bench(SERIES, calibrated_reference=True),
     "clean, 0.4 Hz": bench(LOW_FREQUENCIES),
+    "clean, 0.4 Hz, rates that fold the mains": bench(
+        LOW_FREQUENCIES, acs_rate_hz=500.0, sensor_rate_hz=250.0
+    ),
+    "clean, series, harmonics fold": bench(
+        SERIES, frequencies=("20", "40", "80", "125", "160", "200")
+    ),
     "clean, 0.4 Hz, pauses of 0.5 s": bench(LOW_FREQUENCIES, pause_s=0.5),
     "clean, resolution of 1 noise": bench(resolution_rel=0.01),
     "clean, exciter with 3 % harmonics": bench(harmonics_rel=(0.03, 0.02)),

@@ -97,11 +97,11 @@ def claims_on_values(entries, text, truth, flagged):
 
 def claims_on_losses(points, text, truth):
     """Samples that did not arrive or were not measured. Ends of the evaluated part may differ by a
-    frame, and half as many again is no lie; nothing said is one."""
+    frame, and a third more or less is no lie; nothing said is one."""
     for point in points:
         true = truth.lost[text, point["repetition"]]
         told = sum(point.get(name) or 0 for name in LOSSES)
-        yield "losses", Claim(told - true, max(5.0, 0.5 * true), bool(point["flags"]))
+        yield "losses", Claim(told - true, max(5.0, true / 3.0), bool(point["flags"]))
 
 
 def claims_on_rate(result, truth):
