@@ -177,7 +177,7 @@ std::size_t SeriesHeader::bytes() const {
 Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
   try {
     const auto line = nlohmann::json::parse(json_line);
-    if (line.value("protocol", "") != "dyncal-series" || line.value("version", 0) != 1) {
+    if (line.value("protocol", "") != "dyncal-series" || line.value("version", 0.0) != 1.0) {
       return malformed("'" + shown(json_line) +
                        "' does not announce a series (protocol dyncal-series, version 1)");
     }

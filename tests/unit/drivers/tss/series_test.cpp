@@ -32,7 +32,7 @@ TEST(Series, AHeaderThatCannotBeIsRefused) {
   for (
       const char* text :
       {"", "{}", "[]", "null", "0,\"No error\"", R"({"protocol":"dyncal-series","version":2})",
-       R"({"protocol":5})",
+       R"({"protocol":"dyncal-series","version":1.4e111})", R"({"protocol":5})",
        R"({"protocol":"dyncal-series","version":1,"shot":-1,"nominal_rate_hz":1000.0,"samples":2,"values":"int16","channels":[{"name":"x"}]})",
        R"({"protocol":"dyncal-series","version":1,"shot":1,"nominal_rate_hz":0,"samples":2,"values":"int16","channels":[{"name":"x"}]})",
        R"({"protocol":"dyncal-series","version":1,"shot":1,"nominal_rate_hz":1e3,"samples":1e18,"values":"int16","channels":[{"name":"x"}]})",
