@@ -87,8 +87,9 @@ TEST(ResultJson, ExplainsEveryFlag) {
   EXPECT_EQ(json["points"][0]["flags"][0], "dau: samples lost");
   EXPECT_EQ(json["points"][0]["flag_names"][0], "samples_lost");
   const auto& mean = json["transfer_function"][0];
-  EXPECT_EQ(mean["flag_names"], nlohmann::json({"samples_lost", "polarity_inverted"}));
-  EXPECT_EQ(json["transfer_function"][1]["flag_names"], nlohmann::json({"polarity_inverted"}));
+  EXPECT_EQ(mean["flag_names"], nlohmann::ordered_json({"samples_lost", "polarity_inverted"}));
+  EXPECT_EQ(json["transfer_function"][1]["flag_names"],
+            nlohmann::ordered_json({"polarity_inverted"}));
   EXPECT_TRUE(json["transfer_function"][2]["flags"].empty()); // of the other channel
   EXPECT_EQ(json["channels"][0]["flag_names"][0], "polarity_inverted");
   ASSERT_EQ(json["flags"].size(), 2U);

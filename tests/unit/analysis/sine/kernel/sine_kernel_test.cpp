@@ -205,14 +205,15 @@ TEST(SineKernel, SeesEveryStampThatIsNotLater) {
   }
 }
 
-TEST(SineKernel, SumsModelsOfManyColumnsWithTheSameBitsOnEveryInstructionSet) {
-  constexpr std::size_t count = 11;
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> value;
-  for (std::size_t n = 1; n <= block_samples; n += n < 20 ? 1 : 41) {
-    std::vector<double> columns(count * block_samples), values(n), coefficients(count);
+// Values and the columns of a model of them, drawn.
+struct ColumnModel {
+  static constexpr std::size_t count = 11;
+
+  ColumnModel(std::size_t samples, std::mt19937_64& random)
+      : columns(count * block_samples), values(samples), coefficients(count) {
+    std::normal_distribution<double> value;
     for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t i = 0; i < samples; ++i) {
         columns[k * block_samples + i] = value(random);
       }
       coefficients[k] = value(random);
@@ -220,40 +221,60 @@ TEST(SineKernel, SumsModelsOfManyColumnsWithTheSameBitsOnEveryInstructionSet) {
     for (double& y : values) {
       y = value(random);
     }
-    std::vector<double> first_residuals, first_products;
-    double first_squares = 0.0;
+  }
+
+  std::vector<double> columns, values, coefficients;
+};
+
+// What a kernel makes of it.
+struct ModelSums {
+  ModelSums(const SineKernel& kernel, const ColumnModel& model)
+      : residuals(block_samples), products(ColumnModel::count) {
+    kernel.model_residuals(model.values.data(), model.values.size(), model.columns.data(),
+                           ColumnModel::count, model.coefficients.data(), residuals.data(),
+                           squares);
+    kernel.model_products(residuals.data(), model.values.size(), model.columns.data(),
+                          ColumnModel::count, products.data());
+  }
+
+  std::vector<double> residuals, products;
+  double squares = 0.0;
+};
+
+void expect_exact(const ModelSums& sums, const ColumnModel& model) {
+  long double squares = 0.0L;
+  std::vector<long double> products(ColumnModel::count);
+  for (std::size_t i = 0; i < model.values.size(); ++i) {
+    long double e = model.values[i];
+    for (std::size_t k = 0; k < ColumnModel::count; ++k) {
+      e -= static_cast<long double>(model.coefficients[k]) * model.columns[k * block_samples + i];
+    }
+    ASSERT_NEAR(sums.residuals[i], static_cast<double>(e), 1e-14);
+    squares += e * e;
+    for (std::size_t k = 0; k < ColumnModel::count; ++k) {
+      products[k] += e * model.columns[k * block_samples + i];
+    }
+  }
+  EXPECT_NEAR(sums.squares, static_cast<double>(squares), 1e-14 * sums.squares + 1e-14);
+  for (std::size_t k = 0; k < ColumnModel::count; ++k) {
+    EXPECT_NEAR(sums.products[k], static_cast<double>(products[k]), 1e-12);
+  }
+}
+
+TEST(SineKernel, SumsModelsOfManyColumnsWithTheSameBitsOnEveryInstructionSet) {
+  std::mt19937_64 random(7);
+  for (std::size_t n = 1; n <= block_samples; n += n < 20 ? 1 : 41) {
+    const ColumnModel model(n, random);
+    const ModelSums first(**supported_kernels(), model);
+    expect_exact(first, model);
     for (const SineKernel* const* kernel = supported_kernels(); *kernel; ++kernel) {
       SCOPED_TRACE(std::string((*kernel)->name) + " n = " + std::to_string(n));
-      std::vector<double> residuals(block_samples), products(count);
-      double squares = 0.0;
-      (*kernel)->model_residuals(values.data(), n, columns.data(), count, coefficients.data(),
-                                 residuals.data(), squares);
-      (*kernel)->model_products(residuals.data(), n, columns.data(), count, products.data());
-      if (first_products.empty()) {
-        first_residuals = residuals;
-        first_products = products;
-        first_squares = squares;
-        long double expected_squares = 0.0L;
-        std::vector<long double> expected_products(count);
-        for (std::size_t i = 0; i < n; ++i) {
-          long double e = values[i];
-          for (std::size_t k = 0; k < count; ++k) {
-            e -= static_cast<long double>(coefficients[k]) * columns[k * block_samples + i];
-          }
-          ASSERT_NEAR(residuals[i], static_cast<double>(e), 1e-14);
-          expected_squares += e * e;
-          for (std::size_t k = 0; k < count; ++k) {
-            expected_products[k] += e * columns[k * block_samples + i];
-          }
-        }
-        EXPECT_NEAR(squares, static_cast<double>(expected_squares), 1e-14 * squares + 1e-14);
-        for (std::size_t k = 0; k < count; ++k) {
-          EXPECT_NEAR(products[k], static_cast<double>(expected_products[k]), 1e-12);
-        }
-      }
-      EXPECT_EQ(std::memcmp(residuals.data(), first_residuals.data(), n * sizeof(double)), 0);
-      EXPECT_EQ(std::memcmp(products.data(), first_products.data(), count * sizeof(double)), 0);
-      EXPECT_EQ(squares, first_squares);
+      const ModelSums sums(**kernel, model);
+      EXPECT_EQ(std::memcmp(sums.residuals.data(), first.residuals.data(), n * sizeof(double)), 0);
+      EXPECT_EQ(std::memcmp(sums.products.data(), first.products.data(),
+                            ColumnModel::count * sizeof(double)),
+                0);
+      EXPECT_EQ(sums.squares, first.squares);
     }
   }
 }
