@@ -88,8 +88,7 @@ constexpr std::array rows{
     Row{ResultFlag::mains_not_separated, "mains_not_separated",
         "cannot be told from the excitation",
         "u holds nothing for hum here: the channel never showed it apart from an excitation in "
-        "this "
-        "run; add a step at another frequency, or take a frequency farther from the mains"},
+        "this run; add a step at another frequency, or take a frequency farther from the mains"},
     Row{ResultFlag::harmonic_not_separated, "harmonic_not_separated",
         "falls on the excitation at this sample rate",
         "u holds nothing for distortion folded there: no step of this run shows that harmonic by "
