@@ -11,6 +11,7 @@
 //   results  transient local, the newest of every key
 //   state    transient local, the newest of every key
 //   command  volatile, every one
+//   catch_up volatile, every one: what a source sends again to one reader
 //
 // Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one
 // thread at a time, except Reader's wake-up, which comes from the vendor's threads and only

@@ -1,4 +1,4 @@
-// The numbers behind the four QoS profiles, the same for every vendor; idl/README.md explains them
+// The numbers behind the QoS profiles, the same for every vendor; idl/README.md explains them
 // to users.
 #pragma once
 
@@ -18,6 +18,9 @@ inline constexpr int late_joiner_blocks = 1500;
 // part of it is stuck.
 inline constexpr int untaken_blocks = 1500;
 
+// Blocks of one source on their way to who catches up: the source waits for room.
+inline constexpr int catch_up_blocks = 250;
+
 // The same for commands to one target.
 inline constexpr int untaken_commands = 1000;
 
@@ -36,6 +39,8 @@ struct QosProfile {
     return {false, true, late_joiner_blocks, untaken_blocks};
   case Profile::command:
     return {false, true, untaken_commands, untaken_commands};
+  case Profile::catch_up:
+    return {false, true, catch_up_blocks, catch_up_blocks};
   case Profile::results:
   case Profile::state:
     break;

@@ -8,10 +8,12 @@ namespace {
 // Bounds as written in idl/dyncal.idl.
 constexpr std::size_t name_bound = 64;     // bench, source, run, service, target
 constexpr std::size_t channel_bound = 128; // "source/channel"
+constexpr std::size_t asker_bound = 128;   // service and run
 
 const KeyLayout two_names{{name_bound, name_bound}, 0};
 const KeyLayout three_names{{name_bound, name_bound, name_bound}, 0};
 const KeyLayout names_and_channel{{name_bound, name_bound, channel_bound}, 0};
+const KeyLayout names_and_asker{{name_bound, name_bound, asker_bound}, 0};
 const KeyLayout names_channel_and_step{{name_bound, name_bound, channel_bound}, 2};
 
 } // namespace
@@ -90,6 +92,13 @@ template <>
 const TypeSupport& type_support<wire::Command>() {
   static const TypeSupport support =
       make_type_support<wire::Command>("dyncal::wire::Command", two_names);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::CatchUpRequest>() {
+  static const TypeSupport support =
+      make_type_support<wire::CatchUpRequest>("dyncal::wire::CatchUpRequest", names_and_asker);
   return support;
 }
 

@@ -71,5 +71,7 @@ template <>
 const TypeSupport& type_support<wire::ServiceStatus>();
 template <>
 const TypeSupport& type_support<wire::Command>();
+template <>
+const TypeSupport& type_support<wire::CatchUpRequest>();
 
 } // namespace dyncal::bus

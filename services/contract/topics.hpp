@@ -9,7 +9,7 @@
 namespace dyncal::bus {
 
 // `live_samples` is for readers of samples that want none of those before them.
-enum class Profile { samples, live_samples, results, state, command };
+enum class Profile { samples, live_samples, results, state, command, catch_up };
 
 template <class T>
 struct Topic {
@@ -42,6 +42,9 @@ inline constexpr Topic<wire::SampleClockReport> sample_clock_report{"SampleClock
                                                                     Profile::results};
 inline constexpr Topic<wire::ServiceStatus> service_status{"ServiceStatus", Profile::state};
 inline constexpr Topic<wire::Command> command{"Command", Profile::command};
+inline constexpr Topic<wire::CatchUpRequest> catch_up_request{"CatchUpRequest", Profile::command};
+inline constexpr Topic<wire::SampleBlock> catch_up_samples{"CatchUpSamples", Profile::catch_up};
+inline constexpr Topic<wire::TriggeredRecord> catch_up_records{"CatchUpRecords", Profile::catch_up};
 
 } // namespace topics
 } // namespace dyncal::bus
