@@ -2,9 +2,13 @@
 // for every run it hears of.
 //
 // Runs of one bench are served one after the other (run_session.hpp); benches know nothing of each
-// other. Only runs that are PLANNED when they are first heard of are evaluated: of one that began
-// before, samples are lost. Finished runs are kept for late joiners, the newest `kept_runs` of
-// every bench.
+// other. Finished runs are kept for late joiners, the newest `kept_runs` of every bench.
+//
+// Several services share the runs of a network: one leads a run, the others stand by
+// (other_analyses.hpp). A run that goes on without a leader, because that one has died or this
+// service was restarted, is taken over from its beginning, with what the sources have kept of it.
+// Of a leader with other software no run is taken over: its results and ours would stand side by
+// side.
 //
 // serve() runs in the caller's thread until `stop` is requested; nothing else may be called
 // meanwhile.
@@ -12,11 +16,12 @@
 
 #include <map>
 #include <memory>
-#include <set>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "services/analysis/other_analyses.hpp"
 #include "services/analysis/run_session.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
@@ -40,14 +45,31 @@ private:
     bus::Reader<wire::Excitation> excitation;
     bus::Reader<wire::SourceDescription> description;
     bus::Reader<wire::SourceStatus> status;
+    bus::Reader<wire::ServiceStatus> analyses;
   };
-  using RunKey = std::pair<std::string, std::string>; // bench, run
+  using Instant = bus::Clock::Instant;
+
+  // A run that another service leads, or whose leader is not known yet.
+  struct FollowedRun {
+    wire::Measurement measurement;
+    std::optional<wire::Excitation> excitation;
+    Instant since;
+    Instant heard; // of the run
+    int messages = 0;
+    bool left_alone = false; // its leader had other software
+  };
 
   AnalysisService(bus::Participant participant, AnalysisIdentity identity, bus::Clock& clock);
   Expected<void> open_readers();
   void take_messages();
   void take_measurement(const wire::Measurement& measurement);
-  void begin_run(const RunKey& key, const wire::Measurement& measurement);
+  void follow(const RunKey& key, const wire::Measurement& measurement);
+  [[nodiscard]] bool follows_bench(const std::string& bench) const;
+  void begin_run(const RunKey& key, const wire::Measurement& measurement,
+                 SourceStreams::Begin begin);
+  void give_way();
+  void take_over();
+  [[nodiscard]] bool is_deserted(const RunKey& key, const FollowedRun& run, Instant now) const;
   // Drops the oldest finished runs beyond kept_runs; false: none of them is finished.
   bool make_room(const std::string& bench);
   // Null if none of the runs of this bench that began earlier goes on.
@@ -59,7 +81,8 @@ private:
   std::map<std::string, KnownSources> benches_;
   std::map<RunKey, std::unique_ptr<RunSession>> runs_;
   std::vector<RunKey> order_; // of runs_, oldest first
-  std::set<RunKey> ignored_;  // began before this service
+  OtherAnalyses others_;
+  std::map<RunKey, FollowedRun> followed_;
 };
 
 } // namespace dyncal::services

@@ -23,16 +23,17 @@ Expected<RunPublisher> RunPublisher::open(bus::Participant& participant, bus::Cl
                                           std::string run) {
   namespace topics = bus::topics;
   auto command = participant.writer(topics::command, bench);
+  auto catch_up = participant.writer(topics::catch_up_request, bench);
   auto status = participant.writer(topics::service_status, bench);
   auto result = participant.writer(topics::calibration_result, bench);
   auto transfer = participant.writer(topics::transfer_function, bench);
   auto report = participant.writer(topics::sample_clock_report, bench);
-  if (auto error = first_error(command, status, result, transfer, report)) {
+  if (auto error = first_error(command, catch_up, status, result, transfer, report)) {
     return fail(*error);
   }
   return RunPublisher(clock, std::move(identity), std::move(bench), std::move(run),
-                      Writers{std::move(*command), std::move(*status), std::move(*result),
-                              std::move(*transfer), std::move(*report)});
+                      Writers{std::move(*command), std::move(*catch_up), std::move(*status),
+                              std::move(*result), std::move(*transfer), std::move(*report)});
 }
 
 void RunPublisher::ask_for_answer(const std::string& source) {
@@ -43,6 +44,19 @@ void RunPublisher::ask_for_answer(const std::string& source) {
   command.run(run_);
   command.sender(identity_.service);
   write(writers_.command, command, command_write_limit);
+}
+
+void RunPublisher::ask_to_catch_up(const std::string& source, const std::string& asker,
+                                   const CatchUp& what) {
+  wire::CatchUpRequest request;
+  request.bench(bench_);
+  request.source(source);
+  request.asker(asker);
+  request.request(what.request);
+  request.run(run_);
+  request.session(what.behind.session);
+  request.after(what.behind.number);
+  write(writers_.catch_up, request, command_write_limit);
 }
 
 void RunPublisher::publish(const RunState& state) {

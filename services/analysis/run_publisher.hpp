@@ -12,6 +12,7 @@
 #include <string>
 
 #include "idl/dyncal.h"
+#include "services/analysis/stream_follower.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
@@ -41,6 +42,7 @@ public:
                                                    std::string run);
 
   void ask_for_answer(const std::string& source);
+  void ask_to_catch_up(const std::string& source, const std::string& asker, const CatchUp& what);
   void publish(const RunState& state);
   void publish(const Recipe& recipe, const EvaluationOutput& output);
   [[nodiscard]] std::uint64_t results() const { return results_; }
@@ -48,6 +50,7 @@ public:
 private:
   struct Writers {
     bus::Writer<wire::Command> command;
+    bus::Writer<wire::CatchUpRequest> catch_up;
     bus::Writer<wire::ServiceStatus> status;
     bus::Writer<wire::CalibrationResult> result;
     bus::Writer<wire::TransferFunction> transfer_function;

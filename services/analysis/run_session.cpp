@@ -1,5 +1,8 @@
 #include "services/analysis/run_session.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -12,11 +15,14 @@ using namespace std::chrono_literals;
 
 constexpr auto command_interval = 250ms;
 constexpr auto status_interval = 1s;
+constexpr auto max_pause = 1s;              // between two calls of work() of a process that runs
+constexpr std::size_t max_announced = 4096; // one implies that those before it are over
 
 } // namespace
 
 Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& context,
-                                                         const wire::Measurement& measurement) {
+                                                         const wire::Measurement& measurement,
+                                                         SourceStreams::Begin begin) {
   auto publisher =
       RunPublisher::open(context.participant, context.clock, context.identity,
                          measurement.bench().to_string(), measurement.run().to_string());
@@ -24,7 +30,7 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& 
     return fail(publisher.error());
   }
   std::unique_ptr<RunSession> session(new RunSession(context, measurement, std::move(*publisher)));
-  session->prepare(measurement);
+  session->prepare(measurement, begin);
   return session;
 }
 
@@ -33,36 +39,47 @@ RunSession::RunSession(const AnalysisContext& context, const wire::Measurement& 
     : participant_(context.participant), clock_(context.clock), wake_up_(context.wake_up),
       bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
       conductor_(measurement.conductor()), publisher_(std::move(publisher)),
-      measurement_(measurement.state()), created_(clock_.now()), arms_since_(created_),
-      last_heard_of_run_(created_), last_progress_(created_), next_command_(created_),
-      next_status_(created_ + status_interval) {}
+      measurement_(measurement), created_(clock_.now()), arms_since_(created_),
+      last_heard_of_run_(created_), last_progress_(created_), worked_(created_),
+      present_since_(created_), next_command_(created_), next_status_(created_ + status_interval) {}
 
-void RunSession::prepare(const wire::Measurement& measurement) {
+void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Begin begin) {
   auto recipe = parse_recipe(measurement);
   if (!recipe) {
     refuse(recipe.error().message);
     return;
   }
-  streams_.emplace(participant_, wake_up_, bench_, run_, recipe->sources());
   evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), EvaluationLimits{.ahead = true});
-  spdlog::info("bench {}, run {}: {} steps planned, waiting for its sources", bench_, run_,
-               measurement.steps().size());
+  streams_.emplace(participant_, wake_up_, bench_, run_, *evaluator_, begin);
+  if (begin == SourceStreams::Begin::behind) {
+    status_.arm = wire::ARM_ARMED;
+    spdlog::info("bench {}, run {}: began before this service; asking its sources for what they "
+                 "have sent",
+                 bench_, run_);
+    if (excitation_over()) {
+      excitation_ended_ = measurement_.state() == wire::MEASUREMENT_ABORTED;
+    }
+  } else {
+    spdlog::info("bench {}, run {}: {} steps planned, waiting for its sources", bench_, run_,
+                 measurement.steps().size());
+  }
   publisher_.publish(status_);
 }
 
 void RunSession::update(const wire::Measurement& measurement) {
   last_heard_of_run_ = clock_.now();
-  if (measurement.state() == measurement_) {
+  if (measurement.state() == measurement_.state()) {
     return;
   }
-  measurement_ = measurement.state();
+  measurement_ = measurement;
   if (!evaluator_ || !excitation_over()) {
     return;
   }
-  const bool aborted = measurement_ == wire::MEASUREMENT_ABORTED;
+  const bool aborted = measurement_.state() == wire::MEASUREMENT_ABORTED;
   spdlog::info("bench {}, run {}: {}", bench_, run_, aborted ? "aborted" : "excitation done");
-  evaluator_->end_of_excitation(aborted);
+  excitation_ended_ = aborted;
   if (status_.health == wire::HEALTH_FAILED) {
+    evaluator_->end_of_excitation(aborted);
     evaluator_->finish_now(); // a source is lost: nothing more will come
   }
   last_progress_ = clock_.now();
@@ -71,7 +88,45 @@ void RunSession::update(const wire::Measurement& measurement) {
 void RunSession::announce(const wire::Excitation& excitation) {
   excited_by_steps_ = true;
   if (evaluator_) {
-    evaluator_->announce(from_message(excitation));
+    announced_.push_back(from_message(excitation));
+    if (announced_.size() > max_announced) {
+      announced_.pop_front();
+    }
+  }
+}
+
+// The time of a process that was stopped is not the silence of others.
+void RunSession::note_own_absence(Instant now) {
+  if (now - worked_ > max_pause) {
+    spdlog::warn("bench {}, run {}: this service did not work for {:.1f} s", bench_, run_,
+                 std::chrono::duration<double>(now - worked_).count());
+    present_since_ = now;
+    last_heard_of_run_ = std::max(last_heard_of_run_, now - (runner_limit - patience));
+    last_progress_ = now;
+  }
+  worked_ = now;
+}
+
+// What was announced is of the samples that have come: a step that is over shows in a source within
+// some seconds of its own time (run_records.hpp).
+void RunSession::catch_up(Instant now) {
+  auto due = streams_->requests_due(now);
+  if (!due) {
+    report(wire::HEALTH_FAILED, due.error().message);
+    return;
+  }
+  for (const SourceStreams::Request& request : *due) {
+    publisher_.ask_to_catch_up(request.source, streams_->asker(), request.what);
+  }
+  if (streams_->is_catching_up()) {
+    return;
+  }
+  for (; !announced_.empty(); announced_.pop_front()) {
+    evaluator_->announce(announced_.front());
+  }
+  if (const auto aborted = std::exchange(excitation_ended_, std::nullopt)) {
+    evaluator_->end_of_excitation(*aborted);
+    last_progress_ = now;
   }
 }
 
@@ -80,6 +135,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     return;
   }
   const Instant now = clock_.now();
+  note_own_absence(now);
   if (before != nullptr) {
     wait_for_bench(*before, now);
   } else {
@@ -89,6 +145,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     arm(sources, now);
   }
   if (status_.arm == wire::ARM_ARMED) {
+    catch_up(now);
     watch_sources(now);
     watch_level();
     evaluate(now);
@@ -118,9 +175,9 @@ void RunSession::wait_for_bench(RunSession& before, Instant now) {
 void RunSession::give_way_to(const std::string& next) {
   const bool died = !excitation_over();
   if (died && status_.health == wire::HEALTH_OK) {
-    report_failure(fmt::format("nothing was heard of this run for {} s; its bench was given to "
-                               "run '{}'",
-                               bench_limit.count(), next));
+    report(wire::HEALTH_FAILED,
+           fmt::format("nothing was heard of this run for {} s; its bench was given to run '{}'",
+                       bench_limit.count(), next));
   }
   evaluator_->end_of_excitation(died);
   evaluator_->finish_now();
@@ -128,11 +185,11 @@ void RunSession::give_way_to(const std::string& next) {
 }
 
 void RunSession::take_samples(const KnownSources& sources, Instant now) {
-  if (const auto described = streams_->take_descriptions(sources, *evaluator_); !described) {
+  if (const auto described = streams_->take_descriptions(sources, now); !described) {
     refuse(described.error().message);
     return;
   }
-  streams_->take_samples(now, *evaluator_);
+  streams_->take_samples(now);
 }
 
 void RunSession::arm(const KnownSources& sources, Instant now) {
@@ -155,22 +212,49 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
 }
 
 void RunSession::watch_sources(Instant now) {
-  if (measurement_ != wire::MEASUREMENT_RUNNING || status_.health != wire::HEALTH_OK ||
+  const bool goes_on = measurement_.state() == wire::MEASUREMENT_RUNNING ||
+                       (measurement_.state() == wire::MEASUREMENT_DONE && excited_by_steps_);
+  if (!goes_on || status_.health == wire::HEALTH_FAILED ||
       now - last_heard_of_run_ > runner_limit) {
     return;
   }
-  if (auto lost = streams_->lost_source(now, last_progress_, silence_limit, excited_by_steps_)) {
-    report_failure(std::move(*lost));
+  if (const auto recovered = streams_->recovered(); recovered != recovered_) {
+    recovered_ = recovered;
+    last_progress_ = now;
+  }
+  auto lost =
+      streams_->lost_source(now, std::max(last_progress_, present_since_), silence_limit,
+                            excited_by_steps_ && measurement_.state() == wire::MEASUREMENT_RUNNING);
+  if (!lost) {
+    if (status_.health == wire::HEALTH_WAITING) {
+      spdlog::info("bench {}, run {}: all sources are back", bench_, run_);
+      last_progress_ = now;
+      report(wire::HEALTH_OK, "");
+    }
+  } else if (lost->may_come_back) {
+    wait_for_source(std::move(lost->message), now);
+  } else {
+    report(wire::HEALTH_FAILED, std::move(lost->message));
+  }
+}
+
+void RunSession::wait_for_source(std::string message, Instant now) {
+  if (status_.health == wire::HEALTH_OK) {
+    waiting_since_ = now;
+    report(wire::HEALTH_WAITING, std::move(message));
+  } else if (now - std::max(waiting_since_, present_since_) > patience) {
+    report(wire::HEALTH_FAILED,
+           fmt::format("{}, and nothing more for {} s", message, patience.count()));
   }
 }
 
 // The conductor switches the output off as soon as it hears of it.
 void RunSession::watch_level() {
-  if (measurement_ != wire::MEASUREMENT_RUNNING || status_.health != wire::HEALTH_OK) {
+  if (measurement_.state() != wire::MEASUREMENT_RUNNING || status_.health == wire::HEALTH_FAILED) {
     return;
   }
   if (auto excess = evaluator_->excess_of_level()) {
-    report_failure(std::move(*excess));
+    report(wire::HEALTH_FAILED, std::move(*excess));
   }
 }
 
@@ -201,7 +285,8 @@ void RunSession::finish() {
 
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
-  const bool quiet = excitation_over() && now - last_progress_ > quiet_limit;
+  const bool quiet = excitation_over() && status_.health != wire::HEALTH_WAITING &&
+                     now - last_progress_ > quiet_limit;
   if (!runner_lost && !quiet) {
     return;
   }
@@ -214,10 +299,12 @@ void RunSession::end_overdue(Instant now) {
   wake_up_->ring();
 }
 
-void RunSession::report_failure(std::string message) {
-  status_.health = wire::HEALTH_FAILED;
+void RunSession::report(wire::HealthState health, std::string message) {
+  status_.health = health;
   status_.message = std::move(message);
-  spdlog::warn("bench {}, run {}: {}", bench_, run_, status_.message);
+  if (!status_.message.empty()) {
+    spdlog::warn("bench {}, run {}: {}", bench_, run_, status_.message);
+  }
   publisher_.publish(status_);
 }
 

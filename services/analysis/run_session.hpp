@@ -5,10 +5,16 @@
 // silent, and has answered the ARM command in its own sample stream, so commands arrive there and
 // samples arrive here (idl/README.md, "The run protocol").
 //
-// Limits: a run that is not armed within `arm_limit` is refused with one sentence. While it is
-// RUNNING, a live source that sent nothing for `silence_limit` fails it. Once the excitation is
-// over and nothing was published for `quiet_limit`, or nothing was heard of the run for
-// `runner_limit`, it ends with what there is.
+// Limits: a run that is not armed within `arm_limit` is refused with one sentence. A live source
+// that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to `patience`, then
+// FAILED. Once the excitation is over and nothing was published for `quiet_limit`, or nothing was
+// heard of the run for `runner_limit`, it ends with what there is. Time in which this process did
+// not work itself (stopped, or without the processor) counts for nobody's silence.
+//
+// A session that begins in the middle of its run (the service was started late, or another one has
+// died) asks every source for what it has sent since its answer, and gives the results that the
+// other would have: the same samples, the same bits. What was announced meanwhile counts when the
+// samples have come, here and after a link was down (stream_follower.hpp).
 //
 // One bench, one run: what one run excites, another would take for its own. A run that finds
 // another of its bench before it waits for the end of that one for `bench_limit`, and is refused as
@@ -20,6 +26,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,14 +53,19 @@ public:
   static constexpr std::chrono::seconds arm_limit{6};
   static constexpr std::chrono::seconds bench_limit{5};
   static constexpr std::chrono::seconds silence_limit{5};
+  static constexpr std::chrono::seconds patience{120};
   static constexpr std::chrono::seconds quiet_limit{8};
-  static constexpr std::chrono::seconds runner_limit{15};
+  static constexpr std::chrono::seconds runner_limit{135}; // it may wait for `patience`, too
 
   // Fails (network) as writers do. A recipe that cannot be evaluated makes a session that is
   // refused.
   [[nodiscard]] static Expected<std::unique_ptr<RunSession>>
-  create(const AnalysisContext& context, const wire::Measurement& measurement);
+  create(const AnalysisContext& context, const wire::Measurement& measurement,
+         SourceStreams::Begin begin = SourceStreams::Begin::with_answer);
 
+  [[nodiscard]] bool armed() const { return status_.arm == wire::ARM_ARMED; }
+  // As it came last.
+  [[nodiscard]] const wire::Measurement& measurement() const { return measurement_; }
   [[nodiscard]] bool finished() const {
     return status_.arm == wire::ARM_FINISHED || status_.arm == wire::ARM_REFUSED;
   }
@@ -69,8 +81,10 @@ private:
 
   RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
              RunPublisher publisher);
-  void prepare(const wire::Measurement& measurement);
+  void prepare(const wire::Measurement& measurement, SourceStreams::Begin begin);
+  void note_own_absence(Instant now);
   void take_samples(const KnownSources& sources, Instant now);
+  void catch_up(Instant now);
   void wait_for_bench(RunSession& before, Instant now);
   // Ends this run for the next one.
   void give_way_to(const std::string& next);
@@ -80,10 +94,12 @@ private:
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
-  void report_failure(std::string message);
+  void report(wire::HealthState health, std::string message);
+  void wait_for_source(std::string message, Instant now);
   void refuse(std::string message);
   [[nodiscard]] bool excitation_over() const {
-    return measurement_ == wire::MEASUREMENT_DONE || measurement_ == wire::MEASUREMENT_ABORTED;
+    return measurement_.state() == wire::MEASUREMENT_DONE ||
+           measurement_.state() == wire::MEASUREMENT_ABORTED;
   }
 
   bus::Participant& participant_;
@@ -94,14 +110,21 @@ private:
   std::string conductor_;
   RunPublisher publisher_;
   RunState status_;
-  wire::MeasurementState measurement_;
+  wire::Measurement measurement_;
   bool excited_by_steps_ = false; // by a generator; files and excitation by hand announce no steps
   std::unique_ptr<RunEvaluator> evaluator_; // until the run is finished or refused
   std::optional<SourceStreams> streams_;    // as long
+  // What was announced while samples were still to be caught up with.
+  std::deque<StepAnnouncement> announced_;
+  std::optional<bool> excitation_ended_; // true: aborted
   Instant created_;
   Instant arms_since_; // since when it has the bench to itself
   Instant last_heard_of_run_;
   Instant last_progress_;
+  Instant worked_;              // when work() was called last
+  Instant present_since_;       // since when it has been called without a break
+  Instant waiting_since_{};     // for a source, while WAITING
+  std::uint64_t recovered_ = 0; // messages that had to be asked for
   Instant next_command_;
   Instant next_status_;
 };

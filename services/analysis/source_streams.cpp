@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "services/contract/session_number.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/source_kind.hpp"
+#include "services/contract/topics.hpp"
 #include "services/contract/triggered_record.hpp"
 
 namespace dyncal::services {
@@ -25,48 +27,65 @@ bool is_silent(const KnownSource& source) {
 } // namespace
 
 SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                             std::string bench, std::string run,
-                             const std::vector<std::string>& sources)
+                             std::string bench, std::string run, RunEvaluator& evaluator,
+                             Begin begin)
     : participant_(participant), wake_up_(std::move(wake_up)), bench_(std::move(bench)),
-      run_(std::move(run)) {
-  for (const std::string& source : sources) {
+      run_(std::move(run)), asker_(fmt::format("catch-up/{:016x}", random_session())),
+      evaluator_(evaluator), begin_(begin) {
+  for (const std::string& source : evaluator_.recipe().sources()) {
     streams_.emplace(source, Stream{});
   }
 }
 
-Expected<void> SourceStreams::take_descriptions(const KnownSources& known,
-                                                RunEvaluator& evaluator) {
+Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Instant now) {
   for (auto& [name, stream] : streams_) {
     const auto source = known.find(name);
     if (source == known.end() || !source->second.description ||
         source->second.description == stream.description) {
       continue;
     }
-    if (auto described = describe(stream, *source->second.description, evaluator); !described) {
+    if (auto described = describe(name, stream, *source->second.description, now); !described) {
       return described;
     }
   }
   return {};
 }
 
-Expected<void> SourceStreams::describe(Stream& stream, const wire::SourceDescription& description,
-                                       RunEvaluator& evaluator) {
+Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
+                                       const wire::SourceDescription& description, Instant now) {
   const bool same_session = stream.description &&
                             stream.description->session() == description.session() &&
-                            !stream.triggered;
+                            !is_triggered(stream);
   stream.description = description;
   if (same_session) {
     return {}; // what its samples mean was known from the beginning
   }
-  if (auto accepted =
-          evaluator.describe(description.source().to_string(), from_message(description));
-      !accepted) {
+  if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
     return accepted;
   }
-  stream.described = true;
-  stream.triggered = is_triggered(from_wire(description.kind()));
-  return stream.triggered ? open_reader(record_readers_, description.kind())
-                          : open_reader(block_readers_, description.kind());
+  const bool triggered = services::is_triggered(from_wire(description.kind()));
+  if (!stream.follower) {
+    stream.follower.emplace(make_follower(name, triggered));
+    if (begin_ == Begin::behind) {
+      std::visit([&](auto& follower) { follower.begin_behind(now); }, *stream.follower);
+    }
+  }
+  return triggered ? open_reader(record_readers_, description.kind())
+                   : open_reader(block_readers_, description.kind());
+}
+
+SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bool triggered) {
+  if (triggered) {
+    return StreamFollower<wire::TriggeredRecord>(run_, asker_,
+                                                 [this, name](const wire::TriggeredRecord& record) {
+                                                   if (record.run() == run_) {
+                                                     evaluator_.add(name, from_message(record));
+                                                   }
+                                                 });
+  }
+  return StreamFollower<wire::SampleBlock>(
+      run_, asker_,
+      [this, name](const wire::SampleBlock& block) { evaluator_.add(name, view_block(block)); });
 }
 
 template <class Message>
@@ -84,56 +103,106 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
   return {};
 }
 
-void SourceStreams::take_samples(Instant now, RunEvaluator& evaluator) {
+Expected<void> SourceStreams::open_answer_readers() {
+  auto blocks = participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_);
+  auto records = participant_.reader(bus::topics::catch_up_records, asker_, wake_up_);
+  if (auto error = first_error(blocks, records)) {
+    return fail(*error);
+  }
+  answer_readers_.emplace(AnswerReaders{std::move(*blocks), std::move(*records)});
+  return {};
+}
+
+void SourceStreams::take_samples(Instant now) {
+  const auto live = [&](Stream& stream, const auto& message, auto& follower) {
+    stream.twins.add(message.session());
+    follower.take_live(message, now);
+  };
+  const auto again = [&](Stream& /*stream*/, const auto& message, auto& follower) {
+    follower.take_again(message, now);
+  };
+  if (answer_readers_) {
+    take(answer_readers_->blocks, again);
+    take(answer_readers_->records, again);
+  }
   for (auto& [kind, reader] : block_readers_) {
-    take(reader, now, evaluator);
+    take(reader, live);
   }
   for (auto& [kind, reader] : record_readers_) {
-    take(reader, now, evaluator);
+    take(reader, live);
   }
 }
 
-template <class Message>
-void SourceStreams::take(bus::Reader<Message>& reader, Instant now, RunEvaluator& evaluator) {
+template <class Message, class Take>
+void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
   reader.take([&](const Message& message) {
     // Another bench's block in this bench's partition is not of this bench.
     const auto found =
         message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
-    if (found == streams_.end()) {
+    if (found == streams_.end() || !found->second.follower) {
       return;
     }
-    Stream& stream = found->second;
-    stream.twins.add(message.session());
-    stream.answered = stream.answered || message.acknowledged_run() == run_;
-    if (stream.answered) {
-      stream.last_sent = now;
-      stream.ended = message.end_of_stream();
-      hand_over(found->first, message, evaluator);
+    if (auto* follower = std::get_if<StreamFollower<Message>>(&*found->second.follower)) {
+      take(found->second, message, *follower);
     }
   });
 }
 
-void SourceStreams::hand_over(const std::string& source, const wire::SampleBlock& block,
-                              RunEvaluator& evaluator) const {
-  evaluator.add(source, view_block(block));
-}
-
-void SourceStreams::hand_over(const std::string& source, const wire::TriggeredRecord& record,
-                              RunEvaluator& evaluator) const {
-  if (record.run() == run_) {
-    evaluator.add(source, from_message(record));
+Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instant now) {
+  std::vector<Request> due;
+  for (auto& [name, stream] : streams_) {
+    if (!stream.follower) {
+      continue;
+    }
+    if (auto what = std::visit([&](auto& one) { return one.due(now); }, *stream.follower)) {
+      due.push_back({name, std::move(*what)});
+    }
   }
+  if (!due.empty() && !answer_readers_) {
+    if (auto opened = open_answer_readers(); !opened) {
+      return fail(opened.error());
+    }
+  }
+  return due;
 }
 
 void SourceStreams::close_readers() {
   block_readers_.clear();
   record_readers_.clear();
+  answer_readers_.reset();
+}
+
+bool SourceStreams::is_triggered(const Stream& stream) {
+  return stream.follower &&
+         std::holds_alternative<StreamFollower<wire::TriggeredRecord>>(*stream.follower);
+}
+
+bool SourceStreams::has_answered(const Stream& stream) {
+  return stream.follower &&
+         std::visit([](const auto& one) { return one.answered(); }, *stream.follower);
+}
+
+bool SourceStreams::is_catching_up() const {
+  return std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) {
+    const auto& follower = stream.second.follower;
+    return follower && std::visit([](const auto& one) { return one.catching_up(); }, *follower);
+  });
+}
+
+std::uint64_t SourceStreams::recovered() const {
+  std::uint64_t messages = 0;
+  for (const auto& [name, stream] : streams_) {
+    messages += stream.follower
+                    ? std::visit([](const auto& one) { return one.recovered(); }, *stream.follower)
+                    : 0;
+  }
+  return messages;
 }
 
 std::vector<std::string> SourceStreams::unanswered() const {
   std::vector<std::string> names;
   for (const auto& [name, stream] : streams_) {
-    if (stream.described && !stream.answered) {
+    if (stream.follower && !has_answered(stream)) {
       names.push_back(name);
     }
   }
@@ -156,11 +225,11 @@ std::string SourceStreams::what_is_missing(const KnownSources& known) const {
     if (stream.twins.twins()) {
       return two_send_as(name);
     }
-    if (!stream.described) {
+    if (!stream.follower) {
       return fmt::format("source '{}' of bench '{}' has not described its channels yet{}", name,
                          bench_, reason_given_by(source));
     }
-    if (!stream.answered) {
+    if (!has_answered(stream)) {
       return fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
                          "samples get through from its host to this one?",
                          name, bench_);
@@ -175,20 +244,26 @@ std::string SourceStreams::two_send_as(const std::string& source) const {
                      source, bench_);
 }
 
-std::optional<std::string> SourceStreams::lost_source(Instant now, Instant watched_from,
-                                                      std::chrono::seconds silence_limit,
-                                                      bool may_not_end) const {
+std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watched_from,
+                                                     std::chrono::seconds silence_limit,
+                                                     bool may_not_end) const {
   for (const auto& [name, stream] : streams_) {
     if (stream.twins.twins()) {
-      return two_send_as(name);
+      return LostSource{two_send_as(name), false};
     }
-    if (stream.ended && may_not_end) {
-      return fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_);
+    if (!stream.follower) {
+      return LostSource{
+          fmt::format("source '{}' of bench '{}' is not on the network", name, bench_)};
     }
-    if (!stream.ended && !stream.triggered &&
-        now - std::max(stream.last_sent, watched_from) > silence_limit) {
-      return fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name, bench_,
-                         silence_limit.count());
+    const bool ended = std::visit([](const auto& one) { return one.ended(); }, *stream.follower);
+    const auto heard = std::visit([](const auto& one) { return one.heard(); }, *stream.follower);
+    if (ended && may_not_end) {
+      return LostSource{
+          fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_)};
+    }
+    if (!ended && !is_triggered(stream) && now - std::max(heard, watched_from) > silence_limit) {
+      return LostSource{fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name,
+                                    bench_, silence_limit.count())};
     }
   }
   return std::nullopt;

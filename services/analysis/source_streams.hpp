@@ -2,17 +2,22 @@
 // what each has sent; their samples go to the run's evaluator.
 //
 // Samples of a source count from its answer on: a block or record that names the run
-// (idl/README.md, "The run protocol"). What comes before is not of this run. Readers are opened
-// when a source's kind is known, one a topic. Belongs to the run's one thread.
+// (idl/README.md, "The run protocol"). What comes before is not of this run. They are handed over
+// in order and without a break as long as the source can close it (stream_follower.hpp), also when
+// the run began before this service. Readers are opened when a source's kind is known, one a topic;
+// those of answers to requests when the first is due. Belongs to the run's one thread.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "services/analysis/known_sources.hpp"
+#include "services/analysis/stream_follower.hpp"
 #include "services/analysis/twin_watch.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
@@ -20,62 +25,90 @@
 
 namespace dyncal::services {
 
+// Why a run cannot go on now.
+struct LostSource {
+  std::string message;
+  bool may_come_back = true;
+};
+
 class SourceStreams {
 public:
   using Instant = bus::Clock::Instant;
 
-  // `participant` outlives the object. `sources` are those of the recipe.
+  enum class Begin { with_answer, behind }; // behind: the run began before this service
+
+  struct Request {
+    std::string source;
+    CatchUp what;
+  };
+
+  // `participant` and `evaluator` outlive the object.
   SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                std::string bench, std::string run, const std::vector<std::string>& sources);
+                std::string bench, std::string run, RunEvaluator& evaluator, Begin begin);
+  SourceStreams(const SourceStreams&) = delete;
+  SourceStreams& operator=(const SourceStreams&) = delete;
 
   // Hands new descriptions to the evaluator. Fails as RunEvaluator::describe() and readers do.
-  [[nodiscard]] Expected<void> take_descriptions(const KnownSources& known,
-                                                 RunEvaluator& evaluator);
+  [[nodiscard]] Expected<void> take_descriptions(const KnownSources& known, Instant now);
   // Hands what has come of sources that have answered to the evaluator.
-  void take_samples(Instant now, RunEvaluator& evaluator);
+  void take_samples(Instant now);
+  // What sources are to be asked for, by asker(). Fails as readers do.
+  [[nodiscard]] Expected<std::vector<Request>> requests_due(Instant now);
+  [[nodiscard]] const std::string& asker() const { return asker_; }
   void close_readers();
+
+  // Some source's messages are behind what it has sent.
+  [[nodiscard]] bool is_catching_up() const;
+  // Messages that had to be asked for.
+  [[nodiscard]] std::uint64_t recovered() const;
 
   // Sources that have described themselves and are to be asked for an answer.
   [[nodiscard]] std::vector<std::string> unanswered() const;
   // One sentence about the first source that keeps the run from being armed; empty if none does.
   [[nodiscard]] std::string what_is_missing(const KnownSources& known) const;
-  // One sentence about the first source without which the run cannot go on: it sent nothing for
-  // `silence_limit` since its last block and since `watched_from`, or, if `may_not_end`, it ended.
-  [[nodiscard]] std::optional<std::string> lost_source(Instant now, Instant watched_from,
-                                                       std::chrono::seconds silence_limit,
-                                                       bool may_not_end) const;
+  // The first source without which the run cannot go on: it sent nothing for `silence_limit` since
+  // its last block and since `watched_from`, or, if `may_not_end`, it ended.
+  [[nodiscard]] std::optional<LostSource> lost_source(Instant now, Instant watched_from,
+                                                      std::chrono::seconds silence_limit,
+                                                      bool may_not_end) const;
 
 private:
+  using Follower =
+      std::variant<StreamFollower<wire::SampleBlock>, StreamFollower<wire::TriggeredRecord>>;
   struct Stream {
     std::optional<wire::SourceDescription> description; // as the evaluator knows it
-    bool described = false;
-    bool answered = false;
-    bool ended = false;
-    bool triggered = false; // sends a record for each shot, and may be silent between them
-    Instant last_sent;
+    std::optional<Follower> follower;                   // from the first description on
     TwinWatch twins;
   };
 
+  [[nodiscard]] static bool is_triggered(const Stream& stream);
+  [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] std::string two_send_as(const std::string& source) const;
-  [[nodiscard]] Expected<void> describe(Stream& stream, const wire::SourceDescription& description,
-                                        RunEvaluator& evaluator);
-  void hand_over(const std::string& source, const wire::SampleBlock& block,
-                 RunEvaluator& evaluator) const;
-  void hand_over(const std::string& source, const wire::TriggeredRecord& record,
-                 RunEvaluator& evaluator) const;
+  [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
+                                        const wire::SourceDescription& description, Instant now);
+  [[nodiscard]] Follower make_follower(const std::string& name, bool triggered);
   template <class Message>
   [[nodiscard]] Expected<void>
   open_reader(std::map<wire::SourceKind, bus::Reader<Message>>& readers, wire::SourceKind kind);
-  template <class Message>
-  void take(bus::Reader<Message>& reader, Instant now, RunEvaluator& evaluator);
+  [[nodiscard]] Expected<void> open_answer_readers();
+  template <class Message, class Take>
+  void take(bus::Reader<Message>& reader, Take take);
 
   bus::Participant& participant_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::string bench_;
   std::string run_;
+  std::string asker_;
+  RunEvaluator& evaluator_;
+  Begin begin_;
   std::map<std::string, Stream> streams_;
   std::map<wire::SourceKind, bus::Reader<wire::SampleBlock>> block_readers_;
   std::map<wire::SourceKind, bus::Reader<wire::TriggeredRecord>> record_readers_;
+  struct AnswerReaders {
+    bus::Reader<wire::SampleBlock> blocks;
+    bus::Reader<wire::TriggeredRecord> records;
+  };
+  std::optional<AnswerReaders> answer_readers_;
 };
 
 } // namespace dyncal::services

@@ -99,15 +99,26 @@ TEST_F(AnalysisServiceTest, RefusesARunWhoseSourceNeverCame) {
               testing::StartsWith("source 'acs' of bench 'synthetic' is not on the network"));
 }
 
-TEST_F(AnalysisServiceTest, LeavesARunAloneThatBeganBeforeIt) {
+TEST_F(AnalysisServiceTest, LeavesARunAloneThatHasEndedBeforeIt) {
   play_sources();
-  publish("r1", wire::MEASUREMENT_RUNNING);
+  publish("r1", wire::MEASUREMENT_RUNNING); // its last word, and nobody repeats it
   serve_for(10s);
   EXPECT_TRUE(published_.statuses().empty());
   publish("r2", wire::MEASUREMENT_PLANNED); // it goes on to serve
   serve_for(1s);
   EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
   EXPECT_EQ(newest_status_of("r1").run().to_string(), "");
+}
+
+TEST_F(AnalysisServiceTest, TakesARunOverThatNobodyLeads) {
+  play_sources();
+  clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
+  serve_for(2s + OtherAnalyses::silence_limit - 100ms);
+  EXPECT_TRUE(published_.statuses().empty());
+  serve_for(300ms);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_FALSE(acs_.answer_requests().empty());
+  EXPECT_FALSE(dau_.answer_requests().empty());
 }
 
 TEST_F(AnalysisServiceTest, EndsARunWhoseRunnerIsLost) {
@@ -202,6 +213,108 @@ TEST_F(AnalysisServiceTest, LetsARunThatIsOverFinishBeforeTheNextOneOfItsBench) 
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
   EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
   EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+}
+
+// Two services on one network, in turns of 100 ms.
+class TwoAnalyses : public AnalysisServiceTest {
+protected:
+  std::unique_ptr<AnalysisService> other_ =
+      AnalysisService::create(network_.join("other analysis"),
+                              {.service = "analysis@test:0", .host = "test", .dds = "memory"},
+                              clock_)
+          .value();
+
+  void serve_with_both(std::chrono::nanoseconds time) {
+    for (; time > 0s; time -= 200ms) {
+      serve_for(100ms);
+      std::swap(service_, other_);
+      serve_for(100ms);
+      std::swap(service_, other_);
+    }
+  }
+  std::set<std::string> services_of(const std::string& run, std::size_t from) {
+    std::set<std::string> services;
+    const auto& statuses = published_.statuses();
+    for (std::size_t i = from; i < statuses.size(); ++i) {
+      if (statuses[i].run().to_string() == run) {
+        services.insert(statuses[i].service().to_string());
+      }
+    }
+    return services;
+  }
+  void run(const std::string& name) {
+    publish(name, wire::MEASUREMENT_PLANNED);
+    serve_with_both(1s);
+    EXPECT_EQ(newest_status_of(name).arm(), wire::ARM_ARMED);
+    clock_.every(2s, [this, name] { publish(name, wire::MEASUREMENT_RUNNING); });
+    serve_with_both(3s);
+  }
+};
+
+TEST_F(TwoAnalyses, OneOfThemLeadsARunAndTheOtherStandsBy) {
+  play_sources();
+  run("r1");
+  const std::size_t settled = published_.statuses().size();
+  serve_with_both(10s);
+  EXPECT_EQ(services_of("r1", settled).size(), 1U);
+}
+
+TEST_F(TwoAnalyses, TheOtherTakesARunOverWhoseLeaderHasDied) {
+  play_sources();
+  run("r1");
+  const std::string leader = newest_status_of("r1").service().to_string();
+  if (leader == "analysis@test:1") {
+    std::swap(service_, other_);
+  }
+  other_.reset(); // the leader
+  const std::size_t before = published_.statuses().size();
+  serve_for(OtherAnalyses::silence_limit - 1s);
+  EXPECT_EQ(published_.statuses().size(), before);
+  serve_for(2s);
+  EXPECT_EQ(services_of("r1", before).size(), 1U);
+  EXPECT_NE(newest_status_of("r1").service().to_string(), leader);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
+TEST_F(TwoAnalyses, ALeaderThatWasStoppedAgreesWithWhoTookItsRunOver) {
+  play_sources();
+  run("r1");
+  const std::string leader = newest_status_of("r1").service().to_string();
+  if (leader == "analysis@test:1") {
+    std::swap(service_, other_);
+  }
+  serve_for(30s); // the leader is stopped
+  EXPECT_NE(newest_status_of("r1").service().to_string(), leader);
+  serve_with_both(2s);
+  const std::size_t settled = published_.statuses().size();
+  serve_with_both(10s);
+  EXPECT_EQ(services_of("r1", settled).size(), 1U);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
+TEST_F(TwoAnalyses, TheLeaderOfABenchRefusesASecondRun) {
+  play_sources();
+  run("r1");
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_with_both(3s);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
+  EXPECT_EQ(services_of("r2", 0), services_of("r1", 0));
+}
+
+TEST_F(AnalysisServiceTest, DoesNotTakeARunOverFromOtherSoftware) {
+  play_sources();
+  bus::Participant stranger = network_.join("stranger");
+  auto statuses = stranger.writer(bus::topics::service_status, tests::played_bench).value();
+  wire::ServiceStatus status;
+  status.bench(tests::played_bench);
+  status.run("r1");
+  status.service("analysis@other:5");
+  status.arm(wire::ARM_ARMED);
+  status.software("dyncal 0.0.1");
+  statuses.write(status);
+  clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
+  serve_for(20s);
+  EXPECT_EQ(newest_status_of("r1").service().to_string(), "analysis@other:5");
 }
 
 } // namespace

@@ -2,8 +2,9 @@
 // stepped time, each message when the test wants it.
 #pragma once
 
-#include <map>
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,7 +43,9 @@ public:
         commands_(participant_
                       .reader<wire::Command>(bus::topics::command, bus::Profile::command,
                                              played_bench, nullptr)
-                      .value()) {}
+                      .value()),
+        requests_(
+            participant_.reader(bus::topics::catch_up_request, played_bench, nullptr).value()) {}
 
   [[nodiscard]] std::string name() const { return description_.source().to_string(); }
   [[nodiscard]] const wire::SourceDescription& description() const { return description_; }
@@ -68,20 +71,39 @@ public:
   void answer(const std::string& run) {
     wire::SampleBlock block = empty_block();
     block.acknowledged_run(run);
-    samples_.write(block);
+    write(block);
   }
-  void send_nothing() { samples_.write(empty_block()); }
+  void send_nothing() { write(empty_block()); }
   void end_stream() {
     wire::SampleBlock block = empty_block();
     block.end_of_stream(true);
-    samples_.write(block);
+    write(block);
   }
   void send(const std::vector<wire::SampleBlock>& blocks) {
     for (wire::SampleBlock block : blocks) {
-      block.block(block.block() + number_);
-      samples_.write(block);
+      block.block(number_++);
+      write(block);
     }
-    number_ += blocks.size();
+  }
+  // Numbered and kept, but lost on the way.
+  void lose(wire::SampleBlock block) {
+    block.block(number_++);
+    kept_.push_back(block);
+  }
+
+  // Requests that came, without repeats; each is answered with what is kept behind its message, or
+  // from the answer to ARM on.
+  std::vector<wire::CatchUpRequest> answer_requests() {
+    std::vector<wire::CatchUpRequest> answered;
+    requests_.take([&](const wire::CatchUpRequest& request) {
+      if (request.source().to_string() == name() && names_.insert(request.request()).second) {
+        answered.push_back(request);
+      }
+    });
+    for (const wire::CatchUpRequest& request : answered) {
+      give_again(request);
+    }
+    return answered;
   }
 
 private:
@@ -103,12 +125,39 @@ private:
     return block;
   }
 
+  void write(const wire::SampleBlock& block) {
+    samples_.write(block);
+    kept_.push_back(block);
+  }
+  void give_again(const wire::CatchUpRequest& request) {
+    if (!again_ || asker_ != request.asker().to_string()) {
+      asker_ = request.asker().to_string();
+      again_.emplace(participant_.writer(bus::topics::catch_up_samples, asker_).value());
+    }
+    const auto begin =
+        std::find_if(kept_.begin(), kept_.end(), [&](const wire::SampleBlock& block) {
+          return request.session() == 0 ? block.acknowledged_run() == request.run()
+                                        : block.block() > request.after();
+        });
+    std::for_each(begin, kept_.end(),
+                  [&](const wire::SampleBlock& block) { again_->write(block); });
+    wire::SampleBlock end = empty_block();
+    --number_; // not one of the stream
+    end.acknowledged_run(request.request());
+    again_->write(end);
+  }
+
   wire::SourceDescription description_;
   bus::Participant participant_;
   bus::Writer<wire::SourceDescription> descriptions_;
   bus::Writer<wire::SourceStatus> statuses_;
   bus::Writer<wire::SampleBlock> samples_;
   bus::Reader<wire::Command> commands_;
+  bus::Reader<wire::CatchUpRequest> requests_;
+  std::optional<bus::Writer<wire::SampleBlock>> again_;
+  std::string asker_;
+  std::set<std::string> names_; // of requests that were answered
+  std::vector<wire::SampleBlock> kept_;
   std::uint64_t number_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,6 +53,15 @@ protected:
     session_->update(measurement);
   }
   void work() { session_->work(sources_); }
+  // As a service that runs: it works at least every 500 ms.
+  void pass(std::chrono::nanoseconds time) {
+    for (; time > 500ms; time -= 500ms) {
+      clock_.advance(500ms);
+      work();
+    }
+    clock_.advance(time);
+    work();
+  }
   wire::ArmState arm_state() { return published_.newest_status().arm(); }
 
   // Arms at once.
@@ -226,21 +236,52 @@ TEST_F(RunSessionTest, RefusesASourceThatLacksAChannelAtOnce) {
   EXPECT_THAT(published_.newest_status().message(), HasSubstr("sync"));
 }
 
-TEST_F(RunSessionTest, FailsARunWhoseSourceIsSilentJustAfterItsLimit) {
+TEST_F(RunSessionTest, WaitsForASourceThatIsSilentJustAfterItsLimitAndGoesOnWithIt) {
   arm_and_run();
   run_for(1s, {&acs_, &dau_});
   run_for(RunSession::silence_limit, {&acs_});
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
   clock_.advance(1ns);
   work();
-  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
   EXPECT_EQ(published_.newest_status().message(),
             "source 'dau' of bench 'synthetic' has sent nothing for 5 s");
+  run_for(60s, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  dau_.answer_requests();
+  run_for(100ms, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  EXPECT_EQ(published_.newest_status().message(), "");
+}
+
+TEST_F(RunSessionTest, FailsARunWhoseSourceIsSilentBeyondItsPatience) {
+  arm_and_run();
+  run_for(1s, {&acs_, &dau_});
+  run_for(RunSession::silence_limit + 100ms, {&acs_});
+  run_for(RunSession::patience, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  run_for(100ms, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(published_.newest_status().message(),
+            "source 'dau' of bench 'synthetic' has sent nothing for 5 s, and nothing more for "
+            "120 s");
   EXPECT_FALSE(session_->finished()); // the runner aborts it
   // The first cause explains the others.
   run_for(2 * RunSession::silence_limit, {});
-  EXPECT_EQ(published_.newest_status().message(),
-            "source 'dau' of bench 'synthetic' has sent nothing for 5 s");
+  EXPECT_THAT(published_.newest_status().message(), HasSubstr("source 'dau'"));
+}
+
+TEST_F(RunSessionTest, DoesNotTakeItsOwnAbsenceForTheSilenceOfOthers) {
+  arm_and_run();
+  run_for(1s, {&acs_, &dau_});
+  clock_.advance(RunSession::runner_limit + 60s); // stopped, or without the processor
+  work();
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+  run_for(RunSession::silence_limit, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  run_for(200ms, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
 }
 
 TEST_F(RunSessionTest, FailsARunWhoseSourceHasATwin) {
@@ -301,9 +342,9 @@ TEST_F(RunSessionTest, LetsRecordedSourcesEnd) {
 
 TEST_F(RunSessionTest, FinishesAtOnceWhenAFailedRunIsAborted) {
   arm_and_run();
-  clock_.advance(RunSession::silence_limit + 1ns);
-  set_state(wire::MEASUREMENT_RUNNING);
-  work();
+  pass(RunSession::silence_limit + 1ns);
+  ASSERT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  pass(RunSession::patience + 1ns);
   ASSERT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
   set_state(wire::MEASUREMENT_ABORTED);
   work();
@@ -312,8 +353,7 @@ TEST_F(RunSessionTest, FinishesAtOnceWhenAFailedRunIsAborted) {
 
 TEST_F(RunSessionTest, EndsWithWhatThereIsWhenTheRunnerIsLost) {
   arm_and_run();
-  clock_.advance(RunSession::runner_limit);
-  work();
+  pass(RunSession::runner_limit);
   EXPECT_EQ(arm_state(), wire::ARM_ARMED);
   clock_.advance(1ns);
   work();
@@ -328,7 +368,7 @@ TEST_F(RunSessionTest, EndsWithWhatThereIsWhenTheResultsOfADoneRunDoNotCome) {
   set_state(wire::MEASUREMENT_DONE);
   work();
   for (auto waited = 0s; waited < RunSession::quiet_limit; waited += 2s) {
-    clock_.advance(2s);
+    pass(2s);
     set_state(wire::MEASUREMENT_DONE); // the runner is still there
     work();
     EXPECT_EQ(arm_state(), wire::ARM_ARMED);
@@ -369,8 +409,8 @@ TEST_F(RunSessionTest, LeavesOutSamplesFromBeforeASourcesAnswer) {
   arm_and_run();
   run_for(1s, {&acs_, &dau_});
   set_state(wire::MEASUREMENT_DONE);
-  clock_.advance(RunSession::quiet_limit + 1ns);
   work();
+  pass(RunSession::quiet_limit + 1ns);
   work();
   ASSERT_EQ(published_.results().size(), 1U);
   EXPECT_FALSE(published_.results()[0].valid());
@@ -431,6 +471,113 @@ TEST_F(RunSessionTest, GivesALateJoinerItsStatusAndResults) {
   session_.reset();
   tests::PublishedByAnalysis too_late(network_, "too late");
   EXPECT_TRUE(too_late.results().empty());
+}
+
+// Runs of which samples were lost, or that began before this service: the results are those of an
+// undisturbed run, bit for bit.
+class RunSessionCatchUp : public RunSessionTest {
+protected:
+  static std::vector<std::string> bits_of(const std::vector<wire::CalibrationResult>& results) {
+    std::vector<std::string> bits;
+    for (const wire::CalibrationResult& result : results) {
+      bits.push_back(fmt::format("{} {:a} {:a} {:a} {:a} {} {}", result.valid(), result.magnitude(),
+                                 result.u_magnitude(), result.phase_rad(), result.u_phase_rad(),
+                                 result.lost(), result.flags().size()));
+    }
+    return bits;
+  }
+  void excite(wire::ExcitationState state) {
+    wire::Excitation excitation;
+    excitation.bench(tests::played_bench);
+    excitation.run(tests::played_run);
+    excitation.step(1);
+    excitation.state(state);
+    session_->announce(excitation);
+  }
+  void finish() {
+    excite(wire::EXCITATION_DONE);
+    set_state(wire::MEASUREMENT_DONE);
+    for (int i = 0; i < 20 && !session_->finished(); ++i) {
+      pass(100ms);
+      acs_.answer_requests();
+      dau_.answer_requests();
+    }
+    EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+  }
+};
+
+// The same run in a network of its own, with nothing lost.
+class UndisturbedRun : public RunSessionCatchUp {
+public:
+  void TestBody() override {}
+  std::vector<std::string> results() {
+    arm_and_run();
+    excite(wire::EXCITATION_SETTLING);
+    acs_.send(synthetic_.acs_blocks());
+    dau_.send(synthetic_.dau_blocks());
+    finish();
+    return bits_of(published_.results());
+  }
+};
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultWithBlocksThatHadToBeAskedFor) {
+  const auto expected = UndisturbedRun().results();
+  ASSERT_EQ(expected.size(), 1U);
+  ASSERT_EQ(expected[0].substr(0, 4), "true");
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(synthetic_.acs_blocks());
+  const auto blocks = synthetic_.dau_blocks();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i % 3 == 1) {
+      dau_.lose(blocks[i]);
+    } else {
+      dau_.send({blocks[i]});
+    }
+    pass(10ms);
+  }
+  EXPECT_EQ(dau_.answer_requests().size(), 1U);
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
+  const auto expected = UndisturbedRun().results();
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(synthetic_.acs_blocks());
+  for (const wire::SampleBlock& block : synthetic_.dau_blocks()) {
+    dau_.lose(block);
+  }
+  excite(wire::EXCITATION_DONE);
+  run_for(60s, {}); // the step has long been over, but its samples are on the way
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_TRUE(published_.results().empty());
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+}
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
+  const auto expected = UndisturbedRun().results();
+  arm_and_run();
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  session_.reset(); // died
+  wire::Measurement running = synthetic_.measurement();
+  running.state(wire::MEASUREMENT_RUNNING);
+  const AnalysisContext context{participant_,
+                                clock_,
+                                wake_up_,
+                                {.service = "analysis@test:2", .host = "test", .dds = "memory"}};
+  session_ = RunSession::create(context, running, SourceStreams::Begin::behind).value();
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+  work();
+  acs_.send_nothing();
+  work();
+  finish();
+  EXPECT_EQ(published_.newest_status().service().to_string(), "analysis@test:2");
+  EXPECT_EQ(bits_of(published_.results()), expected);
 }
 
 class RunSessionLevel : public RunSessionTest {
