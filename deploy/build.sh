@@ -24,7 +24,7 @@ case $2 in
   programs)
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
     targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso
-      dyncal-virtual-bench dyncal_analysis_models) # and what no program links, but is installed
+      dyncal-guard dyncal-virtual-bench dyncal_analysis_models) # and what no program links, but is installed
     ;;
   *)
     echo "build.sh: '$2' is neither with-tests nor programs" >&2

@@ -19,6 +19,7 @@ install(TARGETS
     dyncal-can
     dyncal-dau
     dyncal-dso
+    dyncal-guard
     dyncal-virtual-bench
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT programs)

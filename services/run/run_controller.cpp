@@ -172,6 +172,7 @@ Expected<void> RunController::excite(const std::stop_token& stop) {
 
 Expected<void> RunController::watch_analysis() {
   repeat_measurement();
+  messages_->repeat_announcement();
   messages_->take(outcome_);
   if (messages_->analysis()->health() == wire::HEALTH_FAILED) {
     return fail(ErrorCode::no_source, messages_->analysis()->message());

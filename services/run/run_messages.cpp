@@ -9,6 +9,11 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 
 namespace dyncal::services {
+namespace {
+
+constexpr std::chrono::milliseconds announcement_interval{500};
+
+} // namespace
 
 Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Clock& clock,
                                         const std::string& bench, std::string run,
@@ -37,20 +42,27 @@ void RunMessages::publish(const wire::Measurement& measurement) {
 
 void RunMessages::announce(const wire::PlannedStep& step, wire::ExcitationState state) {
   if (state == wire::EXCITATION_SETTLING) {
-    window_begin_utc_ns_ = clock_->utc_now_ns();
+    excitation_.window_begin_utc_ns(clock_->utc_now_ns());
   }
   const bool over = state == wire::EXCITATION_DONE || state == wire::EXCITATION_ABORTED;
-  wire::Excitation excitation;
-  excitation.bench(bench_);
-  excitation.run(run_);
-  excitation.step(step.step());
-  excitation.frequency_text_hz(step.frequency_text_hz());
-  excitation.level_m_s2(step.level_m_s2());
-  excitation.repetition(step.repetition());
-  excitation.state(state);
-  excitation.window_begin_utc_ns(window_begin_utc_ns_);
-  excitation.window_end_utc_ns(over ? clock_->utc_now_ns() : 0);
-  endpoints_.excitation.write(excitation);
+  excitation_.bench(bench_);
+  excitation_.run(run_);
+  excitation_.step(step.step());
+  excitation_.frequency_text_hz(step.frequency_text_hz());
+  excitation_.level_m_s2(step.level_m_s2());
+  excitation_.repetition(step.repetition());
+  excitation_.state(state);
+  excitation_.window_end_utc_ns(over ? clock_->utc_now_ns() : 0);
+  endpoints_.excitation.write(excitation_);
+  announced_ = clock_->now();
+}
+
+void RunMessages::repeat_announcement() {
+  const bool driven = excitation_.step() != 0 && excitation_.window_end_utc_ns() == 0;
+  if (driven && clock_->now() - announced_ >= announcement_interval) {
+    endpoints_.excitation.write(excitation_);
+    announced_ = clock_->now();
+  }
 }
 
 void RunMessages::wait_for_acknowledgments(std::chrono::nanoseconds limit) {

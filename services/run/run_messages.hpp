@@ -30,6 +30,9 @@ public:
   void publish(const wire::Measurement& measurement);
   // `state` of a step that is excited now; it began with EXCITATION_SETTLING.
   void announce(const wire::PlannedStep& step, wire::ExcitationState state);
+  // Shows dyncal-guard that somebody attends: the newest announcement again while the exciter is
+  // driven, at most every 500 ms.
+  void repeat_announcement();
   void wait_for_acknowledgments(std::chrono::nanoseconds limit);
 
   // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
@@ -62,7 +65,8 @@ private:
   Endpoints endpoints_;
   std::optional<wire::ServiceStatus> analysis_;
   bus::Clock::Instant analysis_heard_;
-  std::int64_t window_begin_utc_ns_ = 0; // of the step that is excited now
+  wire::Excitation excitation_; // as announced last
+  bus::Clock::Instant announced_{};
 };
 
 } // namespace dyncal::services

@@ -20,7 +20,7 @@ constexpr auto look_interval = 20ms;
 constexpr auto confirmation_slice = 200ms;
 constexpr double off_s = 0.3; // between two steps
 constexpr double shot_slice_s = 0.25;
-constexpr double slice_s = 1.0;     // bench time between two looks at the network
+constexpr double slice_s = 0.4;     // bench time between two looks at the network
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
 // Time beyond settling and duration for which a step is excited, see

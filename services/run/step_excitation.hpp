@@ -47,7 +47,7 @@ struct StepHooks {
   std::function<void(const wire::PlannedStep&, wire::ExcitationState)> announce;
   std::function<void(const std::string& phase)> show;
   AskOperator ask;
-  // Called at least every second of bench time; fails when the run cannot go on.
+  // Called at least every half second of bench time; fails when the run cannot go on.
   std::function<Expected<void>()> keep_alive;
 };
 

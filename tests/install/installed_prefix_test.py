@@ -29,6 +29,7 @@ PROGRAMS = [
     "dyncal-can",
     "dyncal-dau",
     "dyncal-dso",
+    "dyncal-guard",
     "dyncal-virtual-bench",
 ]
 

@@ -47,7 +47,7 @@ FLOORS = {
         ["run"],
         ["report"],
         ["model"],
-        ["acs", "analysis", "can", "dau", "demo", "dso", "virtual_bench"],
+        ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "virtual_bench"],
         ["replay"],
         ["command"],
     ],

@@ -1,0 +1,103 @@
+#include "services/guard/exciter_guard.hpp"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "services/contract/topics.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::chrono::milliseconds look_interval{100};
+constexpr std::size_t max_runs = 100; // of a bench, which has one at a time
+
+bool is_driven(wire::ExcitationState state) {
+  return state == wire::EXCITATION_SETTLING || state == wire::EXCITATION_STEADY;
+}
+
+bool is_over(wire::MeasurementState state) {
+  return state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED;
+}
+
+} // namespace
+
+Expected<std::unique_ptr<ExciterGuard>>
+ExciterGuard::create(bus::Participant& participant, std::string bench,
+                     std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
+                     bus::Clock& clock) {
+  auto wake_up = std::make_shared<bus::WakeUp>();
+  auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
+  auto measurement = participant.reader(bus::topics::measurement, bench, wake_up);
+  if (auto error = first_error(excitation, measurement)) {
+    return fail(*error);
+  }
+  return std::unique_ptr<ExciterGuard>(
+      new ExciterGuard(std::move(bench), unattended_limit, std::move(switch_off), clock,
+                       std::move(wake_up), std::move(*excitation), std::move(*measurement)));
+}
+
+void ExciterGuard::serve(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    clock_.wait(*wake_up_, clock_.now() + look_interval);
+    work();
+  }
+}
+
+void ExciterGuard::work() {
+  take_messages();
+  for (auto& [name, run] : runs_) {
+    attend(name, run);
+  }
+}
+
+ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
+  if (runs_.size() >= max_runs && !runs_.contains(run)) {
+    runs_.erase(std::min_element(runs_.begin(), runs_.end(), [](const auto& a, const auto& b) {
+      return a.second.heard < b.second.heard;
+    }));
+  }
+  Run& one = runs_[run];
+  one.heard = clock_.now();
+  one.served = false;
+  return one;
+}
+
+void ExciterGuard::take_messages() {
+  excitation_.take([&](const wire::Excitation& excitation) {
+    if (excitation.bench().to_string() == bench_) {
+      heard(excitation.run().to_string()).driven = is_driven(excitation.state());
+    }
+  });
+  measurement_.take([&](const wire::Measurement& measurement) {
+    if (measurement.bench().to_string() == bench_) {
+      Run& run = heard(measurement.run().to_string());
+      run.driven = run.driven && !is_over(measurement.state());
+    }
+  });
+}
+
+void ExciterGuard::attend(const std::string& name, Run& run) {
+  const Instant now = clock_.now();
+  if (!run.driven || run.served || now - run.heard <= unattended_limit_ || now < run.next_try) {
+    return;
+  }
+  const auto off = switch_off_();
+  if (off) {
+    run.served = true;
+    ++times_switched_off_;
+    spdlog::warn("bench {}: nothing was heard of run {} for {:.1f} s while its exciter was driven; "
+                 "the output of the generator was switched off",
+                 bench_, name, std::chrono::duration<double>(now - run.heard).count());
+    return;
+  }
+  run.next_try = clock_.now() + retry_interval;
+  if (clock_.now() >= run.next_report) {
+    run.next_report = clock_.now() + report_interval;
+    spdlog::error("bench {}: nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE "
+                  "ON: switch it off by hand if you can; trying again until it is off ({})",
+                  bench_, name, off.error().message);
+  }
+}
+
+} // namespace dyncal::services

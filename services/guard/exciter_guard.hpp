@@ -1,0 +1,79 @@
+// Switches the exciter of a bench off when nobody attends a run any more: on the bench's side,
+// where the generator can be reached although the conductor's link, host or program is gone.
+//
+// The exciter is driven while the newest Excitation of a run is SETTLING or STEADY. The conductor
+// repeats it every half second (idl/README.md, "The run protocol"); nothing heard of the run for
+// `unattended_limit` means that nobody attends. Then the output is switched off, and tried again
+// every `retry_interval` until that is confirmed, the conductor is heard again, or the run is over.
+// It is done once for each silence: a conductor that comes back finds the output off and repeats
+// the step.
+//
+// `switch_off` returns when the output is known to be off, and may block for seconds; the guard of
+// one bench therefore has a thread of its own, the only one that uses it.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+
+namespace dyncal::services {
+
+class ExciterGuard {
+public:
+  using Instant = bus::Clock::Instant;
+  using SwitchOff = std::function<Expected<void>()>;
+
+  static constexpr std::chrono::seconds retry_interval{1};
+  static constexpr std::chrono::seconds report_interval{60}; // while it cannot be switched off
+
+  // `clock` outlives the guard. Fails (network) as readers do.
+  [[nodiscard]] static Expected<std::unique_ptr<ExciterGuard>>
+  create(bus::Participant& participant, std::string bench,
+         std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
+         bus::Clock& clock = bus::system_clock());
+
+  // Until `stop` is requested.
+  void serve(const std::stop_token& stop);
+  // What is due now.
+  void work();
+
+  [[nodiscard]] int times_switched_off() const { return times_switched_off_; }
+
+private:
+  struct Run {
+    bool driven = false;
+    bool served = false; // switched off since it was heard last
+    Instant heard;
+    Instant next_try{};
+    Instant next_report{};
+  };
+
+  ExciterGuard(std::string bench, std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
+               bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
+               bus::Reader<wire::Excitation> excitation, bus::Reader<wire::Measurement> measurement)
+      : bench_(std::move(bench)), unattended_limit_(unattended_limit),
+        switch_off_(std::move(switch_off)), clock_(clock), wake_up_(std::move(wake_up)),
+        excitation_(std::move(excitation)), measurement_(std::move(measurement)) {}
+
+  void take_messages();
+  Run& heard(const std::string& run);
+  void attend(const std::string& name, Run& run);
+
+  std::string bench_;
+  std::chrono::milliseconds unattended_limit_;
+  SwitchOff switch_off_;
+  bus::Clock& clock_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
+  bus::Reader<wire::Excitation> excitation_;
+  bus::Reader<wire::Measurement> measurement_;
+  std::map<std::string, Run> runs_;
+  int times_switched_off_ = 0;
+};
+
+} // namespace dyncal::services

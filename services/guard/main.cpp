@@ -1,0 +1,70 @@
+// dyncal-guard BENCH.toml...: runs where the generators of these benches can be reached, and
+// switches an exciter off when the run that drives it has no conductor any more.
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "drivers/generator/scpi_generator.hpp"
+#include "services/device_error.hpp"
+#include "services/guard/exciter_guard.hpp"
+#include "services/program/bench_program.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::chrono::milliseconds unattended_limit{2000};
+
+// Connecting switches the output off.
+Expected<void> switch_off(const std::string& address) {
+  const auto generator = drivers::generator::ScpiGenerator::connect(address);
+  if (!generator) {
+    return fail(device_error(generator.error()));
+  }
+  return {};
+}
+
+Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
+                     const std::stop_token& stop) {
+  auto participant = join_network(network, "dyncal-guard");
+  if (!participant) {
+    return fail(participant.error());
+  }
+  std::vector<std::unique_ptr<ExciterGuard>> guards;
+  for (const BenchFile& bench : benches) {
+    if (bench.generator.driver != GeneratorDriver::scpi) {
+      return fail(ErrorCode::bad_argument,
+                  "bench '" + bench.bench +
+                      "' has no generator that a program can switch off ([generator] driver): "
+                      "there is nothing to guard");
+    }
+    auto guard =
+        ExciterGuard::create(*participant, bench.bench, unattended_limit,
+                             [address = bench.generator.address] { return switch_off(address); });
+    if (!guard) {
+      return fail(guard.error());
+    }
+    guards.push_back(std::move(*guard));
+    spdlog::info("bench {}: guarding the output of the generator {}", bench.bench,
+                 bench.generator.address);
+  }
+  std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
+  for (const auto& guard : guards) {
+    threads.emplace_back([&guard, &stop] { guard->serve(stop); });
+  }
+  return {};
+}
+
+} // namespace
+} // namespace dyncal::services
+
+int main(int argc, char** argv) {
+  return dyncal::services::run_bench_program(
+      argc, argv,
+      {"dyncal-guard",
+       "Switches the exciter of a bench off when nobody attends its run any more; runs on the "
+       "bench's side, where the generator can be reached.",
+       dyncal::services::serve});
+}
