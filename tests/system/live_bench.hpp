@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,13 +26,14 @@ struct LiveBenchSettings {
   std::string excitation;                   // lines of the bench file's tables
   std::string generator = "level_per_volt = 50.0\n";
   std::string source_dau = R"(time_base = "utc")";
-  std::string rest; // further tables
+  std::string rest;            // further tables
+  std::string dds = "fastdds"; // of all programs
 };
 
 class LiveBench {
 public:
   LiveBench(const std::filesystem::path& folder, const LiveBenchSettings& settings)
-      : folder_(folder), laboratory_(folder) {
+      : folder_(folder), settings_(settings), laboratory_(folder) {
     const std::string dau = fmt::format("127.0.0.1:{}", own_udp_port());
     std::vector<std::string> arguments{"--preset", "mpu9250-ptb",        "--dau",
                                        dau,        "--ports-file",       folder / "ports.json",
@@ -44,9 +46,9 @@ public:
     const auto ports = read_json(folder / "ports.json");
     generator_port_ = ports["generator"].get<int>();
     write_bench_file(settings, dau, ports["acs"].get<int>());
-    laboratory_.start("dyncal-analysis", {}, "fastdds");
-    laboratory_.start("dyncal-dau", {bench_file()}, "fastdds");
-    laboratory_.start("dyncal-acs", {bench_file()}, "fastdds");
+    start_service("dyncal-analysis");
+    start_service("dyncal-dau");
+    start_service("dyncal-acs");
   }
 
   [[nodiscard]] std::filesystem::path bench_file() const { return folder_ / "bench.toml"; }
@@ -87,8 +89,19 @@ public:
   }
   void signal_bench(int signal) { virtual_bench_->send(signal); }
   ProgramRun& start(const std::vector<std::string>& arguments) {
-    return laboratory_.start("dyncal", arguments, "fastdds");
+    return laboratory_.start("dyncal", arguments, settings_.dds);
   }
+  // Again, if it runs or did: the newest is what service() returns.
+  ProgramRun& start_service(const std::string& program) {
+    std::vector<std::string> arguments;
+    if (program != "dyncal-analysis") {
+      arguments.push_back(bench_file());
+    }
+    ProgramRun& started = laboratory_.start(program, arguments, settings_.dds);
+    services_[program] = &started;
+    return started;
+  }
+  [[nodiscard]] ProgramRun& service(const std::string& program) { return *services_.at(program); }
   // The bench file once more, with `text` in place of what one of its lines begins with.
   std::filesystem::path changed_bench_file(const std::string& name, const std::string& line_begin,
                                            const std::string& text) const {
@@ -123,9 +136,11 @@ reference_phase_rad = 1.7e-3
   }
 
   std::filesystem::path folder_;
+  LiveBenchSettings settings_;
   int generator_port_ = 0;
   std::unique_ptr<ProgramRun> virtual_bench_;
   Laboratory laboratory_;
+  std::map<std::string, ProgramRun*> services_; // of the laboratory
 };
 
 } // namespace dyncal::tests

@@ -1,0 +1,43 @@
+// An exciter that is driven while nobody attends: the conductor hangs, so that neither it nor what
+// watches over its process can switch the output off; the guard on the bench's side does.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/live_bench.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::HasSubstr;
+
+class UnattendedExciter : public testing::TestWithParam<std::string> {};
+
+TEST_P(UnattendedExciter, IsSwitchedOffByTheGuardOfTheBench) {
+  LiveBenchSettings settings;
+  settings.bench_arguments = {"--frequencies", "40,80", "--levels", "20"};
+  settings.excitation = "frequencies_hz = [\"40\", \"80\"]\nlevel = 20.0\n"
+                        "settling_s = 0.5\nduration_s = 300.0\n";
+  settings.rest = "adc_delay_s = 1e-6\n";
+  settings.dds = GetParam();
+  LiveBench bench(fresh_folder("unattended_exciter_" + GetParam()), settings);
+  ProgramRun& guard = bench.start_service("dyncal-guard");
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
+  EXPECT_EQ(guard.errors().find("switched off"), std::string::npos) << guard.errors();
+  run.send(SIGSTOP);
+  EXPECT_TRUE(bench.wait_for_output("OFF")) << guard.errors();
+  EXPECT_TRUE(guard.wait_for_error_text("the output of the generator was switched off", patience));
+  EXPECT_THAT(guard.errors(), HasSubstr("bench live: nothing was heard of run "));
+  run.send(SIGCONT);
+  run.send(SIGINT);
+  EXPECT_TRUE(run.wait(patience)) << run.errors();
+}
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, UnattendedExciter, testing::Values("fastdds", "cyclonedds"),
+                         [](const auto& vendor) { return vendor.param; });
+
+} // namespace
+} // namespace dyncal::tests
