@@ -86,7 +86,7 @@ void RunPublisher::publish(const Recipe& recipe, const EvaluationOutput& output)
                    result.problem);
     }
     write(writers_.result, to_message(recipe, result), write_limit);
-    ++results_;
+    results_ += result.attempt == 1 ? 1 : 0; // a later attempt has the same key
   }
   for (const StepResult& result : output.settled) { // again: not counted
     write(writers_.result, to_message(recipe, result), write_limit);

@@ -18,8 +18,9 @@ namespace dyncal::services {
 
 struct TriggeredRecord {
   std::uint64_t session = 0;
-  std::uint64_t shot = 0; // number of the trigger in its session
-  std::uint32_t step = 0; // of the run
+  std::uint64_t shot = 0;    // number of the trigger in its session
+  std::uint32_t step = 0;    // of the run
+  std::uint32_t attempt = 1; // the excitation of this step that it was taken in
   std::size_t samples = 0;
   std::size_t channels = 0;
   std::int64_t trigger_utc_ns = 0;

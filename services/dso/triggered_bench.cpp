@@ -159,14 +159,15 @@ void TriggeredBench::follow(const wire::Excitation& excitation) {
     return;
   }
   const auto frequency = analysis::Frequency::parse(excitation.frequency_text_hz());
-  if (frequency && !in_step(run, excitation.step())) {
-    step_ = Step{run, excitation.step(), frequency->hz(), 0};
+  if (frequency && !in_step(run, excitation.step(), excitation.attempt())) {
+    step_ = Step{run, excitation.step(), excitation.attempt(), frequency->hz(), 0};
     shot_problem_.clear();
   }
 }
 
-bool TriggeredBench::in_step(const std::string& run, std::uint32_t step) const {
-  return step_ && step_->run == run && step_->step == step;
+bool TriggeredBench::in_step(const std::string& run, std::uint32_t step,
+                             std::uint32_t attempt) const {
+  return step_ && step_->run == run && step_->step == step && step_->attempt == attempt;
 }
 
 void TriggeredBench::try_to_connect() {
@@ -235,7 +236,7 @@ void TriggeredBench::take_shot() {
                     : fail(selected.error());
   }
   follow_excitation();
-  if (pair && !in_step(step.run, step.step)) {
+  if (pair && !in_step(step.run, step.step, step.attempt)) {
     pair = fail(ErrorCode::device, "the excitation ended during the shot, which is left out");
   }
   ++counts_.received;
@@ -261,6 +262,7 @@ bool TriggeredBench::publish(ShotPair pair, const Step& step) {
   Shot shot{.number = ++shot_,
             .run = step.run,
             .step = step.step,
+            .attempt = step.attempt,
             .trigger_utc_ns = pair.trace.triggered_utc_ns,
             .first_sample_s = 0.0,
             .interval_s = 1.0 / pair.series.nominal_rate_hz};

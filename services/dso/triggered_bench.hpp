@@ -58,6 +58,7 @@ private:
   struct Step {
     std::string run;
     std::uint32_t step = 0;
+    std::uint32_t attempt = 1;
     double frequency_hz = 0.0;
     int shots = 0;
   };
@@ -69,7 +70,8 @@ private:
   void take_shot();
   void reject_shot(const Step& step, const std::string& reason);
   [[nodiscard]] bool publish(ShotPair pair, const Step& step);
-  [[nodiscard]] bool in_step(const std::string& run, std::uint32_t step) const;
+  [[nodiscard]] bool in_step(const std::string& run, std::uint32_t step,
+                             std::uint32_t attempt) const;
   void describe_oscilloscope();
   void describe_sensor(const drivers::tss::Series& series);
   void try_to_connect();

@@ -23,12 +23,12 @@ double highest_level_m_s2(const Recipe& recipe, const std::string& frequency_tex
 
 } // namespace
 
-std::optional<std::string> LevelWatch::look(const SourceRecord& reference, std::size_t step) {
+std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
+                                            const RecipeStep& planned) {
   const auto stamps = reference.stamps_ns();
   if (stamps.empty() || !reference.described()) {
     return std::nullopt;
   }
-  const RecipeStep& planned = recipe_.steps[step];
   const auto window_ns = std::llround(1e9 * level_window_s(planned.frequency.hz()));
   const std::int64_t newest_ns = stamps.back();
   if (looked_ns_ && newest_ns >= *looked_ns_ && newest_ns - *looked_ns_ < window_ns) {

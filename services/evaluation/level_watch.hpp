@@ -26,9 +26,10 @@ public:
 
   explicit LevelWatch(const Recipe& recipe) : recipe_(recipe) {}
 
-  // `reference`: the record of the reference's source; `step`: index of the step that is excited
-  // now. Returns one sentence when the level is far above the plan.
-  [[nodiscard]] std::optional<std::string> look(const SourceRecord& reference, std::size_t step);
+  // `reference`: the record of the reference's source; `step`: the one that is excited now.
+  // Returns one sentence when the level is far above the plan.
+  [[nodiscard]] std::optional<std::string> look(const SourceRecord& reference,
+                                                const RecipeStep& step);
 
 private:
   const Recipe& recipe_;

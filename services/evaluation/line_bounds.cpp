@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "services/evaluation/method/line_check.hpp"
 
@@ -37,14 +38,30 @@ void add_row(ContributionKind kind, const ChannelLines& channel, double u2, Step
 
 } // namespace
 
+bool LineBounds::is_new(const StepOfChannel& where, std::uint32_t attempt) {
+  const auto [known, inserted] = known_.emplace(where, attempt);
+  if (inserted) {
+    return true;
+  }
+  if (attempt <= known->second) {
+    return false;
+  }
+  known->second = attempt;
+  for (auto& [line, measured] : measured_) {
+    std::erase_if(measured, [&](const Measured& one) { return one.where == where; });
+  }
+  return true;
+}
+
 void LineBounds::add(const StepResult& result) {
   for (const ChannelLines& channel : result.lines) {
-    if (!known_.insert({channel.channel, result.step, result.repetition}).second) {
+    const StepOfChannel where{channel.channel, result.step, result.repetition};
+    if (!is_new(where, result.attempt)) {
       continue;
     }
     for (const MeasuredLine& line : channel.measured) {
       measured_[{channel.channel, line.kind, line.line_hz, std::min(line.order, first_high_order)}]
-          .push_back(line.measured);
+          .push_back({where, line.measured});
     }
   }
 }
@@ -54,7 +71,13 @@ std::optional<double> LineBounds::square_of(const ChannelLines& channel,
   const bool mains = line.kind == LineKind::mains;
   const auto found = measured_.find({channel.channel, line.kind, mains ? line.line_hz : 0.0,
                                      mains ? 0 : std::min(line.order, first_high_order)});
-  return found == measured_.end() ? std::nullopt : analysis::square_of_amplitude(found->second);
+  if (found == measured_.end() || found->second.empty()) {
+    return std::nullopt;
+  }
+  std::vector<analysis::MeasuredAmplitude> amplitudes;
+  std::transform(found->second.begin(), found->second.end(), std::back_inserter(amplitudes),
+                 [](const Measured& one) { return one.amplitude; });
+  return analysis::square_of_amplitude(amplitudes);
 }
 
 void LineBounds::settle(const ChannelLines& channel, StepResult& result) const {

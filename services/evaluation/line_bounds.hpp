@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -27,7 +26,8 @@ namespace dyncal::services {
 
 class LineBounds {
 public:
-  // Takes what the result's channels show, once for every channel of a step.
+  // Takes what the result's channels show, once for every channel of a step; of a later attempt in
+  // place of the earlier one.
   void add(const StepResult& result);
 
   // The result with its final budget and flags; not provisional any more. Its Monte Carlo check is
@@ -38,12 +38,18 @@ private:
   using Line = std::tuple<std::string, analysis::LineKind, double, int>; // channel, Hz, order
   using StepOfChannel = std::tuple<std::string, std::uint32_t, std::uint32_t>;
 
+  [[nodiscard]] bool is_new(const StepOfChannel& where, std::uint32_t attempt);
   [[nodiscard]] std::optional<double> square_of(const ChannelLines& channel,
                                                 const analysis::UnresolvedLine& line) const;
   void settle(const ChannelLines& channel, StepResult& result) const;
 
-  std::set<StepOfChannel> known_;
-  std::map<Line, std::vector<analysis::MeasuredAmplitude>> measured_;
+  struct Measured {
+    StepOfChannel where;
+    analysis::MeasuredAmplitude amplitude;
+  };
+
+  std::map<StepOfChannel, std::uint32_t> known_; // with the attempt
+  std::map<Line, std::vector<Measured>> measured_;
 };
 
 } // namespace dyncal::services

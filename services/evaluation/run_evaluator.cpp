@@ -15,10 +15,12 @@ namespace dyncal::services {
 
 namespace {
 
-Evaluation with_temperature(Evaluation evaluation, std::optional<double> degc) {
-  return [evaluation = std::move(evaluation), degc] {
+// What the evaluation of a step by itself does not know.
+Evaluation completed(Evaluation evaluation, std::uint32_t attempt, std::optional<double> degc) {
+  return [evaluation = std::move(evaluation), attempt, degc] {
     std::vector<StepResult> results = evaluation();
     for (StepResult& result : results) {
+      result.attempt = attempt;
       result.temperature_degc = degc;
     }
     return results;
@@ -123,7 +125,8 @@ void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
 bool RunEvaluator::has_all_steps() const {
   const ExcitationProgress& excitation = records_.excitation();
   return next_step_ >= excitation.steps_expected() &&
-         (excitation.ended() || next_step_ >= recipe_->steps.size());
+         (excitation.ended() ||
+          (!excitation.is_conducted() && next_step_ >= recipe_->steps.size()));
 }
 
 std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
@@ -132,14 +135,13 @@ std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
   return goes_on ? std::optional(clock_->source()) : std::nullopt;
 }
 
-bool RunEvaluator::is_evaluated(std::uint32_t step) const {
-  const auto end = recipe_->steps.begin() + static_cast<std::ptrdiff_t>(next_step_);
-  return std::any_of(recipe_->steps.begin(), end,
-                     [&](const RecipeStep& one) { return one.step == step; });
+bool RunEvaluator::is_evaluated(const TriggeredRecord& record) const {
+  const auto place = records_.excitation().order().find(record.step, record.attempt);
+  return place && *place < next_step_;
 }
 
 void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
-  if (!finished_ && !is_evaluated(record.step)) {
+  if (!finished_ && !is_evaluated(record)) {
     method_->add(source, std::move(record));
   }
 }
@@ -158,18 +160,28 @@ void RunEvaluator::finish_now() {
 
 std::optional<std::string> RunEvaluator::excess_of_level() {
   const auto step = records_.excitation().excited_step();
-  return step && !finished_ ? level_watch_.look(records_.of(recipe_->reference().source), *step)
-                            : std::nullopt;
+  return step && !finished_
+             ? level_watch_.look(records_.of(recipe_->reference().source), records_.planned(*step))
+             : std::nullopt;
 }
 
 void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutput& output) {
   for (StepResult& result : results) {
     summary_.add(result);
     line_bounds_.add(result);
-    if (result.provisional) {
-      provisional_.push_back(result);
-    }
+    keep_if_provisional(result);
     output.results.push_back(std::move(result));
+  }
+}
+
+// In place of that of an earlier attempt.
+void RunEvaluator::keep_if_provisional(const StepResult& result) {
+  std::erase_if(provisional_, [&](const StepResult& other) {
+    return other.step == result.step && other.repetition == result.repetition &&
+           other.channel == result.channel;
+  });
+  if (result.provisional) {
+    provisional_.push_back(result);
   }
 }
 
@@ -182,8 +194,9 @@ void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   while (next_step_ < records_.excitation().steps_expected() && records_.is_searched(next_step_) &&
          method_->is_complete(next_step_, records_)) {
     evaluations_.make_room();
+    const std::uint32_t attempt = records_.excitation().order().attempt(next_step_);
     evaluations_.begin(
-        with_temperature(evaluation_of_next_step(), temperature_of_step(next_step_)));
+        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);

@@ -11,6 +11,11 @@
 // A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
 // the end of the run, when all steps tell how large that line may be (line_bounds.hpp).
 //
+// A step may be excited again after the planned ones, as announced: it is searched behind all that
+// was found, and its results take the place of those before. Where steps are announced at all, the
+// run therefore ends with end_of_excitation() only; records that nobody conducts end with the last
+// planned step.
+//
 // Live (`ahead`) a step is evaluated as soon as its planned samples have come, while it is still
 // excited; its end then only confirms what was expected, and the result is handed over at once,
 // before anything else is done: take again at once what came out with results. An excitation that
@@ -102,12 +107,13 @@ private:
   [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
   [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;
-  [[nodiscard]] bool is_evaluated(std::uint32_t step) const;
+  [[nodiscard]] bool is_evaluated(const TriggeredRecord& record) const;
   [[nodiscard]] bool has_all_steps() const;
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   void evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] Evaluation evaluation_of_next_step();
   void evaluate_ahead();
+  void keep_if_provisional(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   void settle_results(EvaluationOutput& output);
   void finish(EvaluationOutput& output);

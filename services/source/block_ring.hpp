@@ -34,6 +34,7 @@ struct Shot {
   std::uint64_t number = 0; // of the session, from 1; both records of a shot have the same
   std::string run;
   std::uint32_t step = 0;
+  std::uint32_t attempt = 1;       // the excitation of the step
   std::int64_t trigger_utc_ns = 0; // of the host's clock
   double first_sample_s = 0.0;     // from the trigger to the first sample
   double interval_s = 0.0;

@@ -106,6 +106,7 @@ dyncal::wire::TriggeredRecord to_message(const SourceOptions& source, std::uint6
   message.received_utc_ns(block.received_utc_ns);
   message.run(shot.run);
   message.step(shot.step);
+  message.attempt(shot.attempt);
   return message;
 }
 

@@ -103,8 +103,8 @@ Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records)
   const auto interval = records.interval(0, step);
   if (!interval) {
     return [results = results_without_value(
-                recipe_->steps[step], roles_.dut,
-                no_sine(records, recipe_->steps[step], roles_.excitation))] { return results; };
+                records.planned(step), roles_.dut,
+                no_sine(records, records.planned(step), roles_.excitation))] { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);
   std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);

@@ -3,7 +3,7 @@
 //
 // There is one implementation a method, and make_method() chooses it by the recipe; nothing else
 // asks which method a run has. RunEvaluator does what is common to all: it takes samples, searches,
-// and evaluates the steps in their order. Steps are indices into the recipe's.
+// and evaluates the steps in their order. Steps are places in that order (record/step_order.hpp).
 //
 // Belongs to one thread, but for the evaluation of a step: it is a value that may run in any
 // thread, and looks at nothing that changes.

@@ -109,8 +109,8 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   const auto of_dau = records.interval(1, step);
   if (!of_acs || !of_dau) {
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
-    return [results = results_without_value(recipe_->steps[step], roles_.dut,
-                                            no_sine(records, recipe_->steps[step], sync))] {
+    return [results = results_without_value(records.planned(step), roles_.dut,
+                                            no_sine(records, records.planned(step), sync))] {
       return results;
     };
   }

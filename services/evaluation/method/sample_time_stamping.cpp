@@ -103,8 +103,8 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
   if (!of_acs || !of_dau) {
     const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_dau.source));
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
-    return [results = results_without_value(recipe_->steps[step], dut,
-                                            no_sine(records, recipe_->steps[step], sync))] {
+    return [results = results_without_value(records.planned(step), dut,
+                                            no_sine(records, records.planned(step), sync))] {
       return results;
     };
   }

@@ -6,6 +6,14 @@
 #include "services/evaluation/method/step_task.hpp"
 
 namespace dyncal::services {
+namespace {
+
+StepAttempt attempt_at(std::size_t step, const RunRecords& records) {
+  const StepOrder& order = records.excitation().order();
+  return {order.step(step).step, order.attempt(step)};
+}
+
+} // namespace
 
 std::vector<SearchedChannel> SeriesTimeStamping::searches() const {
   return {{roles_.sync_acs, {roles_.sync_acs.source}}};
@@ -22,7 +30,7 @@ void SeriesTimeStamping::add(const std::string& source, TriggeredRecord record) 
 bool SeriesTimeStamping::is_complete(std::size_t step, const RunRecords& records) const {
   const ExcitationProgress& excitation = records.excitation();
   const bool all_there = excitation.is_announced_over(step) &&
-                         shots_.of_step(recipe_->steps[step].step).size() >= roles_.shots;
+                         shots_.of_step(attempt_at(step, records)).size() >= roles_.shots;
   return all_there || records.is_over_in(roles_.sync_acs.source, step);
 }
 
@@ -31,7 +39,8 @@ Evaluation SeriesTimeStamping::evaluation(std::size_t step, const RunRecords& re
 }
 
 std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const RunRecords& records) {
-  const RecipeStep& planned = recipe_->steps[step];
+  const RecipeStep& planned = records.planned(step);
+  const StepAttempt attempt = attempt_at(step, records);
   const auto interval = records.interval(0, step);
   if (!interval) {
     return results_without_value(planned, roles_.dut, no_sine(records, planned, roles_.sync_acs));
@@ -42,14 +51,14 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
                             .acs = acs,
                             .oscilloscope = records.of(roles_.sync_dso.source),
                             .sensor = records.of(roles_.dut.front().source),
-                            .shots = shots_.of_step(planned.step),
-                            .lost = shots_.lost_in(planned.step),
+                            .shots = shots_.of_step(attempt),
+                            .lost = shots_.lost_in(attempt),
                             .start_so_far = start_});
   start_ = evaluated.start;
   if (evaluated.rate) {
-    rates_.push_back(*evaluated.rate);
+    rates_.insert_or_assign(records.excitation().order().index(step), *evaluated.rate);
   }
-  shots_.forget_step(planned.step);
+  shots_.forget_step(attempt);
   return std::move(evaluated.results);
 }
 
@@ -57,7 +66,11 @@ std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {
   if (rates_.empty()) {
     return {};
   }
-  return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates_)};
+  std::vector<analysis::NominalFrequency> rates;
+  for (const auto& [step, rate] : rates_) {
+    rates.push_back(rate);
+  }
+  return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates)};
 }
 
 } // namespace dyncal::services

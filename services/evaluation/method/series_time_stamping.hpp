@@ -6,6 +6,8 @@
 // evaluated.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <vector>
 
 #include "analysis/method/nominal_frequency.hpp"
@@ -36,7 +38,8 @@ private:
   const SeriesRoles& roles_;
   ShotRecord shots_;
   analysis::StartKind start_ = analysis::StartKind::undecided; // as far as the steps so far tell
-  std::vector<analysis::NominalFrequency> rates_;              // of the sensor, one a step
+  // Of the sensor, by step of the recipe.
+  std::map<std::size_t, analysis::NominalFrequency> rates_;
 };
 
 } // namespace dyncal::services

@@ -41,10 +41,10 @@ std::string likely_cause(const RunRecords& records, const std::string& name) {
 
 } // namespace
 
-StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
+StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
                         const ExcitationProgress& excitation,
                         const std::vector<SourceInterval>& sources) {
-  StepTask task{std::move(recipe), index};
+  StepTask task{std::move(recipe), excitation.order().index(step)};
   for (const SourceInterval& source : sources) {
     const auto& record = source.record;
     const TimeInterval& interval = source.interval;
@@ -56,7 +56,7 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
       task.flags.push_back(flag_of_source(ResultFlag::shorter_than_planned, record->source()));
     }
   }
-  if (excitation.is_broken_off(index)) {
+  if (excitation.is_broken_off(step)) {
     task.flags.push_back(make_flag(ResultFlag::excitation_broken_off));
   }
   return task;

@@ -15,7 +15,7 @@ namespace dyncal::services {
 
 struct StepTask {
   std::shared_ptr<const Recipe> recipe;
-  std::size_t index = 0;
+  std::size_t index = 0; // among the recipe's steps
   std::vector<Flag> flags{};
 
   [[nodiscard]] const RecipeStep& step() const { return recipe->steps[index]; }
@@ -23,7 +23,7 @@ struct StepTask {
 
 // With the flags that every method has: samples lost, step shorter than planned, excitation broken
 // off.
-[[nodiscard]] StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t index,
+[[nodiscard]] StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
                                       const ExcitationProgress& excitation,
                                       const std::vector<SourceInterval>& sources);
 

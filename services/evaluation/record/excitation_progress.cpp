@@ -21,17 +21,18 @@ StepAnnouncement::State state_of(wire::ExcitationState state) {
 } // namespace
 
 StepAnnouncement from_message(const wire::Excitation& excitation) {
-  return {excitation.step(), state_of(excitation.state())};
+  return {excitation.step(), state_of(excitation.state()), std::max(excitation.attempt(), 1U),
+          excitation.repeated_steps()};
 }
 
 void ExcitationProgress::announce(const StepAnnouncement& announcement) {
-  const auto found =
-      std::find_if(recipe_.steps.begin(), recipe_.steps.end(),
-                   [&](const RecipeStep& step) { return step.step == announcement.step; });
-  if (found == recipe_.steps.end()) {
+  order_.repeat(announcement.repeated_steps);
+  order_.repeat(announcement.step, announcement.attempt);
+  const auto found = order_.find(announcement.step, announcement.attempt);
+  if (!found) {
     return;
   }
-  const auto step = static_cast<std::size_t>(found - recipe_.steps.begin());
+  const std::size_t step = *found;
   steps_announced_ = std::max(steps_announced_, step + 1);
   if (announcement.state != StepAnnouncement::State::excited) {
     over_.insert(step);
@@ -52,7 +53,7 @@ void ExcitationProgress::end(bool aborted) {
 }
 
 std::size_t ExcitationProgress::steps_expected() const {
-  return aborted_ ? std::min(steps_announced_, recipe_.steps.size()) : recipe_.steps.size();
+  return aborted_ ? steps_announced_ : order_.size();
 }
 
 std::optional<std::size_t> ExcitationProgress::excited_step() const {

@@ -10,9 +10,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/source_record.hpp"
+#include "services/evaluation/record/step_order.hpp"
 
 namespace dyncal::wire {
 class Excitation;
@@ -24,14 +26,18 @@ struct StepAnnouncement {
   enum class State { excited, done, aborted };
   std::uint32_t step = 0; // as the recipe numbers it
   State state = State::excited;
+  std::uint32_t attempt = 1;
+  std::vector<std::uint32_t> repeated_steps{}; // so far in the run, in their order
 };
 
 [[nodiscard]] StepAnnouncement from_message(const wire::Excitation& excitation);
 
-// Steps are indices into the recipe's.
+// Steps are places in the order of their excitation (step_order.hpp): the recipe's, then those that
+// were excited again.
 class ExcitationProgress {
 public:
-  explicit ExcitationProgress(const Recipe& recipe) : recipe_(recipe) {}
+  explicit ExcitationProgress(const Recipe& recipe)
+      : planned_(recipe.steps.size()), order_(recipe) {}
 
   // Passes over a step that the recipe does not have.
   void announce(const StepAnnouncement& announcement);
@@ -41,6 +47,9 @@ public:
   // Nothing comes any more from any source.
   void cut_short() { cut_short_ = true; }
 
+  [[nodiscard]] const StepOrder& order() const { return order_; }
+  // Somebody conducts the run step by step, and may excite some again until it has ended.
+  [[nodiscard]] bool is_conducted() const { return steps_announced_ > 0; }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool is_cut_short() const { return cut_short_; }
   [[nodiscard]] std::size_t steps_expected() const;
@@ -50,7 +59,8 @@ public:
   [[nodiscard]] bool is_broken_off(std::size_t step) const { return broken_off_.contains(step); }
 
 private:
-  const Recipe& recipe_;
+  std::size_t planned_; // steps
+  StepOrder order_;
   std::set<std::size_t> over_;
   std::set<std::size_t> broken_off_;
   std::size_t steps_announced_ = 0;

@@ -12,8 +12,9 @@ RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>&
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }
   for (const SearchedChannel& one : searched) {
-    searches_.push_back({one.channel.source, one.sources,
-                         StepSearch(recipe, of(one.channel.source), one.channel.channel)});
+    searches_.push_back(
+        {one.channel.source, one.sources,
+         StepSearch(recipe, excitation_.order(), of(one.channel.source), one.channel.channel)});
   }
 }
 

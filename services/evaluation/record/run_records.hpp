@@ -1,8 +1,9 @@
 // All that the sources of one run have sent, and where in it the steps are.
 //
 // One record a source, and one search for the steps in each channel that the method names: the
-// channel of the ACS first. Samples that no step needs any more are forgotten. Belongs to one
-// thread; the recipe must outlive it.
+// channel of the ACS first. Steps are places in the order of their excitation (step_order.hpp).
+// Samples that no step needs any more are forgotten. Belongs to one thread; the recipe must outlive
+// it.
 #pragma once
 
 #include <chrono>
@@ -43,10 +44,15 @@ public:
   // `capacity`: samples that a source's record holds.
   RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
              std::size_t capacity = SourceRecord::default_capacity);
+  RunRecords(const RunRecords&) = delete; // its searches look at it
+  RunRecords& operator=(const RunRecords&) = delete;
 
   [[nodiscard]] ExcitationProgress& excitation() { return excitation_; }
   void announce(const StepAnnouncement& announcement);
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
+  [[nodiscard]] const RecipeStep& planned(std::size_t step) const {
+    return excitation_.order().step(step);
+  }
 
   [[nodiscard]] std::vector<std::string> sources() const;
   // Null for a source that is not of the run.

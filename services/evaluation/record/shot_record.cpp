@@ -14,15 +14,19 @@ bool is_usable(const TriggeredRecord& record) {
                      [](double value) { return std::isfinite(value); });
 }
 
+StepAttempt attempt_of(const TriggeredRecord& record) {
+  return {record.step, record.attempt};
+}
+
 } // namespace
 
 void ShotRecord::add_trace(TriggeredRecord record) {
-  Loss& loss = lost_[record.step].traces;
+  Loss& loss = lost_[attempt_of(record)].traces;
   add(traces_, std::move(record), loss);
 }
 
 void ShotRecord::add_series(TriggeredRecord record) {
-  Loss& loss = lost_[record.step].series;
+  Loss& loss = lost_[attempt_of(record)].series;
   add(series_, std::move(record), loss);
 }
 
@@ -40,24 +44,25 @@ void ShotRecord::add(Records& records, TriggeredRecord record, Loss& loss) {
   records.insert_or_assign(key, std::move(record));
 }
 
-std::vector<ShotRecord::Shot> ShotRecord::of_step(std::uint32_t step) const {
+std::vector<ShotRecord::Shot> ShotRecord::of_step(StepAttempt step) const {
   std::vector<Shot> shots;
   for (const auto& [key, trace] : traces_) {
     const auto series = series_.find(key);
-    if (trace.step == step && series != series_.end() && series->second.step == step) {
+    if (attempt_of(trace) == step && series != series_.end() &&
+        attempt_of(series->second) == step) {
       shots.push_back({&trace, &series->second});
     }
   }
   return shots;
 }
 
-ShotRecord::Losses ShotRecord::lost_in(std::uint32_t step) const {
+ShotRecord::Losses ShotRecord::lost_in(StepAttempt step) const {
   const auto found = lost_.find(step);
   return found == lost_.end() ? Losses{} : found->second;
 }
 
-void ShotRecord::forget_step(std::uint32_t step) {
-  const auto of_that_step = [&](const auto& entry) { return entry.second.step == step; };
+void ShotRecord::forget_step(StepAttempt step) {
+  const auto of_that_step = [&](const auto& entry) { return attempt_of(entry.second) == step; };
   std::erase_if(traces_, of_that_step);
   std::erase_if(series_, of_that_step);
   lost_.erase(step);

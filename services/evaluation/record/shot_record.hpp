@@ -1,11 +1,13 @@
 // The triggered records of a run: traces of the oscilloscope and series of the sensor, paired by
 // session and shot number.
 //
-// A record carries the step of the run that it belongs to. One whose sizes contradict each other,
-// or that holds a value that is not finite, is not used; beyond `capacity` records of a kind new
-// ones are dropped. Both are counted for their step. Belongs to one thread.
+// A record carries the step of the run that it belongs to, and which excitation of it. One whose
+// sizes contradict each other, or that holds a value that is not finite, is not used; beyond
+// `capacity` records of a kind new ones are dropped. Both are counted for their step. Belongs to
+// one thread.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -14,6 +16,13 @@
 #include "services/contract/triggered_record.hpp"
 
 namespace dyncal::services {
+
+struct StepAttempt {
+  std::uint32_t step = 0; // as the recipe numbers it
+  std::uint32_t attempt = 1;
+
+  friend auto operator<=>(const StepAttempt&, const StepAttempt&) = default;
+};
 
 class ShotRecord {
 public:
@@ -38,9 +47,9 @@ public:
 
   // Those of which both records are there, in the order of their numbers. Valid until the next call
   // that changes something.
-  [[nodiscard]] std::vector<Shot> of_step(std::uint32_t step) const;
-  [[nodiscard]] Losses lost_in(std::uint32_t step) const;
-  void forget_step(std::uint32_t step);
+  [[nodiscard]] std::vector<Shot> of_step(StepAttempt step) const;
+  [[nodiscard]] Losses lost_in(StepAttempt step) const;
+  void forget_step(StepAttempt step);
 
 private:
   using Key = std::pair<std::uint64_t, std::uint64_t>; // session, shot
@@ -49,7 +58,7 @@ private:
 
   Records traces_;
   Records series_;
-  std::map<std::uint32_t, Losses> lost_; // by step
+  std::map<StepAttempt, Losses> lost_;
 };
 
 } // namespace dyncal::services

@@ -26,8 +26,9 @@ TimeInterval evaluated_part(const analysis::ExcitationWindow& window, const Reci
 
 } // namespace
 
-StepSearch::StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel)
-    : recipe_(recipe), record_(record), sync_channel_(std::move(sync_channel)),
+StepSearch::StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
+                       std::string sync_channel)
+    : recipe_(recipe), order_(order), record_(record), sync_channel_(std::move(sync_channel)),
       search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
 
 void StepSearch::search_step(std::size_t step) {
@@ -48,7 +49,7 @@ void StepSearch::advance(std::size_t last_step) {
     take_whole_record(record_.ended());
     return;
   }
-  while (step_ <= last_step && step_ < recipe_.steps.size()) {
+  while (step_ <= last_step && step_ < order_.size()) {
     feed();
     if (!finder_) {
       return;
@@ -76,7 +77,7 @@ void StepSearch::feed() {
     return;
   }
   if (!finder_) {
-    finder_.emplace(recipe_.steps[step_].frequency);
+    finder_.emplace(order_.step(step_).frequency);
   }
   const auto stamps = record_.stamps_ns();
   const auto flags = record_.flags();
@@ -107,7 +108,7 @@ void StepSearch::expect() {
   }
   expected_until_ns_ = stamps.back() + finder_->frame_ns();
   expected_.reset();
-  const RecipeStep& step = recipe_.steps[step_];
+  const RecipeStep& step = order_.step(step_);
   const auto window = finder_->window();
   if (window && window->end_ns >= window->begin_ns + to_ns(step.settling_s + step.duration_s)) {
     expected_ = {evaluated_part(*window, step, recipe_.settling_from_data), quiet_time(*window)};
@@ -115,8 +116,7 @@ void StepSearch::expect() {
 }
 
 void StepSearch::accept(const analysis::ExcitationWindow& window) {
-  const TimeInterval part =
-      evaluated_part(window, recipe_.steps[step_], recipe_.settling_from_data);
+  const TimeInterval part = evaluated_part(window, order_.step(step_), recipe_.settling_from_data);
   if (part.end_ns > part.begin_ns) {
     found_[step_] = {part, quiet_time(window)};
   }

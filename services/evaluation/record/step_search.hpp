@@ -2,9 +2,9 @@
 // from its sync channel alone.
 //
 // With Recipe::whole_record nothing is searched: the one step is the record from its first to its
-// last sample. Steps are searched in the planned order, each from the end of the one before; the
-// search never goes back but when the source was restarted. What it finds depends on the samples
-// only, not on how they came.
+// last sample. Steps are searched in the order of their excitation (step_order.hpp), each from the
+// end of the one before; the search never goes back but when the source was restarted. What it
+// finds depends on the samples only, not on how they came.
 //
 // Belongs to one thread; the record and the recipe must outlive it.
 #pragma once
@@ -17,16 +17,18 @@
 #include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/source_record.hpp"
+#include "services/evaluation/record/step_order.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
 namespace dyncal::services {
 
 class StepSearch {
 public:
-  StepSearch(const Recipe& recipe, const SourceRecord& record, std::string sync_channel);
+  // `order` too outlives the search.
+  StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
+             std::string sync_channel);
 
-  // Looks at the samples that have come since the last call, as far as `last_step` (an index into
-  // the recipe's steps).
+  // Looks at the samples that have come since the last call, as far as `last_step`.
   void advance(std::size_t last_step);
 
   // What to evaluate of the step: settling dropped, at most the planned duration; when settling is
@@ -62,6 +64,7 @@ private:
   quiet_time(const analysis::ExcitationWindow& window) const;
 
   const Recipe& recipe_;
+  const StepOrder& order_;
   const SourceRecord& record_;
   std::string sync_channel_;
   std::uint32_t restarts_ = 0;

@@ -12,13 +12,15 @@ struct Row {
   const char* name;
   const char* sentence;
   const char* explanation;
+  bool may_be_cured = false;
 };
 
 // In the order of the enum.
 constexpr std::array rows{
     Row{ResultFlag::samples_lost, "samples_lost", "samples lost",
         "samples of this source are missing within the step and the fit uses the others; check "
-        "its network, its buffers and the load of its computer"},
+        "its network, its buffers and the load of its computer",
+        true},
     Row{ResultFlag::stamps_not_trusted, "stamps_not_trusted",
         "samples left out, their stamps are not trusted",
         "the device or the check of its stamps does not trust some of them, and their samples are "
@@ -28,14 +30,16 @@ constexpr std::array rows{
         "the device sent samples without a value, which are left out; check its settings"},
     Row{ResultFlag::shorter_than_planned, "shorter_than_planned", "shorter than planned",
         "less of the steady sine was recorded than the plan asks for, so the noise in u is larger "
-        "than planned; repeat the step, or lengthen what the generator plays"},
+        "than planned; repeat the step, or lengthen what the generator plays",
+        true},
     Row{ResultFlag::clock_uncertainty_unknown, "clock_uncertainty_unknown",
         "nothing is known of the uncertainty of its clock",
         "u of the phase holds nothing for the time stamps of this source; find their uncertainty "
         "and add it by hand"},
     Row{ResultFlag::excitation_broken_off, "excitation_broken_off", "excitation broken off",
         "the step ended before its time, and what was recorded until then was evaluated; repeat "
-        "the step"},
+        "the step",
+        true},
     Row{ResultFlag::level_off_plan, "level_off_plan", "level off plan",
         "the reference shows another level than planned, and the value holds for what it shows; "
         "check level_per_volt and the amplifier, or set level_tolerance_rel"},
@@ -54,13 +58,16 @@ constexpr std::array rows{
         "the sine was not yet steady when the evaluation began; raise settling_s"},
     Row{ResultFlag::shots_missing, "shots_missing", "shots",
         "fewer shots than planned came or could be used, so u is larger than planned; check the "
-        "trigger and repeat the step"},
+        "trigger and repeat the step",
+        true},
     Row{ResultFlag::shots_left_out, "shots_left_out",
         "shots of another length, rate or number of channels left out",
-        "the settings of an instrument changed during the step; repeat it with unchanged settings"},
+        "the settings of an instrument changed during the step; repeat it with unchanged settings",
+        true},
     Row{ResultFlag::records_lost, "records_lost", "records of shots lost: not usable, or too many",
         "records of this source could not be used or exceeded what is held; check the instrument "
-        "and the number of shots"},
+        "and the number of shots",
+        true},
     Row{ResultFlag::start_undecided, "start_undecided", "start of the series",
         "the phases of the shots do not show how the series starts after the trigger, which u "
         "allows for; record more shots"},
@@ -132,6 +139,10 @@ ResultFlag parse_flag_name(std::string_view name) {
 
 std::string_view explanation_of(ResultFlag flag) {
   return row_of(flag).explanation;
+}
+
+bool may_be_cured(ResultFlag flag) {
+  return row_of(flag).may_be_cured;
 }
 
 Flag make_flag(ResultFlag kind) {

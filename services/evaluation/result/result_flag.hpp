@@ -51,6 +51,11 @@ enum class ResultFlag {
 // For people: what it means and what to do about it.
 [[nodiscard]] std::string_view explanation_of(ResultFlag flag);
 
+// Another attempt at the step may be without it: what came of the network, of an instrument that
+// was away or of an excitation that ended early. What the set-up makes of a signal (range, level,
+// distortion, clocks) comes again.
+[[nodiscard]] bool may_be_cured(ResultFlag flag);
+
 struct Flag {
   ResultFlag kind = ResultFlag::from_message;
   std::string sentence;

@@ -164,6 +164,7 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   message.temperature_valid(result.temperature_degc.has_value());
   message.temperature_degc(result.temperature_degc.value_or(0.0));
   message.provisional(result.provisional);
+  message.attempt(result.attempt);
   for (const ChannelSignal& signal : result.signals) {
     message.signals().push_back(signal_message(signal));
   }
@@ -215,6 +216,7 @@ StepResult from_message(const wire::CalibrationResult& message) {
   }
   result.data_sha256 = message.data_sha256();
   result.provisional = message.provisional();
+  result.attempt = std::max(message.attempt(), 1U);
   for (const wire::SignalQuality& signal : message.signals()) {
     result.signals.push_back({signal.channel(), signal.thd(), signal.u_thd(), signal.residual_rel(),
                               signal.residual_over_noise()});

@@ -51,6 +51,7 @@ struct StepResult {
   std::string channel; // "source/channel"
   std::uint32_t step = 0;
   std::uint32_t repetition = 0;
+  std::uint32_t attempt = 1; // the excitation of the step that it is of
   std::string frequency_text_hz;
   double frequency_hz = 0.0;
   double level_m_s2 = 0.0;

@@ -24,7 +24,7 @@ std::vector<std::string> sentences_while(const tests::SyntheticRun& run, std::si
   std::vector<std::string> sentences;
   for (const wire::SampleBlock& block : run.acs_blocks()) {
     tests::feed(record, block);
-    if (auto sentence = watch.look(record, step)) {
+    if (auto sentence = watch.look(record, recipe.steps[step])) {
       sentences.push_back(std::move(*sentence));
     }
   }

@@ -1,0 +1,54 @@
+#include "services/evaluation/record/step_order.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace dyncal::services {
+
+std::size_t StepOrder::index(std::size_t place) const {
+  const std::size_t planned = recipe_.steps.size();
+  return place < planned ? place : repeats_[place - planned].index;
+}
+
+std::uint32_t StepOrder::attempt(std::size_t place) const {
+  const std::size_t planned = recipe_.steps.size();
+  return place < planned ? 1 : repeats_[place - planned].attempt;
+}
+
+std::optional<std::size_t> StepOrder::index_of(std::uint32_t step) const {
+  const auto found = std::find_if(recipe_.steps.begin(), recipe_.steps.end(),
+                                  [&](const RecipeStep& one) { return one.step == step; });
+  return found == recipe_.steps.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - recipe_.steps.begin()));
+}
+
+std::optional<std::size_t> StepOrder::find(std::uint32_t step, std::uint32_t attempt) const {
+  const auto index = index_of(step);
+  if (!index || attempt <= 1) {
+    return index;
+  }
+  const auto found = std::find_if(repeats_.begin(), repeats_.end(), [&](const Repeat& repeat) {
+    return repeat.index == *index && repeat.attempt == attempt;
+  });
+  return found == repeats_.end()
+             ? std::nullopt
+             : std::optional(recipe_.steps.size() +
+                             static_cast<std::size_t>(found - repeats_.begin()));
+}
+
+void StepOrder::repeat(const std::vector<std::uint32_t>& steps) {
+  std::map<std::uint32_t, std::uint32_t> attempts;
+  for (const std::uint32_t step : steps) {
+    repeat(step, 2 + attempts[step]++);
+  }
+}
+
+void StepOrder::repeat(std::uint32_t step, std::uint32_t attempt) {
+  const auto index = index_of(step);
+  if (index && attempt > 1 && !find(step, attempt)) {
+    repeats_.push_back({*index, attempt});
+  }
+}
+
+} // namespace dyncal::services
