@@ -17,6 +17,20 @@ constexpr auto command_interval = 250ms;
 constexpr auto status_interval = 1s;
 constexpr auto max_pause = 1s;              // between two calls of work() of a process that runs
 constexpr std::size_t max_announced = 4096; // one implies that those before it are over
+// A Monte Carlo check of more trials takes so long (milliseconds a channel) that it has a thread of
+// its own: reception and other benches must not wait for it.
+constexpr std::uint64_t quick_trials = 5000;
+
+EvaluationLimits limits_of(const Recipe& recipe) {
+  EvaluationLimits limits;
+  if (recipe.monte_carlo_trials > quick_trials) {
+    limits.evaluations_at_once = 1;
+    limits.never_waits = true;
+  } else {
+    limits.ahead = true;
+  }
+  return limits;
+}
 
 } // namespace
 
@@ -49,7 +63,8 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
     refuse(recipe.error().message);
     return;
   }
-  evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), EvaluationLimits{.ahead = true});
+  const EvaluationLimits limits = limits_of(*recipe);
+  evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), limits);
   streams_.emplace(participant_, wake_up_, bench_, run_, *evaluator_, begin);
   if (begin == SourceStreams::Begin::behind) {
     status_.arm = wire::ARM_ARMED;
@@ -88,6 +103,7 @@ void RunSession::update(const wire::Measurement& measurement) {
 void RunSession::announce(const wire::Excitation& excitation) {
   excited_by_steps_ = true;
   if (evaluator_) {
+    evaluator_->expect_announcements();
     announced_.push_back(from_message(excitation));
     if (announced_.size() > max_announced) {
       announced_.pop_front();
@@ -287,7 +303,7 @@ void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
   const bool quiet = excitation_over() && status_.health != wire::HEALTH_WAITING &&
                      now - last_progress_ > quiet_limit;
-  if (!runner_lost && !quiet) {
+  if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }
   if (runner_lost) {

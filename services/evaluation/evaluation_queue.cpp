@@ -1,10 +1,28 @@
 #include "services/evaluation/evaluation_queue.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
 #include <utility>
 
 namespace dyncal::services {
+
+namespace {
+
+bool is_ready(const std::future<std::vector<StepResult>>& evaluation) {
+  return evaluation.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+} // namespace
+
+bool EvaluationQueue::has_room() {
+  keep_ready();
+  return !in_background() || under_way_.size() < at_once_;
+}
+
+bool EvaluationQueue::is_idle() const {
+  return std::all_of(under_way_.begin(), under_way_.end(), is_ready);
+}
 
 void EvaluationQueue::make_room() {
   while (!under_way_.empty() && under_way_.size() >= at_once_) {
@@ -22,11 +40,14 @@ void EvaluationQueue::begin(Evaluation evaluation) {
 }
 
 std::vector<StepResult> EvaluationQueue::take_finished() {
-  while (!under_way_.empty() &&
-         under_way_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  keep_ready();
+  return std::exchange(finished_, {});
+}
+
+void EvaluationQueue::keep_ready() {
+  while (!under_way_.empty() && is_ready(under_way_.front())) {
     finish_oldest();
   }
-  return std::exchange(finished_, {});
 }
 
 std::vector<StepResult> EvaluationQueue::take_all() {

@@ -20,6 +20,10 @@ public:
   explicit EvaluationQueue(std::size_t at_once) : at_once_(at_once) {}
 
   [[nodiscard]] bool in_background() const { return at_once_ > 0; }
+  // Whether one may begin without waiting.
+  [[nodiscard]] bool has_room();
+  // Whether the results of all that were begun are there.
+  [[nodiscard]] bool is_idle() const;
 
   // Waits until one more may begin: before its samples are copied, so that no more of them are held
   // than are evaluated.
@@ -31,6 +35,7 @@ public:
   [[nodiscard]] std::vector<StepResult> take_all();
 
 private:
+  void keep_ready();
   void finish_oldest();
   void keep(std::vector<StepResult> results);
 

@@ -33,7 +33,8 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
       summary_(*recipe_), runs_ahead_(limits.ahead && method_->can_run_ahead()),
-      clock_to_the_end_(limits.clock_to_the_end), evaluations_(limits.evaluations_at_once) {
+      clock_to_the_end_(limits.clock_to_the_end), never_waits_(limits.never_waits),
+      evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);
@@ -190,9 +191,14 @@ std::optional<double> RunEvaluator::temperature_of_step(std::size_t step) const 
                               : std::nullopt;
 }
 
-void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
+bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
+  bool has_room = true;
   while (next_step_ < records_.excitation().steps_expected() && records_.is_searched(next_step_) &&
          method_->is_complete(next_step_, records_)) {
+    has_room = !never_waits_ || evaluations_.has_room();
+    if (!has_room) {
+      break;
+    }
     evaluations_.make_room();
     const std::uint32_t attempt = records_.excitation().order().attempt(next_step_);
     evaluations_.begin(
@@ -200,6 +206,7 @@ void RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);
+  return has_room;
 }
 
 Evaluation RunEvaluator::evaluation_of_next_step() {
@@ -234,7 +241,9 @@ EvaluationOutput RunEvaluator::take_output() {
     } else {
       records_.search();
     }
-    evaluate_next_steps(output);
+    if (!evaluate_next_steps(output)) {
+      return output;
+    }
     if (runs_ahead_ && !output.results.empty()) {
       return output; // they do not wait for the rest, which the next call does
     }
@@ -247,20 +256,35 @@ EvaluationOutput RunEvaluator::take_output() {
   return output;
 }
 
-void RunEvaluator::settle_results(EvaluationOutput& output) {
-  for (StepResult& provisional : provisional_) {
-    StepResult result = line_bounds_.settled(std::move(provisional));
-    redo_monte_carlo_check(recipe_->monte_carlo_trials, result);
-    summary_.add(result);
-    output.settled.push_back(std::move(result));
-  }
-  provisional_.clear();
+Evaluation RunEvaluator::settlement() {
+  return [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
+          provisional = std::exchange(provisional_, {})] {
+    std::vector<StepResult> settled;
+    for (const StepResult& one : provisional) {
+      settled.push_back(bounds.settled(one));
+      redo_monte_carlo_check(trials, settled.back());
+    }
+    return settled;
+  };
 }
 
 void RunEvaluator::finish(EvaluationOutput& output) {
+  if (!settling_) {
+    if (never_waits_ && !evaluations_.is_idle()) {
+      return;
+    }
+    take_results(evaluations_.take_all(), output);
+    evaluations_.begin(settlement());
+    settling_ = true;
+  }
+  if (never_waits_ && !evaluations_.is_idle()) {
+    return;
+  }
+  for (StepResult& result : evaluations_.take_all()) {
+    summary_.add(result);
+    output.settled.push_back(std::move(result));
+  }
   finished_ = true;
-  take_results(evaluations_.take_all(), output);
-  settle_results(output);
   output.transfer_functions = summary_.transfer_functions();
   if (clock_) {
     output.clock_reports = clock_->reports(records_.of(clock_->source()).lost());

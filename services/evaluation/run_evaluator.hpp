@@ -56,6 +56,9 @@ struct EvaluationLimits {
   // So many steps are evaluated in threads of their own, from copies of their samples, while the
   // caller's goes on to take samples; 0: in the caller's. The results are the same.
   std::size_t evaluations_at_once = 0;
+  // With those: the caller never waits for them. The next step begins when there is room, and the
+  // run ends with a later call of take_output().
+  bool never_waits = false;
   std::size_t samples_of_a_source = SourceRecord::default_capacity; // held; see source_record.hpp
   // The sample clock is followed to the end of its source, not only to the last step: for records
   // that are there already.
@@ -83,6 +86,8 @@ public:
   // Of an instrument that records after a trigger, by its source.
   void add(const std::string& source, TriggeredRecord record);
   void announce(const StepAnnouncement& announcement);
+  // Steps are announced in this run, although what was announced may come later.
+  void expect_announcements() { records_.excitation().expect_announcements(); }
   // No excitation comes any more: the run is done, or was broken off after the steps announced so
   // far.
   void end_of_excitation(bool aborted);
@@ -98,6 +103,8 @@ public:
   [[nodiscard]] std::optional<std::string> source_of_clock_alone() const;
   // Steps whose results were there when their end was found (`ahead`).
   [[nodiscard]] std::size_t steps_ready() const { return steps_ready_; }
+  // Steps are being evaluated in threads of their own.
+  [[nodiscard]] bool is_evaluating() const { return !evaluations_.is_idle(); }
   // Everything of this run has been handed over.
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.
@@ -110,12 +117,13 @@ private:
   [[nodiscard]] bool is_evaluated(const TriggeredRecord& record) const;
   [[nodiscard]] bool has_all_steps() const;
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
-  void evaluate_next_steps(EvaluationOutput& output);
+  // Returns false if steps that could be evaluated wait for room.
+  bool evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] Evaluation evaluation_of_next_step();
   void evaluate_ahead();
   void keep_if_provisional(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
-  void settle_results(EvaluationOutput& output);
+  [[nodiscard]] Evaluation settlement();
   void finish(EvaluationOutput& output);
 
   std::shared_ptr<const Recipe> recipe_;
@@ -136,6 +144,8 @@ private:
   std::size_t steps_ready_ = 0;
   std::size_t next_step_ = 0; // not evaluated yet
   bool clock_to_the_end_;
+  bool never_waits_;
+  bool settling_ = false;
   bool finished_ = false;
   EvaluationQueue evaluations_; // the last member: it waits for those that look at the others
 };

@@ -34,6 +34,7 @@ void ExcitationProgress::announce(const StepAnnouncement& announcement) {
   }
   const std::size_t step = *found;
   steps_announced_ = std::max(steps_announced_, step + 1);
+  is_conducted_ = true;
   if (announcement.state != StepAnnouncement::State::excited) {
     over_.insert(step);
   }

@@ -49,7 +49,8 @@ public:
 
   [[nodiscard]] const StepOrder& order() const { return order_; }
   // Somebody conducts the run step by step, and may excite some again until it has ended.
-  [[nodiscard]] bool is_conducted() const { return steps_announced_ > 0; }
+  [[nodiscard]] bool is_conducted() const { return is_conducted_; }
+  void expect_announcements() { is_conducted_ = true; }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool is_cut_short() const { return cut_short_; }
   [[nodiscard]] std::size_t steps_expected() const;
@@ -64,6 +65,7 @@ private:
   std::set<std::size_t> over_;
   std::set<std::size_t> broken_off_;
   std::size_t steps_announced_ = 0;
+  bool is_conducted_ = false;
   bool ended_ = false;
   bool aborted_ = false;
   bool cut_short_ = false;
