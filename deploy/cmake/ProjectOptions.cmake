@@ -49,6 +49,9 @@ if(DYNCAL_SANITIZE)
   if(DYNCAL_SANITIZE STREQUAL "address")
     set(sanitizers address,undefined)
     add_compile_options(-fno-sanitize-recover=undefined)
+    # With the sanitizer Eigen would align memory by itself, but not in the Ceres library, which has
+    # the same functions of Eigen in it: memory of one would be freed by the other.
+    add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
   endif()
   add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${sanitizers})

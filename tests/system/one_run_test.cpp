@@ -57,7 +57,9 @@ TEST(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
   const auto status = next.wait(patience);
   ASSERT_TRUE(status);
   EXPECT_EQ(*status, 0) << next.errors();
-  for (const auto& point : read_json(folder / "next.json")["points"]) {
+  const auto result = read_json(folder / "next.json");
+  ASSERT_EQ(result["points"].size(), 9U);
+  for (const auto& point : result["points"]) {
     EXPECT_TRUE(point["valid"].get<bool>()) << point["problem"];
     EXPECT_EQ(point["flags"].size(), 0U) << point["flags"];
   }
