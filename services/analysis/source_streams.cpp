@@ -85,7 +85,29 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
   }
   return StreamFollower<wire::SampleBlock>(
       run_, asker_,
-      [this, name](const wire::SampleBlock& block) { evaluator_.add(name, view_block(block)); });
+      [this, name](const wire::SampleBlock& block) { hand_over(name, streams_.at(name), block); });
+}
+
+void SourceStreams::hand_over(const std::string& name, Stream& stream,
+                              const wire::SampleBlock& block) {
+  if (!stream.waiting.empty() || !evaluator_.is_ready_for(name, block.session())) {
+    stream.waiting.push_back(block);
+  } else {
+    evaluator_.add(name, view_block(block));
+  }
+}
+
+void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, Instant now) {
+  if (stream.waiting.empty()) {
+    stream.waiting_since = now;
+    return;
+  }
+  const bool overdue = now - stream.waiting_since > session_limit;
+  while (!stream.waiting.empty() &&
+         (overdue || evaluator_.is_ready_for(name, stream.waiting.front().session()))) {
+    evaluator_.add(name, view_block(stream.waiting.front()));
+    stream.waiting.pop_front();
+  }
 }
 
 template <class Message>
@@ -114,6 +136,9 @@ Expected<void> SourceStreams::open_answer_readers() {
 }
 
 void SourceStreams::take_samples(Instant now) {
+  for (auto& [name, stream] : streams_) {
+    hand_over_waiting(name, stream, now);
+  }
   const auto live = [&](Stream& stream, const auto& message, auto& follower) {
     stream.twins.add(message.session());
     follower.take_live(message, now);

@@ -5,10 +5,13 @@
 // (idl/README.md, "The run protocol"). What comes before is not of this run. They are handed over
 // in order and without a break as long as the source can close it (stream_follower.hpp), also when
 // the run began before this service. Readers are opened when a source's kind is known, one a topic;
-// those of answers to requests when the first is due. Belongs to the run's one thread.
+// those of answers to requests when the first is due. A source that has restarted is waited with
+// for up to `session_limit` where the evaluator still needs what it sent before. Belongs to the
+// run's one thread.
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -34,6 +37,8 @@ struct LostSource {
 class SourceStreams {
 public:
   using Instant = bus::Clock::Instant;
+
+  static constexpr std::chrono::seconds session_limit{5};
 
   enum class Begin { with_answer, behind }; // behind: the run began before this service
 
@@ -77,7 +82,10 @@ private:
       std::variant<StreamFollower<wire::SampleBlock>, StreamFollower<wire::TriggeredRecord>>;
   struct Stream {
     std::optional<wire::SourceDescription> description; // as the evaluator knows it
-    std::optional<Follower> follower;                   // from the first description on
+    // Of a session that the evaluator is not ready for.
+    std::deque<wire::SampleBlock> waiting{};
+    Instant waiting_since{};
+    std::optional<Follower> follower; // from the first description on
     TwinWatch twins;
   };
 
@@ -93,6 +101,8 @@ private:
   [[nodiscard]] Expected<void> open_answer_readers();
   template <class Message, class Take>
   void take(bus::Reader<Message>& reader, Take take);
+  void hand_over(const std::string& name, Stream& stream, const wire::SampleBlock& block);
+  void hand_over_waiting(const std::string& name, Stream& stream, Instant now);
 
   bus::Participant& participant_;
   std::shared_ptr<bus::WakeUp> wake_up_;

@@ -57,6 +57,10 @@ class SampleContinuity {
 public:
   ContinuityFinding add(const SourceBlock& block, BlockUse use = BlockUse::usable);
 
+  // Whether a block of this session would begin a new one.
+  [[nodiscard]] bool is_new_session(std::uint64_t session) const {
+    return heard_ && session != session_;
+  }
   [[nodiscard]] const ContinuityCounts& counts() const { return counts_; }
   // In unusable blocks behind the last block that could be used, as far as these say how many: they
   // are in no ContinuityFinding yet.

@@ -123,6 +123,12 @@ void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
   }
 }
 
+bool RunEvaluator::is_ready_for(const std::string& source, std::uint64_t session) {
+  const SourceRecord* record = records_.find(source);
+  return record == nullptr || finished_ || !record->is_new_session(session) ||
+         !records_.end_session(source, next_step_);
+}
+
 bool RunEvaluator::has_all_steps() const {
   const ExcitationProgress& excitation = records_.excitation();
   return next_step_ >= excitation.steps_expected() &&

@@ -83,6 +83,10 @@ public:
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
 
   void add(const std::string& source, const SourceBlock& block);
+  // Whether a block of this session may be added without the loss of a step that has come but
+  // cannot be evaluated yet, because another source is behind: a new session drops what is held.
+  // It is for the caller to wait with the block, and for how long.
+  [[nodiscard]] bool is_ready_for(const std::string& source, std::uint64_t session);
   // Of an instrument that records after a trigger, by its source.
   void add(const std::string& source, TriggeredRecord record);
   void announce(const StepAnnouncement& announcement);

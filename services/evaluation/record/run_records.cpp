@@ -83,6 +83,19 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
          *newest - then->second > grace.count();
 }
 
+bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
+  bool is_needed = false;
+  for (Search& search : searches_) {
+    if (search.source == source) {
+      search.steps.end_session();
+    }
+    const bool selects =
+        std::find(search.sources.begin(), search.sources.end(), source) != search.sources.end();
+    is_needed = is_needed || (selects && search.steps.step() > next_step);
+  }
+  return is_needed;
+}
+
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
   const std::size_t expected = std::min(excitation_.steps_expected(), end_step);

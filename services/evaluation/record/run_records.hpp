@@ -67,6 +67,11 @@ public:
   [[nodiscard]] bool is_over_in(const std::string& source, std::size_t step) const;
   static constexpr std::chrono::nanoseconds grace = std::chrono::seconds(5);
 
+  // The source is about to begin a new session, which drops what its record holds: steps of which
+  // all planned samples have come count as found. Returns whether it holds such a step that is not
+  // evaluated yet, from `next_step` on.
+  [[nodiscard]] bool end_session(const std::string& source, std::size_t next_step);
+
   // Searches the samples that have come since the last call for steps before `end_step`; passes
   // over steps that are over in the source and show nothing.
   void search(std::size_t end_step = std::numeric_limits<std::size_t>::max());

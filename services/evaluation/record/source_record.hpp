@@ -64,6 +64,11 @@ public:
   // or one whose sizes contradict each other or earlier blocks; samples of the last are lost.
   bool add(const SourceBlock& block);
 
+  // Whether a block of this session would drop what is held.
+  [[nodiscard]] bool is_new_session(std::uint64_t session) const {
+    return continuity_.is_new_session(session);
+  }
+
   [[nodiscard]] std::span<const std::int64_t> stamps_ns() const {
     return std::span(stamps_ns_).subspan(first_);
   }

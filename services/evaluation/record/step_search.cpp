@@ -134,6 +134,13 @@ std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWin
   return quiet.end_ns > quiet.begin_ns ? std::optional(quiet) : std::nullopt;
 }
 
+void StepSearch::end_session() {
+  if (expected_) {
+    found_[step_] = *expected_;
+    search_step(step_ + 1);
+  }
+}
+
 void StepSearch::give_up_step() {
   if (recipe_.whole_record) {
     take_whole_record(true);
