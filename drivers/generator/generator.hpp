@@ -8,10 +8,15 @@
 // virtual bench's own time otherwise, so that a run holds its durations however fast the virtual
 // bench goes.
 //
+// An instrument behind a bad link may let wait for seconds before a call returns; what is given to
+// call_while_waiting() is called about twice a second meanwhile, by drivers that can, and returns
+// false when nobody needs the bench time any more that is being asked for.
+//
 // Destruction switches the output off, or asks for it where only a person can. One thread.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <stop_token>
 #include <string>
 
@@ -31,6 +36,7 @@ public:
   // set it returns, otherwise when the operator has confirmed; waits up to `limit` for that.
   [[nodiscard]] virtual Expected<bool> wait_for_effect(std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<double> clock_now_s() = 0;
+  virtual void call_while_waiting(std::function<bool()> /*callback*/) {}
   // Returns the bench time when it has reached `time_s`, or earlier when a stop is requested.
   [[nodiscard]] virtual Expected<double> wait_until_s(double time_s, std::stop_token stop) = 0;
 };

@@ -10,7 +10,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds answer_limit{2000};
+constexpr milliseconds answer_limit{8000};
+constexpr milliseconds connect_limit{4000}; // and for each answer meanwhile; it is tried again
 
 } // namespace
 
@@ -39,10 +40,12 @@ void ScpiGenerator::choose_clock() {
 }
 
 Expected<void> ScpiGenerator::reconnect() {
-  auto connection = ScpiConnection::connect("generator", address_, answer_limit, never_raised_);
+  auto connection =
+      ScpiConnection::connect("generator", address_, connect_limit, never_raised_, connect_limit);
   if (!connection) {
     return fail(connection.error());
   }
+  connection->call_while_waiting([this] { return go_on_waiting(); });
   const auto identity = connection->query("*IDN?");
   if (!identity) {
     return fail(identity.error());
@@ -55,6 +58,7 @@ Expected<void> ScpiGenerator::reconnect() {
       return done;
     }
   }
+  connection->set_answer_limit(answer_limit);
   connection_.emplace(std::move(*connection));
   return {};
 }
@@ -99,7 +103,9 @@ Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
 }
 
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
+  asks_time_ = true;
   const auto answer = query(text);
+  asks_time_ = false;
   if (!answer) {
     return fail(answer.error());
   }
@@ -111,6 +117,14 @@ Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
                 "generator " + address_ + " answers " + text + " with '" + *answer + "'");
   }
   return time_s;
+}
+
+void ScpiGenerator::call_while_waiting(std::function<bool()> callback) {
+  while_waiting_ = std::move(callback);
+}
+
+bool ScpiGenerator::go_on_waiting() {
+  return !while_waiting_ || while_waiting_() || !asks_time_;
 }
 
 Expected<double> ScpiGenerator::clock_now_s() {

@@ -3,13 +3,15 @@
 //
 // Commands: *IDN?, :SOURce1:FUNCtion, :SOURce1:VOLTage (peak to peak), :SOURce1:FREQuency,
 // :OUTPut1, each followed by :SYSTem:ERRor?; an error that the instrument reports is passed on as
-// it is (refused). An answer may take 2 s (timeout); after that the connection is given up, and the
-// next call connects anew.
+// it is (refused). An answer may take 8 s (timeout), which TCP needs where a fifth of the packets
+// are lost (4 s while connecting); after that the connection is given up, and the next call
+// connects anew, which switches the output off.
 //
 // The virtual bench also understands :BENCh:TIME? and :BENCh:WAIT?; with every other instrument,
 // bench time is the host's monotonic clock. One thread.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,12 +38,14 @@ public:
   // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
+  void call_while_waiting(std::function<bool()> callback) override;
   [[nodiscard]] Expected<double> clock_now_s() override;
   [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override;
 
 private:
   ScpiGenerator() = default;
   void choose_clock();
+  bool go_on_waiting();
   Expected<void> reconnect();
   Expected<void> command(const std::string& text);
   Expected<std::string> query(const std::string& text);
@@ -50,6 +54,8 @@ private:
   StopSignal never_raised_; // waits here end by their own limit
   std::string address_;
   std::optional<ScpiConnection> connection_;
+  std::function<bool()> while_waiting_;
+  bool asks_time_ = false; // now
   std::string identity_;
   bool has_bench_clock_ = false;
   HostClock host_clock_;

@@ -1,5 +1,6 @@
 #include "drivers/link/scpi_connection.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/link/scpi_answer.hpp"
@@ -7,14 +8,15 @@
 namespace dyncal::drivers {
 namespace {
 
-constexpr std::chrono::milliseconds connect_limit{5000};
+constexpr std::chrono::milliseconds waiting_slice{500};
 constexpr std::size_t max_line_bytes = 4096;
 
 } // namespace
 
 Expected<ScpiConnection> ScpiConnection::connect(std::string instrument, std::string address,
                                                  std::chrono::milliseconds answer_limit,
-                                                 const StopSignal& stop) {
+                                                 const StopSignal& stop,
+                                                 std::chrono::milliseconds connect_limit) {
   auto transport = connect_scpi_transport(address, connect_limit, stop);
   if (!transport) {
     return fail(transport.error().code, instrument + " " + transport.error().message);
@@ -56,11 +58,27 @@ Expected<void> ScpiConnection::ask(const std::string& query) {
   return send(query);
 }
 
+Expected<std::string> ScpiConnection::read_answer() {
+  if (!while_waiting_ || !transport_->keeps_part_of_line()) {
+    return transport_->read_line(max_line_bytes, answer_limit_);
+  }
+  auto left = answer_limit_;
+  for (;;) {
+    const auto slice = std::min(left, waiting_slice);
+    auto answer = transport_->read_line(max_line_bytes, slice);
+    left -= slice;
+    if (answer || answer.error().code != ErrorCode::timeout || left.count() <= 0 ||
+        !while_waiting_()) {
+      return answer;
+    }
+  }
+}
+
 Expected<std::string> ScpiConnection::query(const std::string& text) {
   if (auto asked = ask(text); !asked) {
     return fail(asked.error());
   }
-  auto answer = transport_->read_line(max_line_bytes, answer_limit_);
+  auto answer = read_answer();
   if (!answer) {
     return give_up(answer.error(), text);
   }

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,9 +28,10 @@ class ScpiConnection {
 public:
   // `instrument`: "oscilloscope", "generator"; `answer_limit`: how long one answer may take. `stop`
   // outlives the connection.
-  [[nodiscard]] static Expected<ScpiConnection> connect(std::string instrument, std::string address,
-                                                        std::chrono::milliseconds answer_limit,
-                                                        const StopSignal& stop);
+  [[nodiscard]] static Expected<ScpiConnection>
+  connect(std::string instrument, std::string address, std::chrono::milliseconds answer_limit,
+          const StopSignal& stop,
+          std::chrono::milliseconds connect_limit = std::chrono::milliseconds(5000));
   ScpiConnection(std::string instrument, std::string address,
                  std::chrono::milliseconds answer_limit, std::unique_ptr<ScpiTransport> transport);
 
@@ -44,12 +46,18 @@ public:
   // activity.
   [[nodiscard]] Expected<void> send(const std::string& text);
 
+  // Called twice a second while an answer lets wait, where the transport can do that (TCP), so that
+  // a caller who waits long does not neglect everything else; returns false to wait no longer.
+  void call_while_waiting(std::function<bool()> callback) { while_waiting_ = std::move(callback); }
+  void set_answer_limit(std::chrono::milliseconds limit) { answer_limit_ = limit; }
+
   [[nodiscard]] bool lost() const { return lost_; }
   [[nodiscard]] const std::string& address() const { return address_; }
 
 private:
   Expected<std::vector<char>> read_block(std::size_t max_bytes);
   Expected<void> ask(const std::string& query);
+  Expected<std::string> read_answer();
   // The connection is lost from now on. `message` of the transport begins with the address.
   tl::unexpected<Error> give_up(const Error& error, const std::string& command);
   tl::unexpected<Error> give_up_misunderstood(const std::string& reason,
@@ -59,6 +67,7 @@ private:
   std::string address_;
   std::chrono::milliseconds answer_limit_;
   std::unique_ptr<ScpiTransport> transport_;
+  std::function<bool()> while_waiting_;
   bool lost_ = false;
 };
 

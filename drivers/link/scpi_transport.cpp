@@ -20,6 +20,7 @@ public:
   Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) override {
     return connection_.read_exactly(bytes, limit);
   }
+  bool keeps_part_of_line() const override { return true; }
   bool has_unread() override { return connection_.has_unread(); }
 
 private:

@@ -34,6 +34,8 @@ public:
                                                         std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<void> read_exactly(std::span<char> bytes,
                                                     std::chrono::milliseconds limit) = 0;
+  // Whether a line that was not there within its limit may be read on: else it is lost.
+  [[nodiscard]] virtual bool keeps_part_of_line() const { return false; }
   // Whether bytes have come that were not read: before a query they answer something else.
   [[nodiscard]] virtual bool has_unread() = 0;
 };

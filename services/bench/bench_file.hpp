@@ -34,6 +34,7 @@ struct ExcitationSettings {
   std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
   std::vector<double> levels_m_s2;         // one per frequency
   int repetitions = 1;
+  int attempts = 3; // excitations of a step, until its result is as good as another can make it
   double settling_s = 1.0;
   double duration_s = 3.0;
   // Of the measured level from the planned one, without a flag; left out: what a recipe takes.

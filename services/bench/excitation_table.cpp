@@ -9,6 +9,8 @@
 namespace dyncal::services {
 namespace {
 
+constexpr int max_attempts = 10;
+
 void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
   const std::size_t frequencies = excitation.frequencies_hz.size();
   if (excitation.levels_m_s2.size() == 1) {
@@ -66,6 +68,10 @@ ExcitationSettings read_excitation(TomlTable table) {
     table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
   }
   excitation.repetitions = table.whole_number("repetitions", 1, 1);
+  excitation.attempts = table.whole_number("attempts", excitation.attempts, 1);
+  if (excitation.attempts > max_attempts) {
+    table.refuse("attempts", fmt::format("must be between 1 and {}", max_attempts));
+  }
   excitation.settling_s = table.number("settling_s", excitation.settling_s, "seconds");
   excitation.duration_s = table.number("duration_s", excitation.duration_s, "seconds");
   if (excitation.settling_s < 0.0) {

@@ -15,6 +15,9 @@ std::string describe(const RunProgress& progress) {
   }
   std::string text = fmt::format("step {} of {}, {} Hz, {}", progress.step, progress.steps,
                                  progress.frequency_hz, progress.phase);
+  if (progress.attempt > 1) {
+    text += fmt::format(", attempt {}", progress.attempt);
+  }
   if (progress.seconds_left) {
     text += fmt::format(", {:.0f} s left", std::ceil(*progress.seconds_left));
   }
@@ -32,6 +35,12 @@ void ProgressLine::show(const RunProgress& progress) {
   if (!progress.request.empty()) {
     end();
     fmt::print(stream_, "{}\n", progress.request);
+    std::fflush(stream_);
+    return;
+  }
+  if (!progress.notice.empty()) {
+    end();
+    fmt::print(stream_, "{}\n", progress.notice);
     std::fflush(stream_);
     return;
   }

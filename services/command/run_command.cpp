@@ -4,6 +4,7 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "services/contract/digest.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
+#include "services/run/bench_queue.hpp"
 
 namespace dyncal::services {
 
@@ -43,6 +45,48 @@ std::optional<AdcFile> adc_file_of(const BenchFile& bench) {
                  sha256_hex(text)};
 }
 
+namespace {
+
+// A run that was refused is known by its name: the next attempt needs another.
+std::string name_of_run(const RunCommand& command, int turn) {
+  if (command.run.empty()) {
+    return run_from_time();
+  }
+  return turn == 1 ? command.run : fmt::format("{}-{}", command.run, turn);
+}
+
+// Waits for the end of other runs; again when one of several that waited was quicker.
+Expected<RunOutcome> conduct_in_turn(const RunCommand& command, const BenchFile& bench,
+                                     const std::vector<analysis::AdcCalibrationPoint>& adc,
+                                     bus::Participant& participant, const ShowProgress& show,
+                                     const std::stop_token& stop) {
+  auto queue = BenchQueue::open(participant, bus::system_clock(), bench.bench);
+  if (!queue) {
+    return fail(queue.error());
+  }
+  std::string shown;
+  const auto show_phase = [&](const std::string& phase) {
+    if (phase != std::exchange(shown, phase)) {
+      RunProgress progress;
+      progress.notice = phase;
+      show(progress);
+    }
+  };
+  for (int turn = 1;; ++turn) {
+    if (const auto free = queue->wait_until_free(show_phase, stop); !free) {
+      return fail(free.error());
+    }
+    auto outcome =
+        RunController(participant, bench, name_of_run(command, turn), show).conduct(adc, stop);
+    const bool refused = !outcome && outcome.error().code == ErrorCode::no_source;
+    if (!refused || stop.stop_requested() || !queue->taken_by()) {
+      return outcome;
+    }
+  }
+}
+
+} // namespace
+
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
@@ -63,10 +107,11 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     return fail(participant.error());
   }
   ProgressLine progress(stderr);
-  RunController controller(*participant, *bench,
-                           command.run.empty() ? run_from_time() : command.run,
-                           [&](const RunProgress& state) { progress.show(state); });
-  auto outcome = controller.conduct(*adc, stop);
+  const ShowProgress show = [&](const RunProgress& state) { progress.show(state); };
+  auto outcome =
+      command.wait
+          ? conduct_in_turn(command, *bench, *adc, *participant, show, stop)
+          : RunController(*participant, *bench, name_of_run(command, 1), show).conduct(*adc, stop);
   progress.end();
   if (!outcome) {
     return outcome;

@@ -19,6 +19,7 @@ struct RunCommand {
   std::string run; // empty: made from the time
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> figures; // folder
+  bool wait = false;                            // for the end of another run of the bench
   NetworkOptions network;
 };
 

@@ -183,6 +183,9 @@ Json point_json(const RunOutcome& outcome, const StepResult& result) {
   } else {
     point["problem"] = result.problem;
   }
+  if (result.attempt > 1) {
+    point["attempt"] = result.attempt;
+  }
   if (result.temperature_degc) {
     point["temperature_degc"] = json_number(*result.temperature_degc);
   }
@@ -263,6 +266,16 @@ Json legend_json(const RunOutcome& outcome) {
   return legend;
 }
 
+Json pauses_json(const RunOutcome& outcome) {
+  Json pauses = Json::array();
+  for (const RunPause& pause : outcome.pauses) {
+    pauses.push_back({{"began_utc", utc_text(pause.began_utc_ns)},
+                      {"ended_utc", utc_text(pause.ended_utc_ns)},
+                      {"reason", pause.reason}});
+  }
+  return pauses;
+}
+
 Json head_json(const RunOutcome& outcome) {
   Json json{
       {"schema", {{"name", "dyncal-result"}, {"version", result_schema_version}}},
@@ -286,6 +299,9 @@ Json head_json(const RunOutcome& outcome) {
       {"recipe_sha256", outcome.recipe_sha256},
       {"flags", legend_json(outcome)},
       {"sources", sources_json(outcome)}};
+  if (!outcome.pauses.empty()) {
+    json["pauses"] = pauses_json(outcome);
+  }
   if (outcome.recipe) {
     json["roles"] = roles_json(*outcome.recipe);
     json["corrections"] = corrections_json(*outcome.recipe, outcome.adc_file);

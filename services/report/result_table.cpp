@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -154,6 +156,31 @@ std::vector<std::string> problem_lines(const RunOutcome& outcome) {
   return lines;
 }
 
+// "step 2 (attempt 3), step 7 (attempt 2)"; of all channels of a step once.
+std::string repeated_steps(const RunOutcome& outcome) {
+  std::map<std::uint32_t, std::uint32_t> attempts;
+  for (const StepResult& result : outcome.results) {
+    if (result.attempt > 1) {
+      attempts[result.step] = result.attempt;
+    }
+  }
+  std::vector<std::string> steps;
+  for (const auto& [step, attempt] : attempts) {
+    steps.push_back(fmt::format("step {} (attempt {})", step, attempt));
+  }
+  return steps.empty() ? "" : fmt::format("\nExcited again: {}\n", fmt::join(steps, ", "));
+}
+
+std::string pause_lines(const RunOutcome& outcome) {
+  std::string text;
+  for (const RunPause& pause : outcome.pauses) {
+    text += fmt::format("{}  {:.0f} s: {}\n", text.empty() ? "\nPaused:\n" : "",
+                        static_cast<double>(pause.ended_utc_ns - pause.began_utc_ns) * 1e-9,
+                        pause.reason);
+  }
+  return text;
+}
+
 // Indented, in lines of a terminal's width; lines after the first one further in.
 std::string wrapped(const std::string& line) {
   constexpr std::size_t max_width = 100;
@@ -225,6 +252,7 @@ std::string result_table(const RunOutcome& outcome) {
   for (const ClockReport& report : outcome.clock_reports) {
     text += report.clock.intervals == 0 ? series_clock_line(outcome, report) : clock_line(report);
   }
+  text += repeated_steps(outcome) + pause_lines(outcome);
   const std::vector<std::string> problems = problem_lines(outcome);
   if (!problems.empty()) {
     text += fmt::format("\nWithout a result:\n  {}\n", fmt::join(problems, "\n  "));

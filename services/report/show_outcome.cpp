@@ -4,6 +4,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "services/output/output_file.hpp"
@@ -22,6 +23,25 @@ std::size_t steps_with_a_result(const RunOutcome& outcome) {
     }
   }
   return steps.size();
+}
+
+// Channels that the run was for and that have no value at any step.
+std::vector<std::string> channels_without_a_result(const RunOutcome& outcome) {
+  std::set<std::string> without;
+  for (const StepResult& result : outcome.results) {
+    without.insert(result.channel);
+  }
+  if (outcome.recipe) {
+    for (const ChannelName& channel : outcome.recipe->dut()) {
+      without.insert(channel.text());
+    }
+  }
+  for (const StepResult& result : outcome.results) {
+    if (result.valid) {
+      without.erase(result.channel);
+    }
+  }
+  return {without.begin(), without.end()};
 }
 
 // Results that took hours are not lost with a full disk.
@@ -102,6 +122,13 @@ Expected<void> check_complete(const RunOutcome& outcome) {
     return fail(ErrorCode::no_result,
                 fmt::format("{} of {} steps have no result; the reasons are listed above",
                             steps - measured, steps));
+  }
+  if (const auto without = channels_without_a_result(outcome); !without.empty()) {
+    return fail(ErrorCode::no_result,
+                fmt::format("{} of the channels under calibration {} no result at any step: {}; "
+                            "the reasons are listed above",
+                            without.size(), without.size() == 1 ? "has" : "have",
+                            fmt::join(without, ", ")));
   }
   return {};
 }

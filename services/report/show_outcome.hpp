@@ -24,8 +24,8 @@ namespace dyncal::services {
 // What to say last where RunOutcome::output_may_be_on: what is dangerous, and what to do.
 [[nodiscard]] std::string output_warning();
 
-// Fails (interrupted, no_result) unless every planned step has a valid result, with how many have;
-// and (device) when the generator's output may be on.
+// Fails (interrupted, no_result) unless every planned step and every channel under calibration has
+// a valid result, with those that have none; and (device) when the generator's output may be on.
 [[nodiscard]] Expected<void> check_complete(const RunOutcome& outcome);
 
 } // namespace dyncal::services

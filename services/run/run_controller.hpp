@@ -1,8 +1,9 @@
 // Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites
 // step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "The run protocol"; services/run/step_excitation.hpp excites
-// the steps. The generator's output is off on every way out: end, error, stop.
+// Order of messages: idl/README.md, "The run protocol"; services/run/step_sequence.hpp excites the
+// steps, waits for what is away for a while, and repeats what was spoilt. The generator's output is
+// off on every way out: end, error, stop.
 //
 // Fails: no_analysis (nobody answers, or the run is not armed in time), no_source (the analysis
 // refuses the run), device (generator), network, interrupted (before the first step). Later there
@@ -11,7 +12,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -21,29 +21,17 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/run/run_messages.hpp"
-#include "services/run/step_excitation.hpp"
+#include "services/run/run_watch.hpp"
+#include "services/run/step_sequence.hpp"
 
 namespace dyncal::services {
 
-struct RunProgress {
-  std::size_t step = 0; // 1..steps; 0 before the first
-  std::size_t steps = 0;
-  std::string frequency_hz;
-  std::string phase;   // "waiting for the analysis", "settling", "measuring", ...
-  std::string request; // to the operator; "" for none
-  std::size_t results = 0;
-  std::optional<double> seconds_left; // of the host's clock
-};
-
 class RunController {
 public:
-  using ShowProgress = std::function<void(const RunProgress&)>;
-
-  static constexpr std::chrono::seconds answer_limit{4};    // for an analysis service to answer
-  static constexpr std::chrono::seconds armed_limit{14};    // until it has armed or refused the run
-  static constexpr std::chrono::seconds analysis_limit{10}; // between two of its messages
-  static constexpr std::chrono::seconds results_limit{25};  // from the last result to the next
+  static constexpr std::chrono::seconds answer_limit{4}; // for an analysis service to answer
+  static constexpr std::chrono::seconds armed_limit{14}; // until it has armed or refused the run
+  static constexpr std::chrono::seconds analysis_limit = StepSequence::away_limit; // of its silence
+  static constexpr std::chrono::seconds results_limit = StepSequence::results_limit;
 
   RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
                 ShowProgress show_progress)
@@ -59,22 +47,16 @@ public:
 private:
   using Instant = bus::Clock::Instant;
 
-  Expected<void> open_messages();
-  Expected<void> open_excitation();
+  Expected<void> open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
+  Expected<void> open_sequence();
   Expected<void> wait_until_armed(const std::stop_token& stop);
   // Nothing while the analysis may still answer.
   [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant began) const;
-  Expected<void> excite(const std::stop_token& stop);
   Expected<void> wait_for_results(const std::stop_token& stop);
-  // Waits for messages, for a short while; shows `phase`.
-  void follow(const std::string& phase);
-  Expected<void> watch_analysis();
-  [[nodiscard]] Expected<void> analysis_is_alive() const;
+  void abort(const std::string& reason);
   [[nodiscard]] bool everything_has_come() const;
+  [[nodiscard]] bool plays_files() const;
   [[nodiscard]] wire::MeasurementState final_state(bool excited) const;
-  void set_state(wire::MeasurementState state);
-  void repeat_measurement();
-  void show(const std::string& phase, const std::string& request = "");
   void sort_outcome();
 
   RunEnvironment environment_;
@@ -83,15 +65,11 @@ private:
   std::string run_;
   ShowProgress show_progress_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  std::optional<RunMessages> messages_;
-  wire::Measurement measurement_;
   RunOutcome outcome_;
-  Instant measurement_published_;
-  std::size_t step_ = 0;
-  Instant first_step_began_;
+  std::unique_ptr<RunWatch> watch_;
   // Nothing when recorded files take its place. Last: its end may ask the operator to switch the
   // output off.
-  std::unique_ptr<StepExcitation> excitation_;
+  std::unique_ptr<StepSequence> sequence_;
 };
 
 } // namespace dyncal::services

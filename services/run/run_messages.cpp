@@ -7,6 +7,7 @@
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/run/run_outlook.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -40,7 +41,14 @@ void RunMessages::publish(const wire::Measurement& measurement) {
   endpoints_.measurement.write(measurement);
 }
 
-void RunMessages::announce(const wire::PlannedStep& step, wire::ExcitationState state) {
+void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
+                           wire::ExcitationState state) {
+  if (step.step() != excitation_.step() || attempt != excitation_.attempt()) {
+    excitation_.window_begin_utc_ns(0);
+    if (attempt > 1) {
+      excitation_.repeated_steps().push_back(step.step());
+    }
+  }
   if (state == wire::EXCITATION_SETTLING) {
     excitation_.window_begin_utc_ns(clock_->utc_now_ns());
   }
@@ -53,6 +61,7 @@ void RunMessages::announce(const wire::PlannedStep& step, wire::ExcitationState 
   excitation_.repetition(step.repetition());
   excitation_.state(state);
   excitation_.window_end_utc_ns(over ? clock_->utc_now_ns() : 0);
+  excitation_.attempt(attempt);
   endpoints_.excitation.write(excitation_);
   announced_ = clock_->now();
 }
@@ -69,22 +78,37 @@ void RunMessages::wait_for_acknowledgments(std::chrono::nanoseconds limit) {
   endpoints_.measurement.wait_for_acknowledgments(limit);
 }
 
+namespace {
+
+bool is_older(const StepResult& result, const StepResult& known) {
+  return result.attempt < known.attempt;
+}
+template <class Result>
+bool is_older(const Result& /*result*/, const Result& /*known*/) {
+  return false;
+}
+
+} // namespace
+
 template <class Message, class Result, class SameKey>
-void RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
-                              SameKey same_key) {
+std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
+                                     SameKey same_key) {
+  std::size_t taken = 0;
   reader.take([&](const Message& message) {
     if (message.run().to_string() != run_) {
       return;
     }
+    ++taken;
     Result result = from_message(message);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const Result& other) { return same_key(other, result); });
     if (known == all.end()) {
       all.push_back(std::move(result));
-    } else {
+    } else if (!is_older(result, *known)) {
       *known = std::move(result);
     }
   });
+  return taken;
 }
 
 void RunMessages::take_sources(RunOutcome& outcome) {
@@ -109,15 +133,20 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 
 void RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
-  take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
-    return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
-  });
+  results_taken_ +=
+      take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
+        return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
+      });
   take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
               [](const auto& a, const auto& b) { return a.channel == b.channel; });
   take_newest(endpoints_.clock_reports, outcome.clock_reports,
               [](const auto& a, const auto& b) { return a.source == b.source; });
+  take_status(outcome);
+}
+
+void RunMessages::take_status(RunOutcome& outcome) {
   endpoints_.status.take([&](const wire::ServiceStatus& status) {
-    if (status.run().to_string() == run_) {
+    if (status.run().to_string() == run_ && follows(status)) {
       analysis_ = status;
       analysis_heard_ = clock_->now();
       outcome.analysis_dds = status.dds();
@@ -125,6 +154,15 @@ void RunMessages::take(RunOutcome& outcome) {
       outcome.analysis_host = status.host();
     }
   });
+}
+
+bool RunMessages::follows(const wire::ServiceStatus& status) const {
+  if (!analysis_ || status.service() == analysis_->service()) {
+    return true;
+  }
+  const bool evaluates =
+      analysis_->arm() == wire::ARM_ARMED || analysis_->arm() == wire::ARM_FINISHED;
+  return !evaluates || clock_->now() - analysis_heard_ > attention_limit;
 }
 
 } // namespace dyncal::services

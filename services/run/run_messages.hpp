@@ -1,11 +1,13 @@
 // The messages of one run as its conductor sends and receives them: the plan and the excitation go
 // out, status and results of the analysis come in.
 //
-// Of everything that comes the newest of every key is kept; messages of other runs on the bench are
-// left out. Belongs to one thread.
+// Of everything that comes the newest of every key is kept, but no result of an earlier attempt at
+// its step (an analysis that was restarted publishes them all again); messages of other runs on the
+// bench are left out. Belongs to one thread.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,8 +30,8 @@ public:
                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
   void publish(const wire::Measurement& measurement);
-  // `state` of a step that is excited now; it began with EXCITATION_SETTLING.
-  void announce(const wire::PlannedStep& step, wire::ExcitationState state);
+  // `state` of the step that is excited, or was to be.
+  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state);
   // Shows dyncal-guard that somebody attends: the newest announcement again while the exciter is
   // driven, at most every 500 ms.
   void repeat_announcement();
@@ -37,7 +39,10 @@ public:
 
   // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
   void take(RunOutcome& outcome);
-  // The newest status of an analysis service for this run; nothing before the first.
+  // How many results have come, those that came again too.
+  [[nodiscard]] std::size_t results_taken() const { return results_taken_; }
+  // The newest status of the analysis service that evaluates this run; nothing before the first. It
+  // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
   [[nodiscard]] bus::Clock::Instant analysis_heard() const { return analysis_heard_; }
 
@@ -56,8 +61,11 @@ private:
       : clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
         endpoints_(std::move(endpoints)) {}
   void take_sources(RunOutcome& outcome);
+  void take_status(RunOutcome& outcome);
+  [[nodiscard]] bool follows(const wire::ServiceStatus& status) const;
   template <class Message, class Result, class SameKey>
-  void take_newest(bus::Reader<Message>& reader, std::vector<Result>& all, SameKey same_key);
+  std::size_t take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
+                          SameKey same_key); // how many came
 
   bus::Clock* clock_;
   std::string bench_;
@@ -65,6 +73,7 @@ private:
   Endpoints endpoints_;
   std::optional<wire::ServiceStatus> analysis_;
   bus::Clock::Instant analysis_heard_;
+  std::size_t results_taken_ = 0;
   wire::Excitation excitation_; // as announced last
   bus::Clock::Instant announced_{};
 };

@@ -21,16 +21,18 @@ Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const s
   return ShotCounter(std::move(*traces), std::move(*series));
 }
 
-void ShotCounter::begin(const std::string& run, std::uint32_t step) {
+void ShotCounter::begin(const std::string& run, std::uint32_t step, std::uint32_t attempt) {
   run_ = run;
   step_ = step;
+  attempt_ = attempt;
   trace_numbers_.clear();
   series_numbers_.clear();
 }
 
 void ShotCounter::take(bus::Reader<wire::TriggeredRecord>& reader, Numbers& numbers) const {
   reader.take([&](const wire::TriggeredRecord& record) {
-    if (record.sample_count() > 0 && record.step() == step_ && record.run() == run_) {
+    if (record.sample_count() > 0 && record.step() == step_ &&
+        std::max(record.attempt(), 1U) == attempt_ && record.run() == run_) {
       numbers.insert({record.session(), record.shot()});
     }
   });

@@ -1,6 +1,6 @@
 // Counts the shots of the step that is being measured: pairs of an oscilloscope's and a sensor's
-// record with the same session and number that name the step. `dyncal run` excites a step until it
-// has the shots that the recipe asks for. Belongs to one thread.
+// record with the same session and number that name the step and its attempt. `dyncal run` excites
+// a step until it has the shots that the recipe asks for. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ public:
                                                     std::shared_ptr<bus::WakeUp> wake_up);
 
   // Forgets what has been counted.
-  void begin(const std::string& run, std::uint32_t step);
+  void begin(const std::string& run, std::uint32_t step, std::uint32_t attempt);
   [[nodiscard]] int shots();
 
 private:
@@ -35,6 +35,7 @@ private:
   bus::Reader<wire::TriggeredRecord> series_;
   std::string run_;
   std::uint32_t step_ = 0;
+  std::uint32_t attempt_ = 1;
   Numbers trace_numbers_;
   Numbers series_numbers_;
 };

@@ -54,6 +54,10 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
     return fail(connection.error());
   }
   excitation->connection_.emplace(std::move(*connection));
+  excitation->generator().call_while_waiting([self = excitation.get()] {
+    self->hooks_.look();
+    return !self->stop_.stop_requested();
+  });
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
     auto counter = ShotCounter::create(environment.participant, bench.bench, wake_up);
     if (!counter) {
@@ -109,29 +113,42 @@ void StepExcitation::end() {
   meter_.reset();
 }
 
-Expected<void> StepExcitation::excite(const wire::PlannedStep& step, const std::stop_token& stop) {
-  const auto excited = hold_step(step, stop);
-  const auto off = switch_off();
+Error StepExcitation::reported(const drivers::Error& error) {
+  using drivers::ErrorCode;
+  generator_away_ = generator_away_ ||
+                    (bench_.generator.driver == GeneratorDriver::scpi &&
+                     (error.code == ErrorCode::timeout || error.code == ErrorCode::disconnected ||
+                      error.code == ErrorCode::malformed));
+  return device_error(error);
+}
+
+Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32_t attempt,
+                                      const std::stop_token& stop) {
+  attempt_ = attempt;
+  stop_ = stop;
+  generator_away_ = false;
+  auto excited = hold_step(step, stop);
+  if (const auto off = switch_off(); !off && excited && !stop.stop_requested()) {
+    excited = fail(off.error());
+  }
+  if (excited && !stop.stop_requested()) {
+    excited = wait_for_effect(stop);
+  }
   if (!excited || stop.stop_requested()) {
-    hooks_.announce(step, wire::EXCITATION_ABORTED);
+    announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
-  if (!off) {
-    return off;
-  }
-  if (const auto confirmed = wait_for_effect(stop); !confirmed) {
-    return confirmed;
-  }
-  hooks_.announce(step, wire::EXCITATION_DONE);
+  announce(step, wire::EXCITATION_DONE);
   const auto now = generator().clock_now_s();
   if (!now) {
-    return fail(device_error(now.error()));
+    return fail(reported(now.error()));
   }
   return hold_until(*now + off_s, stop).map([](bool) {});
 }
 
 StepExcitation::~StepExcitation() {
-  const bool off = !output_may_be_on_ || switch_off();
+  // Otherwise the guard tries from now on, for longer than anybody would wait here.
+  const bool off = !output_may_be_on_ || (!connection_->guard && switch_off());
   if (off && connection_ && connection_->guard) {
     connection_->guard->dismiss();
   }
@@ -139,7 +156,8 @@ StepExcitation::~StepExcitation() {
 
 Expected<void> StepExcitation::switch_off() {
   if (const auto off = generator().set_output(false); !off) {
-    return fail(device_error(off.error()));
+    generator_away_ = bench_.generator.driver == GeneratorDriver::scpi;
+    return fail(reported(off.error()));
   }
   output_may_be_on_ = false;
   return {};
@@ -159,9 +177,9 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
     return settled.map([](bool) {});
   }
   if (shots_) {
-    shots_->begin(run_, step.step());
+    shots_->begin(run_, step.step(), attempt_);
   }
-  hooks_.announce(step, wire::EXCITATION_STEADY);
+  announce(step, wire::EXCITATION_STEADY);
   hooks_.show("measuring");
   const auto held =
       hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
@@ -180,16 +198,16 @@ Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double
                        .and_then([&] { return generator().set_amplitude_v(voltage_v); })
                        .and_then([&] { return generator().set_output(true); });
   if (!set) {
-    return fail(device_error(set.error()));
+    return fail(reported(set.error()));
   }
   if (const auto confirmed = wait_for_effect(stop); !confirmed) {
     return fail(confirmed.error());
   }
   const auto began = generator().clock_now_s();
   if (!began) {
-    return fail(device_error(began.error()));
+    return fail(reported(began.error()));
   }
-  hooks_.announce(step, wire::EXCITATION_SETTLING);
+  announce(step, wire::EXCITATION_SETTLING);
   return *began;
 }
 
@@ -222,7 +240,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
       return generator().clock_now_s();
     });
     if (!changed) {
-      return fail(device_error(changed.error()));
+      return fail(reported(changed.error()));
     }
     changed_s = *changed;
   }
@@ -239,7 +257,7 @@ Expected<std::optional<double>> StepExcitation::measure_level(const wire::Planne
   while (!stop.stop_requested()) {
     const auto now = generator().clock_now_s();
     if (!now) {
-      return fail(device_error(now.error()));
+      return fail(reported(now.error()));
     }
     meter_->take(*now);
     const auto level =
@@ -271,7 +289,7 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
     hooks_.show("shots");
     const auto now = generator().clock_now_s();
     if (!now) {
-      return fail(device_error(now.error()));
+      return fail(reported(now.error()));
     }
     if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
       return fail(held.error());
@@ -284,7 +302,7 @@ Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const auto in_effect = generator().wait_for_effect(confirmation_slice);
     if (!in_effect) {
-      return fail(device_error(in_effect.error()));
+      return fail(reported(in_effect.error()));
     }
     if (*in_effect) {
       return {};
@@ -308,7 +326,7 @@ Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_t
     }
   }
   if (!now) {
-    return fail(device_error(now.error()));
+    return fail(reported(now.error()));
   }
   return !stop.stop_requested();
 }

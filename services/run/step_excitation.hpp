@@ -16,6 +16,7 @@
 // and as `keep_alive` does. A requested stop is not a failure. Belongs to one thread.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -44,10 +45,13 @@ struct RunEnvironment {
 
 // What the run does while a step is excited.
 struct StepHooks {
-  std::function<void(const wire::PlannedStep&, wire::ExcitationState)> announce;
+  std::function<void(const wire::PlannedStep&, std::uint32_t attempt, wire::ExcitationState)>
+      announce;
   std::function<void(const std::string& phase)> show;
   AskOperator ask;
-  // Called at least every half second of bench time; fails when the run cannot go on.
+  // Called while the generator lets wait for an answer.
+  std::function<void()> look;
+  // Called at least every second of bench time; fails when the step cannot go on.
   std::function<Expected<void>()> keep_alive;
 };
 
@@ -65,9 +69,15 @@ public:
   // Before the first step and after the last.
   [[nodiscard]] Expected<void> begin();
   void end();
-  [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, const std::stop_token& stop);
+  // Every step ends with EXCITATION_DONE, or else EXCITATION_ABORTED.
+  [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, std::uint32_t attempt,
+                                      const std::stop_token& stop);
 
   [[nodiscard]] bool output_may_be_on() const { return output_may_be_on_; }
+  // The generator did not answer in the last step, or not as it should: a link that is down, an
+  // instrument that was switched off. Never of one that is set by hand.
+  [[nodiscard]] bool generator_is_away() const { return generator_away_; }
+  // Connects anew where the connection is lost.
   [[nodiscard]] Expected<void> switch_off();
 
 private:
@@ -77,6 +87,11 @@ private:
         run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {}
 
   Expected<void> check_levels(const wire::Measurement& measurement) const;
+  void announce(const wire::PlannedStep& step, wire::ExcitationState state) {
+    hooks_.announce(step, attempt_, state);
+  }
+  // What the generator reports; notes whether it is away.
+  Error reported(const drivers::Error& error);
   Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
                              const std::stop_token& stop);
@@ -99,6 +114,9 @@ private:
   StepHooks hooks_;
   std::optional<GeneratorConnection> connection_; // from open() on
   bool output_may_be_on_ = false;
+  bool generator_away_ = false;
+  std::uint32_t attempt_ = 1;                     // of the step that is excited
+  std::stop_token stop_;                          // likewise
   std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
   std::optional<ShotCounter> shots_;              // series time stamping only

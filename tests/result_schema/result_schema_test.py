@@ -84,6 +84,7 @@ class Schema(unittest.TestCase):
 OPTIONAL = {
     "roles", "corrections", "recipe", "temperature_degc", "measured_frequency_hz",
     "u_measured_frequency_hz", "measured_level_m_s2", "u_measured_level_m_s2", "fit",
+    "attempt", "pauses",
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -33,6 +33,13 @@ struct AdcFile {
   std::string sha256;
 };
 
+// A time in which nothing was excited, for something was away or somebody asked for it.
+struct RunPause {
+  std::int64_t began_utc_ns = 0;
+  std::int64_t ended_utc_ns = 0;
+  std::string reason;
+};
+
 struct RunOutcome {
   std::string bench;
   std::string run;
@@ -50,6 +57,7 @@ struct RunOutcome {
   std::vector<StepResult> results; // in the order of steps, then as they came
   std::vector<TransferFunction> transfer_functions;
   std::vector<ClockReport> clock_reports;
+  std::vector<RunPause> pauses;
   bool interrupted = false;
   bool output_may_be_on = false; // the generator has not confirmed that its output is off
   std::string problem;           // why the run ended early; empty when it did not

@@ -1,5 +1,6 @@
 #include "drivers/generator/scpi_generator.hpp"
 
+#include <future>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mutex>
@@ -124,6 +125,54 @@ TEST(ScpiGenerator, SaysThatNobodyListens) {
   ASSERT_FALSE(generator);
   EXPECT_EQ(generator.error().code, ErrorCode::refused);
   EXPECT_THAT(generator.error().message, HasSubstr(address));
+}
+
+// Half of the answer is there; the rest comes only after the caller was called.
+TEST(ScpiGenerator, CallsWhileAnAnswerLetsWaitAndReadsItToItsEnd) {
+  std::promise<void> called;
+  const auto was_called = called.get_future().share();
+  const ScriptedInstrument slow([was_called](int, ScriptedInstrument::Client& client) {
+    for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      if (line == "*IDN?") {
+        client.say("dyncal virtual bench,bma280,1,1\n");
+      } else if (line == ":SYSTem:ERRor?") {
+        client.say("0,\"No error\"\n");
+      } else if (line == ":BENCh:TIME?") {
+        client.say("12");
+        was_called.wait();
+        client.say(".5\n");
+      }
+    }
+  });
+  auto generator = ScpiGenerator::connect(slow.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  int calls = 0;
+  (*generator)->call_while_waiting([&] {
+    if (++calls == 1) {
+      called.set_value();
+    }
+    return true;
+  });
+  EXPECT_EQ((*generator)->clock_now_s().value(), 12.5);
+  EXPECT_GE(calls, 1);
+}
+
+TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
+  const ScriptedInstrument silent([](int, ScriptedInstrument::Client& client) {
+    for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      if (line == "*IDN?") {
+        client.say("dyncal virtual bench,bma280,1,1\n");
+      } else if (line == ":SYSTem:ERRor?") {
+        client.say("0,\"No error\"\n");
+      }
+    }
+  });
+  auto generator = ScpiGenerator::connect(silent.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  int calls = 0;
+  (*generator)->call_while_waiting([&] { return ++calls < 2; });
+  EXPECT_EQ((*generator)->clock_now_s().error().code, ErrorCode::timeout);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST(ScpiGenerator, SaysThatTheInstrumentDoesNotAnswer) {

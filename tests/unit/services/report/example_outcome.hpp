@@ -96,6 +96,7 @@ inline services::RunOutcome example_outcome() {
                                  .channels = {}};
   acs.channels = {{"reference", "acceleration", R"(\metre\second\tothe{-2})", -50.0, 50.0, 0.0},
                   {"sync", "", R"(\volt)"}};
+  outcome.pauses = {{1'700'000'010'000'000'000, 1'700'000'052'400'000'000, "paused by 'ada'"}};
   outcome.sources = {{"acs", services::SourceKind::acs, "dyncal 1.2.3", acs}};
 
   services::StepResult measured = example_result(1, "10");
@@ -116,6 +117,7 @@ inline services::RunOutcome example_outcome() {
   measured.temperature_degc = 23.5;
   services::StepResult failed = example_result(2, "20");
   failed.problem = "no steady sine";
+  failed.attempt = 3;
   outcome.results = {measured, failed};
 
   outcome.transfer_functions = {example_function("dau/acceleration_z", 1.0),

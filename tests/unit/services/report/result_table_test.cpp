@@ -79,6 +79,12 @@ TEST(ResultTable, TellsThatAUnitIsNotKnown) {
               HasSubstr("dau/acceleration_z, unit not known: state the units"));
 }
 
+TEST(ResultTable, TellsWhatWasExcitedAgainAndWhenTheRunPaused) {
+  const std::string table = result_table(tests::example_outcome());
+  EXPECT_THAT(table, HasSubstr("\nExcited again: step 2 (attempt 3)\n"));
+  EXPECT_THAT(table, HasSubstr("\nPaused:\n  42 s: paused by 'ada'\n"));
+}
+
 TEST(ResultTable, ListsWhatHasNoResultAndWhy) {
   EXPECT_THAT(result_table(example_outcome()), HasSubstr("step 2, 20 Hz: no steady sine"));
   EXPECT_THAT(result_table(example_outcome()), Not(HasSubstr("nan")));

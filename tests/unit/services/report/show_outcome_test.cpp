@@ -34,6 +34,20 @@ TEST(ShowOutcome, StepsWithoutAResultAreCounted) {
   EXPECT_THAT(checked.error().message, HasSubstr("2 of 3 steps have no result"));
 }
 
+TEST(ShowOutcome, AChannelWithoutAnyResultIsNamed) {
+  RunOutcome outcome = outcome_of_steps(3, 3);
+  for (StepResult& result : outcome.results) {
+    result.valid = result.channel == "dau/x";
+  }
+  const auto checked = check_complete(outcome);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().code, ErrorCode::no_result);
+  EXPECT_THAT(checked.error().message,
+              HasSubstr("1 of the channels under calibration has no result at any step: dau/y"));
+  outcome.results[1].valid = true; // at one step is enough: the table shows where
+  EXPECT_TRUE(check_complete(outcome));
+}
+
 TEST(ShowOutcome, AnInterruptedRunKeepsWhatItMeasured) {
   RunOutcome outcome = outcome_of_steps(3, 1);
   outcome.interrupted = true;

@@ -13,17 +13,22 @@ namespace dyncal::tests {
 
 class PlayedAnalysis {
 public:
-  PlayedAnalysis(bus::MemoryNetwork& network, std::string bench, std::string run)
-      : bench_(std::move(bench)), run_(std::move(run)), participant_(network.join("analysis")) {}
+  PlayedAnalysis(bus::MemoryNetwork& network, std::string bench, std::string run,
+                 std::string service = "analysis@test:1")
+      : bench_(std::move(bench)), run_(std::move(run)), service_(std::move(service)),
+        participant_(network.join(service_)) {}
 
   void report(wire::ArmState arm, const std::string& failure = "") {
+    report(arm, failure.empty() ? wire::HEALTH_OK : wire::HEALTH_FAILED, failure);
+  }
+  void report(wire::ArmState arm, wire::HealthState health, const std::string& message) {
     wire::ServiceStatus status;
-    status.service("analysis@test:1");
+    status.service(service_);
     status.run(run_);
     status.bench(bench_);
     status.arm(arm);
-    status.health(failure.empty() ? wire::HEALTH_OK : wire::HEALTH_FAILED);
-    status.message(failure);
+    status.health(health);
+    status.message(message);
     status.dds("memory");
     status.results_published(results_);
     status.transfer_functions_published(transfer_functions_);
@@ -37,6 +42,13 @@ public:
     result.step(step);
     result_.write(result);
     ++results_;
+  }
+  // One of a step's last attempt; a later attempt has the same key.
+  void publish(wire::CalibrationResult result) {
+    result.bench(bench_);
+    result.run(run_);
+    result_.write(result);
+    results_ += result.attempt() <= 1 ? 1 : 0;
   }
   // The same key comes once more, settled, and is not counted again.
   void publish_provisional_result(std::uint32_t step, bool settled) {
@@ -86,6 +98,7 @@ private:
 
   std::string bench_;
   std::string run_;
+  std::string service_;
   bus::Participant participant_;
   bus::Writer<wire::ServiceStatus> status_ =
       writer<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state);

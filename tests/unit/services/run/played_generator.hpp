@@ -31,6 +31,7 @@ struct PlayedInstrument {
   std::string failing_call;
   int failing_from = 1;
   int calls_of_failing = 0;
+  bool away = false; // every call fails: it does not answer
 
   [[nodiscard]] double now_s() const {
     return std::chrono::duration<double>(clock.elapsed()).count();
@@ -97,6 +98,10 @@ public:
 
 private:
   drivers::Expected<void> called(const std::string& call) {
+    if (instrument_.away) {
+      instrument_.clock.advance(std::chrono::seconds(1)); // waits for an answer
+      return fail(drivers::ErrorCode::timeout, "the instrument does not answer");
+    }
     if (call == instrument_.failing_call &&
         ++instrument_.calls_of_failing >= instrument_.failing_from) {
       return fail(drivers::ErrorCode::refused, call + " was refused");

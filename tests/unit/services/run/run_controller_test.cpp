@@ -227,14 +227,16 @@ TEST_F(RunControllerTest, EndsJustAfterItsLimitWhenTheAnalysisFallsSilent) {
 
 TEST_F(RunControllerTest, GoesOnWhenTheAnalysisReportsJustBeforeTheLimit) {
   bench_.excitation.duration_s = 30.0;
-  for (int i = 0; i < 8; ++i) { // taken a look later at most
-    clock_.at(100ms + i * (RunController::analysis_limit - 1s - look),
+  for (int i = 0; i < 40; ++i) { // taken a look later at most
+    clock_.at(100ms + i * (attention_limit - 1s - look),
               [this] { analysis_.report(wire::ARM_ARMED); });
   }
   clock_.at(67s, [this] { finish(); });
   const auto outcome = conduct();
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->problem, "");
+  EXPECT_TRUE(outcome->pauses.empty());
+  EXPECT_EQ(std::count(instrument_.settings.begin(), instrument_.settings.end(), "on"), 2);
 }
 
 TEST_F(RunControllerTest, EndsTheStepWhenTheAnalysisReportsALostSource) {

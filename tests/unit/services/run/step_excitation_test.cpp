@@ -59,10 +59,11 @@ protected:
     return StepExcitation::open(
         {participant_, clock_, tests::connect_to(instrument_)}, bench_, measurement(),
         std::make_shared<bus::WakeUp>(),
-        {.announce = [this](const wire::PlannedStep&,
+        {.announce = [this](const wire::PlannedStep&, std::uint32_t,
                             wire::ExcitationState state) { announced_.push_back(state); },
          .show = [this](const std::string& phase) { phases_.push_back(phase); },
          .ask = [](const std::string&) {},
+         .look = [] {},
          .keep_alive = [this] { return keep_alive_(); }});
   }
   // One step, from connecting to the end of the object.
@@ -74,7 +75,7 @@ protected:
     if (auto begun = (*excitation)->begin(); !begun) {
       return begun;
     }
-    auto excited = (*excitation)->excite(measurement().steps()[0], stop_.get_token());
+    auto excited = (*excitation)->excite(measurement().steps()[0], 1, stop_.get_token());
     EXPECT_FALSE(instrument_.on && instrument_.failing_call != "set_output(false)");
     (*excitation)->end();
     return excited;
@@ -153,7 +154,7 @@ TEST_F(StepExcitationTest, KnowsThatTheOutputMayBeOnUntilItIsConfirmedToBeOff) {
   EXPECT_FALSE(excitation->output_may_be_on());
   ASSERT_TRUE(excitation->begin());
   stop_.request_stop(); // an interruption is not a failure, and must not hide this
-  EXPECT_TRUE(excitation->excite(measurement().steps()[0], stop_.get_token()));
+  EXPECT_TRUE(excitation->excite(measurement().steps()[0], 1, stop_.get_token()));
   EXPECT_TRUE(instrument_.on);
   EXPECT_TRUE(excitation->output_may_be_on());
   EXPECT_FALSE(excitation->switch_off());

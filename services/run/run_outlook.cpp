@@ -1,0 +1,62 @@
+#include "services/run/run_outlook.hpp"
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+namespace {
+
+using Kind = RunOutlook::Kind;
+
+std::string message_of(const wire::ServiceStatus& analysis, const char* otherwise) {
+  return analysis.message().empty()
+             ? fmt::format("the analysis service {} {}", analysis.service().c_str(), otherwise)
+             : analysis.message();
+}
+
+RunOutlook outlook_by(const wire::ServiceStatus& analysis) {
+  if (analysis.arm() == wire::ARM_REFUSED) {
+    return {Kind::over, {ErrorCode::no_source, message_of(analysis, "refuses the run")}};
+  }
+  if (analysis.arm() == wire::ARM_FINISHED) {
+    return {Kind::over,
+            {ErrorCode::no_analysis, message_of(analysis, "has ended the run before its last "
+                                                          "step")}};
+  }
+  if (analysis.health() == wire::HEALTH_WAITING) {
+    return {Kind::waits, {ErrorCode::no_source, message_of(analysis, "waits for a source")}};
+  }
+  if (analysis.arm() == wire::ARM_WAITING) {
+    return {Kind::waits, {ErrorCode::no_analysis, message_of(analysis, "takes the run over")}};
+  }
+  if (analysis.health() != wire::HEALTH_OK) {
+    return {Kind::over, {ErrorCode::no_source, message_of(analysis, "has failed")}};
+  }
+  return {};
+}
+
+} // namespace
+
+RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
+                       std::chrono::nanoseconds unheard, const RunCommands& commands) {
+  if (commands.aborted_by()) {
+    return {
+        Kind::over,
+        {ErrorCode::no_result, fmt::format("ended by a command of '{}'", *commands.aborted_by())}};
+  }
+  RunOutlook outlook;
+  if (analysis && unheard > attention_limit) {
+    outlook = {Kind::waits,
+               {ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
+                                                    analysis->service().c_str())}};
+  } else if (analysis) {
+    outlook = outlook_by(*analysis);
+  }
+  if (outlook.kind == Kind::well && commands.paused_by()) {
+    outlook = {
+        Kind::paused,
+        {ErrorCode::no_result, fmt::format("paused by a command of '{}'", *commands.paused_by())}};
+  }
+  return outlook;
+}
+
+} // namespace dyncal::services

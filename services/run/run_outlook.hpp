@@ -1,0 +1,37 @@
+// Whether a run may excite its bench now: the one place where it is decided what a run waits for
+// and what ends it, from what the analysis service reports and what others command.
+//
+// It waits while the analysis is silent, is still taking the run over or waits itself (a source
+// that is away), and while it is paused by command. It ends when the analysis reports that the run
+// cannot be evaluated (a level far above the plan among others), refuses it, or has ended it, and
+// by command. Plain function; any thread.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "idl/dyncal.h"
+#include "services/error.hpp"
+#include "services/run/run_commands.hpp"
+
+namespace dyncal::services {
+
+struct RunOutlook {
+  enum class Kind {
+    well,
+    waits,  // for at most RunWatch::away_limit
+    paused, // as long as whoever paused it likes
+    over
+  };
+  Kind kind = Kind::well;
+  Error reason{}; // unless well
+};
+
+// An analysis that was heard less than this ago attends to the run.
+inline constexpr std::chrono::seconds attention_limit{3};
+
+// `analysis`: its newest status, `unheard` ago.
+[[nodiscard]] RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
+                                     std::chrono::nanoseconds unheard, const RunCommands& commands);
+
+} // namespace dyncal::services

@@ -1,0 +1,99 @@
+#include "services/run/run_watch.hpp"
+
+#include <utility>
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto alive_interval = 2s; // between two messages about the run, which keep it alive
+constexpr auto look_interval = 200ms;
+
+} // namespace
+
+Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant, bus::Clock& clock,
+                                                   wire::Measurement measurement,
+                                                   const std::shared_ptr<bus::WakeUp>& wake_up,
+                                                   RunOutcome& outcome, ShowProgress show) {
+  const std::string bench = measurement.bench().to_string();
+  const std::string run = measurement.run().to_string();
+  auto messages = RunMessages::open(participant, clock, bench, run, wake_up);
+  auto commands = RunCommands::open(participant, bench, run, wake_up);
+  if (auto error = first_error(messages, commands)) {
+    return fail(*error);
+  }
+  return std::unique_ptr<RunWatch>(new RunWatch(clock, std::move(measurement), wake_up, outcome,
+                                                std::move(show), std::move(*messages),
+                                                std::move(*commands)));
+}
+
+RunWatch::RunWatch(bus::Clock& clock, wire::Measurement measurement,
+                   std::shared_ptr<bus::WakeUp> wake_up, RunOutcome& outcome, ShowProgress show,
+                   RunMessages messages, RunCommands commands)
+    : clock_(clock), measurement_(std::move(measurement)), wake_up_(std::move(wake_up)),
+      outcome_(outcome), show_progress_(std::move(show)), messages_(std::move(messages)),
+      commands_(std::move(commands)) {}
+
+void RunWatch::set_state(wire::MeasurementState state, const std::string& message) {
+  measurement_.state(state);
+  measurement_.message(message);
+  messages_.publish(measurement_);
+  measurement_published_ = clock_.now();
+}
+
+void RunWatch::look() {
+  messages_.take(outcome_);
+  commands_.take();
+  messages_.repeat_announcement();
+  if (clock_.now() - measurement_published_ > alive_interval) {
+    set_state(measurement_.state(), measurement_.message());
+  }
+}
+
+void RunWatch::follow(const std::string& phase) {
+  show(phase);
+  clock_.wait(*wake_up_, clock_.now() + look_interval);
+  look();
+}
+
+RunOutlook RunWatch::outlook() const {
+  return run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
+}
+
+void RunWatch::show_step(std::size_t place, std::uint32_t attempt) {
+  if (place_ == 0) {
+    first_step_began_ = clock_.now();
+  }
+  place_ = place;
+  attempt_ = attempt;
+}
+
+// Of the planned steps, by those that are over.
+std::optional<double> RunWatch::seconds_left() const {
+  if (place_ < 2 || attempt_ > 1) {
+    return std::nullopt;
+  }
+  const std::chrono::duration<double> so_far = clock_.now() - first_step_began_;
+  return so_far.count() / static_cast<double>(place_ - 1) *
+         static_cast<double>(measurement_.steps().size() - place_ + 1);
+}
+
+void RunWatch::show(const std::string& phase, const std::string& request,
+                    const std::string& notice) {
+  RunProgress progress;
+  progress.step = place_;
+  progress.steps = measurement_.steps().size();
+  progress.attempt = attempt_;
+  progress.phase = phase;
+  progress.request = request;
+  progress.notice = notice;
+  progress.results = outcome_.results.size();
+  if (place_ > 0) {
+    progress.frequency_hz = measurement_.steps()[place_ - 1].frequency_text_hz();
+    progress.seconds_left = seconds_left();
+  }
+  show_progress_(progress);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,95 @@
+// What a run attends to as long as it lasts, whatever it does meanwhile: it repeats its Measurement
+// and what is excited now, so that everybody knows that it lives, takes what the analysis publishes
+// and what others command, and shows how far it is.
+//
+// Whoever waits for anything calls look() at least every half second. Belongs to one thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "services/evaluation/result/run_outcome.hpp"
+#include "services/run/run_commands.hpp"
+#include "services/run/run_messages.hpp"
+#include "services/run/run_outlook.hpp"
+
+namespace dyncal::services {
+
+struct RunProgress {
+  std::size_t step = 0; // 1..steps; 0 before the first
+  std::size_t steps = 0;
+  std::uint32_t attempt = 1; // at this step
+  std::string frequency_hz;
+  std::string phase;   // "waiting for the analysis", "settling", "measuring", ...
+  std::string request; // to the operator; "" for none
+  std::string notice;  // what has happened, for a line of its own; "" for none
+  std::size_t results = 0;
+  std::optional<double> seconds_left; // of the host's clock
+};
+
+using ShowProgress = std::function<void(const RunProgress&)>;
+
+class RunWatch {
+public:
+  using Instant = bus::Clock::Instant;
+
+  // `outcome` and `clock` outlive the object. Fails (network) as writers and readers do.
+  [[nodiscard]] static Expected<std::unique_ptr<RunWatch>>
+  open(bus::Participant& participant, bus::Clock& clock, wire::Measurement measurement,
+       const std::shared_ptr<bus::WakeUp>& wake_up, RunOutcome& outcome, ShowProgress show);
+
+  [[nodiscard]] const wire::Measurement& measurement() const { return measurement_; }
+  void set_state(wire::MeasurementState state, const std::string& message = "");
+  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state) {
+    messages_.announce(step, attempt, state);
+  }
+  void wait_for_acknowledgments(std::chrono::nanoseconds limit) {
+    messages_.wait_for_acknowledgments(limit);
+  }
+
+  // Takes what has come, and repeats the Measurement when it is due.
+  void look();
+  // The same after a short wait for messages; shows `phase`.
+  void follow(const std::string& phase);
+
+  [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const {
+    return messages_.analysis();
+  }
+  [[nodiscard]] Instant analysis_heard() const { return messages_.analysis_heard(); }
+  [[nodiscard]] std::size_t results_taken() const { return messages_.results_taken(); }
+  [[nodiscard]] RunOutlook outlook() const;
+  [[nodiscard]] RunCommands& commands() { return commands_; }
+  [[nodiscard]] const RunOutcome& outcome() const { return outcome_; }
+  [[nodiscard]] RunOutcome& outcome() { return outcome_; }
+  [[nodiscard]] bus::Clock& clock() { return clock_; }
+
+  // From now on this step is shown; `place` from 1, in the plan.
+  void show_step(std::size_t place, std::uint32_t attempt);
+  void show(const std::string& phase) { show(phase, "", ""); }
+  void ask(const std::string& request) { show("asking", request, ""); }
+  void notice(const std::string& sentence) { show("", "", sentence); }
+
+private:
+  RunWatch(bus::Clock& clock, wire::Measurement measurement, std::shared_ptr<bus::WakeUp> wake_up,
+           RunOutcome& outcome, ShowProgress show, RunMessages messages, RunCommands commands);
+  void show(const std::string& phase, const std::string& request, const std::string& notice);
+  [[nodiscard]] std::optional<double> seconds_left() const;
+
+  bus::Clock& clock_;
+  wire::Measurement measurement_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
+  RunOutcome& outcome_;
+  ShowProgress show_progress_;
+  RunMessages messages_;
+  RunCommands commands_;
+  Instant measurement_published_;
+  std::size_t place_ = 0;
+  std::uint32_t attempt_ = 1;
+  Instant first_step_began_;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,258 @@
+#include "services/run/step_sequence.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = RunOutlook::Kind;
+
+constexpr auto broken_off_limit = 10s;    // for the result of a step that was broken off
+constexpr auto generator_interval = 1s;   // between two attempts to reach it
+constexpr auto last_result_quiet = 300ms; // then all results of a step have come
+
+std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
+  std::vector<std::uint32_t> numbers;
+  for (const wire::PlannedStep& step : measurement.steps()) {
+    numbers.push_back(step.step());
+  }
+  return numbers;
+}
+
+} // namespace
+
+StepSequence::StepSequence(RunWatch& watch, const BenchFile& bench)
+    : watch_(watch), repeats_(numbers_of(watch.measurement()), bench.excitation.attempts) {}
+
+Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment& environment,
+                                                           const BenchFile& bench, RunWatch& watch,
+                                                           std::shared_ptr<bus::WakeUp> wake_up) {
+  std::unique_ptr<StepSequence> sequence(new StepSequence(watch, bench));
+  auto excitation = StepExcitation::open(
+      environment, bench, watch.measurement(), std::move(wake_up),
+      {.announce =
+           [self = sequence.get()](const wire::PlannedStep& step, std::uint32_t attempt,
+                                   wire::ExcitationState state) {
+             self->announced_ = state;
+             self->watch_.announce(step, attempt, state);
+           },
+       .show = [&watch](const std::string& phase) { watch.show(phase); },
+       .ask = [&watch](const std::string& request) { watch.ask(request); },
+       .look = [&watch] { watch.look(); },
+       .keep_alive = [self = sequence.get()] { return self->keep_alive(); }});
+  if (!excitation) {
+    return fail(excitation.error());
+  }
+  sequence->excitation_ = std::move(*excitation);
+  return sequence;
+}
+
+Expected<void> StepSequence::excite_all(const std::stop_token& stop) {
+  Expected<void> excited = excitation_->begin();
+  const std::size_t steps = watch_.measurement().steps().size();
+  for (std::size_t place = 0; place < steps && excited && !stop.stop_requested(); ++place) {
+    excited = excite(place, stop);
+  }
+  excitation_->end();
+  return excited.and_then([&] { return repeat_steps(stop); });
+}
+
+Expected<void> StepSequence::repeat_steps(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto evaluated = wait_until_evaluated(stop);
+    if (!evaluated) {
+      return fail(evaluated.error());
+    }
+    const auto repeat =
+        *evaluated ? repeats_.next(watch_.outcome().results) : std::optional<StepRepeat>{};
+    if (!repeat || stop.stop_requested()) {
+      return {};
+    }
+    watch_.notice(fmt::format("step {} is excited again, attempt {}: {}", repeat->step,
+                              repeats_.attempts_of(repeat->step) + 1, repeat->reason));
+    Expected<void> excited =
+        excitation_->begin().and_then([&] { return excite(place_of(repeat->step), stop); });
+    excitation_->end();
+    if (!excited) {
+      return excited;
+    }
+  }
+  return {};
+}
+
+std::size_t StepSequence::place_of(std::uint32_t step) const {
+  const auto& steps = watch_.measurement().steps();
+  const auto found =
+      std::find_if(steps.begin(), steps.end(), [&](const auto& one) { return one.step() == step; });
+  return static_cast<std::size_t>(found - steps.begin());
+}
+
+Expected<void> StepSequence::excite(std::size_t place, const std::stop_token& stop) {
+  Expected<void> ready = wait_until_well(stop);
+  if (ready && broken_off_) {
+    ready = wait_for_broken_off(stop).and_then([&] { return wait_until_well(stop); });
+  }
+  if (!ready || stop.stop_requested()) {
+    return ready;
+  }
+  const wire::PlannedStep& step = watch_.measurement().steps()[place];
+  const std::uint32_t attempt = repeats_.begin(step.step());
+  watch_.show_step(place + 1, attempt);
+  interrupted_by_.reset();
+  auto excited = excitation_->excite(step, attempt, stop);
+  if (announced_ != wire::EXCITATION_DONE) {
+    repeats_.broken_off(step.step());
+    broken_off_ = step.step();
+  }
+  if (!excited && excitation_->generator_is_away()) {
+    generator_away_ = excited.error();
+  }
+  const bool goes_on = generator_away_ || (interrupted_by_ && interrupted_by_->kind != Kind::over);
+  return goes_on ? Expected<void>{} : excited; // the next step waits until all is well
+}
+
+// In a step: fails when its excitation must end.
+Expected<void> StepSequence::keep_alive() {
+  watch_.look();
+  for (const std::uint32_t step : watch_.commands().take_repeats()) {
+    repeats_.ask_for(step);
+  }
+  const RunOutlook now = watch_.outlook();
+  if (now.kind == Kind::well) {
+    return {};
+  }
+  interrupted_by_ = now;
+  return fail(now.reason);
+}
+
+RunOutlook StepSequence::outlook() const {
+  const RunOutlook by_others = watch_.outlook();
+  if (by_others.kind == Kind::over || !generator_away_) {
+    return by_others;
+  }
+  return {Kind::waits, *generator_away_};
+}
+
+std::string StepSequence::waiting_phase(const RunOutlook& outlook) const {
+  const char* output =
+      excitation_->output_may_be_on()
+          ? "THE OUTPUT OF THE GENERATOR MAY BE ON, switch it off by hand if you can"
+          : "the output is off";
+  if (outlook.kind == Kind::paused) {
+    return fmt::format("{} ({})", outlook.reason.message, output);
+  }
+  const char* awaited = outlook.reason.code == ErrorCode::no_analysis ? "it or another" : "it";
+  return fmt::format("{}; waiting for {} up to {} s ({})", outlook.reason.message, awaited,
+                     away_limit.count(), output);
+}
+
+Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
+  watch_.look();
+  RunOutlook now = outlook();
+  if (now.kind == Kind::well) {
+    return {};
+  }
+  excitation_->end();
+  begin_pause(now.reason.message);
+  bool waits = false; // for something that is away, since then
+  Instant since;
+  while (now.kind != Kind::well && now.kind != Kind::over && !stop.stop_requested()) {
+    if (now.kind == Kind::waits && !waits) {
+      since = watch_.analysis_heard();
+    }
+    waits = now.kind == Kind::waits;
+    if (waits && watch_.clock().now() - since > away_limit) {
+      end_pause();
+      return fail(now.reason);
+    }
+    const std::string phase = waiting_phase(now);
+    if (watch_.measurement().message() != phase) {
+      watch_.notice(phase);
+      watch_.set_state(watch_.measurement().state(), phase);
+    }
+    watch_.follow(phase);
+    try_generator();
+    now = outlook();
+  }
+  end_pause();
+  if (now.kind == Kind::over) {
+    return fail(now.reason);
+  }
+  return excitation_->begin();
+}
+
+// The analysis gives a step up when its sources have gone on for a while without it.
+Expected<void> StepSequence::wait_for_broken_off(const std::stop_token& stop) {
+  const std::uint32_t step = *std::exchange(broken_off_, std::nullopt);
+  const Instant began = watch_.clock().now();
+  excitation_->end();
+  while (!stop.stop_requested() && !repeats_.is_evaluated(step, watch_.outcome().results) &&
+         watch_.clock().now() - began < broken_off_limit && outlook().kind == Kind::well) {
+    watch_.follow("waiting for the result of the step that was broken off");
+  }
+  return excitation_->begin();
+}
+
+// Connecting anew switches the output off.
+void StepSequence::try_generator() {
+  const Instant now = watch_.clock().now();
+  if (!generator_away_ || now - generator_tried_ < generator_interval) {
+    return;
+  }
+  if (const auto off = excitation_->switch_off(); off) {
+    generator_away_.reset();
+  }
+  generator_tried_ = watch_.clock().now();
+}
+
+void StepSequence::begin_pause(const std::string& reason) {
+  watch_.outcome().pauses.push_back({watch_.clock().utc_now_ns(), 0, reason});
+}
+
+void StepSequence::end_pause() {
+  RunPause& pause = watch_.outcome().pauses.back();
+  pause.ended_utc_ns = watch_.clock().utc_now_ns();
+  watch_.set_state(watch_.measurement().state());
+  watch_.notice(fmt::format("the run has paused for {:.0f} s",
+                            static_cast<double>(pause.ended_utc_ns - pause.began_utc_ns) * 1e-9));
+}
+
+Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
+  Instant changed = watch_.clock().now();
+  std::size_t results_before = watch_.results_taken();
+  while (!stop.stop_requested()) {
+    watch_.follow("evaluating");
+    for (const std::uint32_t step : watch_.commands().take_repeats()) {
+      repeats_.ask_for(step);
+    }
+    if (watch_.analysis()->arm() == wire::ARM_FINISHED) {
+      return false;
+    }
+    if (outlook().kind != Kind::well) {
+      if (auto well = wait_until_well(stop); !well) {
+        return watch_.analysis()->arm() == wire::ARM_FINISHED ? Expected<bool>(false)
+                                                              : fail(well.error());
+      }
+      excitation_->end();
+      changed = watch_.clock().now();
+    }
+    if (watch_.results_taken() != results_before) {
+      results_before = watch_.results_taken();
+      changed = watch_.clock().now();
+    }
+    const auto quiet = watch_.clock().now() - changed;
+    if (quiet > last_result_quiet && repeats_.are_evaluated(watch_.outcome().results)) {
+      return true;
+    }
+    if (quiet > results_limit) {
+      return false;
+    }
+  }
+  return false;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,77 @@
+// Excites all steps of a run, waits out what disturbs it, and repeats what was spoilt.
+//
+// No step is begun unless the analysis attends to the run, its sources are there, nobody has paused
+// it, and the generator answers with its output off. When one of these fails in a step, the output
+// is switched off and the step is broken off; once all is well again the run goes on with the next.
+// What does not come back within `away_limit` ends the run; run_outlook.hpp decides what is waited
+// for at all. Pauses are said at once and kept in the outcome.
+//
+// The next step begins only when the result of one that was broken off has come, or none comes: a
+// step of the same frequency could be taken for it.
+//
+// After the planned steps their results are awaited, and steps that another attempt may improve are
+// excited again, one at a time, each after the results of the one before (step_repeats.hpp).
+//
+// Fails as StepExcitation does, and (no_analysis, no_source, device, no_result) when the run is
+// over by run_outlook.hpp or has waited too long. A requested stop is not a failure. Belongs to one
+// thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "services/run/run_watch.hpp"
+#include "services/run/step_excitation.hpp"
+#include "services/run/step_repeats.hpp"
+
+namespace dyncal::services {
+
+class StepSequence {
+public:
+  static constexpr std::chrono::seconds away_limit{
+      120}; // for the analysis, a source, the generator
+  static constexpr std::chrono::seconds results_limit{25}; // from the last result to the next
+
+  // Connects the generator, its output off. `watch` and what `environment` names outlive the
+  // object.
+  [[nodiscard]] static Expected<std::unique_ptr<StepSequence>>
+  open(const RunEnvironment& environment, const BenchFile& bench, RunWatch& watch,
+       std::shared_ptr<bus::WakeUp> wake_up);
+
+  [[nodiscard]] Expected<void> excite_all(const std::stop_token& stop);
+
+  [[nodiscard]] bool output_may_be_on() const { return excitation_->output_may_be_on(); }
+  [[nodiscard]] Expected<void> switch_off() { return excitation_->switch_off(); }
+
+private:
+  using Instant = bus::Clock::Instant;
+
+  StepSequence(RunWatch& watch, const BenchFile& bench);
+  Expected<void> keep_alive();
+  Expected<void> excite(std::size_t place, const std::stop_token& stop);
+  Expected<void> repeat_steps(const std::stop_token& stop);
+  // Returns false when nothing more is to be expected of the analysis.
+  Expected<bool> wait_until_evaluated(const std::stop_token& stop);
+  Expected<void> wait_until_well(const std::stop_token& stop);
+  Expected<void> wait_for_broken_off(const std::stop_token& stop);
+  [[nodiscard]] RunOutlook outlook() const;
+  [[nodiscard]] std::string waiting_phase(const RunOutlook& outlook) const;
+  void try_generator();
+  void begin_pause(const std::string& reason);
+  void end_pause();
+  [[nodiscard]] std::size_t place_of(std::uint32_t step) const;
+
+  RunWatch& watch_;
+  StepRepeats repeats_;
+  std::unique_ptr<StepExcitation> excitation_;
+  std::optional<RunOutlook> interrupted_by_; // the step that is, or was last, excited
+  std::optional<Error> generator_away_;
+  Instant generator_tried_;
+  wire::ExcitationState announced_ = wire::EXCITATION_DONE; // of the step that was excited last
+  std::optional<std::uint32_t> broken_off_; // and whose result has not been waited for
+};
+
+} // namespace dyncal::services
