@@ -93,9 +93,9 @@ void RunSession::update(const wire::Measurement& measurement) {
   const bool aborted = measurement_.state() == wire::MEASUREMENT_ABORTED;
   spdlog::info("bench {}, run {}: {}", bench_, run_, aborted ? "aborted" : "excitation done");
   excitation_ended_ = aborted;
-  if (status_.health == wire::HEALTH_FAILED) {
+  if (status_.health == wire::HEALTH_FAILED || (aborted && status_.health != wire::HEALTH_OK)) {
     evaluator_->end_of_excitation(aborted);
-    evaluator_->finish_now(); // a source is lost: nothing more will come
+    evaluator_->finish_now(); // a source is lost: nothing more will come, or nobody waits for it
   }
   last_progress_ = clock_.now();
 }

@@ -187,8 +187,8 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
     }
     const RunOutlook outlook = watch_->outlook();
     const bool results_have_come = watch_->results_taken() != results_before;
-    const bool may_still_come =
-        !attended || outlook.kind == Kind::waits || (plays_files() && outlook.kind != Kind::over);
+    const bool is_waited_for = (!attended || outlook.kind == Kind::waits) && !stop.stop_requested();
+    const bool may_still_come = is_waited_for || (plays_files() && outlook.kind != Kind::over);
     if (results_have_come || may_still_come) {
       results_before = watch_->results_taken();
       deadline = clock_.now() + results_limit;
