@@ -5,13 +5,15 @@
 // reads all benches). T is a struct of the contract. No vendor's name or type appears here.
 //
 // QoS profiles (idl/README.md has the exact settings), all reliable:
-//   samples  keep all, transient local with bounded depth: a late joiner gets the newest blocks,
-//            unless it reads live_samples: what a run needs is the stream from now on, and minutes
-//            of blocks before it would hold up its beginning on a slow or lossy link
+//   samples  keep all, transient local with bounded depth: a writer waits for its readers, and a
+//            late joiner gets the newest blocks
+//   live_samples, live_records
+//            a writer keeps the newest few seconds and waits for no reader; a reader gets the
+//            stream from now on, since blocks before it would hold up a run's beginning
 //   results  transient local, the newest of every key
 //   state    transient local, the newest of every key
 //   command  volatile, every one
-//   catch_up volatile, every one: what a source sends again to one reader
+//   catch_up every one: what a source sends again to one reader, by a writer of its own
 //
 // Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one
 // thread at a time, except Reader's wake-up, which comes from the vendor's threads and only
@@ -124,12 +126,14 @@ public:
   explicit Participant(std::unique_ptr<UntypedParticipant> untyped)
       : untyped_(std::move(untyped)) {}
 
-  // Fail (bad_argument) when the partition cannot be a bench's name (services/bus/names.hpp), or
-  // (network) when the vendor refuses.
+  // Fail (bad_argument) when the partition cannot be a bench's name, or that of who catches up
+  // (services/bus/names.hpp), or (network) when the vendor refuses.
   template <class T>
   [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
                                                      const std::string& partition) {
-    if (const auto name = check_bench_name(partition); !name) {
+    if (const auto name = profile == Profile::catch_up ? check_asker_name(partition)
+                                                       : check_bench_name(partition);
+        !name) {
       return fail(name.error());
     }
     return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) {

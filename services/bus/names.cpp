@@ -7,6 +7,18 @@ services::Error bad_name(const std::string& what, const std::string& name, const
   return {services::ErrorCode::bad_argument, what + " \"" + name + "\" " + why};
 }
 
+services::Expected<void> check_partition(const std::string& what, const std::string& name,
+                                         std::size_t longest) {
+  if (auto fits = check_name(what, name, longest); !fits) {
+    return fits;
+  }
+  if (name.find_first_of("*?[]") != std::string::npos) {
+    return fail(bad_name(
+        what, name, "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
+  }
+  return {};
+}
+
 } // namespace
 
 services::Expected<void> check_name(const std::string& what, const std::string& name,
@@ -23,15 +35,11 @@ services::Expected<void> check_name(const std::string& what, const std::string& 
 }
 
 services::Expected<void> check_bench_name(const std::string& name) {
-  if (auto fits = check_name("bench", name); !fits) {
-    return fits;
-  }
-  if (name.find_first_of("*?[]") != std::string::npos) {
-    return fail(
-        bad_name("bench", name,
-                 "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
-  }
-  return {};
+  return check_partition("bench", name, max_name);
+}
+
+services::Expected<void> check_asker_name(const std::string& name) {
+  return check_partition("asker", name, max_asker);
 }
 
 } // namespace dyncal::bus

@@ -14,6 +14,7 @@ namespace dyncal::bus {
 
 inline constexpr std::size_t max_name = 64;     // characters of bench, source, run, service, target
 inline constexpr std::size_t max_channel = 128; // characters of "source/channel"
+inline constexpr std::size_t max_asker = 128;   // characters of who catches up
 
 // Fails (bad_argument) when the name is empty or too long. `what` begins the sentence: "the bench",
 // "source".
@@ -23,5 +24,8 @@ inline constexpr std::size_t max_channel = 128; // characters of "source/channel
 // A name that one bench can have: as above, and without the characters that make a DDS partition a
 // pattern (* ? [ ]).
 [[nodiscard]] services::Expected<void> check_bench_name(const std::string& name);
+
+// The name of who catches up, which is a partition as well: likewise, but it may be longer.
+[[nodiscard]] services::Expected<void> check_asker_name(const std::string& name);
 
 } // namespace dyncal::bus

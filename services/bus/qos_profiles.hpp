@@ -8,14 +8,20 @@
 
 namespace dyncal::bus {
 
-// Blocks of one source that a writer of `samples` keeps for late joiners, dropping the oldest that
-// everybody has: 30 s of blocks of 20 ms, 150 s of 100 ms. It bounds what a daemon that runs for
-// weeks holds: 60 MB a source for blocks of 40 kB.
+// Blocks of one source that a writer that waits for its readers keeps for late joiners, dropping
+// the oldest that everybody has.
 inline constexpr int late_joiner_blocks = 1500;
 
-// Blocks of one source that a reader holds for a program that does not take them. Beyond it the
-// writer is held back, and the ring before it fills: no process grows without bound because some
-// part of it is stuck.
+// Blocks of one source that a writer that never waits keeps for repairs, dropping the oldest
+// whether everybody has it or not: 5 s of blocks of 20 ms. Bounds its memory to 16 MB a source.
+inline constexpr int repair_blocks = 250;
+
+// Records of one source that such a writer keeps: a record may hold megabytes.
+inline constexpr int repair_records = 32;
+
+// Blocks of one source that a reader holds for a program that does not take them. Beyond it a
+// writer that waits is held back, and one that does not goes on without this reader: no process
+// grows without bound because some part of it is stuck.
 inline constexpr int untaken_blocks = 1500;
 
 // Blocks of one source on their way to who catches up: the source waits for room.
@@ -24,28 +30,48 @@ inline constexpr int catch_up_blocks = 250;
 // The same for commands to one target.
 inline constexpr int untaken_commands = 1000;
 
-struct QosProfile {
-  bool transient_local;       // late joiners get what the writer keeps
-  bool keep_all;              // every sample; otherwise the newest of each key
-  int writer_samples_per_key; // at the writer
-  int reader_samples_per_key; // waiting at the reader
+// What a writer offers, or a reader asks for.
+struct EndpointQos {
+  bool transient_local; // late joiners get what the writer keeps
+  bool keep_all;        // every sample: who has no room waits. Otherwise the newest of each key
+  int samples_per_key;  // kept by a writer; waiting at a reader
 };
 
-[[nodiscard]] constexpr QosProfile qos_profile(Profile profile) {
+[[nodiscard]] constexpr EndpointQos qos_of_writer(Profile profile) {
   switch (profile) {
   case Profile::samples:
-    return {true, true, late_joiner_blocks, untaken_blocks};
+    return {true, true, late_joiner_blocks};
   case Profile::live_samples:
-    return {false, true, late_joiner_blocks, untaken_blocks};
+    return {true, false, repair_blocks};
+  case Profile::live_records:
+    return {true, false, repair_records};
   case Profile::command:
-    return {false, true, untaken_commands, untaken_commands};
+    return {false, true, untaken_commands};
   case Profile::catch_up:
-    return {false, true, catch_up_blocks, catch_up_blocks};
+    return {true, true, catch_up_blocks};
   case Profile::results:
   case Profile::state:
     break;
   }
-  return {true, false, 1, 1};
+  return {true, false, 1};
+}
+
+[[nodiscard]] constexpr EndpointQos qos_of_reader(Profile profile) {
+  switch (profile) {
+  case Profile::samples:
+    return {true, true, untaken_blocks};
+  case Profile::live_samples:
+  case Profile::live_records:
+    return {false, true, untaken_blocks};
+  case Profile::command:
+    return {false, true, untaken_commands};
+  case Profile::catch_up:
+    return {true, true, catch_up_blocks};
+  case Profile::results:
+  case Profile::state:
+    break;
+  }
+  return {true, false, 1};
 }
 
 // One attempt of a vendor's write() waits this long for room in its history; the bus tries again

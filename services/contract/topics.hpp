@@ -8,8 +8,9 @@
 
 namespace dyncal::bus {
 
-// `live_samples` is for readers of samples that want none of those before them.
-enum class Profile { samples, live_samples, results, state, command, catch_up };
+// `live_samples` and `live_records` are for writers of samples and records that wait for no reader,
+// and for readers that want none of those before them.
+enum class Profile { samples, live_samples, live_records, results, state, command, catch_up };
 
 template <class T>
 struct Topic {

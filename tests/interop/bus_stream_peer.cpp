@@ -2,11 +2,12 @@
 // writes two sources, with the shortest and the longest name there can be, or reads them and says
 // what is missing.
 //
-//   bus_stream_peer write --blocks N --rate HZ --readers N --readers-at-half M
+//   bus_stream_peer write [--live] --blocks N --rate HZ --readers N --readers-at-half M
 //     waits for N readers, writes half, waits for M readers, writes the rest, then waits to be
-//     ended (SIGTERM)
-//   bus_stream_peer read [--until-killed]
-//     until both sources have said that they are at their end, or for ever
+//     ended (SIGTERM); with --live as a source that waits for no reader
+//   bus_stream_peer read [--live] [--until-killed | --hang]
+//     until both sources have said that they are at their end, or for ever; with --hang takes
+//     nothing more once it has begun; with --live what was written before does not count as lost
 //
 //   bus_stream_peer write-results
 //     writes results, then waits to be ended
@@ -21,6 +22,7 @@
 #include <map>
 #include <set>
 #include <thread>
+#include <unistd.h>
 
 #include "services/bus/bus.hpp"
 #include "services/contract/sample_continuity.hpp"
@@ -34,8 +36,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* bench = "netns";
-constexpr std::size_t values_per_block = 5000; // 40 kB
-constexpr auto patience = 240s;                // each wait for another process, on a busy machine
+std::size_t values_per_block = 5000; // 40 kB; --values
+constexpr auto patience = 240s;      // each wait for another process, on a busy machine
 
 struct Options {
   bus::ParticipantOptions participant;
@@ -46,6 +48,12 @@ struct Options {
   int readers = 1;
   int readers_at_half = 0;
   bool until_killed = false;
+  bool live = false;
+  bool hang = false;
+
+  [[nodiscard]] bus::Profile profile() const {
+    return live ? bus::Profile::live_samples : bus::Profile::samples;
+  }
 };
 
 std::vector<std::string> source_names() {
@@ -64,7 +72,7 @@ wire::SampleBlock make_block(const std::string& source, std::uint64_t session, s
   block.session(session);
   block.block(number);
   block.first_sample(number * values_per_block);
-  block.sample_count(values_per_block);
+  block.sample_count(static_cast<std::uint32_t>(values_per_block));
   block.channel_count(1);
   block.end_of_stream(last);
   block.values().resize(values_per_block);
@@ -107,7 +115,9 @@ bool wait_for_readers(const Writers& writers, int wanted) {
 int write_stream(bus::Participant& participant, const Options& options) {
   Writers writers;
   for (std::size_t i = 0; i < source_names().size(); ++i) {
-    writers.push_back(participant.writer(bus::topics::dau_samples, bench).value());
+    writers.push_back(
+        participant.writer<wire::SampleBlock>(bus::topics::dau_samples, options.profile(), bench)
+            .value());
   }
   if (!wait_for_readers(writers, options.readers)) {
     return 1;
@@ -152,7 +162,9 @@ int write_stream(bus::Participant& participant, const Options& options) {
 
 int read_stream(bus::Participant& participant, const Options& options) {
   auto bell = std::make_shared<bus::WakeUp>();
-  auto reader = participant.reader(bus::topics::dau_samples, "*", bell).value();
+  auto reader =
+      participant.reader<wire::SampleBlock>(bus::topics::dau_samples, options.profile(), "*", bell)
+          .value();
   std::map<std::string, services::SampleContinuity> continuity; // by source
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
@@ -161,12 +173,12 @@ int read_stream(bus::Participant& participant, const Options& options) {
   const auto consume = [&](const wire::SampleBlock& block) {
     const auto finding = continuity[block.source().to_string()].add(services::view_block(block));
     if (finding.first) {
-      begun_late += block.block();
+      begun_late += options.live ? 0 : block.block();
     }
     if (!finding.continuous()) {
       ++wrong;
     }
-    for (std::size_t i = 0; i < block.values().size(); i += 777) {
+    for (std::size_t i = 0; i < block.values().size(); i += 77) {
       if (block.values()[i] != value_of(block.block(), i)) {
         ++wrong;
       }
@@ -180,6 +192,9 @@ int read_stream(bus::Participant& participant, const Options& options) {
     if (++taken == options.blocks / 10) {
       std::printf("begun\n");
       std::fflush(stdout);
+      if (options.hang) {
+        pause();
+      }
     }
   };
   const auto give_up = Clock::now() + patience;
@@ -259,12 +274,15 @@ int main(int argc, char** argv) {
   app.add_option("--peer", options.participant.peers);
   app.add_option("--interface", options.participant.interface_name);
   auto* write = app.add_subcommand("write")->fallthrough();
-  write->add_option("--blocks", options.blocks);
-  write->add_option("--rate", options.rate_hz);
+  app.add_option("--blocks", options.blocks);
+  app.add_option("--rate", options.rate_hz);
   write->add_option("--readers", options.readers);
   write->add_option("--readers-at-half", options.readers_at_half);
   auto* read = app.add_subcommand("read")->fallthrough();
   read->add_flag("--until-killed", options.until_killed);
+  read->add_flag("--hang", options.hang);
+  app.add_flag("--live", options.live);
+  app.add_option("--values", values_per_block);
   auto* write_all_results = app.add_subcommand("write-results")->fallthrough();
   auto* read_all_results = app.add_subcommand("read-results")->fallthrough();
   CLI11_PARSE(app, argc, argv);

@@ -78,22 +78,24 @@ struct QosDeleter {
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-Qos common_qos(const QosProfile& profile, const std::string& partition) {
+Qos common_qos(const EndpointQos& wanted, const std::string& partition) {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE,
                        std::chrono::nanoseconds(write_attempt).count());
-  dds_qset_durability(qos.get(), profile.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL
-                                                         : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos.get(), profile.keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_durability(qos.get(), wanted.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                                        : DDS_DURABILITY_VOLATILE);
+  // A writer that keeps the last samples is never held back, by however many bytes it is ahead.
+  dds_qset_history(qos.get(), wanted.keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST,
+                   wanted.keep_all ? 1 : wanted.samples_per_key);
   const char* name = partition.c_str();
   dds_qset_partition(qos.get(), 1, &name);
   return qos;
 }
 
-Qos writer_qos(const QosProfile& profile, const std::string& partition) {
-  Qos qos = common_qos(profile, partition);
-  if (profile.transient_local) {
-    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, profile.writer_samples_per_key,
+Qos writer_qos(const EndpointQos& wanted, const std::string& partition) {
+  Qos qos = common_qos(wanted, partition);
+  if (wanted.transient_local) {
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, wanted.samples_per_key,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
   // True by default: the end of a writer would read as the end of all its instances.
@@ -101,11 +103,11 @@ Qos writer_qos(const QosProfile& profile, const std::string& partition) {
   return qos;
 }
 
-Qos reader_qos(const QosProfile& profile, const std::string& partition) {
-  Qos qos = common_qos(profile, partition);
-  if (profile.keep_all) {
+Qos reader_qos(const EndpointQos& wanted, const std::string& partition) {
+  Qos qos = common_qos(wanted, partition);
+  if (wanted.keep_all) {
     dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
-                             profile.reader_samples_per_key);
+                             wanted.samples_per_key);
   }
   return qos;
 }
@@ -198,7 +200,7 @@ public:
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = writer_qos(qos_profile(profile), partition);
+    const Qos qos = writer_qos(qos_of_writer(profile), partition);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
@@ -215,7 +217,7 @@ public:
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = reader_qos(qos_profile(profile), partition);
+    const Qos qos = reader_qos(qos_of_reader(profile), partition);
     dds_listener_t* listener = dds_create_listener(wake_up.get());
     if (wake_up) {
       dds_lset_data_available(listener, &ring);

@@ -37,26 +37,26 @@ fastrtps::Duration_t duration(std::chrono::duration<Rep, Period> time) {
 }
 
 template <class Qos>
-void set_common(const QosProfile& profile, int samples_per_key, Qos& qos) {
+void set_common(const EndpointQos& wanted, Qos& qos) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind =
-      profile.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = profile.keep_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = 1;
+      wanted.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = wanted.keep_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = wanted.keep_all ? 1 : wanted.samples_per_key;
   // 0 is unlimited. With the defaults (5000, 10, 400) the eleventh key is never written, or is
   // received, acknowledged and dropped.
   qos.resource_limits().max_samples = 0;
   qos.resource_limits().max_instances = 0;
-  qos.resource_limits().max_samples_per_instance = samples_per_key;
+  qos.resource_limits().max_samples_per_instance = wanted.samples_per_key;
   qos.resource_limits().allocated_samples = 0;
   // The mode DYNAMIC_REUSABLE cannot deliver the end of an instance.
   qos.endpoint().history_memory_policy = fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
 }
 
-dds::DataWriterQos writer_qos(const QosProfile& profile) {
+dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
   dds::DataWriterQos qos;
-  set_common(profile, profile.writer_samples_per_key, qos);
+  set_common(wanted, qos);
   qos.reliability().max_blocking_time = duration(write_attempt);
   qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
   qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
@@ -66,9 +66,9 @@ dds::DataWriterQos writer_qos(const QosProfile& profile) {
   return qos;
 }
 
-dds::DataReaderQos reader_qos(const QosProfile& profile) {
+dds::DataReaderQos reader_qos(const EndpointQos& wanted) {
   dds::DataReaderQos qos;
-  set_common(profile, profile.reader_samples_per_key, qos);
+  set_common(wanted, qos);
   // The default of 5 ms divides the rate from a Cyclone DDS writer by twenty.
   qos.reliable_reader_qos().times.heartbeatResponseDelay = duration(std::chrono::seconds(0));
   return qos;
@@ -262,7 +262,7 @@ public:
                   "Fast DDS refuses to publish in partition " + partition);
     }
     dds::DataWriter* fast_writer =
-        publisher->create_datawriter(fast_topic, writer_qos(qos_profile(profile)));
+        publisher->create_datawriter(fast_topic, writer_qos(qos_of_writer(profile)));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
       return fail(services::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
@@ -288,7 +288,7 @@ public:
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
-    if (!fast_reader->open(fast_topic, reader_qos(qos_profile(profile)))) {
+    if (!fast_reader->open(fast_topic, reader_qos(qos_of_reader(profile)))) {
       return fail(services::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
     }
     if (wake_up) {

@@ -108,7 +108,7 @@ bool MemoryExchange::make_room(MemoryWriterState& writer, const std::string& key
     return true;
   }
   auto& numbers = found->second;
-  const auto limit = static_cast<std::size_t>(writer.qos.writer_samples_per_key);
+  const auto limit = static_cast<std::size_t>(writer.qos.samples_per_key);
   if (numbers.size() < limit) {
     return true;
   }
@@ -179,7 +179,7 @@ bool MemoryExchange::accepts(const MemoryReaderState& reader, const MemoryMessag
   }
   const auto untaken = reader.untaken.find(message.key);
   return !reader.qos.keep_all || untaken == reader.untaken.end() ||
-         untaken->second < reader.qos.reader_samples_per_key;
+         untaken->second < reader.qos.samples_per_key;
 }
 
 void MemoryExchange::accept(MemoryReaderState& reader, const MemoryMessagePointer& message) {

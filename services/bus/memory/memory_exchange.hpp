@@ -39,7 +39,7 @@ struct MemoryEndpoint {
   std::string type_name;
   std::string partition; // of a reader: a pattern
   std::string participant;
-  QosProfile qos{};
+  EndpointQos qos{};
   std::shared_ptr<WakeUp> wake_up; // of a writer: rings when there may be room; never empty
 };
 

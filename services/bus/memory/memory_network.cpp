@@ -113,27 +113,29 @@ public:
                                                             Profile profile,
                                                             const std::string& partition) override {
     return std::make_unique<MemoryWriter>(
-        exchange_, type, endpoint(type, topic, profile, partition, std::make_shared<WakeUp>()));
+        exchange_, type,
+        endpoint(type, topic, qos_of_writer(profile), partition, std::make_shared<WakeUp>()));
   }
 
   services::Expected<std::unique_ptr<UntypedReader>>
   reader(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     return std::make_unique<MemoryReader>(
-        exchange_, type, endpoint(type, topic, profile, partition, std::move(wake_up)), malformed_);
+        exchange_, type,
+        endpoint(type, topic, qos_of_reader(profile), partition, std::move(wake_up)), malformed_);
   }
 
   [[nodiscard]] std::uint64_t malformed_messages() const override { return malformed_->count(); }
 
 private:
   [[nodiscard]] MemoryEndpoint endpoint(const TypeSupport& type, const std::string& topic,
-                                        Profile profile, const std::string& partition,
+                                        const EndpointQos& qos, const std::string& partition,
                                         std::shared_ptr<WakeUp> wake_up) const {
     return {.topic = topic,
             .type_name = type.name,
             .partition = partition,
             .participant = name_,
-            .qos = qos_profile(profile),
+            .qos = qos,
             .wake_up = std::move(wake_up)};
   }
 
