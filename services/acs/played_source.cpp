@@ -80,7 +80,7 @@ SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings)
           .identity = settings.identity,
           .silent_after =
               settings.is<FileSourceSettings>() ? std::chrono::seconds(0) : std::chrono::seconds(2),
-          .when_full = WhenFull::wait};
+          .when_full = settings.is<FileSourceSettings>() ? WhenFull::wait : WhenFull::wait_briefly};
 }
 
 Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,

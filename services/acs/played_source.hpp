@@ -2,8 +2,8 @@
 // publisher.
 //
 // An instrument's stream is published as it comes. A file waits until a measurement of its bench is
-// RUNNING, is played, ends its stream, and waits for the next one. Both wait for room in the
-// publisher's ring instead of losing samples (options_of).
+// RUNNING, is played, ends its stream, and waits for the next one. A file waits for room in the
+// publisher's ring; an instrument for a second at most, and never for a reader (options_of).
 //
 // Threads: prepare() from one thread; run() in a thread of the source's own.
 #pragma once
@@ -53,7 +53,7 @@ make_driver(const SourceSettings& settings);
 // role), ACS for the others.
 [[nodiscard]] SourceKind kind_of(const MethodSettings& method, const std::string& source);
 
-// Where such a source publishes, and that it waits for room.
+// Where such a source publishes, and how long it waits for room.
 [[nodiscard]] SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings);
 
 } // namespace dyncal::services::acs

@@ -51,6 +51,21 @@ bool BlockRing::offer_waiting(RingEntry entry, const std::stop_token& stop) {
   return true;
 }
 
+bool BlockRing::offer_within(RingEntry entry, std::chrono::nanoseconds limit,
+                             const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  const auto patience = waited_in_vain_ ? std::chrono::nanoseconds(0) : limit;
+  waited_in_vain_ = !changed_.wait_for(lock, stop, patience, [&] { return has_room(entry); });
+  if (waited_in_vain_) {
+    dropped_ += size_of(entry);
+    return false;
+  }
+  append(std::move(entry));
+  lock.unlock();
+  changed_.notify_all();
+  return true;
+}
+
 RingEntry BlockRing::take_oldest() {
   RingEntry entry = std::move(entries_.front());
   entries_.pop_front();

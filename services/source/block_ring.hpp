@@ -65,6 +65,9 @@ public:
   // Waits for room. Returns false if `stop` was requested before there was any: the entry is lost
   // and not counted.
   bool offer_waiting(RingEntry entry, const std::stop_token& stop);
+  // Waits for room, but only so long; then the entry is lost and counted, and those after it do not
+  // wait until there is room again.
+  bool offer_within(RingEntry entry, std::chrono::nanoseconds limit, const std::stop_token& stop);
 
   [[nodiscard]] std::optional<RingEntry> take();
   // Waits for an entry. Nothing if `stop` was requested before there was one.
@@ -85,6 +88,7 @@ private:
   std::deque<RingEntry> entries_;
   std::size_t bytes_ = 0;
   std::uint64_t dropped_ = 0;
+  bool waited_in_vain_ = false; // for room, and there was none since
 };
 
 } // namespace dyncal::services

@@ -13,12 +13,24 @@ namespace {
 constexpr int blocks_per_step = 16;                   // so that one source cannot starve the others
 constexpr auto rate_window = std::chrono::seconds(3); // over which the rate of the status is taken
 constexpr std::size_t runs_to_answer = 16; // a run asks again, so a forgotten one is not lost
+// Less than half of what a live writer keeps for repairs, and of a receive buffer.
+constexpr WritePace::Window window{.messages = 100, .bytes = std::size_t{1} << 20U};
+constexpr auto patience = std::chrono::seconds(2); // with a reader that acknowledges nothing
+
+void add_cause(dyncal::wire::SourceStatus& message, const std::string& name, std::uint64_t value) {
+  if (value > 0) {
+    dyncal::wire::NamedCount count;
+    count.name(name);
+    count.value(value);
+    message.causes().push_back(std::move(count));
+  }
+}
 
 } // namespace
 
 Expected<std::unique_ptr<SourceChannel>>
 SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
-                      std::string software) {
+                      std::shared_ptr<KeptBlocks> kept, std::string software) {
   const SourceOptions& options = publisher->options();
   auto description = participant.writer<dyncal::wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, options.bench);
@@ -35,14 +47,15 @@ SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePubli
     return fail(samples.error());
   }
   return std::make_unique<SourceChannel>(
-      std::move(publisher), std::move(software),
+      std::move(publisher), std::move(kept), std::move(software),
       SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
 }
 
-SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software,
+SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher,
+                             std::shared_ptr<KeptBlocks> kept, std::string software,
                              SourceWriters writers)
-    : publisher_(std::move(publisher)), software_(std::move(software)),
-      writers_(std::move(writers)), session_(publisher_->session()) {}
+    : publisher_(std::move(publisher)), kept_(std::move(kept)), software_(std::move(software)),
+      writers_(std::move(writers)), pace_(window, patience), session_(publisher_->session()) {}
 
 void SourceChannel::answer(const std::string& run) {
   if (std::ranges::count(runs_to_answer_, run) != 0) {
@@ -108,6 +121,13 @@ bool SourceChannel::next_message() {
   return true;
 }
 
+// A writer that waits for its readers needs no pace.
+bool SourceChannel::may_write() {
+  return waits(publisher_->options().when_full) || pace_.may_write(Clock::now(), [&] {
+    return writers_.samples->wait_for_acknowledgments(std::chrono::nanoseconds(0));
+  });
+}
+
 bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   // The session of the block to be written decides what the description in front of it says.
   if (!pending_ && !next_message()) {
@@ -116,10 +136,14 @@ bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   if (!write_description(limit)) {
     return false;
   }
+  if (!may_write()) {
+    return false;
+  }
   const auto outcome = writers_.samples->write(limit);
   if (outcome == bus::WriteOutcome::timed_out) {
     return false;
   }
+  pace_.wrote(writers_.samples->keep_in(*kept_)); // also what the bus refused: it can be asked for
   if (outcome == bus::WriteOutcome::failed) {
     ++failed_writes_;
     lost_in_writes_ += pending_->size;
@@ -183,6 +207,21 @@ void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_poin
                  : 0.0;
 }
 
+void SourceChannel::add_what_is_kept(dyncal::wire::SourceStatus& message) {
+  add_cause(message, "not kept for catching up", kept_->not_kept());
+  const std::string problem = kept_->problem();
+  if (problem.empty()) {
+    return;
+  }
+  if (message.message().empty()) {
+    message.message(problem);
+  }
+  if (!warned_of_kept_) {
+    warned_of_kept_ = true;
+    publisher_->warn(problem);
+  }
+}
+
 void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
   const auto snapshot = publisher_->snapshot();
   measure_rate(snapshot.offered_samples, now);
@@ -195,12 +234,8 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   message.buffer_fill(publisher_->ring().fill());
   message.matched_readers(
       static_cast<std::uint32_t>(std::max(0, writers_.samples->matched_readers())));
-  if (failed_writes_ > 0) {
-    dyncal::wire::NamedCount failed;
-    failed.name("writes refused by the bus");
-    failed.value(failed_writes_);
-    message.causes().push_back(failed);
-  }
+  add_cause(message, "writes refused by the bus", failed_writes_);
+  add_what_is_kept(message);
   if (writers_.status.write(message, limit) != bus::WriteOutcome::written) {
     return; // the next one is due soon anyway
   }

@@ -1,8 +1,9 @@
 // The publishing thread's side of one source: its three writers and what is due to be written.
 //
-// Everything it does is one short step that may block for `write_limit` at most, so that a reader
-// that hangs on one source does not hold up the others: what could not be written stays and is
-// tried again at the next step. Used by the publishing thread alone.
+// Everything it does is one short step that may block for `write_limit` at most, so that one source
+// does not hold up the others: what could not be written stays and is tried again at the next step.
+// A writer that waits for no reader is paced instead (WritePace). What was written is kept for who
+// asks for it later. Used by the publishing thread alone.
 #pragma once
 
 #include <chrono>
@@ -14,9 +15,11 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
+#include "services/source/kept_blocks.hpp"
 #include "services/source/messages.hpp"
 #include "services/source/source_publisher.hpp"
 #include "services/source/stream_writer.hpp"
+#include "services/source/write_pace.hpp"
 
 namespace dyncal::services {
 
@@ -32,11 +35,12 @@ public:
 
   [[nodiscard]] static Expected<std::unique_ptr<SourceChannel>>
   create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
-         std::string software);
-  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::string software,
-                SourceWriters writers);
+         std::shared_ptr<KeptBlocks> kept, std::string software);
+  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::shared_ptr<KeptBlocks> kept,
+                std::string software, SourceWriters writers);
 
   [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
+  [[nodiscard]] KeptBlocks& kept() { return *kept_; }
 
   // Somebody arms for this run: an empty message that names it is written as soon as the source has
   // a description.
@@ -66,13 +70,18 @@ private:
   void hold(RingEntry entry, const std::string& answers_run);
   void begin_session(std::uint64_t session);
   void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
+  void add_what_is_kept(dyncal::wire::SourceStatus& message);
+  [[nodiscard]] bool may_write();
   [[nodiscard]] dyncal::wire::SourceState state(const SourcePublisher::Snapshot& snapshot,
                                                 Clock::time_point now) const;
   void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
 
   const std::shared_ptr<SourcePublisher> publisher_;
+  const std::shared_ptr<KeptBlocks> kept_;
   const std::string software_;
   SourceWriters writers_;
+  WritePace pace_;
+  bool warned_of_kept_ = false;
 
   std::optional<drivers::SourceDescription> description_;
   bool description_due_ = false;

@@ -6,12 +6,15 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/session_number.hpp"
+#include "services/source/block_split.hpp"
 
 namespace dyncal::services {
 
 using Clock = std::chrono::steady_clock;
 
 namespace {
+
+constexpr auto brief_wait = std::chrono::seconds(1);
 
 bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDescription& b) {
   return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit &&
@@ -76,14 +79,30 @@ RingEntry SourcePublisher::next_entry(drivers::SampleBlock block, std::optional<
           .offered = now};
 }
 
-void SourcePublisher::take(drivers::SampleBlock block) {
-  RingEntry entry = next_entry(std::move(block), std::nullopt);
-  if (options_.when_full == WhenFull::wait) {
+void SourcePublisher::offer(RingEntry entry) {
+  switch (options_.when_full) {
+  case WhenFull::wait:
     ring_.offer_waiting(std::move(entry), options_.stop);
-  } else {
+    break;
+  case WhenFull::wait_briefly:
+    ring_.offer_within(std::move(entry), brief_wait, options_.stop);
+    break;
+  case WhenFull::drop:
     ring_.offer(std::move(entry));
+    break;
   }
   wake_up_->ring();
+}
+
+void SourcePublisher::take(drivers::SampleBlock block) {
+  RingEntry whole = next_entry(std::move(block), std::nullopt);
+  for (drivers::SampleBlock& part : split(std::move(whole.block))) {
+    offer({.block = std::move(part),
+           .shot = std::nullopt,
+           .session = whole.session,
+           .end_of_stream = false,
+           .offered = whole.offered});
+  }
 }
 
 bool SourcePublisher::take_shot(Shot shot, drivers::SampleBlock values) {

@@ -7,7 +7,8 @@
 // cannot name.
 //
 // When the ring is full (a network that does not take the samples), a live device loses its newest
-// block, which is counted as dropped_in_service; a file or a TCP stream waits: `WhenFull`.
+// block, which is counted as dropped_in_service; a file waits: `WhenFull`. Long blocks are split
+// (block_split.hpp).
 //
 // Threads: every function may be called from any thread; calls for one source keep their order only
 // within one thread.
@@ -35,7 +36,15 @@ class WakeUp;
 
 namespace dyncal::services {
 
-enum class WhenFull { drop, wait };
+// `wait_briefly`: for a second, then as `drop` until there is room again. For streams that are held
+// back by TCP: a simulated instrument that runs faster than real time is to be, a real one never.
+enum class WhenFull { drop, wait, wait_briefly };
+
+// Whether the source plays something that can wait. The writers of all others never wait for a
+// reader.
+[[nodiscard]] constexpr bool waits(WhenFull when_full) {
+  return when_full == WhenFull::wait;
+}
 
 struct SourceOptions {
   std::string bench;
@@ -117,6 +126,7 @@ private:
   RingEntry next_entry(drivers::SampleBlock block, std::optional<Shot> shot);
   [[nodiscard]] std::chrono::nanoseconds usual_gap() const;
   void close_stream(SourceStage stage);
+  void offer(RingEntry entry);
 
   const SourceOptions options_;
   const std::shared_ptr<bus::WakeUp> wake_up_;

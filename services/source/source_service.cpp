@@ -8,6 +8,7 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
+#include "services/source/catch_up_server.hpp"
 #include "services/source/source_channel.hpp"
 
 namespace dyncal::services {
@@ -35,12 +36,13 @@ class SourceService::Implementation {
 public:
   Implementation(bus::Participant& participant, SourceServiceOptions options)
       : participant_(participant), options_(std::move(options)),
-        wake_up_(std::make_shared<bus::WakeUp>()) {}
+        wake_up_(std::make_shared<bus::WakeUp>()), catch_up_(participant) {}
 
   Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions source);
   void start() {
     if (!thread_.joinable()) {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+      catch_up_thread_ = std::jthread([this](const std::stop_token& stop) { give_again(stop); });
     }
   }
   void stop();
@@ -48,8 +50,10 @@ public:
 private:
   Expected<void> join_bench(const std::string& bench);
   void run(const std::stop_token& stop);
+  void give_again(const std::stop_token& stop);
   void finish();
   bool step_channels();
+  void keep_up();
   void listen();
   void take_commands(const std::string& bench, BenchReaders& readers);
   void take_measurements(const std::string& bench, BenchReaders& readers);
@@ -59,7 +63,9 @@ private:
   const std::shared_ptr<bus::WakeUp> wake_up_;
   std::map<std::string, BenchReaders> benches_;
   std::vector<std::unique_ptr<SourceChannel>> channels_;
+  CatchUpServer catch_up_; // of its thread, once that has started
   std::jthread thread_;
+  std::jthread catch_up_thread_;
 };
 
 Expected<void> SourceService::Implementation::join_bench(const std::string& bench) {
@@ -101,9 +107,13 @@ SourceService::Implementation::add(SourceOptions source) {
     return fail(joined.error());
   }
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
-  auto channel = SourceChannel::create(participant_, publisher, options_.software);
+  auto kept = std::make_shared<KeptBlocks>(options_.kept);
+  auto channel = SourceChannel::create(participant_, publisher, kept, options_.software);
   if (!channel) {
     return fail(channel.error());
+  }
+  if (auto added = catch_up_.add(publisher->options(), std::move(kept)); !added) {
+    return fail(added.error());
   }
   channels_.push_back(std::move(*channel));
   return publisher;
@@ -118,6 +128,7 @@ void SourceService::Implementation::take_commands(const std::string& bench, Benc
       const SourceOptions& source = channel->publisher().options();
       if (source.bench == bench && source.source == command.target().c_str()) {
         channel->answer(command.run());
+        channel->kept().want(Clock::now());
       }
     }
   });
@@ -126,19 +137,26 @@ void SourceService::Implementation::take_commands(const std::string& bench, Benc
 void SourceService::Implementation::take_measurements(const std::string& bench,
                                                       BenchReaders& readers) {
   auto running = readers.running;
+  bool under_way = false;
   readers.measurement.take([&](const dyncal::wire::Measurement& measurement) {
     const std::string run = measurement.run().c_str();
     std::erase(running, run);
+    under_way = under_way || measurement.state() == wire::MEASUREMENT_PLANNED ||
+                measurement.state() == wire::MEASUREMENT_RUNNING;
     if (measurement.state() == wire::MEASUREMENT_RUNNING) {
       running.push_back(run);
     }
   });
-  if (running == readers.running) {
-    return;
-  }
+  const bool changed = running != readers.running;
   readers.running = std::move(running);
   for (auto& channel : channels_) {
-    if (channel->publisher().options().bench == bench) {
+    if (channel->publisher().options().bench != bench) {
+      continue;
+    }
+    if (under_way) {
+      channel->kept().want(Clock::now());
+    }
+    if (changed) {
       channel->publisher().note_running(readers.running);
     }
   }
@@ -160,11 +178,27 @@ bool SourceService::Implementation::step_channels() {
   return more;
 }
 
+// A stream that is played faster than real time fills memory faster than the other thread looks.
+void SourceService::Implementation::keep_up() {
+  if (std::ranges::any_of(channels_,
+                          [](const auto& channel) { return channel->kept().tidy_due(); })) {
+    catch_up_.wake_up()->ring();
+  }
+}
+
+void SourceService::Implementation::give_again(const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [this] { catch_up_.wake_up()->ring(); });
+  while (!stop.stop_requested()) {
+    catch_up_.wake_up()->wait_until(catch_up_.step());
+  }
+}
+
 void SourceService::Implementation::run(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { wake_up_->ring(); });
   while (!stop.stop_requested()) {
     listen();
     const bool more = step_channels();
+    keep_up();
     auto due = Clock::now() + options_.status_interval;
     for (auto& channel : channels_) {
       due = std::min(due, channel->step_status(options_.status_interval, write_limit));
@@ -204,6 +238,8 @@ void SourceService::Implementation::stop() {
   }
   thread_.request_stop();
   thread_.join();
+  catch_up_thread_.request_stop();
+  catch_up_thread_.join();
 }
 
 SourceService::SourceService(std::unique_ptr<Implementation> implementation)

@@ -5,8 +5,9 @@
 // TssRecord), SourceDescription when it is known or changes, and SourceStatus every 500 ms and at
 // once when the state changes. It answers COMMAND_ARM for a described source in its stream with an
 // empty message that names the run, behind everything written before: whoever reads that answer
-// reads what follows. Only this thread calls write(), which may block; a write that times out is
-// tried again until it succeeds or the service stops.
+// reads what follows. A write that times out is tried again until it succeeds or the service stops.
+// What was written is kept, and given again to who asks for it (catch_up_server.hpp), by a second
+// thread.
 //
 //   auto service = SourceService::create(participant, {"dyncal-dau", software});
 //   auto source = service->add({.bench = "acc-1", .source = "dau", .kind = SourceKind::dau});
@@ -19,6 +20,7 @@
 #include <string>
 
 #include "services/error.hpp"
+#include "services/source/kept_blocks.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::bus {
@@ -32,6 +34,7 @@ struct SourceServiceOptions {
   std::chrono::nanoseconds status_interval = std::chrono::milliseconds(500);
   std::chrono::nanoseconds stop_limit =
       std::chrono::seconds(5); // for what is still in the rings when the service stops
+  KeptLimits kept = {};        // of each source
 };
 
 class SourceService {

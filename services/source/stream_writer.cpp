@@ -17,8 +17,20 @@ public:
   bus::WriteOutcome write(std::chrono::nanoseconds limit) override {
     return writer_.write(message_, limit);
   }
-  void wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
-    writer_.wait_for_acknowledgments(limit);
+  std::size_t keep_in(KeptBlocks& kept) const override {
+    const bus::TypeSupport& type = bus::type_support<Message>();
+    std::string payload(type.serialized_size(&message_), '\0');
+    payload.resize(type.serialize(&message_, payload.data(), payload.size()));
+    const std::size_t bytes = payload.size();
+    kept.keep({.session = message_.session(),
+               .number = number_of(message_),
+               .acknowledged_run = message_.acknowledged_run(),
+               .payload = std::move(payload)},
+              std::chrono::steady_clock::now());
+    return bytes;
+  }
+  bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
+    return writer_.wait_for_acknowledgments(limit);
   }
   [[nodiscard]] int matched_readers() const override { return writer_.matched_readers(); }
 
@@ -27,6 +39,9 @@ protected:
   Message message_;
 
 private:
+  static std::uint64_t number_of(const wire::SampleBlock& message) { return message.block(); }
+  static std::uint64_t number_of(const wire::TriggeredRecord& message) { return message.shot(); }
+
   bus::Writer<Message> writer_;
 };
 
@@ -70,10 +85,10 @@ public:
 };
 
 template <class Kind, class Message>
-Expected<std::unique_ptr<StreamWriter>> open(bus::Participant& participant,
-                                             const SourceOptions& source) {
-  auto writer =
-      participant.writer<Message>(sample_topic(source.kind), bus::Profile::samples, source.bench);
+Expected<std::unique_ptr<StreamWriter>>
+open(bus::Participant& participant, const SourceOptions& source, bus::Profile live_profile) {
+  const auto profile = waits(source.when_full) ? bus::Profile::samples : live_profile;
+  auto writer = participant.writer<Message>(sample_topic(source.kind), profile, source.bench);
   if (!writer) {
     return fail(writer.error());
   }
@@ -84,8 +99,11 @@ Expected<std::unique_ptr<StreamWriter>> open(bus::Participant& participant,
 
 Expected<std::unique_ptr<StreamWriter>> StreamWriter::create(bus::Participant& participant,
                                                              const SourceOptions& source) {
-  return is_triggered(source.kind) ? open<RecordWriter, wire::TriggeredRecord>(participant, source)
-                                   : open<BlockWriter, wire::SampleBlock>(participant, source);
+  return is_triggered(source.kind)
+             ? open<RecordWriter, wire::TriggeredRecord>(participant, source,
+                                                         bus::Profile::live_records)
+             : open<BlockWriter, wire::SampleBlock>(participant, source,
+                                                    bus::Profile::live_samples);
 }
 
 } // namespace dyncal::services

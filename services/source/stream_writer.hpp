@@ -9,6 +9,7 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
+#include "services/source/kept_blocks.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::services {
@@ -23,7 +24,10 @@ public:
   // Makes the next message out of an entry of the ring; write() tries to hand it over.
   virtual void prepare(RingEntry entry, const std::string& answers_run) = 0;
   [[nodiscard]] virtual bus::WriteOutcome write(std::chrono::nanoseconds limit) = 0;
-  virtual void wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
+  // Keeps the message, for who asks for it later. Returns its bytes.
+  virtual std::size_t keep_in(KeptBlocks& kept) const = 0;
+  // Returns whether everything has been acknowledged in time.
+  virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
   [[nodiscard]] virtual int matched_readers() const = 0;
 };
 

@@ -91,6 +91,36 @@ TEST(BlockRing, AFileWaitsForRoom) {
   EXPECT_EQ(ring.dropped(), 0U);
 }
 
+TEST(BlockRing, ABriefWaitEndsWithALossThatIsCountedAndIsNotRepeated) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  const std::stop_source stop;
+  const auto brief = std::chrono::milliseconds(50);
+  EXPECT_TRUE(ring.offer_within(entry(0), brief, stop.get_token()));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(ring.offer_within(entry(1), brief, stop.get_token()));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, brief);
+  const std::uint64_t dropped = ring.dropped();
+  EXPECT_GT(dropped, 0U);
+  // With another limit it would wait for ever: the ring is still full, and it does not.
+  EXPECT_FALSE(ring.offer_within(entry(2), std::chrono::hours(1), stop.get_token()));
+  EXPECT_EQ(ring.dropped(), 2 * dropped);
+  EXPECT_TRUE(ring.take());
+  EXPECT_TRUE(ring.offer_within(entry(3), brief, stop.get_token()));
+}
+
+TEST(BlockRing, ABriefWaitEndsWhenThereIsRoom) {
+  BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
+  const std::stop_source stop;
+  ring.offer(entry(0));
+  bool taken = false;
+  std::jthread stream(
+      [&] { taken = ring.offer_within(entry(1), std::chrono::hours(1), stop.get_token()); });
+  EXPECT_TRUE(ring.take());
+  stream.join();
+  EXPECT_TRUE(taken);
+  EXPECT_EQ(ring.dropped(), 0U);
+}
+
 TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
   BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
   std::stop_source stop;

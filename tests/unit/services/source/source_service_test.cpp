@@ -329,6 +329,82 @@ TEST_P(SourceServiceTest, RestsWhenThereIsNothingToDo) {
   EXPECT_LT(used_s() - before_s, 1.0) << "a thread that spins would have used two seconds";
 }
 
+TEST_P(SourceServiceTest, AReaderThatHangsHoldsNothingUp) {
+  if (GetParam() == bus::Vendor::cyclone_dds) {
+    GTEST_SKIP() << "readers of one process share a queue in Cyclone DDS, and one that hangs holds "
+                    "up the others of its process: tests/interop has one process a reader";
+  }
+  auto hanging = reader_network
+                     .reader<wire::SampleBlock>(bus::topics::acs_samples, bus::Profile::samples,
+                                                bench_name, nullptr)
+                     .value();
+  auto source = add();
+  source->describe(two_channels());
+  service->start();
+  ASSERT_TRUE(listener.armed("acs", "run-1"));
+  // More than that reader holds, faster than real time; the other one takes all the while.
+  constexpr std::uint64_t blocks = 1800;
+  std::jthread device([&](const std::stop_token& stop) {
+    for (std::uint64_t n = 0; n < blocks && !stop.stop_requested(); ++n) {
+      source->take(block_from(n * 50));
+      std::this_thread::sleep_for(std::chrono::milliseconds(4)); // its pace
+    }
+  });
+  EXPECT_TRUE(listener.until([&] { return listener.samples_of("acs") == blocks * 50; }))
+      << listener.samples_of("acs");
+  EXPECT_EQ(listener.last_status("acs")->dropped_in_service(), 0U);
+}
+
+TEST_P(SourceServiceTest, AStreamFasterThanRealTimeGoesAsFastAsItsReaders) {
+  auto source = add();
+  source->describe(two_channels());
+  service->start();
+  ASSERT_TRUE(listener.armed("acs", "run-1"));
+  constexpr std::uint64_t blocks = 3000;
+  for (std::uint64_t n = 0; n < blocks; ++n) {
+    source->take(block_from(n * 50));
+  }
+  ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") == blocks * 50; }))
+      << listener.samples_of("acs");
+}
+
+TEST_P(SourceServiceTest, GivesAgainWhatItHasSentToWhoAsks) {
+  auto source = add();
+  source->describe(two_channels());
+  service->start();
+  ASSERT_TRUE(listener.armed("acs", "run-1"));
+  for (std::uint64_t n = 0; n < 100; ++n) {
+    source->take(block_from(n * 50));
+  }
+  ASSERT_TRUE(listener.until([&] { return listener.samples_of("acs") == 5000; }));
+  const auto bell = std::make_shared<bus::WakeUp>();
+  auto answer =
+      reader_network.reader(bus::topics::catch_up_samples, "analysis@host/acc", bell).value();
+  auto requests = reader_network.writer(bus::topics::catch_up_request, bench_name).value();
+  wire::CatchUpRequest request;
+  request.bench(bench_name);
+  request.source("acs");
+  request.asker("analysis@host/acc");
+  request.request("request-1");
+  request.run("run-1");
+  std::vector<wire::SampleBlock> again;
+  const auto ended = [&] {
+    answer.take([&](const wire::SampleBlock& block) { again.push_back(block); });
+    return !again.empty() && again.back().acknowledged_run() == "request-1";
+  };
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
+  while (!ended() && std::chrono::steady_clock::now() < deadline) {
+    requests.write(request);
+    bell->wait_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(250));
+  }
+  ASSERT_FALSE(again.empty());
+  ASSERT_EQ(again.back().acknowledged_run(), "request-1");
+  again.pop_back();
+  const auto first = std::ranges::find_if(
+      listener.blocks, [](const auto& block) { return block.acknowledged_run() == "run-1"; });
+  EXPECT_EQ(again, std::vector<wire::SampleBlock>(first, listener.blocks.end()));
+}
+
 INSTANTIATE_TEST_SUITE_P(Bus, SourceServiceTest, testing::ValuesIn(bus::vendors_in_this_build()),
                          [](const auto& vendor) { return bus::to_string(vendor.param); });
 
