@@ -6,6 +6,7 @@
 
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/files/file_source.hpp"
+#include "services/source/play_of_run.hpp"
 
 namespace dyncal::services::acs {
 namespace {
@@ -118,7 +119,8 @@ Expected<void> PlayedSource::play(SourcePublisher& publisher, const std::stop_to
 Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
                                                 const std::stop_token& stop) {
   while (publisher.wait_for_run(stop)) {
-    if (auto played = play(publisher, stop); !played || stop.stop_requested()) {
+    const auto played = play(publisher, PlayOfRun(publisher, stop).token());
+    if (!played || stop.stop_requested()) {
       return played;
     }
     // A fresh reader and session for the next run, so that answers before it belong to it.

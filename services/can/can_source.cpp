@@ -10,6 +10,7 @@
 #include "drivers/can/dbc/dbc.hpp"
 #include "services/can/can_status.hpp"
 #include "services/can/stream_settings.hpp"
+#include "services/source/play_of_run.hpp"
 
 namespace dyncal::services::can {
 
@@ -112,7 +113,8 @@ Expected<void> CanSource::begin(SourcePublisher& publisher) {
 Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher,
                                              const std::stop_token& stop) {
   while (publisher.wait_for_run(stop)) {
-    if (auto played = receive(publisher, stop); !played || stop.stop_requested()) {
+    const auto played = receive(publisher, PlayOfRun(publisher, stop).token());
+    if (!played || stop.stop_requested()) {
       return played;
     }
     publisher.begin_session(); // answers before the next run belong to it

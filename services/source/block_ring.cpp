@@ -95,6 +95,18 @@ std::optional<RingEntry> BlockRing::take_waiting(const std::stop_token& stop) {
   return entry;
 }
 
+void BlockRing::discard() {
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(entries_, [](const RingEntry& entry) { return size_of(entry) > 0; });
+    bytes_ = 0;
+    for (const RingEntry& mark : entries_) {
+      bytes_ += held_bytes(mark.block);
+    }
+  }
+  changed_.notify_all();
+}
+
 bool BlockRing::empty() const {
   const std::lock_guard lock(mutex_);
   return entries_.empty();

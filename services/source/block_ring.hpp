@@ -73,6 +73,9 @@ public:
   // Waits for an entry. Nothing if `stop` was requested before there was one.
   [[nodiscard]] std::optional<RingEntry> take_waiting(const std::stop_token& stop);
 
+  // Throws away the samples that are held, but no mark: nobody wants them any more. Not counted.
+  void discard();
+
   [[nodiscard]] bool empty() const;
   [[nodiscard]] double fill() const;           // 0 empty ... 1 full, the fuller of the two bounds
   [[nodiscard]] std::uint64_t dropped() const; // samples, or shots

@@ -97,6 +97,9 @@ void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {
 
 // Takes the next thing to be written into pending_. Returns false if there is none.
 bool SourceChannel::next_message() {
+  // Asked before the session, which begins anew when a play is over: the answer belongs to the next.
+  const bool may_answer =
+      !runs_to_answer_.empty() && publisher_->may_answer(runs_to_answer_.front());
   // Asked before the ring: if the ring is empty afterwards, nothing of an earlier session is left.
   // The other way round a block could come between the two, and its session would begin anew.
   const std::uint64_t newest = publisher_->session();
@@ -110,7 +113,7 @@ bool SourceChannel::next_message() {
   if (newest != session_) {
     begin_session(newest);
   }
-  if (runs_to_answer_.empty() || !description_) {
+  if (!may_answer || !description_) {
     return false;
   }
   RingEntry answer;

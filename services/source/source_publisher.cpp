@@ -52,6 +52,11 @@ void SourcePublisher::describe(const drivers::SourceDescription& reported) {
 
 void SourcePublisher::begin_session() {
   const std::lock_guard lock(mutex_);
+  if (play_ended_) {
+    playing_.clear();
+    superseded_ = false;
+    play_ended_ = false;
+  }
   if (!session_used_) {
     return;
   }
@@ -174,8 +179,33 @@ std::optional<std::string> SourcePublisher::wait_for_run(const std::stop_token& 
   std::erase_if(returned_, [&](const auto& run) { return std::ranges::count(running_, run) == 0; });
   if (found) {
     returned_.push_back(*found);
+    playing_ = *found;
   }
   return found;
+}
+
+void SourcePublisher::wait_until_over(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  running_changed_.wait(lock, stop, [&] {
+    return superseded_ || playing_.empty() || std::ranges::count(running_, playing_) == 0;
+  });
+}
+
+void SourcePublisher::end_play() {
+  const std::lock_guard lock(mutex_);
+  play_ended_ = true;
+}
+
+bool SourcePublisher::may_answer(const std::string& run) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (playing_.empty() || playing_ == run) {
+      return true;
+    }
+    superseded_ = true;
+  }
+  running_changed_.notify_all();
+  return false;
 }
 
 void SourcePublisher::note_running(const std::vector<std::string>& runs) {

@@ -102,8 +102,16 @@ public:
   void set_message(std::string message);
 
   // Waits until a measurement of this bench is RUNNING whose run this function has not returned
-  // before, and returns its run. Returns nothing if `stop` was requested.
+  // before, and returns its run. Returns nothing if `stop` was requested. From then on until
+  // begin_session() the source plays this run, and answers to no other.
   [[nodiscard]] std::optional<std::string> wait_for_run(const std::stop_token& stop);
+
+  // Waits while the run that is played is RUNNING and nobody arms for another one.
+  void wait_until_over(const std::stop_token& stop);
+  // The rest of the play is not wanted any more: what has not been published never is.
+  void discard() { ring_.discard(); }
+  // Other runs are answered again, in the session that begins next.
+  void end_play();
 
   // The publishing thread's side.
   struct Snapshot {
@@ -121,6 +129,9 @@ public:
   [[nodiscard]] std::optional<drivers::SourceDescription> take_changed_description();
   [[nodiscard]] BlockRing& ring() { return ring_; }
   void note_running(const std::vector<std::string>& runs);
+  // Somebody arms for this run. Returns whether the source may answer now: not while it plays
+  // another run, whose session that answer would belong to.
+  [[nodiscard]] bool may_answer(const std::string& run);
 
 private:
   RingEntry next_entry(drivers::SampleBlock block, std::optional<Shot> shot);
@@ -142,6 +153,9 @@ private:
   std::condition_variable_any running_changed_;
   std::vector<std::string> running_;
   std::vector<std::string> returned_;
+  std::string playing_; // a run; empty: none
+  bool superseded_ = false;
+  bool play_ended_ = false;
 };
 
 } // namespace dyncal::services

@@ -1,5 +1,9 @@
 #include "services/acs/played_source.hpp"
 
+#include <deque>
+#include <functional>
+#include <stdexcept>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <thread>
@@ -20,7 +24,9 @@ using testing::HasSubstr;
 SourceSettings file_settings(const std::filesystem::path& path) {
   SourceSettings settings;
   settings.name = "acs";
-  settings.driver = FileSourceSettings{.path = path};
+  FileSourceSettings file;
+  file.path = path;
+  settings.driver = file;
   return settings;
 }
 
@@ -86,8 +92,12 @@ protected:
                       ->writer<dyncal::wire::Measurement>(bus::topics::measurement,
                                                           bus::Profile::state, "bench")
                       .value());
+    commands_.emplace(
+        participant_->writer<dyncal::wire::Command>(bus::topics::command, "bench").value());
     service_->start();
-    source_.emplace(PlayedSource::prepare(file_settings(file_->path()), {}).value());
+    SourceSettings settings = file_settings(file_->path());
+    std::get<FileSourceSettings>(settings.driver).play_speed = speed_;
+    source_.emplace(PlayedSource::prepare(settings, {}).value());
     thread_ = std::jthread(
         [this](const std::stop_token& stop) { EXPECT_TRUE(source_->run(*publisher_, stop)); });
   }
@@ -104,23 +114,55 @@ protected:
     runs_->write(measurement);
   }
 
-  // Blocks up to the end of the stream, or those that came in time.
-  std::vector<dyncal::wire::SampleBlock> play() {
-    std::vector<dyncal::wire::SampleBlock> blocks;
+  using Block = dyncal::wire::SampleBlock;
+
+  // Blocks up to the first of which this holds, or those that came in time.
+  std::vector<Block> read_until(
+      const std::function<bool(const Block&)>& last, const std::function<void()>& meanwhile = [] {}) {
+    std::vector<Block> blocks;
     const auto deadline = std::chrono::steady_clock::now() + tests::patience;
-    bool ended = false;
-    while (!ended && std::chrono::steady_clock::now() < deadline) {
-      reader_->take([&](const dyncal::wire::SampleBlock& block) {
-        blocks.push_back(block);
-        ended = ended || block.end_of_stream();
-      });
-      if (!ended) {
-        wake_up_->wait_until(deadline);
+    while (std::chrono::steady_clock::now() < deadline) {
+      reader_->take([&](const Block& block) { unread_.push_back(block); });
+      while (!unread_.empty()) {
+        blocks.push_back(unread_.front());
+        unread_.pop_front();
+        if (last(blocks.back())) {
+          return blocks;
+        }
       }
+      meanwhile();
+      wake_up_->wait_until(std::min(
+          deadline, std::chrono::steady_clock::now() + std::chrono::milliseconds(100)));
     }
-    return blocks;
+    throw std::runtime_error("what was waited for did not come");
+  }
+  std::vector<Block> play() {
+    return read_until([](const Block& block) { return block.end_of_stream(); });
+  }
+  // The answer to ARM, asked for again and again.
+  Block armed(const std::string& run) {
+    return read_until([&](const Block& block) { return block.acknowledged_run() == run; },
+                      [&] {
+                        dyncal::wire::Command command;
+                        command.bench("bench");
+                        command.target("acs");
+                        command.kind(dyncal::wire::COMMAND_ARM);
+                        command.run(run);
+                        commands_->write(command);
+                      })
+        .back();
+  }
+  static std::uint64_t samples(const std::vector<Block>& blocks) {
+    std::uint64_t count = 0;
+    for (const Block& block : blocks) {
+      count += block.sample_count();
+    }
+    return count;
   }
 
+  double speed_ = 0.0; // as fast as possible
+  std::deque<Block> unread_;
+  std::optional<bus::Writer<dyncal::wire::Command>> commands_;
   std::optional<TemporaryFile> file_;
   std::optional<bus::Participant> participant_;
   std::unique_ptr<SourceService> service_;
@@ -150,6 +192,37 @@ TEST_F(PlayedFile, IsPlayedOnceForEveryRunInASessionOfItsOwn) {
     first_session = blocks.front().session();
     set_state(run, dyncal::wire::MEASUREMENT_DONE);
   }
+}
+
+class SlowlyPlayedFile : public PlayedFile {
+protected:
+  SlowlyPlayedFile() { speed_ = 1e-3; } // four minutes
+};
+
+TEST_F(SlowlyPlayedFile, StopsWithItsRunAndBeginsTheNextOneFromItsBeginning) {
+  const Block first_answer = armed("run-1");
+  set_state("run-1", dyncal::wire::MEASUREMENT_RUNNING);
+  const auto begun = read_until([](const Block& block) { return block.sample_count() > 0; });
+  EXPECT_EQ(begun.back().session(), first_answer.session());
+  set_state("run-1", dyncal::wire::MEASUREMENT_ABORTED);
+  EXPECT_LT(samples(begun) + samples(play()), 5000U);
+  const Block answer = armed("run-2");
+  EXPECT_NE(answer.session(), first_answer.session());
+  set_state("run-2", dyncal::wire::MEASUREMENT_RUNNING);
+  const auto again = read_until([](const Block& block) { return block.sample_count() > 0; });
+  EXPECT_EQ(again.back().session(), answer.session());
+  EXPECT_EQ(again.back().first_sample(), 0U);
+}
+
+TEST_F(SlowlyPlayedFile, AnswersAnotherRunInTheSessionThatWillBePlayed) {
+  set_state("run-1", dyncal::wire::MEASUREMENT_RUNNING); // and its conductor dies
+  const auto begun = read_until([](const Block& block) { return block.sample_count() > 0; });
+  const Block answer = armed("run-2");
+  EXPECT_NE(answer.session(), begun.back().session());
+  set_state("run-2", dyncal::wire::MEASUREMENT_RUNNING);
+  const auto again = read_until([](const Block& block) { return block.sample_count() > 0; });
+  EXPECT_EQ(again.back().session(), answer.session());
+  EXPECT_EQ(again.back().first_sample(), 0U);
 }
 
 } // namespace

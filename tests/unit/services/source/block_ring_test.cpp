@@ -121,6 +121,20 @@ TEST(BlockRing, ABriefWaitEndsWhenThereIsRoom) {
   EXPECT_EQ(ring.dropped(), 0U);
 }
 
+TEST(BlockRing, DiscardsSamplesAndKeepsMarks) {
+  BlockRing ring({.span = std::chrono::hours(1), .bytes = 1 << 20U});
+  EXPECT_TRUE(ring.offer(entry(0)));
+  RingEntry mark;
+  mark.end_of_stream = true;
+  EXPECT_TRUE(ring.offer(mark));
+  ring.discard();
+  EXPECT_EQ(ring.dropped(), 0U);
+  const auto left = ring.take();
+  ASSERT_TRUE(left);
+  EXPECT_TRUE(left->end_of_stream);
+  EXPECT_TRUE(ring.empty());
+}
+
 TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
   BlockRing ring({.span = std::chrono::seconds(1), .bytes = 10});
   std::stop_source stop;
