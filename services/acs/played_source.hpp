@@ -2,8 +2,9 @@
 // publisher.
 //
 // An instrument's stream is published as it comes. A file waits until a measurement of its bench is
-// RUNNING, is played as long as that run lasts, ends its stream, and waits for the next one. A file waits for room in the
-// publisher's ring; an instrument for a second at most, and never for a reader (options_of).
+// RUNNING, is played as long as that run lasts, ends its stream, and waits for the next one. A file
+// waits for room in the publisher's ring; an instrument for a second at most, and never for a
+// reader (options_of).
 //
 // Threads: prepare() from one thread; run() in a thread of the source's own.
 #pragma once

@@ -1,5 +1,5 @@
-// A recorded source plays a run only as long as that lasts: while this lives, `token()` is requested
-// to stop as soon as the run is over, another one is armed, or `stop` is requested.
+// A recorded source plays a run only as long as that lasts: while this lives, `token()` is
+// requested to stop as soon as the run is over, another one is armed, or `stop` is requested.
 //
 // When the run is over, what the ring still holds of the play is thrown away: the next run begins
 // with the beginning of the record. Made and destroyed by the thread that plays.

@@ -97,7 +97,8 @@ void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {
 
 // Takes the next thing to be written into pending_. Returns false if there is none.
 bool SourceChannel::next_message() {
-  // Asked before the session, which begins anew when a play is over: the answer belongs to the next.
+  // Asked before the session, which begins anew when a play is over: the answer belongs to the
+  // next.
   const bool may_answer =
       !runs_to_answer_.empty() && publisher_->may_answer(runs_to_answer_.front());
   // Asked before the ring: if the ring is empty afterwards, nothing of an earlier session is left.

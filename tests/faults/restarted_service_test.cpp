@@ -65,9 +65,18 @@ INSTANTIATE_TEST_SUITE_P(
 class LostAnalysis : public testing::TestWithParam<std::string> {
 protected:
   std::filesystem::path folder_ = fresh_folder("lost-analysis-" + GetParam());
-  std::filesystem::path bench_ = recorded_bench(folder_, "files", "3");
+  std::filesystem::path bench_ = played_at_twice_the_speed(recorded_bench(folder_, "files", "3"));
   Laboratory laboratory_{folder_};
 
+  static std::filesystem::path played_at_twice_the_speed(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    const std::filesystem::path played = file.parent_path() / "played.toml";
+    std::ofstream out(played);
+    for (std::string line; std::getline(in, line);) {
+      out << line << '\n' << (line.starts_with("driver = ") ? "play = 2.0\n" : "");
+    }
+    return played;
+  }
   ProgramRun& start(const std::string& program, const std::vector<std::string>& arguments) {
     return laboratory_.start(program, arguments, GetParam());
   }

@@ -118,7 +118,8 @@ protected:
 
   // Blocks up to the first of which this holds, or those that came in time.
   std::vector<Block> read_until(
-      const std::function<bool(const Block&)>& last, const std::function<void()>& meanwhile = [] {}) {
+      const std::function<bool(const Block&)>& last,
+      const std::function<void()>& meanwhile = [] {}) {
     std::vector<Block> blocks;
     const auto deadline = std::chrono::steady_clock::now() + tests::patience;
     while (std::chrono::steady_clock::now() < deadline) {
@@ -131,8 +132,8 @@ protected:
         }
       }
       meanwhile();
-      wake_up_->wait_until(std::min(
-          deadline, std::chrono::steady_clock::now() + std::chrono::milliseconds(100)));
+      wake_up_->wait_until(
+          std::min(deadline, std::chrono::steady_clock::now() + std::chrono::milliseconds(100)));
     }
     throw std::runtime_error("what was waited for did not come");
   }
