@@ -1,0 +1,97 @@
+// What disturbs a run for a while is waited out: it goes on, repeats what was spoilt, and ends with
+// every result, unflagged.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/live_bench.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+using testing::HasSubstr;
+
+class DisturbedRun : public testing::Test {
+protected:
+  void start(const std::string& name) {
+    folder_ = fresh_folder("disturbed-" + name);
+    bench_ = std::make_unique<LiveBench>(
+        folder_,
+        LiveBenchSettings{.bench_arguments = {"--frequencies", "40,80,125", "--levels", "20"},
+                          .excitation = "frequencies_hz = [\"40\", \"80\", \"125\"]\nlevel = 20.0\n"
+                                        "settling_s = 0.5\nduration_s = 1.5\n",
+                          .rest = "adc_delay_s = 1e-6\n"});
+    run_ = &bench_->start({"run", bench_->bench_file(), "--json", folder_ / "result.json"});
+    ASSERT_TRUE(run_->wait_for_error_text("step 2 of 3", patience)) << run_->errors();
+  }
+  void expect_complete() {
+    const auto status = run_->wait(patience);
+    ASSERT_TRUE(status) << run_->errors();
+    EXPECT_EQ(*status, 0) << run_->errors();
+    const auto result = read_json(folder_ / "result.json");
+    ASSERT_EQ(result["points"].size(), 9U) << run_->errors();
+    int repeated = 0;
+    for (const auto& point : result["points"]) {
+      EXPECT_TRUE(point["valid"].get<bool>()) << point["problem"];
+      EXPECT_EQ(point["flags"].size(), 0U) << point["flags"];
+      repeated += point.contains("attempt") ? 1 : 0;
+    }
+    EXPECT_GE(repeated, 3) << run_->errors(); // of the step that was broken off
+    EXPECT_FALSE(result["pauses"].empty());
+    EXPECT_EQ(bench_->ask_generator(":OUTPut1?"), "OFF");
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<LiveBench> bench_;
+  ProgramRun* run_ = nullptr;
+};
+
+TEST_F(DisturbedRun, AnAnalysisThatHangsForAWhile) {
+  start("analysis-hangs");
+  bench_->service("dyncal-analysis").send(SIGSTOP);
+  ASSERT_TRUE(run_->wait_for_error_text("waiting for it or another up to 120 s (the output is off)",
+                                        patience))
+      << run_->errors();
+  EXPECT_EQ(bench_->ask_generator(":OUTPut1?"), "OFF");
+  bench_->service("dyncal-analysis").send(SIGCONT);
+  expect_complete();
+}
+
+TEST_F(DisturbedRun, AnAnalysisThatIsRestarted) {
+  start("analysis-restarted");
+  bench_->service("dyncal-analysis").send(SIGKILL);
+  ASSERT_TRUE(run_->wait_for_error_text("waiting for it or another", patience)) << run_->errors();
+  bench_->start_service("dyncal-analysis");
+  expect_complete();
+}
+
+TEST_F(DisturbedRun, ASourceThatIsRestarted) {
+  start("source-restarted");
+  bench_->service("dyncal-dau").send(SIGKILL);
+  ASSERT_TRUE(run_->wait_for_error_text("waiting for it up to 120 s", patience)) << run_->errors();
+  bench_->start_service("dyncal-dau");
+  expect_complete();
+}
+
+// The bench stands still, as when its link is down: generator and sources do not answer.
+TEST_F(DisturbedRun, ABenchWhoseLinkIsDown) {
+  start("link-down");
+  bench_->signal_bench(SIGSTOP);
+  ASSERT_TRUE(run_->wait_for_error_text("waiting for it", patience)) << run_->errors();
+  bench_->signal_bench(SIGCONT);
+  expect_complete();
+}
+
+TEST_F(DisturbedRun, AnotherRunWaitsForItsTurn) {
+  start("waits");
+  ProgramRun& second = bench_->start({"run", bench_->bench_file(), "--wait", "--run", "second"});
+  ASSERT_TRUE(second.wait_for_error_text("waiting for the end of run '", patience))
+      << second.errors();
+  ASSERT_EQ(run_->wait(patience), 0) << run_->errors();
+  EXPECT_EQ(second.wait(patience), 0) << second.errors();
+  EXPECT_THAT(second.output(), HasSubstr("run second"));
+}
+
+} // namespace
+} // namespace dyncal::tests
