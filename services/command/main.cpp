@@ -27,7 +27,12 @@ void add_run(CLI::App& app, RunCommand& run) {
       app.add_subcommand("run", "run the excitation list of a bench and print the result");
   command->add_option("BENCH.toml", run.bench_file, "bench file")->required();
   command->add_option("--run", run.run, "name of the run (default: the time)");
-  command->add_flag("--wait", run.wait, "wait while another run has the bench");
+  auto* wait = command->add_flag("--wait", run.wait, "wait while another run has the bench");
+  command
+      ->add_option("--resume", run.resume,
+                   "go on with the run of this name, whose program has died")
+      ->excludes("--run")
+      ->excludes(wait);
   command->add_option("--json", run.json, "write the result to this file as JSON");
   command->add_option("--figures", run.figures, "write figures (SVG and CSV) into this folder");
   add_network_options(*command, run.network);

@@ -85,6 +85,36 @@ Expected<RunOutcome> conduct_in_turn(const RunCommand& command, const BenchFile&
   }
 }
 
+// Nobody else may conduct it: a run that lives is heard within a few seconds.
+Expected<RunOutcome> resume_run(const RunCommand& command, const BenchFile& bench,
+                                const std::vector<analysis::AdcCalibrationPoint>& adc,
+                                bus::Participant& participant, const ShowProgress& show,
+                                const std::stop_token& stop) {
+  auto queue = BenchQueue::open(participant, bus::system_clock(), bench.bench);
+  if (!queue) {
+    return fail(queue.error());
+  }
+  if (const auto other = queue->listen(stop)) {
+    return fail(ErrorCode::no_source,
+                fmt::format("bench '{}' is in use by {}; wait for its end, or end it there",
+                            bench.bench, *other));
+  }
+  return RunController(participant, bench, command.resume, show).resume(adc, stop);
+}
+
+Expected<RunOutcome> conduct_as_told(const RunCommand& command, const BenchFile& bench,
+                                     const std::vector<analysis::AdcCalibrationPoint>& adc,
+                                     bus::Participant& participant, const ShowProgress& show,
+                                     const std::stop_token& stop) {
+  if (!command.resume.empty()) {
+    return resume_run(command, bench, adc, participant, show, stop);
+  }
+  if (command.wait) {
+    return conduct_in_turn(command, bench, adc, participant, show, stop);
+  }
+  return RunController(participant, bench, name_of_run(command, 1), show).conduct(adc, stop);
+}
+
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
@@ -108,10 +138,7 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   }
   ProgressLine progress(stderr);
   const ShowProgress show = [&](const RunProgress& state) { progress.show(state); };
-  auto outcome =
-      command.wait
-          ? conduct_in_turn(command, *bench, *adc, *participant, show, stop)
-          : RunController(*participant, *bench, name_of_run(command, 1), show).conduct(*adc, stop);
+  auto outcome = conduct_as_told(command, *bench, *adc, *participant, show, stop);
   progress.end();
   if (!outcome) {
     return outcome;

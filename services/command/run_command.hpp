@@ -20,6 +20,7 @@ struct RunCommand {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> figures; // folder
   bool wait = false;                            // for the end of another run of the bench
+  std::string resume;                           // the run to go on with; empty: a new one
   NetworkOptions network;
 };
 

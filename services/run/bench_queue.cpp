@@ -42,6 +42,16 @@ std::optional<std::string> BenchQueue::taken_by() {
   return fmt::format("run '{}'{}", name, run.conductor.empty() ? "" : " of " + run.conductor);
 }
 
+std::optional<std::string> BenchQueue::listen(const std::stop_token& stop) {
+  const auto began = clock_->now();
+  auto other = taken_by();
+  while (!other && clock_->now() - began < listening_time && !stop.stop_requested()) {
+    clock_->wait(*wake_up_, clock_->now() + look_interval);
+    other = taken_by();
+  }
+  return other;
+}
+
 Expected<void> BenchQueue::wait_until_free(const Show& show, const std::stop_token& stop) {
   const auto began = clock_->now();
   while (!stop.stop_requested()) {

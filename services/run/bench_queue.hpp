@@ -34,6 +34,9 @@ public:
   // "run 'R1' of lab-pc:1234"; nothing when no run is known to have the bench.
   [[nodiscard]] std::optional<std::string> taken_by();
 
+  // The same after `listening_time`, or as soon as one is heard.
+  [[nodiscard]] std::optional<std::string> listen(const std::stop_token& stop);
+
   using Show = std::function<void(const std::string& phase)>;
   // Returns when nobody was heard for `listening_time`. Fails (interrupted) when a stop is
   // requested.

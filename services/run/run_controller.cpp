@@ -39,6 +39,31 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
     return fail(ready.error());
   }
   watch_->set_state(wire::MEASUREMENT_RUNNING);
+  return excite_and_collect(stop);
+}
+
+Expected<RunOutcome>
+RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
+                      const std::stop_token& stop) {
+  if (bench_.generator.driver == GeneratorDriver::none) {
+    return fail(ErrorCode::bad_argument,
+                "a run of recorded files cannot be resumed: begin it anew");
+  }
+  if (const auto opened = open(adc_calibration); !opened) {
+    return fail(opened.error());
+  }
+  watch_->set_state(wire::MEASUREMENT_RUNNING);
+  if (const auto known = wait_until_known(stop); !known) {
+    return fail(known.error()); // and not aborted: what the analysis holds of it is left as it is
+  }
+  if (const auto opened = open_sequence(); !opened) {
+    return fail(opened.error());
+  }
+  sequence_->resume();
+  return excite_and_collect(stop);
+}
+
+Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& stop) {
   outcome_.began_utc_ns = clock_.utc_now_ns();
   const Expected<void> excited = sequence_ ? sequence_->excite_all(stop) : Expected<void>{};
   outcome_.interrupted = stop.stop_requested();
@@ -122,6 +147,41 @@ Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
     }
   }
   return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
+}
+
+// Until the analysis attends to the run and all of its results so far have come.
+Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
+  const Instant began = clock_.now();
+  while (!stop.stop_requested()) {
+    const auto& analysis = watch_->analysis();
+    watch_->follow(analysis && !analysis->message().empty() ? analysis->message()
+                                                            : "waiting for the analysis");
+    if (watch_->has_other_recipe()) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("run '{}' was made with another bench file; resume it with that one, "
+                              "or begin a new run",
+                              run_));
+    }
+    if (analysis &&
+        (analysis->arm() == wire::ARM_FINISHED || analysis->arm() == wire::ARM_REFUSED)) {
+      return fail(ErrorCode::no_analysis,
+                  fmt::format("run '{}' has ended at the analysis service {}; begin a new run",
+                              run_, analysis->service().c_str()));
+    }
+    if (analysis && watch_->outlook().kind == Kind::well &&
+        outcome_.results.size() >= analysis->results_published()) {
+      watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", run_,
+                                 outcome_.results.size()));
+      return {};
+    }
+    if (clock_.now() - began > (analysis ? analysis_limit : armed_limit)) {
+      return fail(ErrorCode::no_analysis,
+                  fmt::format("no analysis service holds run '{}' of bench '{}'; begin a new run",
+                              run_, bench_.bench));
+    }
+  }
+  return fail(ErrorCode::interrupted,
+              "interrupted before the run was resumed; nothing was excited");
 }
 
 std::optional<Expected<void>> RunController::answer_of_analysis(Instant began) const {

@@ -43,13 +43,22 @@ public:
   [[nodiscard]] Expected<RunOutcome>
   conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
           const std::stop_token& stop);
+  // Goes on with the run of this name, whose conductor has died: steps that have their results are
+  // not excited again. Fails too where no analysis holds the run any more (no_analysis), where it
+  // was made with another bench file (bad_file), and for recorded files (bad_argument).
+  // REQUIRES: nobody else conducts it.
+  [[nodiscard]] Expected<RunOutcome>
+  resume(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
+         const std::stop_token& stop);
 
 private:
   using Instant = bus::Clock::Instant;
 
   Expected<void> open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
   Expected<void> open_sequence();
+  Expected<RunOutcome> excite_and_collect(const std::stop_token& stop);
   Expected<void> wait_until_armed(const std::stop_token& stop);
+  Expected<void> wait_until_known(const std::stop_token& stop);
   // Nothing while the analysis may still answer.
   [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant began) const;
   Expected<void> wait_for_results(const std::stop_token& stop);

@@ -83,6 +83,14 @@ namespace {
 bool is_older(const StepResult& result, const StepResult& known) {
   return result.attempt < known.attempt;
 }
+bool is_of_other_recipe(const wire::CalibrationResult& result, const std::string& sha256) {
+  return !result.recipe_sha256().empty() && result.recipe_sha256() != sha256;
+}
+template <class Message>
+bool is_of_other_recipe(const Message& /*message*/, const std::string& /*sha256*/) {
+  return false;
+}
+
 template <class Result>
 bool is_older(const Result& /*result*/, const Result& /*known*/) {
   return false;
@@ -99,6 +107,7 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
       return;
     }
     ++taken;
+    other_recipe_ = other_recipe_ || is_of_other_recipe(message, recipe_sha256_);
     Result result = from_message(message);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const Result& other) { return same_key(other, result); });
@@ -133,6 +142,7 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 
 void RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
+  recipe_sha256_ = outcome.recipe_sha256;
   results_taken_ +=
       take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
         return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;

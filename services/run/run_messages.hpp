@@ -41,6 +41,7 @@ public:
   void take(RunOutcome& outcome);
   // How many results have come, those that came again too.
   [[nodiscard]] std::size_t results_taken() const { return results_taken_; }
+  [[nodiscard]] bool has_other_recipe() const { return other_recipe_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
@@ -74,6 +75,8 @@ private:
   std::optional<wire::ServiceStatus> analysis_;
   bus::Clock::Instant analysis_heard_;
   std::size_t results_taken_ = 0;
+  std::string recipe_sha256_;
+  bool other_recipe_ = false;   // in a result of this run
   wire::Excitation excitation_; // as announced last
   bus::Clock::Instant announced_{};
 };

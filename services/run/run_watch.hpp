@@ -61,6 +61,8 @@ public:
   }
   [[nodiscard]] Instant analysis_heard() const { return messages_.analysis_heard(); }
   [[nodiscard]] std::size_t results_taken() const { return messages_.results_taken(); }
+  // A result of this run names another bench file.
+  [[nodiscard]] bool has_other_recipe() const { return messages_.has_other_recipe(); }
   [[nodiscard]] RunOutlook outlook() const;
   [[nodiscard]] RunCommands& commands() { return commands_; }
   [[nodiscard]] const RunOutcome& outcome() const { return outcome_; }

@@ -51,11 +51,31 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
   return sequence;
 }
 
+void StepSequence::resume() {
+  bool all_so_far = true;
+  for (const wire::PlannedStep& step : watch_.measurement().steps()) {
+    std::uint32_t attempts = 0;
+    for (const StepResult& result : watch_.outcome().results) {
+      attempts = result.step == step.step() ? std::max(attempts, result.attempt) : attempts;
+    }
+    for (std::uint32_t attempt = 0; attempt < attempts; ++attempt) {
+      repeats_.begin(step.step());
+    }
+    if (attempts == 0 && std::exchange(all_so_far, false)) {
+      watch_.announce(step, repeats_.begin(step.step()), wire::EXCITATION_ABORTED);
+      repeats_.broken_off(step.step());
+      broken_off_ = step.step();
+    }
+  }
+}
+
 Expected<void> StepSequence::excite_all(const std::stop_token& stop) {
   Expected<void> excited = excitation_->begin();
   const std::size_t steps = watch_.measurement().steps().size();
   for (std::size_t place = 0; place < steps && excited && !stop.stop_requested(); ++place) {
-    excited = excite(place, stop);
+    if (repeats_.attempts_of(watch_.measurement().steps()[place].step()) == 0) {
+      excited = excite(place, stop);
+    }
   }
   excitation_->end();
   return excited.and_then([&] { return repeat_steps(stop); });

@@ -41,6 +41,9 @@ public:
   open(const RunEnvironment& environment, const BenchFile& bench, RunWatch& watch,
        std::shared_ptr<bus::WakeUp> wake_up);
 
+  // Before excite_all(): the results that are there tell which steps were excited, and how often;
+  // the one behind them was perhaps broken off when its conductor died.
+  void resume();
   [[nodiscard]] Expected<void> excite_all(const std::stop_token& stop);
 
   [[nodiscard]] bool output_may_be_on() const { return excitation_->output_may_be_on(); }

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 class DisturbedRun : public testing::Test {
 protected:
-  void start(const std::string& name) {
+  void start(const std::string& name, const std::vector<std::string>& options = {}) {
     folder_ = fresh_folder("disturbed-" + name);
     bench_ = std::make_unique<LiveBench>(
         folder_,
@@ -22,29 +22,35 @@ protected:
                           .excitation = "frequencies_hz = [\"40\", \"80\", \"125\"]\nlevel = 20.0\n"
                                         "settling_s = 0.5\nduration_s = 1.5\n",
                           .rest = "adc_delay_s = 1e-6\n"});
-    run_ = &bench_->start({"run", bench_->bench_file(), "--json", folder_ / "result.json"});
+    std::vector<std::string> arguments{"run", bench_->bench_file(), "--json",
+                                       folder_ / "result.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    run_ = &bench_->start(arguments);
     ASSERT_TRUE(run_->wait_for_error_text("step 2 of 3", patience)) << run_->errors();
   }
   void expect_complete() {
+    const auto result = expect_every_result();
+    EXPECT_GE(repeated_, 3) << run_->errors(); // of the step that was broken off
+    EXPECT_FALSE(result["pauses"].empty());
+  }
+  nlohmann::json expect_every_result() {
     const auto status = run_->wait(patience);
-    ASSERT_TRUE(status) << run_->errors();
-    EXPECT_EQ(*status, 0) << run_->errors();
-    const auto result = read_json(folder_ / "result.json");
-    ASSERT_EQ(result["points"].size(), 9U) << run_->errors();
-    int repeated = 0;
+    EXPECT_EQ(status.value_or(-1), 0) << run_->errors();
+    auto result = read_json(folder_ / "result.json");
+    EXPECT_EQ(result["points"].size(), 9U) << run_->errors();
     for (const auto& point : result["points"]) {
       EXPECT_TRUE(point["valid"].get<bool>()) << point["problem"];
       EXPECT_EQ(point["flags"].size(), 0U) << point["flags"];
-      repeated += point.contains("attempt") ? 1 : 0;
+      repeated_ += point.contains("attempt") ? 1 : 0;
     }
-    EXPECT_GE(repeated, 3) << run_->errors(); // of the step that was broken off
-    EXPECT_FALSE(result["pauses"].empty());
     EXPECT_EQ(bench_->ask_generator(":OUTPut1?"), "OFF");
+    return result;
   }
 
   std::filesystem::path folder_;
   std::unique_ptr<LiveBench> bench_;
   ProgramRun* run_ = nullptr;
+  int repeated_ = 0; // results
 };
 
 TEST_F(DisturbedRun, AnAnalysisThatHangsForAWhile) {
@@ -81,6 +87,16 @@ TEST_F(DisturbedRun, ABenchWhoseLinkIsDown) {
   ASSERT_TRUE(run_->wait_for_error_text("waiting for it", patience)) << run_->errors();
   bench_->signal_bench(SIGCONT);
   expect_complete();
+}
+
+TEST_F(DisturbedRun, ARunWhoseProgramWasKilledIsResumed) {
+  start("resumed", {"--run", "r7"});
+  run_->send(SIGKILL);
+  ASSERT_TRUE(run_->wait(patience));
+  run_ = &bench_->start(
+      {"run", bench_->bench_file(), "--resume", "r7", "--json", folder_ / "result.json"});
+  ASSERT_TRUE(run_->wait_for_error_text("run 'r7' is resumed, with ", patience)) << run_->errors();
+  expect_every_result();
 }
 
 TEST_F(DisturbedRun, AnotherRunWaitsForItsTurn) {

@@ -83,6 +83,17 @@ TEST_F(BenchQueueTest, OneThatHasEndedLongAgoIsNone) {
   EXPECT_EQ(queue_.taken_by(), "run 'r2'");
 }
 
+TEST_F(BenchQueueTest, ARunThatLivesIsHeardWithinItsListeningTime) {
+  clock_.at(2s, [this] { publish(wire::MEASUREMENT_RUNNING); });
+  EXPECT_EQ(queue_.listen(stop_.get_token()), "run 'r1' of lab-pc:12");
+  EXPECT_EQ(clock_.elapsed(), 2s);
+}
+
+TEST_F(BenchQueueTest, OfADeadRunNothingIsHeard) {
+  EXPECT_FALSE(queue_.listen(stop_.get_token()));
+  EXPECT_GE(clock_.elapsed(), BenchQueue::listening_time);
+}
+
 TEST_F(BenchQueueTest, AStopEndsTheWaiting) {
   run_until(300s, wire::MEASUREMENT_DONE);
   clock_.at(7s, [this] { stop_.request_stop(); });

@@ -169,14 +169,19 @@ protected:
     clock_.at(begin, [this] { instrument_.away = true; });
     clock_.at(end, [this] { instrument_.away = false; });
   }
+  Expected<RunOutcome> try_to_resume() { return controller().resume({}, stop_.get_token()); }
+  RunController controller() {
+    return {{participant_, clock_, tests::connect_to(instrument_)},
+            bench_,
+            run_name,
+            [this](const RunProgress& progress) {
+              if (!progress.notice.empty()) {
+                notices_.push_back(progress.notice);
+              }
+            }};
+  }
   RunOutcome conduct() {
-    RunController controller({participant_, clock_, tests::connect_to(instrument_)}, bench_,
-                             run_name, [this](const RunProgress& progress) {
-                               if (!progress.notice.empty()) {
-                                 notices_.push_back(progress.notice);
-                               }
-                             });
-    auto outcome = controller.conduct({}, stop_.get_token());
+    auto outcome = controller().conduct({}, stop_.get_token());
     EXPECT_TRUE(outcome) << outcome.error().message;
     return outcome.value_or(RunOutcome{});
   }
@@ -534,6 +539,62 @@ TEST_F(StepSequenceTest, ARepeatIsPausedAndBrokenOffLikeAnyStep) {
                                     Attempt{1, 3}));
   EXPECT_THAT(aborted_, ElementsAre(Attempt{1, 2}));
   EXPECT_THAT(attempts_of(outcome), ElementsAre(3, 1, 1));
+}
+
+// ---- resumed
+
+TEST_F(StepSequenceTest, AResumedRunGoesOnBehindTheResultsThatAreThere) {
+  published_[1] = good({1, 1});
+  analysis_.publish(good({1, 1}));
+  const auto outcome = try_to_resume();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  // The second step may have been excited when the conductor died.
+  EXPECT_THAT(excited_, ElementsAre(Attempt{2, 1}, Attempt{3, 1}, Attempt{2, 2}));
+  EXPECT_THAT(aborted_, ElementsAre(Attempt{2, 1}));
+  EXPECT_THAT(attempts_of(*outcome), ElementsAre(1, 2, 1));
+  EXPECT_THAT(notices_, Contains("run 'r1' is resumed, with 1 results so far"));
+  EXPECT_EQ(state_, wire::MEASUREMENT_DONE);
+}
+
+TEST_F(StepSequenceTest, ARunThatDiedInARepeatIsResumedThere) {
+  for (const Attempt& attempt : {Attempt{1, 1}, Attempt{2, 2}, Attempt{3, 1}}) {
+    published_[attempt.first] = attempt.first == 1 ? lossy(attempt) : good(attempt);
+    analysis_.publish(published_[attempt.first]);
+  }
+  const auto outcome = try_to_resume();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_THAT(excited_, ElementsAre(Attempt{1, 2}));
+  EXPECT_THAT(attempts_of(*outcome), ElementsAre(2, 2, 1));
+}
+
+TEST_F(StepSequenceTest, ARunThatNobodyHoldsIsNotResumed) {
+  silent_ = true;
+  const auto outcome = try_to_resume();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().message,
+            "no analysis service holds run 'r1' of bench 'b'; begin a new run");
+  EXPECT_EQ(instrument_.connections, 0);
+}
+
+TEST_F(StepSequenceTest, ARunThatHasEndedIsNotResumed) {
+  finished_ = true;
+  clock_.at(1s, [this] { analysis_.report(wire::ARM_FINISHED); });
+  const auto outcome = try_to_resume();
+  ASSERT_FALSE(outcome);
+  EXPECT_THAT(outcome.error().message, HasSubstr("run 'r1' has ended"));
+  EXPECT_EQ(instrument_.connections, 0);
+}
+
+TEST_F(StepSequenceTest, ARunOfAnotherBenchFileIsNotResumed) {
+  bench_.sha256 = "new";
+  wire::CalibrationResult result = good({1, 1});
+  result.recipe_sha256("old");
+  analysis_.publish(result);
+  const auto outcome = try_to_resume();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::bad_file);
+  EXPECT_EQ(instrument_.connections, 0);
 }
 
 } // namespace
