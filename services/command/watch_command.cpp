@@ -128,9 +128,11 @@ std::string run_line(const wire::ServiceStatus& status) {
 }
 
 std::string step_line(const wire::Excitation& excitation) {
-  return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}", excitation.bench().c_str(),
+  const std::string attempt =
+      excitation.attempt() > 1 ? fmt::format(", attempt {}", excitation.attempt()) : "";
+  return fmt::format("{} {}: step {}, {} Hz, {} m/s^2, {}{}", excitation.bench().c_str(),
                      excitation.run().c_str(), excitation.step(), excitation.frequency_text_hz(),
-                     excitation.level_m_s2(), excitation_word(excitation.state()));
+                     excitation.level_m_s2(), excitation_word(excitation.state()), attempt);
 }
 
 // Lines that are replaced by newer ones of the same key, and lines that follow one another.
