@@ -102,4 +102,18 @@ const TypeSupport& type_support<wire::CatchUpRequest>() {
   return support;
 }
 
+template <>
+const TypeSupport& type_support<wire::ClockRequest>() {
+  static const TypeSupport support =
+      make_type_support<wire::ClockRequest>("dyncal::wire::ClockRequest", two_names);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::ClockAnswer>() {
+  static const TypeSupport support =
+      make_type_support<wire::ClockAnswer>("dyncal::wire::ClockAnswer", three_names);
+  return support;
+}
+
 } // namespace dyncal::bus

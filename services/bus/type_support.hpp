@@ -73,5 +73,9 @@ template <>
 const TypeSupport& type_support<wire::Command>();
 template <>
 const TypeSupport& type_support<wire::CatchUpRequest>();
+template <>
+const TypeSupport& type_support<wire::ClockRequest>();
+template <>
+const TypeSupport& type_support<wire::ClockAnswer>();
 
 } // namespace dyncal::bus

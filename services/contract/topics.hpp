@@ -46,6 +46,8 @@ inline constexpr Topic<wire::Command> command{"Command", Profile::command};
 inline constexpr Topic<wire::CatchUpRequest> catch_up_request{"CatchUpRequest", Profile::command};
 inline constexpr Topic<wire::SampleBlock> catch_up_samples{"CatchUpSamples", Profile::catch_up};
 inline constexpr Topic<wire::TriggeredRecord> catch_up_records{"CatchUpRecords", Profile::catch_up};
+inline constexpr Topic<wire::ClockRequest> clock_request{"ClockRequest", Profile::command};
+inline constexpr Topic<wire::ClockAnswer> clock_answer{"ClockAnswer", Profile::command};
 
 } // namespace topics
 } // namespace dyncal::bus

@@ -98,11 +98,11 @@ TEST(TypeSupport, SurvivesAnyBytesAndReadsTheIntactOnesAfterwards) {
 
 template <class T>
 class EveryType : public testing::Test {};
-using Types =
-    testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
-                   wire::TriggeredRecord, wire::Measurement, wire::Excitation,
-                   wire::CalibrationResult, wire::TransferFunction, wire::SampleClockReport,
-                   wire::ServiceStatus, wire::Command, wire::CatchUpRequest>;
+using Types = testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
+                             wire::TriggeredRecord, wire::Measurement, wire::Excitation,
+                             wire::CalibrationResult, wire::TransferFunction,
+                             wire::SampleClockReport, wire::ServiceStatus, wire::Command,
+                             wire::CatchUpRequest, wire::ClockRequest, wire::ClockAnswer>;
 TYPED_TEST_SUITE(EveryType, Types);
 
 TYPED_TEST(EveryType, IsNamedAsInTheContract) {
