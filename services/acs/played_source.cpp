@@ -79,6 +79,7 @@ SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings)
           .source = settings.name,
           .kind = kind_of(bench.method, settings.name),
           .identity = settings.identity,
+          .origin = settings.origin,
           .silent_after =
               settings.is<FileSourceSettings>() ? std::chrono::seconds(0) : std::chrono::seconds(2),
           .when_full = settings.is<FileSourceSettings>() ? WhenFull::wait : WhenFull::wait_briefly};

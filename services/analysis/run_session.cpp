@@ -216,7 +216,10 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
     }
   }
   const std::string missing = streams_->what_is_missing(sources);
-  if (missing.empty()) {
+  const std::string other_file = streams_->what_differs(evaluator_->recipe().source_settings);
+  if (missing.empty() && !other_file.empty()) {
+    refuse(other_file);
+  } else if (missing.empty()) {
     status_.arm = wire::ARM_ARMED;
     status_.message.clear();
     last_progress_ = now;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "services/contract/bench_file_origin.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
@@ -258,6 +259,21 @@ std::string SourceStreams::what_is_missing(const KnownSources& known) const {
       return fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
                          "samples get through from its host to this one?",
                          name, bench_);
+    }
+  }
+  return "";
+}
+
+std::string
+SourceStreams::what_differs(const std::map<std::string, std::string>& settings_of_run) const {
+  for (const auto& [name, stream] : streams_) {
+    const auto of_run = settings_of_run.find(name);
+    if (of_run == settings_of_run.end() || !stream.description) {
+      continue;
+    }
+    if (const auto difference =
+            settings_difference(stream.description->settings(), of_run->second)) {
+      return refusal(*difference, bench_, name, stream.description->host());
     }
   }
   return "";

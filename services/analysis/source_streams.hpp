@@ -71,6 +71,10 @@ public:
   [[nodiscard]] std::vector<std::string> unanswered() const;
   // One sentence about the first source that keeps the run from being armed; empty if none does.
   [[nodiscard]] std::string what_is_missing(const KnownSources& known) const;
+  // One sentence about the first source whose service has read another bench file than the run, by
+  // the settings that the run has for each; empty if none has.
+  [[nodiscard]] std::string
+  what_differs(const std::map<std::string, std::string>& settings_of_run) const;
   // The first source without which the run cannot go on: it sent nothing for `silence_limit` since
   // its last block and since `watched_from`, or, if `may_not_end`, it ended.
   [[nodiscard]] std::optional<LostSource> lost_source(Instant now, Instant watched_from,

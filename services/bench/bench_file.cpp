@@ -135,6 +135,9 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
   file.path = path;
   file.text = text;
   file.sha256 = sha256_hex(text);
+  for (SourceSettings& source : file.sources) {
+    source.origin.sha256 = file.sha256;
+  }
   return file;
 }
 

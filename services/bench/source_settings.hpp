@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/sample_block.hpp"
+#include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
 
 namespace dyncal::services {
@@ -86,6 +87,7 @@ struct SourceSettings {
   std::map<std::string, std::string> units;    // our name -> D-SI
   drivers::TimeBase time_base = drivers::TimeBase::utc;
   std::string where; // "bench.toml:21", for messages
+  BenchFileOrigin origin;
 
   // The settings of the driver, nullptr when the source has another one.
   template <class Driver>

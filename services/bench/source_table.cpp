@@ -64,6 +64,7 @@ SourceSettings read_source(TomlTable table, const std::string& name,
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
+  source.origin.settings = table.lines_without({"play"}); // how fast changes no sample
   table.finish();
   return source;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,39 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
 
 std::string unit_phrase(const std::string& unit) {
   return unit.empty() ? "a number" : fmt::format("a number in {}", unit);
+}
+
+std::string value_text(const toml::node& node) {
+  if (const auto* list = node.as_array()) {
+    std::string text;
+    for (const toml::node& entry : *list) {
+      text += (text.empty() ? "" : ", ") + value_text(entry);
+    }
+    return "[" + text + "]";
+  }
+  if (const auto number = node.is_number() ? node.value<double>() : std::nullopt) {
+    return fmt::format("{}", *number);
+  }
+  std::ostringstream text;
+  node.visit([&](const auto& value) {
+    text << toml::default_formatter{value, toml::format_flags::quote_infinities_and_nans};
+  });
+  return text.str();
+}
+
+void add_lines(const toml::table& table, const std::string& prefix,
+               const std::set<std::string>& left_out, std::map<std::string, std::string>& lines) {
+  for (const auto& [name, node] : table) {
+    const std::string key = prefix + std::string(name.str());
+    if (left_out.contains(key)) {
+      continue;
+    }
+    if (const toml::table* inner = node.as_table()) {
+      add_lines(*inner, key + ".", left_out, lines);
+    } else {
+      lines.emplace(key, value_text(node));
+    }
+  }
 }
 
 } // namespace
@@ -240,6 +274,16 @@ std::vector<std::string> TomlTable::keys() const {
     names.emplace_back(entry.first.str());
   }
   return names;
+}
+
+std::string TomlTable::lines_without(const std::set<std::string>& keys) const {
+  std::map<std::string, std::string> lines;
+  add_lines(table_, "", keys, lines);
+  std::string text;
+  for (const auto& [key, value] : lines) {
+    text += key + " = " + value + "\n";
+  }
+  return text;
 }
 
 void TomlTable::finish() {

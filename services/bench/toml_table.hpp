@@ -40,6 +40,8 @@ public:
   [[nodiscard]] std::optional<TomlTable> table(const std::string& key);
   [[nodiscard]] const toml::node* node(const std::string& key);
   [[nodiscard]] std::vector<std::string> keys() const;
+  // Every key but those, one "key = value" a line (services/contract/bench_file_origin.hpp).
+  [[nodiscard]] std::string lines_without(const std::set<std::string>& keys) const;
 
   // Refuses keys that were not asked for; then what was said of keys that are not there, which a
   // misspelt one may explain.

@@ -60,6 +60,7 @@ SourceOptions options_of(const std::string& bench, const SourceSettings& setting
           .source = settings.name,
           .kind = SourceKind::can,
           .identity = settings.identity,
+          .origin = settings.origin,
           .silent_after = log ? std::chrono::seconds(0) : std::chrono::seconds(2),
           .when_full = log ? WhenFull::wait : WhenFull::drop};
 }

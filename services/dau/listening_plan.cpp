@@ -12,8 +12,11 @@ namespace {
 
 PlannedSource planned(const BenchFile& bench, const SourceSettings& source,
                       const SmartupSourceSettings& smartup) {
-  PlannedSource planned{
-      .bench = bench.bench, .source = source.name, .identity = source.identity, .settings = {}};
+  PlannedSource planned{.bench = bench.bench,
+                        .source = source.name,
+                        .identity = source.identity,
+                        .origin = source.origin,
+                        .settings = {}};
   planned.settings.sensor = smartup.sensor;
   planned.settings.sync_sensor = smartup.sync_sensor;
   planned.settings.naming = {source.channels, source.units};

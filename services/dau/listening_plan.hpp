@@ -16,6 +16,7 @@ struct PlannedSource {
   std::string bench;
   std::string source;
   DeviceIdentity identity;
+  BenchFileOrigin origin;
   drivers::smartup::SensorSettings settings;
 };
 

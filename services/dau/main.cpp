@@ -36,7 +36,8 @@ Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceServ
       auto publisher = service.add({.bench = source.bench,
                                     .source = source.source,
                                     .kind = SourceKind::dau,
-                                    .identity = source.identity});
+                                    .identity = source.identity,
+                                    .origin = source.origin});
       if (!publisher) {
         return fail(publisher.error());
       }

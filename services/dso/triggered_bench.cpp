@@ -41,6 +41,7 @@ Expected<Publishers> add_sources(SourceService& service, const BenchFile& bench,
                         .source = oscilloscope.name,
                         .kind = SourceKind::dso,
                         .identity = oscilloscope.identity,
+                        .origin = oscilloscope.origin,
                         .silent_after = 0s,
                         .ring = ring,
                         .session = random_session()};
@@ -51,6 +52,7 @@ Expected<Publishers> add_sources(SourceService& service, const BenchFile& bench,
   options.source = sensor.name;
   options.kind = SourceKind::tss;
   options.identity = sensor.identity;
+  options.origin = sensor.origin;
   auto second = service.add(options);
   if (!second) {
     return fail(second.error());

@@ -62,6 +62,9 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.systematic.acs_delay_s = file.uncertainty.acs_delay_s;
   recipe.text = file.text;
   recipe.sha256 = file.sha256;
+  for (const SourceSettings& source : file.sources) {
+    recipe.source_settings.emplace(source.name, source.origin.settings);
+  }
   if (const auto checked = check_recipe(recipe); !checked) {
     return fail(checked.error());
   }

@@ -1,7 +1,10 @@
 #include "services/source/messages.hpp"
 
+#include <unistd.h>
+
 #include <utility>
 
+#include "services/bus/host_network.hpp"
 #include "services/contract/source_kind.hpp"
 
 namespace dyncal::services {
@@ -52,6 +55,10 @@ dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uin
   message.firmware(description.firmware);
   message.driver(description.driver);
   message.software(software);
+  message.host(bus::host_name());
+  message.process_id(static_cast<std::uint32_t>(getpid()));
+  message.bench_file_sha256(source.origin.sha256);
+  message.settings(source.origin.settings);
   for (const auto& channel : description.channels) {
     message.channels().push_back(to_contract(channel));
   }

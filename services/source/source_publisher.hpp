@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "drivers/sample_sink.hpp"
+#include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/source/block_ring.hpp"
@@ -51,6 +52,7 @@ struct SourceOptions {
   std::string source;
   SourceKind kind = SourceKind::acs;
   DeviceIdentity identity = {};
+  BenchFileOrigin origin = {}; // what the bench file says of this source
   // SILENT when no block came for this long, or for four times the usual interval of its blocks if
   // that is longer. 0: never (files, and devices that are asked for their records).
   std::chrono::nanoseconds silent_after = std::chrono::seconds(2);

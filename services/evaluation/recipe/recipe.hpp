@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -109,6 +110,8 @@ struct Recipe {
   analysis::SystematicUncertainty systematic;
   std::string text; // of the bench file, for those who read the message
   std::string sha256;
+  // What the bench file says of each source, by its name; without one it is not known.
+  std::map<std::string, std::string> source_settings;
 
   [[nodiscard]] EvaluationMethod method() const;
   [[nodiscard]] const ChannelName& reference() const;

@@ -177,6 +177,9 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
   recipe.text = measurement.recipe();
   recipe.sha256 = measurement.recipe_sha256();
+  for (const wire::PlannedSource& source : measurement.sources()) {
+    recipe.source_settings.emplace(source.source(), source.settings());
+  }
 }
 
 } // namespace
@@ -213,6 +216,12 @@ wire::Measurement to_message(const Recipe& recipe) {
   measurement.monte_carlo_trials(recipe.monte_carlo_trials);
   measurement.recipe(recipe.text);
   measurement.recipe_sha256(recipe.sha256);
+  for (const auto& [name, settings] : recipe.source_settings) {
+    wire::PlannedSource source;
+    source.source(name);
+    source.settings(settings);
+    measurement.sources().push_back(source);
+  }
   return measurement;
 }
 

@@ -227,6 +227,47 @@ TEST_F(RunSessionTest, RefusesARecipeThatItCannotEvaluateAtOnce) {
   EXPECT_EQ(published_.newest_status().arm(), wire::ARM_REFUSED);
 }
 
+class RunSessionBenchFile : public RunSessionTest {
+protected:
+  // Sources answer whose services have read this of their bench file, for a run of another one.
+  void arm_with(const std::string& settings_of_service, const std::string& settings_of_run) {
+    wire::Measurement measurement = synthetic_.measurement();
+    wire::PlannedSource planned;
+    planned.source("dau");
+    planned.settings(settings_of_run);
+    measurement.sources().push_back(planned);
+    session_ = create(measurement);
+    describe(acs_);
+    describe(dau_);
+    sources_["dau"].description->settings(settings_of_service);
+    sources_["dau"].description->host("lab-2");
+    work();
+    acs_.answer(tests::played_run);
+    dau_.answer(tests::played_run);
+    work();
+  }
+};
+
+TEST_F(RunSessionBenchFile, RefusesASourceWithAnotherSensorAtOnce) {
+  arm_with("driver = 'smartup'\nsensor = '0xbccb0100'\n",
+           "driver = 'smartup'\nsensor = '0xdeadbeef'\n");
+  EXPECT_EQ(arm_state(), wire::ARM_REFUSED);
+  EXPECT_THAT(published_.newest_status().message(),
+              HasSubstr("source 'dau' of bench 'synthetic' on lab-2 has read another bench file "
+                        "than this run: key 'sources.dau.sensor' is '0xbccb0100' there and "
+                        "'0xdeadbeef' here"));
+}
+
+TEST_F(RunSessionBenchFile, ArmsASourceWithTheSameSettings) {
+  arm_with("sensor = '0xbccb0100'\n", "sensor = '0xbccb0100'\n");
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+}
+
+TEST_F(RunSessionBenchFile, ArmsASourceThatDoesNotTellItsSettings) {
+  arm_with("", "sensor = '0xbccb0100'\n");
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+}
+
 TEST_F(RunSessionTest, RefusesASourceThatLacksAChannelAtOnce) {
   wire::SourceDescription without_sync = acs_.description();
   without_sync.channels().resize(1);

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -54,6 +56,51 @@ std::string problem_of(const std::string& text) {
   const auto file = parse_bench_file(text, "bench.toml");
   EXPECT_FALSE(file) << text;
   return file ? "" : file.error().message;
+}
+
+std::string settings_of(const std::string& source, const std::string& text) {
+  const auto file = parse_bench_file(text, "bench.toml");
+  EXPECT_TRUE(file) << file.error().message;
+  const SourceSettings* settings = file ? file->source(source) : nullptr;
+  return settings == nullptr ? "" : settings->origin.settings;
+}
+
+TEST(BenchFile, GivesTheSettingsOfASourceAsTextThatCanBeCompared) {
+  EXPECT_EQ(settings_of("dau", complete), "channels.Data_11 = \"sync\"\n"
+                                          "driver = \"smartup\"\n"
+                                          "listen = \"0.0.0.0:7654\"\n"
+                                          "sensor = \"0xbccb0100\"\n");
+  EXPECT_EQ(settings_of("acs", complete), "address = \"127.0.0.1:5026\"\n"
+                                          "driver = \"socket\"\n"
+                                          "firmware = \"2.1\"\n"
+                                          "serial = \"PTB-4\"\n"
+                                          "units.reference = \"m/s^2\"\n");
+  EXPECT_NE(settings_of("dau", replaced(complete, "0xbccb0100", "0xdeadbeef")),
+            settings_of("dau", complete));
+}
+
+TEST(BenchFile, DoesNotTakeWhatDoesNotConcernASourceForADifference) {
+  const std::string as_it_is = settings_of("dau", complete);
+  for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
+           {"level = 10.0", "level = 20.0"},
+           {"\"12.5\"", "\"16\""},
+           {"sensor = ", "# a comment\nsensor   =   "},
+           {"channels = { Data_11 = \"sync\" }", "channels.Data_11 = \"sync\""},
+           {"127.0.0.1:5026", "127.0.0.1:5027"}, // of another source
+           {"reference_magnitude_rel = 1e-3", "reference_magnitude_rel = 2e-3"}}) {
+    EXPECT_EQ(settings_of("dau", replaced(complete, what, by)), as_it_is) << by;
+  }
+}
+
+TEST(BenchFile, ComparesNumbersWhateverTheirNotation) {
+  const tests::TemporaryFolder folder;
+  const std::string file_source =
+      replaced(complete, "driver = \"socket\"\naddress = \"127.0.0.1:5026\"",
+               "driver = \"file\"\npath = \"" + folder.write("acs.csv", "") +
+                   "\"\nplay = \"real-time\"\nsample_rate_hz = 20000");
+  EXPECT_EQ(
+      settings_of("acs", file_source),
+      settings_of("acs", replaced(replaced(file_source, "20000", "2e4"), "real-time", "at-once")));
 }
 
 TEST(BenchFile, GivesWhatTheFileSays) {
