@@ -39,7 +39,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     const std::stop_token& stop) {
+                     Supervisor& supervisor, const std::stop_token& stop) {
   auto sources = prepare(benches, stop);
   if (!sources) {
     return fail(sources.error());
@@ -48,7 +48,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   if (!participant) {
     return fail(participant.error());
   }
-  return run_sources(*participant, *sources, stop);
+  return run_sources(*participant, *sources, supervisor, stop);
 }
 
 } // namespace

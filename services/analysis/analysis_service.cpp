@@ -50,17 +50,23 @@ Expected<void> AnalysisService::open_readers() {
   return {};
 }
 
-void AnalysisService::serve(const std::stop_token& stop) {
+void AnalysisService::serve(const std::stop_token& stop,
+                            const std::function<void(const AnalysisFigures&)>& turned) {
   spdlog::info("analysis ready ({} on {})", context_.identity.dds, context_.identity.service);
   bus::Clock& clock = context_.clock;
   while (!stop.stop_requested()) {
+    if (turned) {
+      turned(figures());
+    }
     clock.wait(*context_.wake_up, clock.now() + max_wait);
     take_messages();
     give_way();
     take_over();
+    const auto began = clock.now();
     for (const RunKey& key : order_) {
       runs_.at(key)->work(benches_[key.first], run_before(key));
     }
+    evaluation_s_ += std::chrono::duration<double>(clock.now() - began).count();
   }
 }
 
@@ -214,6 +220,29 @@ bool AnalysisService::make_room(const std::string& bench) {
     order_.erase(oldest);
   }
   return true;
+}
+
+AnalysisFigures AnalysisService::figures() const {
+  AnalysisFigures figures;
+  for (const auto& [key, run] : runs_) {
+    switch (run->arm_state()) {
+    case wire::ARM_WAITING:
+      ++figures.runs_waiting;
+      break;
+    case wire::ARM_ARMED:
+      ++figures.runs_armed;
+      break;
+    case wire::ARM_REFUSED:
+      ++figures.runs_refused;
+      break;
+    case wire::ARM_FINISHED:
+      ++figures.runs_finished;
+      break;
+    }
+  }
+  figures.evaluation_s = evaluation_s_;
+  figures.malformed_messages = participant_.malformed_messages();
+  return figures;
 }
 
 RunSession* AnalysisService::run_before(const RunKey& key) {

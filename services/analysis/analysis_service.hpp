@@ -10,10 +10,11 @@
 // Of a leader with other software no run is taken over: its results and ours would stand side by
 // side.
 //
-// serve() runs in the caller's thread until `stop` is requested; nothing else may be called
-// meanwhile.
+// serve() runs in the caller's thread until `stop` is requested and calls `turned` at every turn of
+// its loop, at least ten times a second; nothing else may be called meanwhile.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "services/analysis/run_session.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 
@@ -37,7 +39,8 @@ public:
   create(bus::Participant participant, AnalysisIdentity identity,
          bus::Clock& clock = bus::system_clock());
 
-  void serve(const std::stop_token& stop);
+  void serve(const std::stop_token& stop,
+             const std::function<void(const AnalysisFigures&)>& turned = {});
 
 private:
   struct Readers {
@@ -74,6 +77,7 @@ private:
   bool make_room(const std::string& bench);
   // Null if none of the runs of this bench that began earlier goes on.
   [[nodiscard]] RunSession* run_before(const RunKey& key);
+  [[nodiscard]] AnalysisFigures figures() const;
 
   bus::Participant participant_;
   AnalysisContext context_; // of participant_
@@ -83,6 +87,7 @@ private:
   std::vector<RunKey> order_; // of runs_, oldest first
   OtherAnalyses others_;
   std::map<RunKey, FollowedRun> followed_;
+  double evaluation_s_ = 0.0; // that serve() has spent with runs
 };
 
 } // namespace dyncal::services

@@ -1,14 +1,14 @@
 // dyncal-analysis: computes transfer functions from the samples that sources publish, and publishes
 // the results.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "services/analysis/analysis_service.hpp"
-#include "services/bus/host_network.hpp"
+#include "services/host_clocks/clock_messages.hpp"
+#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/program.hpp"
+#include "services/supervision/supervisor.hpp"
 #include "services/version.hpp"
 
 int main(int argc, char** argv) {
@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", services::build_description());
   services::NetworkOptions network;
   services::add_network_options(app, network);
+  std::string metrics;
+  services::add_metrics_option(app, metrics);
   CLI11_PARSE(app, argc, argv);
 
   services::set_up_log("dyncal-analysis");
@@ -26,16 +28,33 @@ int main(int argc, char** argv) {
   if (!participant) {
     return services::report_error(participant.error());
   }
+  const auto created = services::Supervisor::create(
+      services::this_program("dyncal-analysis", services::software_version(), network.dds),
+      metrics);
+  if (!created) {
+    return services::report_error(created.error());
+  }
+  services::Supervisor& supervisor = **created;
+  const auto clock = services::ClockResponder::start(*participant, supervisor.identity());
+  if (!clock) {
+    return services::report_error(clock.error());
+  }
   services::AnalysisIdentity identity;
-  identity.host = bus::host_name();
-  identity.process_id = static_cast<std::uint32_t>(getpid());
+  identity.host = supervisor.identity().host;
+  identity.process_id = supervisor.identity().process_id;
   identity.service =
       fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);
   identity.dds = network.dds;
+  supervisor.describe(fmt::format("{} on {}", identity.dds, identity.service));
   auto service = services::AnalysisService::create(std::move(*participant), std::move(identity));
   if (!service) {
     return services::report_error(service.error());
   }
-  (*service)->serve(stop);
+  const std::stop_callback stopping(stop, [&] { supervisor.stopping(); });
+  supervisor.serving();
+  (*service)->serve(stop, [&](const services::AnalysisFigures& figures) {
+    supervisor.report(figures);
+    supervisor.turned();
+  });
   return 0;
 }

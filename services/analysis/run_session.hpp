@@ -70,6 +70,8 @@ public:
     return status_.arm == wire::ARM_FINISHED || status_.arm == wire::ARM_REFUSED;
   }
 
+  [[nodiscard]] wire::ArmState arm_state() const { return status_.arm; }
+
   void update(const wire::Measurement& measurement);
   void announce(const wire::Excitation& excitation);
   // Does what is due: takes samples, asks sources to answer, evaluates, publishes. `before`: the

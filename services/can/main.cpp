@@ -41,7 +41,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches) {
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     const std::stop_token& stop) {
+                     Supervisor& supervisor, const std::stop_token& stop) {
   auto sources = prepare(benches);
   if (!sources) {
     return fail(sources.error());
@@ -50,7 +50,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   if (!participant) {
     return fail(participant.error());
   }
-  return run_sources(*participant, *sources, stop);
+  return run_sources(*participant, *sources, supervisor, stop);
 }
 
 } // namespace

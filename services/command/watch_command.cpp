@@ -13,7 +13,9 @@
 #include "idl/dyncal.h"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/result_flag.hpp"
+#include "services/host_clocks/clock_asker.hpp"
 #include "services/report/rounding.hpp"
+#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -135,6 +137,12 @@ std::string step_line(const wire::Excitation& excitation) {
                      excitation.level_m_s2(), excitation_word(excitation.state()), attempt);
 }
 
+std::string host_line(const HostClock& host) {
+  const RoundedValue offset = round_by_uncertainty(host.clock.offset_s, host.clock.bound_s);
+  return fmt::format("clock of {}: {} s from ours (within {} s)", host.host, offset.value,
+                     offset.u);
+}
+
 // Lines that are replaced by newer ones of the same key, and lines that follow one another.
 class Screen {
 public:
@@ -200,6 +208,24 @@ private:
   std::map<std::string, std::string> lines_;
   std::deque<std::string> newest_;
   std::set<ResultFlag> explained_;
+};
+
+// The clocks of other hosts; one that has not moved beyond what is known of it keeps its line.
+class ShownClocks {
+public:
+  void show(const std::vector<HostClock>& hosts, Screen& screen) {
+    for (const HostClock& host : hosts) {
+      const auto [shown, first] = shown_.try_emplace(host.host, host.clock);
+      const double moved_s = std::abs(host.clock.offset_s - shown->second.offset_s);
+      if (first || moved_s > host.clock.bound_s + shown->second.bound_s) {
+        shown->second = host.clock;
+        screen.replace("0 " + host.host, host_line(host));
+      }
+    }
+  }
+
+private:
+  std::map<std::string, ClockOffset> shown_;
 };
 
 struct Readers {
@@ -269,6 +295,13 @@ int run_watch(const WatchCommand& command, const std::stop_token& stop) {
   if (!readers) {
     return report_error(readers.error());
   }
+  auto asker = ClockAsker::open(
+      *participant, this_program("dyncal-watch", software_version(), command.network.dds),
+      bus::system_clock(), wake_up);
+  if (!asker) {
+    return report_error(asker.error());
+  }
+  ShownClocks clocks;
   Screen screen(isatty(STDOUT_FILENO) != 0);
   const auto began = std::chrono::steady_clock::now();
   auto next_draw = began;
@@ -281,6 +314,8 @@ int run_watch(const WatchCommand& command, const std::stop_token& stop) {
   while (!over()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 200ms);
     take_all(*readers, screen);
+    asker->work();
+    clocks.show(asker->other_hosts(), screen);
     if (std::chrono::steady_clock::now() >= next_draw) {
       screen.draw();
       next_draw = std::chrono::steady_clock::now() + 1s;

@@ -1,9 +1,9 @@
-// `dyncal watch`: benches, sources with their rates and losses, runs, and results with their flags,
-// as they come on the network.
+// `dyncal watch`: benches, sources with their rates and losses, runs, results with their flags, and
+// how far the clocks of other hosts are from this one, as they come on the network.
 //
 // On a terminal the screen is redrawn once a second, with an explanation of every flag below;
 // elsewhere every change is a line, and so is the explanation of a flag when it first occurs. It
-// publishes nothing. Belongs to one thread.
+// asks every program for its clock, and publishes nothing else. Belongs to one thread.
 #pragma once
 
 #include <optional>

@@ -8,9 +8,10 @@
 #include "drivers/smartup/receiver.hpp"
 #include "services/dau/endpoint_watch.hpp"
 #include "services/dau/listening_plan.hpp"
+#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/source/source_service.hpp"
-#include "services/version.hpp"
+#include "services/source/supervised.hpp"
 
 namespace dyncal::services::dau {
 namespace {
@@ -69,7 +70,7 @@ void report_sockets(const drivers::smartup::Receiver& receiver,
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     const std::stop_token& stop) {
+                     Supervisor& supervisor, const std::stop_token& stop) {
   const auto plan = plan_listening(benches);
   if (!plan) {
     return fail(plan.error());
@@ -78,14 +79,19 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   if (!participant) {
     return fail(participant.error());
   }
-  const auto service = SourceService::create(*participant, {.software = software_version()});
+  const auto service = SourceService::create(*participant, supervised(supervisor, *participant));
   auto reception = open_reception(*plan, *service);
   if (!reception) {
     return fail(reception.error());
   }
   report_sockets(*reception->receiver, *plan);
+  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  if (!clock) {
+    return fail(clock.error());
+  }
   service->start();
   reception->receiver->start();
+  supervisor.serving();
   wait_for_stop(stop);
   reception->receiver->stop();
   service->stop();

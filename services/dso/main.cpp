@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "services/dso/triggered_bench.hpp"
+#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/source/source_service.hpp"
-#include "services/version.hpp"
+#include "services/source/supervised.hpp"
 
 namespace {
 
@@ -15,12 +16,12 @@ using namespace dyncal::services;
 using dyncal::fail;
 
 Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& network,
-                     const std::stop_token& stop) {
+                     Supervisor& supervisor, const std::stop_token& stop) {
   auto participant = join_network(network, "dyncal-dso");
   if (!participant) {
     return fail(participant.error());
   }
-  const auto service = SourceService::create(*participant, {.software = software_version()});
+  const auto service = SourceService::create(*participant, supervised(supervisor, *participant));
   std::vector<std::unique_ptr<dso::TriggeredBench>> benches;
   for (const BenchFile& file : files) {
     auto bench = dso::TriggeredBench::create(*participant, *service, file);
@@ -29,7 +30,12 @@ Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& 
     }
     benches.push_back(std::move(*bench));
   }
+  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  if (!clock) {
+    return fail(clock.error());
+  }
   service->start();
+  supervisor.serving();
   {
     std::vector<std::jthread> threads; // joined at the end of this block
     for (const auto& bench : benches) {

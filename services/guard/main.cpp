@@ -10,6 +10,7 @@
 #include "drivers/generator/scpi_generator.hpp"
 #include "services/device_error.hpp"
 #include "services/guard/exciter_guard.hpp"
+#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
 
 namespace dyncal::services {
@@ -27,10 +28,14 @@ Expected<void> switch_off(const std::string& address) {
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     const std::stop_token& stop) {
+                     Supervisor& supervisor, const std::stop_token& stop) {
   auto participant = join_network(network, "dyncal-guard");
   if (!participant) {
     return fail(participant.error());
+  }
+  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  if (!clock) {
+    return fail(clock.error());
   }
   std::vector<std::unique_ptr<ExciterGuard>> guards;
   for (const BenchFile& bench : benches) {

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/host_clocks/clock_messages.hpp"
 #include "services/program/log.hpp"
 #include "services/version.hpp"
 
@@ -12,17 +13,20 @@ namespace dyncal::services {
 namespace {
 
 Expected<void> serve(const BenchProgram& program, const std::vector<std::string>& paths,
-                     NetworkOptions network, const std::stop_token& stop) {
+                     NetworkOptions network, Supervisor& supervisor, const std::stop_token& stop) {
   std::vector<BenchFile> benches;
+  std::string names;
   for (const std::string& path : paths) {
     auto bench = read_bench_file(path);
     if (!bench) {
       return fail(bench.error());
     }
     add_network_settings(bench->network, network);
+    names += (names.empty() ? "bench " : ", ") + bench->bench;
     benches.push_back(std::move(*bench));
   }
-  return program.serve(benches, network, stop);
+  supervisor.describe(names);
+  return program.serve(benches, network, supervisor, stop);
 }
 
 } // namespace
@@ -40,12 +44,21 @@ int run_bench_program(int argc, char** argv, const BenchProgram& program) {
   app.set_version_flag("--version", build_description());
   std::vector<std::string> paths;
   NetworkOptions network;
+  std::string metrics;
   app.add_option("BENCH", paths, "bench files (TOML)")->required();
   add_network_options(app, network);
+  add_metrics_option(app, metrics);
   CLI11_PARSE(app, argc, argv);
 
   set_up_log(program.name, LogWriting::by_thread);
-  const auto served = serve(program, paths, network, stop_on_signals());
+  const auto supervisor =
+      Supervisor::create(this_program(program.name, software_version(), network.dds), metrics);
+  if (!supervisor) {
+    return report_error(supervisor.error());
+  }
+  const std::stop_token stop = stop_on_signals();
+  const std::stop_callback stopping(stop, [&] { (*supervisor)->stopping(); });
+  const auto served = serve(program, paths, network, **supervisor, stop);
   if (!served) {
     return report_error(served.error());
   }

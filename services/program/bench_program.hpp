@@ -14,6 +14,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
+#include "services/supervision/supervisor.hpp"
 
 namespace dyncal::services {
 
@@ -24,9 +25,9 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 struct BenchProgram {
   std::string name;        // "dyncal-dau"
   std::string description; // one sentence, for --help
-  // Serves the benches until `stop`; blocks.
+  // Serves the benches until `stop`; blocks. Reports to the supervisor when it serves.
   std::function<Expected<void>(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                               const std::stop_token& stop)>
+                               Supervisor& supervisor, const std::stop_token& stop)>
       serve;
 };
 

@@ -48,6 +48,11 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
                  "network interface to use (name or address)");
 }
 
+void add_metrics_option(CLI::App& app, std::string& address) {
+  app.add_option("--metrics", address,
+                 "serve metrics for Prometheus at ADDRESS:PORT, e.g. 127.0.0.1:9464 (default: no)");
+}
+
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program) {
   const auto vendor = bus::parse_vendor(options.dds);
   if (!vendor) {

@@ -17,8 +17,9 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
+#include "services/host_clocks/clock_responder.hpp"
 #include "services/source/source_service.hpp"
-#include "services/version.hpp"
+#include "services/source/supervised.hpp"
 
 namespace dyncal::services {
 
@@ -31,8 +32,8 @@ struct RunnableSource {
 template <class Source>
 [[nodiscard]] Expected<void> run_sources(bus::Participant& participant,
                                          std::vector<RunnableSource<Source>>& sources,
-                                         const std::stop_token& stop) {
-  const auto service = SourceService::create(participant, {.software = software_version()});
+                                         Supervisor& supervisor, const std::stop_token& stop) {
+  const auto service = SourceService::create(participant, supervised(supervisor, participant));
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (RunnableSource<Source>& one : sources) {
     one.options.stop = stop;
@@ -43,7 +44,12 @@ template <class Source>
     publishers.push_back(std::move(*publisher));
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);
   }
+  const auto clock = ClockResponder::start(participant, supervisor.identity());
+  if (!clock) {
+    return fail(clock.error());
+  }
   service->start();
+  supervisor.serving();
   std::vector<Expected<void>> outcomes(sources.size());
   {
     std::vector<std::jthread> threads;

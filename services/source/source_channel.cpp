@@ -151,6 +151,8 @@ bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   if (outcome == bus::WriteOutcome::failed) {
     ++failed_writes_;
     lost_in_writes_ += pending_->size;
+  } else {
+    ++written_;
   }
   if (pending_->end_of_stream) {
     ended_ = true;
@@ -245,6 +247,9 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   }
   published_state_ = message.state();
   status_written_ = now;
+  if (report_) {
+    report_(message, written_);
+  }
 }
 
 SourceChannel::Clock::time_point SourceChannel::step_status(std::chrono::nanoseconds interval,

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,10 @@ public:
 
   [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
   [[nodiscard]] KeptBlocks& kept() { return *kept_; }
+
+  // With every status that is published, and how many messages with samples were written.
+  using Report = std::function<void(const dyncal::wire::SourceStatus&, std::uint64_t)>;
+  void report_to(Report report) { report_ = std::move(report); }
 
   // Somebody arms for this run: an empty message that names it is written as soon as the source has
   // a description.
@@ -88,6 +93,8 @@ private:
   bool flushing_ = false;
   std::uint64_t session_;
   bool ended_ = false; // the end of the session's stream has been written
+  Report report_;
+  std::uint64_t written_ = 0; // messages with samples
   std::uint64_t failed_writes_ = 0;
   std::uint64_t lost_in_writes_ = 0; // samples, or shots
   struct Pending {

@@ -115,6 +115,7 @@ SourceService::Implementation::add(SourceOptions source) {
   if (auto added = catch_up_.add(publisher->options(), std::move(kept)); !added) {
     return fail(added.error());
   }
+  (*channel)->report_to(options_.reported);
   channels_.push_back(std::move(*channel));
   return publisher;
 }
@@ -196,6 +197,9 @@ void SourceService::Implementation::give_again(const std::stop_token& stop) {
 void SourceService::Implementation::run(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { wake_up_->ring(); });
   while (!stop.stop_requested()) {
+    if (options_.turned) {
+      options_.turned();
+    }
     listen();
     const bool more = step_channels();
     keep_up();

@@ -16,6 +16,8 @@
 // Threads: create, add, start and stop from one thread; the publishers from any.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -26,6 +28,9 @@
 namespace dyncal::bus {
 class Participant;
 }
+namespace dyncal::wire {
+class SourceStatus;
+}
 
 namespace dyncal::services {
 
@@ -35,6 +40,11 @@ struct SourceServiceOptions {
   std::chrono::nanoseconds stop_limit =
       std::chrono::seconds(5); // for what is still in the rings when the service stops
   KeptLimits kept = {};        // of each source
+  // Called by the publishing thread at every turn of its loop, at least every status_interval.
+  std::function<void()> turned = {};
+  // Called by it with every status that it has published, and how many messages with samples the
+  // source has written.
+  std::function<void(const wire::SourceStatus&, std::uint64_t)> reported = {};
 };
 
 class SourceService {

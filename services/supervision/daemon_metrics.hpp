@@ -1,0 +1,31 @@
+// What daemons of dyncal report of themselves, as metrics: dyncal_ names, labels `bench` and
+// `source`. deploy/monitoring/README.md lists them for people. Any thread.
+#pragma once
+
+#include <cstdint>
+
+#include "services/contract/program_identity.hpp"
+#include "services/supervision/metric_store.hpp"
+
+namespace dyncal::wire {
+class SourceStatus;
+}
+
+namespace dyncal::services {
+
+// What the analysis service does, all in all.
+struct AnalysisFigures {
+  std::uint64_t runs_waiting = 0;
+  std::uint64_t runs_armed = 0;
+  std::uint64_t runs_refused = 0; // of those that are kept
+  std::uint64_t runs_finished = 0;
+  double evaluation_s = 0.0; // that its loop has spent with runs
+  std::uint64_t malformed_messages = 0;
+};
+
+void report(const ProgramIdentity& program, MetricStore& store);
+void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store);
+void report(const AnalysisFigures& figures, MetricStore& store);
+void report_malformed_messages(std::uint64_t count, MetricStore& store);
+
+} // namespace dyncal::services
