@@ -28,6 +28,7 @@
 #include <string>
 #include <vector>
 
+#include "services/bus/discovery.hpp"
 #include "services/bus/names.hpp"
 #include "services/bus/type_support.hpp"
 #include "services/bus/wake_up.hpp"
@@ -45,6 +46,7 @@ struct ParticipantOptions {
   std::vector<std::string> peers; // addresses to find others at when multicast cannot be used
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
+  bool watch_discovery = false;   // for discovered()
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.
   std::function<void(const std::string&)> warn;
@@ -78,6 +80,8 @@ public:
   reader(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
   [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
+  // Nobody, where there is no discovery.
+  [[nodiscard]] virtual Discovery discovered() const { return {}; }
 };
 
 template <class T>
@@ -164,6 +168,9 @@ public:
   // Messages dropped because they do not match the contract (idl/README.md). Not 0 if there was
   // one; Fast DDS counts some of them twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
+  // The others of the domain and what they have, as far as it is known by now; nobody without
+  // `watch_discovery`. Any thread.
+  [[nodiscard]] Discovery discovered() const { return untyped_->discovered(); }
 
 private:
   std::unique_ptr<UntypedParticipant> untyped_;

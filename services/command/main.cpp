@@ -9,6 +9,7 @@
 #include "services/command/calibrate_options.hpp"
 #include "services/command/compare_command.hpp"
 #include "services/command/demo_command.hpp"
+#include "services/command/doctor_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
 #include "services/command/model_command.hpp"
@@ -98,6 +99,18 @@ void add_watch(CLI::App& app, WatchCommand& watch) {
   command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
   add_network_options(*command, watch.network);
+}
+
+void add_doctor(CLI::App& app, DoctorCommand& doctor) {
+  CLI::App* command = app.add_subcommand(
+      "doctor", "look at laboratory, network and this host, and say what is wrong and what to do");
+  command->add_option("BENCH.toml", doctor.bench_file,
+                      "bench file that the services should have read");
+  command->add_option("--seconds", doctor.seconds, "look for this time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--json", doctor.json, "print JSON");
+  add_network_options(*command, doctor.network);
 }
 
 void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
@@ -263,6 +276,7 @@ struct Commands {
   ModelCommand model;
   RunCommand run;
   WatchCommand watch;
+  DoctorCommand doctor;
 };
 
 int execute(const CLI::App& app, const Commands& commands) {
@@ -294,6 +308,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   if (app.got_subcommand("demo")) {
     return run_demo(commands.demo, stop);
   }
+  if (app.got_subcommand("doctor")) {
+    return run_doctor(commands.doctor, stop);
+  }
   if (app.got_subcommand("watch")) {
     return run_watch(commands.watch, stop);
   }
@@ -311,6 +328,7 @@ int main(int argc, char** argv) {
   add_demo(app, commands.demo);
   add_run(app, commands.run);
   add_watch(app, commands.watch);
+  add_doctor(app, commands.doctor);
   add_analyse(app, commands.analyse);
   add_compare(app, commands.compare);
   add_model(app, commands.model);

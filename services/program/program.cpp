@@ -53,7 +53,8 @@ void add_metrics_option(CLI::App& app, std::string& address) {
                  "serve metrics for Prometheus at ADDRESS:PORT, e.g. 127.0.0.1:9464 (default: no)");
 }
 
-Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program) {
+Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program,
+                                        const NetworkUse& use) {
   const auto vendor = bus::parse_vendor(options.dds);
   if (!vendor) {
     return fail(vendor.error());
@@ -65,6 +66,7 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
   participant.peers = options.peers;
   participant.multicast = !options.no_multicast;
   participant.interface_name = options.interface_name;
+  participant.watch_discovery = use.watch_discovery;
   participant.warn = [](const std::string& sentence) { spdlog::warn("{}", sentence); };
   return bus::Participant::create(participant);
 }

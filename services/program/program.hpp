@@ -30,9 +30,14 @@ void add_network_options(CLI::App& app, NetworkOptions& options);
 // --metrics ADDRESS:PORT, for programs that run for long; empty: not given.
 void add_metrics_option(CLI::App& app, std::string& address);
 
+// What only some programs ask of the network.
+struct NetworkUse {
+  bool watch_discovery = false; // Participant::discovered()
+};
+
 // Warnings of the network go to the log.
 [[nodiscard]] Expected<bus::Participant>
-join_network(const NetworkOptions& options, const std::string& program);
+join_network(const NetworkOptions& options, const std::string& program, const NetworkUse& use = {});
 
 // Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called
 // once, before other threads start, since the signals are blocked in all threads and waited for in

@@ -49,7 +49,7 @@ FLOORS = {
         ["report"],
         ["model"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "virtual_bench"],
-        ["replay"],
+        ["doctor", "replay"],
         ["command"],
     ],
 }

@@ -5,6 +5,7 @@
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -238,6 +239,10 @@ public:
 
   [[nodiscard]] std::uint64_t malformed_messages() const override {
     return participant_->malformed->count();
+  }
+
+  [[nodiscard]] Discovery discovered() const override {
+    return discovered_by_cyclone_dds(participant_->entity.get());
   }
 
 private:

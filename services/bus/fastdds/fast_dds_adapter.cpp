@@ -17,6 +17,7 @@
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/cdr_key.hpp"
+#include "services/bus/fastdds/fast_dds_discovery.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -110,9 +111,11 @@ private:
 class FastDdsParticipantHandle {
 public:
   FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number,
+                           std::unique_ptr<FastDdsDiscovery> discovery,
                            dds::DomainParticipant* participant,
                            std::shared_ptr<MalformedMessages> malformed)
-      : number_(std::move(number)), participant_(participant), malformed_(std::move(malformed)) {}
+      : number_(std::move(number)), discovery_(std::move(discovery)), participant_(participant),
+        malformed_(std::move(malformed)) {}
   FastDdsParticipantHandle(const FastDdsParticipantHandle&) = delete;
   FastDdsParticipantHandle& operator=(const FastDdsParticipantHandle&) = delete;
   ~FastDdsParticipantHandle() {
@@ -122,6 +125,7 @@ public:
 
   [[nodiscard]] dds::DomainParticipant* get() const { return participant_; }
   [[nodiscard]] std::uint64_t malformed_messages() const { return malformed_->count(); }
+  [[nodiscard]] Discovery discovered() const { return discovery_->discovered(); }
 
   // Topics are made once and live as long as the participant.
   dds::Topic* topic(const TypeSupport& type, const std::string& name) {
@@ -138,7 +142,8 @@ public:
   }
 
 private:
-  std::unique_ptr<ParticipantNumber> number_; // given back after the participant is gone
+  std::unique_ptr<ParticipantNumber> number_;   // given back after the participant is gone
+  std::unique_ptr<FastDdsDiscovery> discovery_; // outlives the participant, which calls it
   dds::DomainParticipant* participant_;
   std::shared_ptr<MalformedMessages> malformed_;
   std::mutex mutex_;
@@ -301,6 +306,8 @@ public:
     return participant_->malformed_messages();
   }
 
+  [[nodiscard]] Discovery discovered() const override { return participant_->discovered(); }
+
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
 };
@@ -315,16 +322,19 @@ create_fast_dds_participant(const ParticipantOptions& options) {
   }
   auto number = std::make_unique<ParticipantNumber>();
   qos->wire_protocol().participant_id = number->value();
+  auto discovery = std::make_unique<FastDdsDiscovery>();
   dds::DomainParticipant* participant =
       dds::DomainParticipantFactory::get_instance()->create_participant(
-          static_cast<std::uint32_t>(options.domain), *qos);
+          static_cast<std::uint32_t>(options.domain), *qos,
+          options.watch_discovery ? discovery.get() : nullptr, dds::StatusMask::none());
   if (participant == nullptr) {
     return fail(services::ErrorCode::network,
                 "Fast DDS cannot join domain " + std::to_string(options.domain) +
                     ": see its messages above, and check the profiles file if you set one");
   }
   return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
-      std::move(number), participant, std::make_shared<MalformedMessages>(options.warn)));
+      std::move(number), std::move(discovery), participant,
+      std::make_shared<MalformedMessages>(options.warn)));
 }
 
 } // namespace dyncal::bus

@@ -1,0 +1,43 @@
+// Hears who announces itself by multicast in a DDS domain: the packets of discovery, of whichever
+// vendor, beside the DDS implementation of this process.
+//
+// An RTPS packet begins with "RTPS", the version, the vendor and the prefix of its sender's GUID
+// (DDSI-RTPS 8.3.3). The port of discovery is 7400 + 250 times the domain, the group 239.255.0.1.
+// Receives nothing else and sends nothing. Belongs to one thread.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "services/error.hpp"
+
+namespace dyncal::services::doctor {
+
+class AnnouncementListener {
+public:
+  // On this interface, by its address; empty: on every one of the host that can multicast. Fails
+  // (network) when the port cannot be shared or no interface can.
+  [[nodiscard]] static Expected<AnnouncementListener> open(int domain,
+                                                           const std::string& interface_address);
+  ~AnnouncementListener();
+  AnnouncementListener(AnnouncementListener&& other) noexcept;
+  AnnouncementListener& operator=(AnnouncementListener&&) = delete;
+  AnnouncementListener(const AnnouncementListener&) = delete;
+  AnnouncementListener& operator=(const AnnouncementListener&) = delete;
+
+  // Reads what has come; never waits.
+  void work();
+  // Participants heard so far, by their ids (services/bus/discovery.hpp).
+  [[nodiscard]] const std::set<std::string>& heard() const { return heard_; }
+
+private:
+  explicit AnnouncementListener(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;
+  std::set<std::string> heard_;
+};
+
+// The sender of an RTPS packet; empty if it is none.
+[[nodiscard]] std::string sender_of_packet(const unsigned char* bytes, std::size_t count);
+
+} // namespace dyncal::services::doctor

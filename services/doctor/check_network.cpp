@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "services/bus/qos_profiles.hpp"
+#include "services/doctor/checks.hpp"
+
+namespace dyncal::services::doctor {
+namespace {
+
+constexpr int base_port = 7400;
+constexpr int ports_per_domain = 250;
+
+std::string ports_of(int domain) {
+  const int first = base_port + ports_per_domain * domain;
+  return fmt::format("UDP {} to {}", first, first + 11 + 2 * (bus::participants_per_host - 1));
+}
+
+std::string name_of(const bus::DiscoveredParticipant& participant) {
+  return participant.name.empty() ? "a program with " + participant.vendor : participant.name;
+}
+
+Finding check_multicast(const LaboratoryView& view) {
+  if (!view.announced_by_multicast) {
+    return {Severity::ok, "multicast", "not looked at: this program does without (--no-multicast)"};
+  }
+  const auto& announced = *view.announced_by_multicast;
+  std::string missing;
+  std::size_t missing_count = 0;
+  for (const bus::DiscoveredParticipant& participant : view.discovery.participants) {
+    if (!announced.contains(participant.id)) {
+      missing += (missing.empty() ? "" : ", ") + name_of(participant);
+      ++missing_count;
+    }
+  }
+  if (missing_count == 0) {
+    return {Severity::ok, "multicast",
+            fmt::format("announcements of all {} participants came by multicast",
+                        view.discovery.participants.size())};
+  }
+  return {Severity::warning, "multicast",
+          fmt::format("no multicast comes from {}, found by unicast: started with "
+                      "--no-multicast, or the network does not carry multicast (then give every "
+                      "program --peer)",
+                      missing)};
+}
+
+// Announced, so there, but what it has does not come.
+Findings check_unicast(const LaboratoryView& view) {
+  Findings findings;
+  for (const bus::DiscoveredParticipant& participant : view.discovery.participants) {
+    const bool known = std::ranges::any_of(view.discovery.endpoints, [&](const auto& endpoint) {
+      return endpoint.participant == participant.id;
+    });
+    if (!known) {
+      findings.push_back(
+          {Severity::warning, "network",
+           fmt::format("{} ({}) is announced, but none of its writers and readers is known: "
+                       "unicast from or to it does not get through, or it has none; a firewall on "
+                       "either host must let {} through",
+                       name_of(participant), participant.vendor, ports_of(view.domain))});
+    }
+  }
+  const bool others = !view.discovery.participants.empty();
+  if (others && view.programs.empty() && !view.discovery.endpoints.empty()) {
+    findings.push_back(
+        {Severity::problem, "network",
+         fmt::format("programs are found, but no answer comes from any: their packets with "
+                     "messages do not get through; a firewall on either host must let {} through",
+                     ports_of(view.domain))});
+  }
+  return findings;
+}
+
+} // namespace
+
+Findings check_network(const LaboratoryView& view) {
+  Findings findings{check_multicast(view)};
+  const Findings unicast = check_unicast(view);
+  findings.insert(findings.end(), unicast.begin(), unicast.end());
+  if (unicast.empty() && !view.programs.empty()) {
+    findings.push_back({Severity::ok, "network",
+                        fmt::format("messages of {} programs get through; DDS domain {} uses {}",
+                                    view.programs.size(), view.domain, ports_of(view.domain))});
+  }
+  if (view.malformed_messages > 0) {
+    findings.push_back({Severity::warning, "network",
+                        fmt::format("{} messages do not match the contract and were dropped; which "
+                                    "program writes them? 'versions' and 'endpoints' may tell",
+                                    view.malformed_messages)});
+  }
+  return findings;
+}
+
+} // namespace dyncal::services::doctor

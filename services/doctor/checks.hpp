@@ -1,0 +1,40 @@
+// The judges: what was observed becomes findings. Each looks at one thing and always gives at least
+// one finding, so that a report shows what was looked at. Plain functions, any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/bench/bench_file.hpp"
+#include "services/doctor/finding.hpp"
+#include "services/doctor/host_view.hpp"
+#include "services/doctor/laboratory_view.hpp"
+
+namespace dyncal::services::doctor {
+
+// Who is there: programs and an analysis service, versions of software and contract, clocks.
+[[nodiscard]] Findings check_programs(const LaboratoryView& view);
+
+// Every source: state, losses, buffer, twins, and whether its service has read the same bench file
+// as the others of its bench and as `bench`, if one is given.
+[[nodiscard]] Findings check_sources(const LaboratoryView& view,
+                                     const std::optional<BenchFile>& bench);
+
+// Writers and readers of the contract's topics that have one another's topic and do not match, and
+// why: type, reliability, durability, partition.
+[[nodiscard]] Findings check_endpoints(const LaboratoryView& view,
+                                       const std::vector<std::string>& benches);
+
+// What the network between the hosts lets through, as far as it shows: multicast, unicast of
+// discovery, samples.
+[[nodiscard]] Findings check_network(const LaboratoryView& view);
+
+// This host: buffers, MTU, sockets, room for results.
+[[nodiscard]] Findings check_host(const HostView& host, int domain);
+
+// Whether a partition's name, which may be a pattern, matches that of the other side. Two patterns
+// do not match.
+[[nodiscard]] bool partitions_match(const std::string& first, const std::string& second);
+
+} // namespace dyncal::services::doctor

@@ -1,0 +1,44 @@
+// What was observed of a laboratory on the bus, for the judges of checks.hpp. Plain data; nothing
+// in it is judged.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "idl/dyncal.h"
+#include "services/bus/discovery.hpp"
+#include "services/host_clocks/clock_asker.hpp"
+
+namespace dyncal::services::doctor {
+
+// A source, by what it publishes of itself.
+struct SeenSource {
+  std::optional<wire::SourceDescription> description; // the newest
+  std::optional<wire::SourceStatus> first_status;     // since the doctor looks
+  std::optional<wire::SourceStatus> status;           // the newest
+  std::set<std::string> writers; // hosts and processes that describe it, "lab-2:4711"
+  bool twins = false;            // two services take turns as this source
+};
+
+struct LaboratoryView {
+  using SourceKey = std::pair<std::string, std::string>; // bench, source
+
+  int domain = 0;
+  double seconds = 0.0; // for which was looked
+  ProgramIdentity own;  // the doctor
+  std::map<SourceKey, SeenSource> sources;
+  std::map<std::string, wire::ServiceStatus> analyses; // by their names, the newest of each
+  std::vector<HeardProgram> programs;                  // that answer
+  std::vector<HostClock> clocks;
+  bus::Discovery discovery;
+  // Participants whose multicast announcements came; nothing: it could not be listened for.
+  std::optional<std::set<std::string>> announced_by_multicast;
+  std::uint64_t malformed_messages = 0;
+};
+
+} // namespace dyncal::services::doctor

@@ -1,0 +1,80 @@
+#include "services/doctor/laboratory_watch.hpp"
+
+#include <algorithm>
+
+#include "services/contract/topics.hpp"
+
+namespace dyncal::services::doctor {
+namespace {
+
+constexpr const char* all_benches = "*";
+constexpr std::chrono::milliseconds max_wait{200};
+
+template <class Message>
+LaboratoryView::SourceKey key_of(const Message& message) {
+  return {message.bench().to_string(), message.source().to_string()};
+}
+
+std::string writer_of(const wire::SourceDescription& description) {
+  return description.host() + ":" + std::to_string(description.process_id());
+}
+
+} // namespace
+
+Expected<std::unique_ptr<LaboratoryWatch>> LaboratoryWatch::open(bus::Participant& participant,
+                                                                 const ProgramIdentity& own,
+                                                                 bus::Clock& clock) {
+  auto wake_up = std::make_shared<bus::WakeUp>();
+  auto descriptions = participant.reader(bus::topics::source_description, all_benches, wake_up);
+  auto statuses = participant.reader(bus::topics::source_status, all_benches, wake_up);
+  auto analyses = participant.reader(bus::topics::service_status, all_benches, wake_up);
+  const AskingPace always_quick{.quick_requests = 1'000'000};
+  auto asker = ClockAsker::open(participant, own, clock, wake_up, always_quick);
+  if (const auto error = first_error(descriptions, statuses, analyses, asker)) {
+    return fail(*error);
+  }
+  return std::unique_ptr<LaboratoryWatch>(new LaboratoryWatch(
+      participant, own, clock, std::move(wake_up),
+      Readers{std::move(*descriptions), std::move(*statuses), std::move(*analyses)},
+      std::move(*asker)));
+}
+
+void LaboratoryWatch::work() {
+  clock_.wait(*wake_up_, std::min(clock_.now() + max_wait, asker_.next_request()));
+  take();
+  asker_.work();
+}
+
+void LaboratoryWatch::take() {
+  readers_.descriptions.take([this](const wire::SourceDescription& description) {
+    SeenSource& source = view_.sources[key_of(description)];
+    source.description = description;
+    if (!description.host().empty()) {
+      source.writers.insert(writer_of(description));
+    }
+  });
+  readers_.statuses.take([this](const wire::SourceStatus& status) {
+    SeenSource& source = view_.sources[key_of(status)];
+    TwinWatch& turns = turns_[key_of(status)];
+    turns.add(status.session());
+    source.twins = turns.twins();
+    if (!source.first_status || source.first_status->session() != status.session()) {
+      source.first_status = status;
+    }
+    source.status = status;
+  });
+  readers_.analyses.take([this](const wire::ServiceStatus& status) {
+    view_.analyses[status.service().to_string()] = status;
+  });
+}
+
+LaboratoryView LaboratoryWatch::view() const {
+  LaboratoryView view = view_;
+  view.programs = asker_.programs();
+  view.clocks = asker_.other_hosts();
+  view.discovery = participant_.discovered();
+  view.malformed_messages = participant_.malformed_messages();
+  return view;
+}
+
+} // namespace dyncal::services::doctor
