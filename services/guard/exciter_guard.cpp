@@ -37,8 +37,11 @@ ExciterGuard::create(bus::Participant& participant, std::string bench,
                        std::move(wake_up), std::move(*excitation), std::move(*measurement)));
 }
 
-void ExciterGuard::serve(const std::stop_token& stop) {
+void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
   while (!stop.stop_requested()) {
+    if (turned) {
+      turned();
+    }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
     work();
   }

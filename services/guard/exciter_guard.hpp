@@ -38,8 +38,9 @@ public:
          std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
          bus::Clock& clock = bus::system_clock());
 
-  // Until `stop` is requested.
-  void serve(const std::stop_token& stop);
+  // Until `stop` is requested. Calls `turned` at every turn of its loop, which a generator that
+  // does not answer holds up.
+  void serve(const std::stop_token& stop, const std::function<void()>& turned = {});
   // What is due now.
   void work();
 

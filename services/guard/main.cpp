@@ -57,8 +57,9 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   }
   std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
   for (const auto& guard : guards) {
-    threads.emplace_back([&guard, &stop] { guard->serve(stop); });
+    threads.emplace_back([&] { guard->serve(stop, [&supervisor] { supervisor.turned(); }); });
   }
+  supervisor.serving();
   return {};
 }
 

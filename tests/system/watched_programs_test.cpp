@@ -94,6 +94,15 @@ TEST_F(SupervisionTest, ShowsThatASourceServes) {
   expect_a_watched_program(program, "bench supervised");
 }
 
+TEST_F(SupervisionTest, ShowsThatAGuardServes) {
+  ProgramRun program = start("dyncal-guard", {bench_file("driver = \"socket\"\n"
+                                                         "address = \"127.0.0.1:1\"\n"
+                                                         "[generator]\ndriver = \"scpi\"\n"
+                                                         "address = \"127.0.0.1:1\"\n"
+                                                         "level_per_volt = 1.0\n")});
+  expect_a_watched_program(program, "bench supervised");
+}
+
 TEST_F(SupervisionTest, OffersMetricsAndRefusesAPortThatIsInUse) {
   if (!services::can_serve_metrics()) {
     GTEST_SKIP() << "this build has no prometheus-cpp";
