@@ -31,5 +31,12 @@ TEST(Names, OfBenchesAreNoPatterns) {
   }
 }
 
+TEST(Names, OfWhoCatchesUpAreLongerAndNoPatterns) {
+  EXPECT_TRUE(check_asker_name(std::string(128, 'a')));
+  EXPECT_FALSE(check_asker_name(std::string(129, 'a')));
+  EXPECT_FALSE(check_asker_name(""));
+  EXPECT_FALSE(check_asker_name("analysis-*"));
+}
+
 } // namespace
 } // namespace dyncal::bus

@@ -97,6 +97,19 @@ TEST_F(Publisher, ADescriptionIsHandedOverOnceUntilItChanges) {
   ASSERT_TRUE(publisher.take_changed_description());
 }
 
+TEST_F(Publisher, SplitsALongFrameIntoBlocksOfOneSession) {
+  sink.take(block_from(100, 65536));
+  std::uint64_t next = 100;
+  while (const auto entry = publisher.ring().take()) {
+    EXPECT_EQ(entry->block.first_sample, next);
+    EXPECT_LE(held_bytes(entry->block), std::size_t{80} << 10U);
+    EXPECT_EQ(entry->session, publisher.session());
+    next += entry->block.samples;
+  }
+  EXPECT_EQ(next, 100U + 65536U);
+  EXPECT_EQ(publisher.snapshot().offered_samples, 65536U);
+}
+
 class FullPublisher : public Publisher {
 protected:
   FullPublisher() : Publisher(with_room_for_one()) {}
