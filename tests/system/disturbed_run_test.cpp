@@ -14,13 +14,14 @@ using testing::HasSubstr;
 
 class DisturbedRun : public testing::Test {
 protected:
+  // Steps that last longer than it takes to notice that the analysis is silent.
   void start(const std::string& name, const std::vector<std::string>& options = {}) {
     folder_ = fresh_folder("disturbed-" + name);
     bench_ = std::make_unique<LiveBench>(
         folder_,
         LiveBenchSettings{.bench_arguments = {"--frequencies", "40,80,125", "--levels", "20"},
                           .excitation = "frequencies_hz = [\"40\", \"80\", \"125\"]\nlevel = 20.0\n"
-                                        "settling_s = 0.5\nduration_s = 1.5\n",
+                                        "settling_s = 0.5\nduration_s = 5\n",
                           .rest = "adc_delay_s = 1e-6\n"});
     std::vector<std::string> arguments{"run", bench_->bench_file(), "--json",
                                        folder_ / "result.json"};
