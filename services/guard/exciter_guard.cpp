@@ -12,12 +12,8 @@ namespace {
 constexpr std::chrono::milliseconds look_interval{100};
 constexpr std::size_t max_runs = 100; // of a bench, which has one at a time
 
-bool is_driven(wire::ExcitationState state) {
-  return state == wire::EXCITATION_SETTLING || state == wire::EXCITATION_STEADY;
-}
-
-bool is_over(wire::MeasurementState state) {
-  return state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED;
+bool is_driven(const wire::Excitation& excitation) {
+  return excitation.window_end_utc_ns() == 0;
 }
 
 } // namespace
@@ -28,13 +24,12 @@ ExciterGuard::create(bus::Participant& participant, std::string bench,
                      bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
-  auto measurement = participant.reader(bus::topics::measurement, bench, wake_up);
-  if (auto error = first_error(excitation, measurement)) {
-    return fail(*error);
+  if (!excitation) {
+    return fail(excitation.error());
   }
   return std::unique_ptr<ExciterGuard>(
       new ExciterGuard(std::move(bench), unattended_limit, std::move(switch_off), clock,
-                       std::move(wake_up), std::move(*excitation), std::move(*measurement)));
+                       std::move(wake_up), std::move(*excitation)));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
@@ -69,13 +64,7 @@ ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
 void ExciterGuard::take_messages() {
   excitation_.take([&](const wire::Excitation& excitation) {
     if (excitation.bench().to_string() == bench_) {
-      heard(excitation.run().to_string()).driven = is_driven(excitation.state());
-    }
-  });
-  measurement_.take([&](const wire::Measurement& measurement) {
-    if (measurement.bench().to_string() == bench_) {
-      Run& run = heard(measurement.run().to_string());
-      run.driven = run.driven && !is_over(measurement.state());
+      heard(excitation.run().to_string()).driven = is_driven(excitation);
     }
   });
 }

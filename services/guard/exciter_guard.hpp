@@ -1,12 +1,12 @@
 // Switches the exciter of a bench off when nobody attends a run any more: on the bench's side,
 // where the generator can be reached although the conductor's link, host or program is gone.
 //
-// The exciter is driven while the newest Excitation of a run is SETTLING or STEADY. The conductor
-// repeats it every half second (idl/README.md, "The run protocol"); nothing heard of the run for
-// `unattended_limit` means that nobody attends. Then the output is switched off, and tried again
-// every `retry_interval` until that is confirmed, the conductor is heard again, or the run is over.
-// It is done once for each silence: a conductor that comes back finds the output off and repeats
-// the step.
+// The exciter is driven while the newest Excitation of a run has no end of its window. The
+// conductor repeats it every half second while it has hold of the generator (idl/README.md, "The
+// run protocol"); nothing heard for `unattended_limit` means that nobody attends, whatever else is
+// heard of the run. Then the output is switched off, and tried again every `retry_interval` until
+// that is confirmed, or the conductor is heard again. It is done once for each silence: a conductor
+// that comes back finds the output off and repeats the step.
 //
 // `switch_off` returns when the output is known to be off, and may block for seconds; the guard of
 // one bench therefore has a thread of its own, the only one that uses it.
@@ -57,10 +57,10 @@ private:
 
   ExciterGuard(std::string bench, std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
                bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
-               bus::Reader<wire::Excitation> excitation, bus::Reader<wire::Measurement> measurement)
+               bus::Reader<wire::Excitation> excitation)
       : bench_(std::move(bench)), unattended_limit_(unattended_limit),
         switch_off_(std::move(switch_off)), clock_(clock), wake_up_(std::move(wake_up)),
-        excitation_(std::move(excitation)), measurement_(std::move(measurement)) {}
+        excitation_(std::move(excitation)) {}
 
   void take_messages();
   Run& heard(const std::string& run);
@@ -72,7 +72,6 @@ private:
   bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   bus::Reader<wire::Excitation> excitation_;
-  bus::Reader<wire::Measurement> measurement_;
   std::map<std::string, Run> runs_;
   int times_switched_off_ = 0;
 };

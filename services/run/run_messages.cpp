@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::chrono::milliseconds announcement_interval{500};
 
+bool is_over(wire::ExcitationState state) {
+  return state == wire::EXCITATION_DONE || state == wire::EXCITATION_ABORTED;
+}
+
 } // namespace
 
 Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Clock& clock,
@@ -42,7 +46,7 @@ void RunMessages::publish(const wire::Measurement& measurement) {
 }
 
 void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
-                           wire::ExcitationState state) {
+                           wire::ExcitationState state, bool output_may_be_on) {
   if (step.step() != excitation_.step() || attempt != excitation_.attempt()) {
     excitation_.window_begin_utc_ns(0);
     if (attempt > 1) {
@@ -52,7 +56,6 @@ void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
   if (state == wire::EXCITATION_SETTLING) {
     excitation_.window_begin_utc_ns(clock_->utc_now_ns());
   }
-  const bool over = state == wire::EXCITATION_DONE || state == wire::EXCITATION_ABORTED;
   excitation_.bench(bench_);
   excitation_.run(run_);
   excitation_.step(step.step());
@@ -60,14 +63,21 @@ void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
   excitation_.level_m_s2(step.level_m_s2());
   excitation_.repetition(step.repetition());
   excitation_.state(state);
-  excitation_.window_end_utc_ns(over ? clock_->utc_now_ns() : 0);
+  excitation_.window_end_utc_ns(is_over(state) && !output_may_be_on ? clock_->utc_now_ns() : 0);
   excitation_.attempt(attempt);
   endpoints_.excitation.write(excitation_);
   announced_ = clock_->now();
 }
 
+void RunMessages::confirm_off() {
+  if (is_over(excitation_.state()) && excitation_.window_end_utc_ns() == 0) {
+    excitation_.window_end_utc_ns(clock_->utc_now_ns());
+    endpoints_.excitation.write(excitation_);
+  }
+}
+
 void RunMessages::repeat_announcement() {
-  const bool driven = excitation_.step() != 0 && excitation_.window_end_utc_ns() == 0;
+  const bool driven = excitation_.step() != 0 && !is_over(excitation_.state());
   if (driven && clock_->now() - announced_ >= announcement_interval) {
     endpoints_.excitation.write(excitation_);
     announced_ = clock_->now();

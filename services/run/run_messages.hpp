@@ -30,10 +30,14 @@ public:
                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
   void publish(const wire::Measurement& measurement);
-  // `state` of the step that is excited, or was to be.
-  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state);
+  // `state` of the step that is excited, or was to be. One that is over while the output may be on
+  // has no end of its window yet.
+  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state,
+                bool output_may_be_on = false);
+  // The output is known to be off now: the announcement once more, if it had to leave that open.
+  void confirm_off();
   // Shows dyncal-guard that somebody attends: the newest announcement again while the exciter is
-  // driven, at most every 500 ms.
+  // driven, at most every 500 ms; not when the conductor has lost hold of the generator.
   void repeat_announcement();
   void wait_for_acknowledgments(std::chrono::nanoseconds limit);
 

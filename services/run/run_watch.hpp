@@ -44,9 +44,11 @@ public:
 
   [[nodiscard]] const wire::Measurement& measurement() const { return measurement_; }
   void set_state(wire::MeasurementState state, const std::string& message = "");
-  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state) {
-    messages_.announce(step, attempt, state);
+  void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state,
+                bool output_may_be_on = false) {
+    messages_.announce(step, attempt, state, output_may_be_on);
   }
+  void confirm_off() { messages_.confirm_off(); }
   void wait_for_acknowledgments(std::chrono::nanoseconds limit) {
     messages_.wait_for_acknowledgments(limit);
   }

@@ -38,7 +38,8 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
            [self = sequence.get()](const wire::PlannedStep& step, std::uint32_t attempt,
                                    wire::ExcitationState state) {
              self->announced_ = state;
-             self->watch_.announce(step, attempt, state);
+             self->watch_.announce(step, attempt, state,
+                                   self->excitation_ && self->excitation_->output_may_be_on());
            },
        .show = [&watch](const std::string& phase) { watch.show(phase); },
        .ask = [&watch](const std::string& request) { watch.ask(request); },
@@ -225,6 +226,7 @@ void StepSequence::try_generator() {
   }
   if (const auto off = excitation_->switch_off(); off) {
     generator_away_.reset();
+    watch_.confirm_off();
   }
   generator_tried_ = watch_.clock().now();
 }
