@@ -18,8 +18,11 @@ build_packages=(
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
-  libsystemd-dev                            # daemons tell systemd that they are ready
-  prometheus-cpp-dev                        # --metrics of the daemons
+)
+# dyncal is built without what these are for where they cannot be had.
+optional_build_packages=(
+  libsystemd-dev     # daemons tell systemd that they are ready
+  prometheus-cpp-dev # --metrics of the daemons
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
@@ -39,10 +42,14 @@ test_packages=(
 )
 
 wanted=()
+optional=()
 [[ $# -gt 0 ]] || set -- build
 for purpose in "$@"; do
   case $purpose in
-    build) wanted+=("${build_packages[@]}") ;;
+    build)
+      wanted+=("${build_packages[@]}")
+      optional+=("${optional_build_packages[@]}")
+      ;;
     run) wanted+=("${run_packages[@]}") ;;
     test) wanted+=("${test_packages[@]}") ;;
     *)
@@ -59,41 +66,54 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
 fi
 
 # dpkg-query fails for names it has never seen, which are missing like the others.
-installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
-  sed -n 's/^installed //p' || true)
-missing=()
-for package in "${wanted[@]}"; do
-  grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
-done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
+missing_of() {
+  local installed package
+  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null |
+    sed -n 's/^installed //p' || true)
+  for package in "$@"; do
+    grep -qxF -- "$package" <<<"$installed" || echo "$package"
+  done
+}
+mapfile -t missing < <(missing_of "${wanted[@]}")
+missing_optional=()
+[[ ${#optional[@]} -eq 0 ]] || mapfile -t missing_optional < <(missing_of "${optional[@]}")
+[[ $((${#missing[@]} + ${#missing_optional[@]})) -gt 0 ]] || exit 0
 
 as_root=()
 if [[ $EUID -ne 0 ]]; then
   if ! command -v sudo >/dev/null; then
     echo "install-packages.sh: neither root nor sudo; as root:" \
-      "apt-get install --no-install-recommends ${missing[*]}" >&2
-    exit 1
+      "apt-get install --no-install-recommends ${missing[*]} ${missing_optional[*]}" >&2
+    exit $((${#missing[@]} > 0))
   fi
   as_root=(sudo)
 fi
 
-install_missing() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes \
-    --no-install-recommends --no-remove --no-upgrade -o DPkg::Lock::Timeout=300 \
-    -o Dpkg::Use-Pty=0 "${missing[@]}"
-}
-
-echo "Installing from Debian: ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+
+install_once() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes \
+    --no-install-recommends --no-remove --no-upgrade -o DPkg::Lock::Timeout=300 \
+    -o Dpkg::Use-Pty=0 "$@" >"$log" 2>&1
+}
+
 # The usual reasons for a failure are package lists that were never fetched or have aged: fetch them
 # only then.
-if ! install_missing >"$log" 2>&1; then
+install() {
+  echo "Installing from Debian: $*"
+  install_once "$@" && return
   "${as_root[@]}" apt-get update -o DPkg::Lock::Timeout=300 -qq || true
-  if ! install_missing >"$log" 2>&1; then
-    tail -n 20 "$log" >&2
-    echo "install-packages.sh: apt-get could not install ${missing[*]};" \
-      "its last lines are above" >&2
-    exit 1
-  fi
+  install_once "$@"
+}
+
+if [[ ${#missing[@]} -gt 0 ]] && ! install "${missing[@]}"; then
+  tail -n 20 "$log" >&2
+  echo "install-packages.sh: apt-get could not install ${missing[*]};" \
+    "its last lines are above" >&2
+  exit 1
+fi
+if [[ ${#missing_optional[@]} -gt 0 ]] && ! install "${missing_optional[@]}"; then
+  echo "install-packages.sh: dyncal will be built without ${missing_optional[*]}," \
+    "which apt-get could not install" >&2
 fi

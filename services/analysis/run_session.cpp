@@ -167,8 +167,24 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     evaluate(now);
   }
   if (now >= next_status_) {
+    report_work(now);
     publisher_.publish(status_);
     next_status_ = now + status_interval;
+  }
+}
+
+// What takes longer than a result should: whoever waits for results goes on waiting.
+void RunSession::report_work(Instant now) {
+  if (status_.arm != wire::ARM_ARMED || status_.health != wire::HEALTH_OK) {
+    return;
+  }
+  status_.message.clear();
+  const auto waited = std::chrono::duration_cast<std::chrono::seconds>(now - last_progress_);
+  if (evaluator_->is_evaluating() && waited > status_interval) {
+    status_.message = fmt::format("evaluating a step, for {} s so far", waited.count());
+  } else if (streams_->is_catching_up() && streams_->recovered() > 0) {
+    status_.message = fmt::format("catching up with what the sources have sent: {} messages so far",
+                                  streams_->recovered());
   }
 }
 

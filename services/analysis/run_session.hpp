@@ -96,6 +96,7 @@ private:
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
+  void report_work(Instant now);
   void report(wire::HealthState health, std::string message);
   void wait_for_source(std::string message, Instant now);
   void refuse(std::string message);

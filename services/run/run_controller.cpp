@@ -232,7 +232,7 @@ void RunController::abort(const std::string& reason) {
 Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   const bool already_stopped = stop.stop_requested();
   Instant deadline = clock_.now() + results_limit;
-  std::size_t results_before = watch_->results_taken();
+  std::size_t signs_before = watch_->signs_of_work();
   while (!everything_has_come()) {
     const Instant heard = watch_->analysis_heard();
     const bool attended = clock_.now() - heard <= attention_limit;
@@ -246,11 +246,11 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
       watch_->set_state(wire::MEASUREMENT_ABORTED, "interrupted by the user");
     }
     const RunOutlook outlook = watch_->outlook();
-    const bool results_have_come = watch_->results_taken() != results_before;
+    const bool is_at_work = watch_->signs_of_work() != signs_before;
     const bool is_waited_for = (!attended || outlook.kind == Kind::waits) && !stop.stop_requested();
     const bool may_still_come = is_waited_for || (plays_files() && outlook.kind != Kind::over);
-    if (results_have_come || may_still_come) {
-      results_before = watch_->results_taken();
+    if (is_at_work || may_still_come) {
+      signs_before = watch_->signs_of_work();
       deadline = clock_.now() + results_limit;
     }
     if (clock_.now() - watch_->analysis_heard() > analysis_limit) {

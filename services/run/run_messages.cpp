@@ -153,7 +153,7 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 void RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
   recipe_sha256_ = outcome.recipe_sha256;
-  results_taken_ +=
+  signs_of_work_ +=
       take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
         return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
       });
@@ -167,6 +167,9 @@ void RunMessages::take(RunOutcome& outcome) {
 void RunMessages::take_status(RunOutcome& outcome) {
   endpoints_.status.take([&](const wire::ServiceStatus& status) {
     if (status.run().to_string() == run_ && follows(status)) {
+      const bool reports_work = !status.message().empty() && status.health() == wire::HEALTH_OK;
+      const bool is_news = !analysis_ || analysis_->message() != status.message();
+      signs_of_work_ += reports_work && is_news ? 1 : 0;
       analysis_ = status;
       analysis_heard_ = clock_->now();
       outcome.analysis_dds = status.dds();

@@ -43,8 +43,9 @@ public:
 
   // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
   void take(RunOutcome& outcome);
-  // How many results have come, those that came again too.
-  [[nodiscard]] std::size_t results_taken() const { return results_taken_; }
+  // How many results have come, those that came again too, and how often the analysis has reported
+  // that it is at work on them.
+  [[nodiscard]] std::size_t signs_of_work() const { return signs_of_work_; }
   [[nodiscard]] bool has_other_recipe() const { return other_recipe_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
@@ -78,7 +79,7 @@ private:
   Endpoints endpoints_;
   std::optional<wire::ServiceStatus> analysis_;
   bus::Clock::Instant analysis_heard_;
-  std::size_t results_taken_ = 0;
+  std::size_t signs_of_work_ = 0;
   std::string recipe_sha256_;
   bool other_recipe_ = false;   // in a result of this run
   wire::Excitation excitation_; // as announced last

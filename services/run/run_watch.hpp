@@ -62,7 +62,7 @@ public:
     return messages_.analysis();
   }
   [[nodiscard]] Instant analysis_heard() const { return messages_.analysis_heard(); }
-  [[nodiscard]] std::size_t results_taken() const { return messages_.results_taken(); }
+  [[nodiscard]] std::size_t signs_of_work() const { return messages_.signs_of_work(); }
   // A result of this run names another bench file.
   [[nodiscard]] bool has_other_recipe() const { return messages_.has_other_recipe(); }
   [[nodiscard]] RunOutlook outlook() const;

@@ -245,7 +245,7 @@ void StepSequence::end_pause() {
 
 Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
   Instant changed = watch_.clock().now();
-  std::size_t results_before = watch_.results_taken();
+  std::size_t signs_before = watch_.signs_of_work();
   while (!stop.stop_requested()) {
     watch_.follow("evaluating");
     for (const std::uint32_t step : watch_.commands().take_repeats()) {
@@ -262,8 +262,8 @@ Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
       excitation_->end();
       changed = watch_.clock().now();
     }
-    if (watch_.results_taken() != results_before) {
-      results_before = watch_.results_taken();
+    if (watch_.signs_of_work() != signs_before) {
+      signs_before = watch_.signs_of_work();
       changed = watch_.clock().now();
     }
     const auto quiet = watch_.clock().now() - changed;
