@@ -63,9 +63,14 @@ ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
 
 void ExciterGuard::take_messages() {
   excitation_.take([&](const wire::Excitation& excitation) {
-    if (excitation.bench().to_string() == bench_) {
-      heard(excitation.run().to_string()).driven = is_driven(excitation);
+    if (excitation.bench().to_string() != bench_) {
+      return;
     }
+    const std::string name = excitation.run().to_string();
+    if (!runs_.contains(name)) {
+      spdlog::info("bench {}: watching over run {}", bench_, name);
+    }
+    heard(name).driven = is_driven(excitation);
   });
 }
 

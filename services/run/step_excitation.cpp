@@ -193,10 +193,14 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
   output_may_be_on_ = true;
-  const auto set = generator()
-                       .set_frequency(step.frequency_text_hz())
-                       .and_then([&] { return generator().set_amplitude_v(voltage_v); })
-                       .and_then([&] { return generator().set_output(true); });
+  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
+    return generator().set_amplitude_v(voltage_v);
+  });
+  if (set) {
+    // Before the output is on: from then on dyncal-guard must know of it, whatever becomes of us.
+    announce(step, wire::EXCITATION_SETTLING);
+    set = generator().set_output(true);
+  }
   if (!set) {
     return fail(reported(set.error()));
   }
@@ -207,7 +211,6 @@ Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double
   if (!began) {
     return fail(reported(began.error()));
   }
-  announce(step, wire::EXCITATION_SETTLING);
   return *began;
 }
 

@@ -26,6 +26,7 @@ TEST_P(UnattendedExciter, IsSwitchedOffByTheGuardOfTheBench) {
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
   ASSERT_TRUE(bench.wait_for_output("ON"));
+  ASSERT_TRUE(guard.wait_for_error_text("watching over run", patience));
   EXPECT_EQ(guard.errors().find("switched off"), std::string::npos) << guard.errors();
   run.send(SIGSTOP);
   EXPECT_TRUE(bench.wait_for_output("OFF")) << guard.errors();
