@@ -359,6 +359,24 @@ TEST_F(RunControllerTest, WaitsAnewAfterEveryResult) {
   EXPECT_EQ(outcome->results.size(), 3U);
 }
 
+TEST_F(RunControllerTest, WaitsAsLongAsTheAnalysisIsAtWork) {
+  play_analysis();
+  for (int i = 1; i <= 5 * RunController::results_limit.count(); ++i) {
+    clock_.at(6s + std::chrono::seconds(i), [this, i] {
+      analysis_.report(wire::ARM_ARMED, wire::HEALTH_OK,
+                       "evaluating a step, for " + std::to_string(i) + " s so far");
+    });
+  }
+  clock_.at(6s + 5 * RunController::results_limit + 1s, [this] {
+    analysis_.publish_result(1);
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 1U);
+}
+
 TEST_F(RunControllerTest, EndsWhenTheAnalysisDiesBeforeTheLastResult) {
   play_analysis();
   clock_.at(7s, [this] { finished_ = true; }); // and says nothing any more
