@@ -12,7 +12,6 @@ namespace dyncal::services {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
 
 constexpr const char* bench_name = "b";
 constexpr const char* run_name = "r1";
