@@ -222,6 +222,9 @@ void RunSession::take_samples(const KnownSources& sources, Instant now) {
     return;
   }
   streams_->take_samples(now);
+  if (std::string gone = streams_->what_is_gone(); !gone.empty()) {
+    refuse(std::move(gone));
+  }
 }
 
 void RunSession::arm(const KnownSources& sources, Instant now) {

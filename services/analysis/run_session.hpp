@@ -13,8 +13,9 @@
 //
 // A session that begins in the middle of its run (the service was started late, or another one has
 // died) asks every source for what it has sent since its answer, and gives the results that the
-// other would have: the same samples, the same bits. What was announced meanwhile counts when the
-// samples have come, here and after a link was down (stream_follower.hpp).
+// other would have: the same samples, the same bits. Where a source does not have the beginning any
+// more, the run is refused: steps could be taken for others. What was announced meanwhile counts
+// when the samples have come, here and after a link was down (stream_follower.hpp).
 //
 // One bench, one run: what one run excites, another would take for its own. A run that finds
 // another of its bench before it waits for the end of that one for `bench_limit`, and is refused as

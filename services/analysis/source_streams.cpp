@@ -215,6 +215,19 @@ bool SourceStreams::is_catching_up() const {
   });
 }
 
+std::string SourceStreams::what_is_gone() const {
+  for (const auto& [name, stream] : streams_) {
+    if (stream.follower &&
+        std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
+      return fmt::format("source '{}' of bench '{}' no longer has what it sent at the beginning of "
+                         "the run, so the run cannot be taken over; what was measured before is "
+                         "kept: measure the rest in another run",
+                         name, bench_);
+    }
+  }
+  return "";
+}
+
 std::uint64_t SourceStreams::recovered() const {
   std::uint64_t messages = 0;
   for (const auto& [name, stream] : streams_) {

@@ -62,6 +62,9 @@ public:
   [[nodiscard]] const std::string& asker() const { return asker_; }
   void close_readers();
 
+  // One sentence about the first source that no longer has what it sent at the beginning of a run
+  // that began before this service; empty if none. Steps would be taken for others.
+  [[nodiscard]] std::string what_is_gone() const;
   // Some source's messages are behind what it has sent.
   [[nodiscard]] bool is_catching_up() const;
   // Messages that had to be asked for.

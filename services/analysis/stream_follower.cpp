@@ -61,6 +61,9 @@ bool StreamFollower<Message>::follows(const Message& message) const {
 
 template <class Message>
 void StreamFollower<Message>::accept(const Message& message) {
+  if (std::exchange(awaits_beginning_, false)) {
+    lacks_beginning_ = message.acknowledged_run() != run_;
+  }
   if (const auto position = position_of(message)) {
     if (newest_ && newest_->session != position->session) {
       left_.insert(newest_->session);

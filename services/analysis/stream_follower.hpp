@@ -57,13 +57,18 @@ public:
       : run_(std::move(run)), asker_(std::move(asker)), hand_over_(std::move(hand_over)) {}
 
   // The run began before: everything from the source's answer on is to be asked for.
-  void begin_behind(Instant now) { begin_catch_up(now); }
+  void begin_behind(Instant now) {
+    awaits_beginning_ = true;
+    begin_catch_up(now);
+  }
   void take_live(const Message& message, Instant now);
   void take_again(const Message& message, Instant now);
   // What has to be asked for now, again and again while nothing comes.
   [[nodiscard]] std::optional<CatchUp> due(Instant now);
 
   [[nodiscard]] bool answered() const { return answered_; }
+  // Begun in the middle of a run, and the source does not have what it sent from its answer on.
+  [[nodiscard]] bool lacks_beginning() const { return lacks_beginning_; }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool catching_up() const { return request_.has_value(); }
   // When a message came last that was not known.
@@ -90,6 +95,8 @@ private:
   std::string run_;
   std::string asker_;
   HandOver hand_over_;
+  bool awaits_beginning_ = false;
+  bool lacks_beginning_ = false;
   bool answered_ = false;
   bool ended_ = false;
   std::optional<StreamPosition> newest_; // that was handed over

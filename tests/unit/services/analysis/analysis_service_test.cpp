@@ -56,6 +56,7 @@ protected:
     clock_.every(100ms, [this] {
       for (PlayedSource* source : {&acs_, &dau_}) {
         source->answer_commands();
+        source->answer_requests();
         source->send_nothing();
       }
     });
@@ -111,14 +112,21 @@ TEST_F(AnalysisServiceTest, LeavesARunAloneThatHasEndedBeforeIt) {
 }
 
 TEST_F(AnalysisServiceTest, TakesARunOverThatNobodyLeads) {
+  acs_.answer("r1"); // to a service that has died
+  dau_.answer("r1");
   play_sources();
   clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
   serve_for(2s + OtherAnalyses::silence_limit - 100ms);
   EXPECT_TRUE(published_.statuses().empty());
-  serve_for(300ms);
+  serve_for(5s);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
-  EXPECT_FALSE(acs_.answer_requests().empty());
-  EXPECT_FALSE(dau_.answer_requests().empty());
+}
+
+TEST_F(AnalysisServiceTest, RefusesARunThatItCannotTakeOverFromItsBeginning) {
+  play_sources(); // they have never answered for this run
+  clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
+  serve_for(10s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_REFUSED);
 }
 
 TEST_F(AnalysisServiceTest, EndsARunWhoseRunnerIsLost) {

@@ -91,6 +91,9 @@ public:
     kept_.push_back(block);
   }
 
+  // As if it had been too long ago.
+  void forget_what_was_sent() { kept_.clear(); }
+
   // Requests that came, without repeats; each is answered with what is kept behind its message, or
   // from the answer to ARM on.
   std::vector<wire::CatchUpRequest> answer_requests() {
@@ -134,11 +137,13 @@ private:
       asker_ = request.asker().to_string();
       again_.emplace(participant_.writer(bus::topics::catch_up_samples, asker_).value());
     }
-    const auto begin =
-        std::find_if(kept_.begin(), kept_.end(), [&](const wire::SampleBlock& block) {
-          return request.session() == 0 ? block.acknowledged_run() == request.run()
-                                        : block.block() > request.after();
-        });
+    auto begin = std::find_if(kept_.begin(), kept_.end(), [&](const wire::SampleBlock& block) {
+      return request.session() == 0 ? block.acknowledged_run() == request.run()
+                                    : block.block() > request.after();
+    });
+    if (begin == kept_.end() && request.session() == 0) {
+      begin = kept_.begin();
+    }
     std::for_each(begin, kept_.end(),
                   [&](const wire::SampleBlock& block) { again_->write(block); });
     wire::SampleBlock end = empty_block();

@@ -4,11 +4,10 @@
 
 #include <optional>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/analysis/played_sources.hpp"
+#include "tests/unit/services/analysis/played_session.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -16,81 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 using tests::PlayedSource;
-
-class RunSessionTest : public testing::Test {
-protected:
-  tests::SyntheticRun synthetic_{.steps = {{"40", 10.0}}};
-  bus::SteppedClock clock_;
-  bus::MemoryNetwork network_{clock_};
-  bus::Participant participant_ = network_.join("analysis");
-  std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
-  KnownSources sources_;
-  PlayedSource acs_{network_, synthetic_.acs_description()};
-  PlayedSource dau_{network_, synthetic_.dau_description()};
-  tests::PublishedByAnalysis published_{network_};
-  std::unique_ptr<RunSession> session_ = create(synthetic_.measurement());
-
-  std::unique_ptr<RunSession> create(const wire::Measurement& measurement) {
-    const AnalysisContext context{participant_,
-                                  clock_,
-                                  wake_up_,
-                                  {.service = "analysis@test:1", .host = "test", .dds = "memory"}};
-    return RunSession::create(context, measurement).value();
-  }
-
-  void describe(const PlayedSource& source) {
-    sources_[source.name()].description = source.description();
-  }
-  void report(const PlayedSource& source, wire::SourceState state, const std::string& message) {
-    wire::SourceStatus status;
-    status.state(state);
-    status.message(message);
-    sources_[source.name()].status = status;
-  }
-  void set_state(wire::MeasurementState state) {
-    wire::Measurement measurement = synthetic_.measurement();
-    measurement.state(state);
-    session_->update(measurement);
-  }
-  void work() { session_->work(sources_); }
-  // As a service that runs: it works at least every 500 ms.
-  void pass(std::chrono::nanoseconds time) {
-    for (; time > 500ms; time -= 500ms) {
-      clock_.advance(500ms);
-      work();
-    }
-    clock_.advance(time);
-    work();
-  }
-  wire::ArmState arm_state() { return published_.newest_status().arm(); }
-
-  // Arms at once.
-  void arm() {
-    for (PlayedSource* source : {&acs_, &dau_}) {
-      describe(*source);
-    }
-    work();
-    acs_.answer(tests::played_run);
-    dau_.answer(tests::played_run);
-    work();
-    ASSERT_EQ(arm_state(), wire::ARM_ARMED);
-  }
-  void arm_and_run() {
-    arm();
-    set_state(wire::MEASUREMENT_RUNNING);
-  }
-  // Works every 100 ms, with the run kept alive and these sources sending.
-  void run_for(std::chrono::milliseconds time, const std::vector<PlayedSource*>& sending) {
-    for (; time > 0ms; time -= 100ms) {
-      clock_.advance(100ms);
-      set_state(wire::MEASUREMENT_RUNNING);
-      for (PlayedSource* source : sending) {
-        source->send_nothing();
-      }
-      work();
-    }
-  }
-};
 
 TEST_F(RunSessionTest, ArmsWhenEverySourceHasAnsweredInItsStream) {
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
@@ -512,113 +436,6 @@ TEST_F(RunSessionTest, GivesALateJoinerItsStatusAndResults) {
   session_.reset();
   tests::PublishedByAnalysis too_late(network_, "too late");
   EXPECT_TRUE(too_late.results().empty());
-}
-
-// Runs of which samples were lost, or that began before this service: the results are those of an
-// undisturbed run, bit for bit.
-class RunSessionCatchUp : public RunSessionTest {
-protected:
-  static std::vector<std::string> bits_of(const std::vector<wire::CalibrationResult>& results) {
-    std::vector<std::string> bits;
-    for (const wire::CalibrationResult& result : results) {
-      bits.push_back(fmt::format("{} {:a} {:a} {:a} {:a} {} {}", result.valid(), result.magnitude(),
-                                 result.u_magnitude(), result.phase_rad(), result.u_phase_rad(),
-                                 result.lost(), result.flags().size()));
-    }
-    return bits;
-  }
-  void excite(wire::ExcitationState state) {
-    wire::Excitation excitation;
-    excitation.bench(tests::played_bench);
-    excitation.run(tests::played_run);
-    excitation.step(1);
-    excitation.state(state);
-    session_->announce(excitation);
-  }
-  void finish() {
-    excite(wire::EXCITATION_DONE);
-    set_state(wire::MEASUREMENT_DONE);
-    for (int i = 0; i < 20 && !session_->finished(); ++i) {
-      pass(100ms);
-      acs_.answer_requests();
-      dau_.answer_requests();
-    }
-    EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
-  }
-};
-
-// The same run in a network of its own, with nothing lost.
-class UndisturbedRun : public RunSessionCatchUp {
-public:
-  void TestBody() override {}
-  std::vector<std::string> results() {
-    arm_and_run();
-    excite(wire::EXCITATION_SETTLING);
-    acs_.send(synthetic_.acs_blocks());
-    dau_.send(synthetic_.dau_blocks());
-    finish();
-    return bits_of(published_.results());
-  }
-};
-
-TEST_F(RunSessionCatchUp, GivesTheSameResultWithBlocksThatHadToBeAskedFor) {
-  const auto expected = UndisturbedRun().results();
-  ASSERT_EQ(expected.size(), 1U);
-  ASSERT_EQ(expected[0].substr(0, 4), "true");
-  arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
-  acs_.send(synthetic_.acs_blocks());
-  const auto blocks = synthetic_.dau_blocks();
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (i % 3 == 1) {
-      dau_.lose(blocks[i]);
-    } else {
-      dau_.send({blocks[i]});
-    }
-    pass(10ms);
-  }
-  EXPECT_EQ(dau_.answer_requests().size(), 1U);
-  finish();
-  EXPECT_EQ(bits_of(published_.results()), expected);
-}
-
-TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
-  const auto expected = UndisturbedRun().results();
-  arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
-  acs_.send(synthetic_.acs_blocks());
-  for (const wire::SampleBlock& block : synthetic_.dau_blocks()) {
-    dau_.lose(block);
-  }
-  excite(wire::EXCITATION_DONE);
-  run_for(60s, {}); // the step has long been over, but its samples are on the way
-  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
-  EXPECT_TRUE(published_.results().empty());
-  finish();
-  EXPECT_EQ(bits_of(published_.results()), expected);
-  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
-}
-
-TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
-  const auto expected = UndisturbedRun().results();
-  arm_and_run();
-  acs_.send(synthetic_.acs_blocks());
-  dau_.send(synthetic_.dau_blocks());
-  session_.reset(); // died
-  wire::Measurement running = synthetic_.measurement();
-  running.state(wire::MEASUREMENT_RUNNING);
-  const AnalysisContext context{participant_,
-                                clock_,
-                                wake_up_,
-                                {.service = "analysis@test:2", .host = "test", .dds = "memory"}};
-  session_ = RunSession::create(context, running, SourceStreams::Begin::behind).value();
-  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
-  work();
-  acs_.send_nothing();
-  work();
-  finish();
-  EXPECT_EQ(published_.newest_status().service().to_string(), "analysis@test:2");
-  EXPECT_EQ(bits_of(published_.results()), expected);
 }
 
 class RunSessionLevel : public RunSessionTest {

@@ -236,6 +236,21 @@ TEST_F(StreamFollowerTest, BegunBehindItAsksForEverythingFromTheAnswerOn) {
   end_of("asker 1");
   EXPECT_EQ(handed_over_, (Numbers{5, 6, 7, 8, 9, 10}));
   EXPECT_TRUE(follower_.answered());
+  EXPECT_FALSE(follower_.lacks_beginning());
+}
+
+TEST_F(StreamFollowerTest, BegunBehindItNoticesThatTheBeginningIsGone) {
+  follower_.begin_behind(now_);
+  again(8); // the oldest that the source has
+  EXPECT_TRUE(follower_.lacks_beginning());
+}
+
+TEST_F(StreamFollowerTest, BegunBehindASourceThatHasNothingItNoticesThatTheBeginningIsGone) {
+  follower_.begin_behind(now_);
+  end_of("asker 1");
+  EXPECT_FALSE(follower_.lacks_beginning());
+  live(9);
+  EXPECT_TRUE(follower_.lacks_beginning());
 }
 
 TEST_F(StreamFollowerTest, ThrowsAwayWhatItCannotHoldAndAsksForIt) {

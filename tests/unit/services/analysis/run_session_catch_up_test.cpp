@@ -1,0 +1,142 @@
+// What a run at the analysis service makes of samples that had to be asked for. No real time
+// passes.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "tests/unit/services/analysis/played_session.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Runs of which samples were lost, or that began before this service: the results are those of an
+// undisturbed run, bit for bit.
+class RunSessionCatchUp : public RunSessionTest {
+protected:
+  static std::vector<std::string> bits_of(const std::vector<wire::CalibrationResult>& results) {
+    std::vector<std::string> bits;
+    for (const wire::CalibrationResult& result : results) {
+      bits.push_back(fmt::format("{} {:a} {:a} {:a} {:a} {} {}", result.valid(), result.magnitude(),
+                                 result.u_magnitude(), result.phase_rad(), result.u_phase_rad(),
+                                 result.lost(), result.flags().size()));
+    }
+    return bits;
+  }
+  void excite(wire::ExcitationState state) {
+    wire::Excitation excitation;
+    excitation.bench(tests::played_bench);
+    excitation.run(tests::played_run);
+    excitation.step(1);
+    excitation.state(state);
+    session_->announce(excitation);
+  }
+  // Another service takes the run over.
+  void begin_behind() {
+    wire::Measurement running = synthetic_.measurement();
+    running.state(wire::MEASUREMENT_RUNNING);
+    const AnalysisContext context{participant_,
+                                  clock_,
+                                  wake_up_,
+                                  {.service = "analysis@test:2", .host = "test", .dds = "memory"}};
+    session_ = RunSession::create(context, running, SourceStreams::Begin::behind).value();
+  }
+  void finish() {
+    excite(wire::EXCITATION_DONE);
+    set_state(wire::MEASUREMENT_DONE);
+    for (int i = 0; i < 20 && !session_->finished(); ++i) {
+      pass(100ms);
+      acs_.answer_requests();
+      dau_.answer_requests();
+    }
+    EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+  }
+};
+
+// The same run in a network of its own, with nothing lost.
+class UndisturbedRun : public RunSessionCatchUp {
+public:
+  void TestBody() override {}
+  std::vector<std::string> results() {
+    arm_and_run();
+    excite(wire::EXCITATION_SETTLING);
+    acs_.send(synthetic_.acs_blocks());
+    dau_.send(synthetic_.dau_blocks());
+    finish();
+    return bits_of(published_.results());
+  }
+};
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultWithBlocksThatHadToBeAskedFor) {
+  const auto expected = UndisturbedRun().results();
+  ASSERT_EQ(expected.size(), 1U);
+  ASSERT_EQ(expected[0].substr(0, 4), "true");
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(synthetic_.acs_blocks());
+  const auto blocks = synthetic_.dau_blocks();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i % 3 == 1) {
+      dau_.lose(blocks[i]);
+    } else {
+      dau_.send({blocks[i]});
+    }
+    pass(10ms);
+  }
+  EXPECT_EQ(dau_.answer_requests().size(), 1U);
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
+  const auto expected = UndisturbedRun().results();
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(synthetic_.acs_blocks());
+  for (const wire::SampleBlock& block : synthetic_.dau_blocks()) {
+    dau_.lose(block);
+  }
+  excite(wire::EXCITATION_DONE);
+  run_for(60s, {}); // the step has long been over, but its samples are on the way
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_TRUE(published_.results().empty());
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+}
+
+TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
+  const auto expected = UndisturbedRun().results();
+  arm_and_run();
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  session_.reset(); // died
+  begin_behind();
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+  work();
+  acs_.send_nothing();
+  work();
+  finish();
+  EXPECT_EQ(published_.newest_status().service().to_string(), "analysis@test:2");
+  EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+TEST_F(RunSessionCatchUp, RefusesARunOfWhichASourceHasTheBeginningNoMore) {
+  arm_and_run();
+  dau_.forget_what_was_sent();
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  session_.reset(); // died
+  begin_behind();
+  work();
+  acs_.answer_requests();
+  dau_.answer_requests();
+  work();
+  EXPECT_EQ(arm_state(), wire::ARM_REFUSED);
+  EXPECT_THAT(published_.newest_status().message(),
+              testing::StartsWith("source 'dau' of bench 'synthetic' no longer has what it sent"));
+  EXPECT_TRUE(published_.results().empty()); // in place of what the other had found
+}
+
+} // namespace
+} // namespace dyncal::services
