@@ -65,25 +65,41 @@ struct Waves {
   Lanes sine[wave_rows], cosine[wave_rows];
 };
 
-// The next multiple of the phase.
-inline void next_order(const Waves& first, const Waves& from, std::size_t rows, Waves& to) {
-  for (std::size_t r = 0; r < rows; ++r) {
-    const Lanes s = from.sine[r];
-    const Lanes c = from.cosine[r];
-    to.sine[r] = fused(s, first.cosine[r], c * first.sine[r]);
-    to.cosine[r] = fused_less(s, first.sine[r], c * first.cosine[r]);
-  }
+// Sine and cosine of a multiple of the phase, and of the multiple one higher than `from`.
+struct WaveRow {
+  Lanes sine, cosine;
+};
+inline WaveRow next_order(const WaveRow& first, const WaveRow& from) {
+  return {fused(from.sine, first.cosine, from.cosine * first.sine),
+          fused_less(from.sine, first.sine, from.cosine * first.cosine)};
 }
 
-inline void add_design(const Waves& wave, std::size_t rows, double* design) {
-  LaneSums<line_design_sums> all(design);
+inline void add_design(const WaveRow& wave, Lanes* sums) {
+  sums[0] = sums[0] + wave.sine;
+  sums[1] = sums[1] + wave.cosine;
+  sums[2] = fused(wave.sine, wave.sine, sums[2]);
+  sums[3] = fused(wave.sine, wave.cosine, sums[3]);
+}
+
+// The next orders from the one in `before`, which is then the last of them. With `from_first` the
+// first of them is the phase itself.
+template <bool from_first>
+inline void next_orders(const Waves& first, Waves& before, std::size_t rows, Waves* waves,
+                        double* design) {
+  LaneSums<orders_at_once * line_design_sums> all(design);
   for (std::size_t r = 0; r < rows; ++r) {
-    const Lanes s = wave.sine[r];
-    const Lanes c = wave.cosine[r];
-    all.sums[0] = all.sums[0] + s;
-    all.sums[1] = all.sums[1] + c;
-    all.sums[2] = fused(s, s, all.sums[2]);
-    all.sums[3] = fused(s, c, all.sums[3]);
+    const WaveRow one{first.sine[r], first.cosine[r]};
+    WaveRow wave{before.sine[r], before.cosine[r]};
+    for (std::size_t k = 0; k < orders_at_once; ++k) {
+      if (!from_first || k > 0) {
+        wave = next_order(one, wave);
+      }
+      add_design(wave, all.sums + k * line_design_sums);
+      waves[k].sine[r] = wave.sine;
+      waves[k].cosine[r] = wave.cosine;
+    }
+    before.sine[r] = wave.sine;
+    before.cosine[r] = wave.cosine;
   }
   all.keep();
 }
@@ -109,22 +125,23 @@ void line_sums(const BlockBasis& basis, std::size_t n, std::size_t first_order, 
     const std::size_t left = (n - i + lanes - 1) / lanes;
     const std::size_t rows = left < wave_rows ? left : wave_rows;
     for (std::size_t r = 0; r < rows; ++r) {
-      before.sine[r] = first.sine[r] = Lanes::load(basis.sine + i + r * lanes);
-      before.cosine[r] = first.cosine[r] = Lanes::load(basis.cosine + i + r * lanes);
-    }
-    for (std::size_t order = 2; order < first_order; ++order) {
-      next_order(first, before, rows, before);
+      WaveRow wave{Lanes::load(basis.sine + i + r * lanes),
+                   Lanes::load(basis.cosine + i + r * lanes)};
+      first.sine[r] = wave.sine;
+      first.cosine[r] = wave.cosine;
+      for (std::size_t order = 2; order < first_order; ++order) {
+        wave = next_order({first.sine[r], first.cosine[r]}, wave);
+      }
+      before.sine[r] = wave.sine;
+      before.cosine[r] = wave.cosine;
     }
     for (std::size_t k = 0; k < orders; k += orders_at_once) {
-      for (std::size_t o = 0; o < orders_at_once; ++o) {
-        if (k + o == 0 && first_order == 1) {
-          waves[0] = first;
-        } else {
-          next_order(first, o == 0 ? before : waves[o - 1], rows, waves[o]);
-        }
-        add_design(waves[o], rows, design + (k + o) * line_design_sums * lanes);
+      double* const design_of_orders = design + k * line_design_sums * lanes;
+      if (k == 0 && first_order == 1) {
+        next_orders<true>(first, before, rows, waves, design_of_orders);
+      } else {
+        next_orders<false>(first, before, rows, waves, design_of_orders);
       }
-      before = waves[orders_at_once - 1];
       for (std::size_t j = 0; j < channels; ++j) {
         add_products(residuals[j] + i, waves, rows, sums[j] + 2 * k * lanes);
       }
