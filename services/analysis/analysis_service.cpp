@@ -86,21 +86,24 @@ void AnalysisService::take_messages() {
     const RunKey key{excitation.bench().to_string(), excitation.run().to_string()};
     if (const auto session = runs_.find(key); session != runs_.end()) {
       session->second->announce(excitation);
-    } else if (const auto followed = followed_.find(key); followed != followed_.end()) {
-      followed->second.excitation = excitation;
+    } else { // perhaps before anything was heard of its run: topics have no order among each other
+      followed(key).excitation = excitation;
     }
   });
 }
 
 void AnalysisService::take_measurement(const wire::Measurement& measurement) {
   const RunKey key{measurement.bench().to_string(), measurement.run().to_string()};
-  if (const auto known = runs_.find(key); known != runs_.end()) {
-    known->second->update(measurement);
+  if (const auto session = runs_.find(key); session != runs_.end()) {
+    session->second->update(measurement);
     return;
   }
   // Who leads the run before on this bench leads the next one, too: it alone knows its end.
-  const bool begins = measurement.state() == wire::MEASUREMENT_PLANNED && !followed_.contains(key);
+  const auto known = followed_.find(key);
+  const bool is_new = known == followed_.end() || known->second.messages == 0;
+  const bool begins = measurement.state() == wire::MEASUREMENT_PLANNED && is_new;
   if (begins && !others_.leader(key, context_.clock.now()) && !follows_bench(key.first)) {
+    followed_.erase(key);
     begin_run(key, measurement, SourceStreams::Begin::with_answer);
   } else {
     follow(key, measurement);
@@ -108,19 +111,27 @@ void AnalysisService::take_measurement(const wire::Measurement& measurement) {
 }
 
 void AnalysisService::follow(const RunKey& key, const wire::Measurement& measurement) {
+  FollowedRun& run = followed(key);
   const Instant now = context_.clock.now();
-  const auto [found, is_new] = followed_.try_emplace(key);
-  FollowedRun& run = found->second;
-  run.since = is_new ? now : run.since;
+  run.since = run.messages == 0 ? now : run.since;
   run.measurement = measurement;
   run.heard = now;
   ++run.messages;
-  if (followed_.size() > max_followed) {
+}
+
+AnalysisService::FollowedRun& AnalysisService::followed(const RunKey& key) {
+  if (const auto known = followed_.find(key); known != followed_.end()) {
+    return known->second;
+  }
+  if (followed_.size() >= max_followed) {
     followed_.erase(
         std::min_element(followed_.begin(), followed_.end(), [](const auto& a, const auto& b) {
           return a.second.heard < b.second.heard;
         }));
   }
+  FollowedRun& run = followed_[key];
+  run.since = run.heard = context_.clock.now();
+  return run;
 }
 
 bool AnalysisService::follows_bench(const std::string& bench) const {

@@ -57,8 +57,8 @@ private:
     wire::Measurement measurement;
     std::optional<wire::Excitation> excitation;
     Instant since;
-    Instant heard; // of the run
-    int messages = 0;
+    Instant heard;           // of the run
+    int messages = 0;        // of the run itself; none as long as only its excitation was heard of
     bool left_alone = false; // its leader had other software
   };
 
@@ -67,6 +67,7 @@ private:
   void take_messages();
   void take_measurement(const wire::Measurement& measurement);
   void follow(const RunKey& key, const wire::Measurement& measurement);
+  [[nodiscard]] FollowedRun& followed(const RunKey& key);
   [[nodiscard]] bool follows_bench(const std::string& bench) const;
   void begin_run(const RunKey& key, const wire::Measurement& measurement,
                  SourceStreams::Begin begin);

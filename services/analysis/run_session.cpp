@@ -234,18 +234,20 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
       publisher_.ask_for_answer(source);
     }
   }
-  const std::string missing = streams_->what_is_missing(sources);
+  const auto missing = streams_->what_is_missing(sources);
   const std::string other_file = streams_->what_differs(evaluator_->recipe().source_settings);
-  if (missing.empty() && !other_file.empty()) {
+  if (!missing && !other_file.empty()) {
     refuse(other_file);
-  } else if (missing.empty()) {
+  } else if (!missing) {
     status_.arm = wire::ARM_ARMED;
     status_.message.clear();
     last_progress_ = now;
     spdlog::info("bench {}, run {}: armed", bench_, run_);
     publisher_.publish(status_);
-  } else if (now - arms_since_ > arm_limit) {
-    refuse(missing);
+  } else if (missing->is_starting && now - arms_since_ <= starting_limit) {
+    starting_ = now;
+  } else if (now - std::max(arms_since_, starting_) > arm_limit || missing->is_starting) {
+    refuse(missing->sentence);
   }
 }
 

@@ -5,7 +5,8 @@
 // silent, and has answered the ARM command in its own sample stream, so commands arrive there and
 // samples arrive here (idl/README.md, "The run protocol").
 //
-// Limits: a run that is not armed within `arm_limit` is refused with one sentence. A live source
+// Limits: a run that is not armed within `arm_limit` is refused with one sentence; a source that is
+// there and has yet to describe its channels is waited for up to `starting_limit`. A live source
 // that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to `patience`, then
 // FAILED. Once the excitation is over and nothing was published for `quiet_limit`, or nothing was
 // heard of the run for `runner_limit`, it ends with what there is. Time in which this process did
@@ -52,6 +53,7 @@ struct AnalysisContext {
 class RunSession {
 public:
   static constexpr std::chrono::seconds arm_limit{6};
+  static constexpr std::chrono::seconds starting_limit{15};
   static constexpr std::chrono::seconds bench_limit{5};
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds patience{120};
@@ -123,6 +125,7 @@ private:
   std::optional<bool> excitation_ended_; // true: aborted
   Instant created_;
   Instant arms_since_; // since when it has the bench to itself
+  Instant starting_;   // when a source had yet to describe itself, the last time
   Instant last_heard_of_run_;
   Instant last_progress_;
   Instant worked_;              // when work() was called last

@@ -248,33 +248,37 @@ std::vector<std::string> SourceStreams::unanswered() const {
   return names;
 }
 
-std::string SourceStreams::what_is_missing(const KnownSources& known) const {
+std::optional<SourceStreams::Missing>
+SourceStreams::what_is_missing(const KnownSources& known) const {
   for (const auto& [name, stream] : streams_) {
     const auto found = known.find(name);
     if (found == known.end()) {
-      return fmt::format("source '{}' of bench '{}' is not on the network; is its service running "
-                         "with this bench file, in the same DDS domain?",
-                         name, bench_);
+      return Missing{
+          fmt::format("source '{}' of bench '{}' is not on the network; is its service running "
+                      "with this bench file, in the same DDS domain?",
+                      name, bench_)};
     }
     const KnownSource& source = found->second;
     if (is_silent(source)) {
-      return fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
-                         reason_given_by(source));
+      return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
+                                 reason_given_by(source))};
     }
     if (stream.twins.twins()) {
-      return two_send_as(name);
+      return Missing{two_send_as(name)};
     }
     if (!stream.follower) {
-      return fmt::format("source '{}' of bench '{}' has not described its channels yet{}", name,
-                         bench_, reason_given_by(source));
+      return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
+                                 name, bench_, reason_given_by(source)),
+                     true};
     }
     if (!has_answered(stream)) {
-      return fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
-                         "samples get through from its host to this one?",
-                         name, bench_);
+      return Missing{
+          fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
+                      "samples get through from its host to this one?",
+                      name, bench_)};
     }
   }
-  return "";
+  return std::nullopt;
 }
 
 std::string

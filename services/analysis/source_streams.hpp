@@ -36,6 +36,12 @@ struct LostSource {
 
 class SourceStreams {
 public:
+  // Why a run is not armed yet.
+  struct Missing {
+    std::string sentence;
+    bool is_starting = false; // a source that is there and has yet to describe its channels
+  };
+
   using Instant = bus::Clock::Instant;
 
   static constexpr std::chrono::seconds session_limit{5};
@@ -73,7 +79,7 @@ public:
   // Sources that have described themselves and are to be asked for an answer.
   [[nodiscard]] std::vector<std::string> unanswered() const;
   // One sentence about the first source that keeps the run from being armed; empty if none does.
-  [[nodiscard]] std::string what_is_missing(const KnownSources& known) const;
+  [[nodiscard]] std::optional<Missing> what_is_missing(const KnownSources& known) const;
   // One sentence about the first source whose service has read another bench file than the run, by
   // the settings that the run has for each; empty if none has.
   [[nodiscard]] std::string

@@ -122,6 +122,28 @@ TEST_F(AnalysisServiceTest, TakesARunOverThatNobodyLeads) {
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
 }
 
+// Without it the run would end with what the samples show, before the conductor has ended it.
+TEST_F(AnalysisServiceTest, KnowsTheExcitationThatItHeardOfBeforeItsRun) {
+  acs_.answer("r1"); // to a service that has died
+  dau_.answer("r1");
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  play_sources();
+  auto excitations = runner_.writer<wire::Excitation>(bus::topics::excitation, bus::Profile::state,
+                                                      tests::played_bench);
+  wire::Excitation excitation;
+  excitation.bench(tests::played_bench);
+  excitation.run("r1");
+  excitation.step(1);
+  excitation.state(wire::EXCITATION_ABORTED);
+  excitations->write(excitation);
+  serve_for(100ms);
+  clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
+  serve_for(30s);
+  ASSERT_FALSE(published_.results().empty());
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+}
+
 TEST_F(AnalysisServiceTest, RefusesARunThatItCannotTakeOverFromItsBeginning) {
   play_sources(); // they have never answered for this run
   clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });

@@ -73,6 +73,7 @@ protected:
     bool described;
     std::optional<wire::SourceState> state;
     std::string sentence;
+    std::chrono::seconds limit = RunSession::arm_limit;
   };
   // What keeps the DAU from being armed.
   static Case case_of(int number) {
@@ -85,7 +86,8 @@ protected:
       return {true, wire::SOURCE_FAILED, "source 'dau' of bench 'synthetic' is silent: no packets"};
     case 3:
       return {false, wire::SOURCE_STARTING,
-              "source 'dau' of bench 'synthetic' has not described its channels yet: no packets"};
+              "source 'dau' of bench 'synthetic' has not described its channels yet: no packets",
+              RunSession::starting_limit};
     default:
       return {true, wire::SOURCE_RUNNING,
               "source 'dau' of bench 'synthetic' does not answer in its sample stream"};
@@ -106,7 +108,7 @@ TEST_P(RunSessionArming, IsRefusedJustAfterItsLimitWithTheCause) {
   }
   work();
   acs_.answer_commands();
-  clock_.advance(RunSession::arm_limit);
+  clock_.advance(one.limit);
   work();
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
   EXPECT_FALSE(session_->finished());
@@ -128,6 +130,23 @@ TEST_F(RunSessionTest, ArmsWithASourceThatComesJustBeforeTheLimit) {
   describe(dau_);
   work();
   clock_.advance(300ms);
+  work();
+  dau_.answer_commands();
+  work();
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+}
+
+TEST_F(RunSessionTest, ArmsWithASourceThatWasRestartedMeanwhile) {
+  describe(acs_);
+  report(dau_, wire::SOURCE_STARTING, "no packets");
+  work();
+  acs_.answer_commands();
+  clock_.advance(RunSession::starting_limit - 1s);
+  work();
+  EXPECT_EQ(arm_state(), wire::ARM_WAITING);
+  describe(dau_);
+  work();
+  clock_.advance(RunSession::arm_limit - 1s);
   work();
   dau_.answer_commands();
   work();

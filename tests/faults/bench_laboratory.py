@@ -1,0 +1,219 @@
+"""A live bench on this machine for fault campaigns: virtual bench, its services, one conductor.
+
+Everything runs on loopback, on a DDS domain of its own and in a folder of its own; close() ends
+what was started. Programs are those of a build tree or of an installation.
+"""
+
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import time
+
+PATIENCE_S = 300.0
+SERVICES = ("dyncal-analysis", "dyncal-dau", "dyncal-acs", "dyncal-guard")
+READY = {
+    "dyncal-analysis": "analysis ready",
+    "dyncal-dau": "listening at UDP",
+    "dyncal-acs": ", source ",
+    "dyncal-guard": "guarding the output",
+    "dyncal-virtual-bench": "datagrams to",
+}
+VENDORS = {
+    "cyclonedds": dict.fromkeys((*SERVICES, "dyncal"), "cyclonedds"),
+    "fastdds": dict.fromkeys((*SERVICES, "dyncal"), "fastdds"),
+    "mixed": {
+        "dyncal-analysis": "cyclonedds",
+        "dyncal-dau": "cyclonedds",
+        "dyncal-acs": "fastdds",
+        "dyncal-guard": "cyclonedds",
+        "dyncal": "fastdds",
+    },
+}
+
+
+class Failure(Exception):
+    """What a laboratory did that it must not do."""
+
+
+def wait_until(condition, what, patience_s=PATIENCE_S, interval_s=0.02):
+    deadline = time.monotonic() + patience_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise Failure(f"waited {patience_s:.0f} s for {what}")
+        time.sleep(interval_s)  # between two looks at the condition
+
+
+def own_domain():
+    """A domain that no other test of this machine has, and what keeps it: tests/dds_domain.hpp."""
+    for domain in range(1, 101):
+        keeper = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        with contextlib.suppress(OSError):
+            keeper.bind(f"\0dyncal-test-dds-domain-{domain}")
+            return domain, keeper
+        keeper.close()
+    raise Failure("every DDS domain is taken")
+
+
+def free_udp_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Program:
+    def __init__(self, command, log, environment=None):
+        self.log = log
+        with open(log, "w", encoding="utf-8") as errors:
+            self.process = subprocess.Popen(
+                command,
+                stdout=subprocess.DEVNULL,
+                stderr=errors,
+                stdin=subprocess.DEVNULL,
+                cwd=log.parent,
+                env={**os.environ, **(environment or {})},
+            )
+
+    def errors(self):
+        return self.log.read_text(encoding="utf-8", errors="replace")
+
+    def runs(self):
+        return self.process.poll() is None
+
+    def wait_for_text(self, text, patience_s=PATIENCE_S):
+        wait_until(
+            lambda: text in self.errors() or not self.runs(),
+            f"'{text}' in {self.log}",
+            patience_s,
+        )
+        if text not in self.errors():
+            raise Failure(f"{self.log}: ended with {self.process.returncode}: {self.errors()}")
+
+    def send(self, number):
+        if self.runs():
+            self.process.send_signal(number)
+
+    def wait(self, patience_s=PATIENCE_S):
+        try:
+            return self.process.wait(patience_s)
+        except subprocess.TimeoutExpired as error:
+            raise Failure(f"{self.log}: still runs after {patience_s:.0f} s") from error
+
+    def end(self):
+        self.send(signal.SIGCONT)
+        self.send(signal.SIGTERM)
+        try:
+            self.process.wait(20.0)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+class BenchLaboratory:
+    """Virtual bench, source services, analysis and guard; `vendors` a key of VENDORS."""
+
+    def __init__(self, programs, folder, vendors, frequencies=("40", "80", "125")):
+        self.programs = pathlib.Path(programs)
+        self.folder = pathlib.Path(folder)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.vendors = VENDORS[vendors]
+        self.frequencies = frequencies
+        self.domain, self.keeper = own_domain()
+        self.started = []
+        self.services = {}
+        self.start_virtual_bench()
+        for service in SERVICES:
+            self.restart(service)
+
+    def start_virtual_bench(self):
+        self.dau = f"127.0.0.1:{free_udp_port()}"
+        ports_file = self.folder / "ports.json"
+        bench = self.start_program(
+            "dyncal-virtual-bench",
+            ["--preset", "mpu9250-ptb", "--dau", self.dau, "--ports-file", ports_file]
+            + ["--truth", self.folder / "truth.json"]
+            + ["--frequencies", ",".join(self.frequencies), "--levels", "20"],
+        )
+        bench.wait_for_text(READY["dyncal-virtual-bench"])
+        self.ports = json.loads(ports_file.read_text(encoding="utf-8"))
+        self.bench_file = self.folder / "bench.toml"
+        self.bench_file.write_text(self.bench_text(), encoding="utf-8")
+
+    def bench_text(self):
+        frequencies = ", ".join(f'"{one}"' for one in self.frequencies)
+        return f"""bench = "live"
+[excitation]
+frequencies_hz = [{frequencies}]
+level = 20.0
+settling_s = 0.5
+duration_s = 1.5
+[generator]
+driver = "scpi"
+address = "127.0.0.1:{self.ports['generator']}"
+level_per_volt = 50.0
+[sources.dau]
+driver = "smartup"
+sensor = "0xbccb0100"
+listen = "{self.dau}"
+channels = {{ Data_11 = "sync" }}
+time_base = "utc"
+[sources.acs]
+driver = "socket"
+address = "127.0.0.1:{self.ports['acs']}"
+[method]
+kind = "sample-timestamping"
+reference = "acs/reference"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]
+[uncertainty]
+reference_magnitude_rel = 1e-3
+reference_phase_rad = 1.7e-3
+adc_delay_s = 1e-6
+"""
+
+    def start_program(self, program, arguments):
+        place = self.folder / f"{len(self.started):02}-{program}"
+        place.mkdir(exist_ok=True)
+        command = [str(self.programs / program), *map(str, arguments)]
+        environment = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+        self.started.append(Program(command, place / "log.txt", environment))
+        return self.started[-1]
+
+    def on_bus(self, program, arguments):
+        place = ["--domain", self.domain, "--dds", self.vendors[program]]
+        return self.start_program(program, [*arguments, *place])
+
+    def restart(self, service):
+        files = [] if service == "dyncal-analysis" else [self.bench_file]
+        self.services[service] = self.on_bus(service, files)
+        self.services[service].wait_for_text(READY[service])
+
+    def run(self, *arguments):
+        return self.on_bus(
+            "dyncal", ["run", self.bench_file, "--json", self.folder / "run.json", *arguments]
+        )
+
+    def result(self):
+        return json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+
+    def output_is_on(self):
+        """What the generator itself answers."""
+        with socket.create_connection(("127.0.0.1", self.ports["generator"]), 10.0) as link:
+            link.settimeout(10.0)
+            link.sendall(b":OUTPut1?\n")
+            return link.makefile().readline().strip() == "ON"
+
+    def close(self):
+        for program in reversed(self.started):
+            program.end()
+        self.keeper.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
