@@ -117,6 +117,7 @@ void RunSession::note_own_absence(Instant now) {
     spdlog::warn("bench {}, run {}: this service did not work for {:.1f} s", bench_, run_,
                  std::chrono::duration<double>(now - worked_).count());
     present_since_ = now;
+    arms_since_ = now;
     last_heard_of_run_ = std::max(last_heard_of_run_, now - (runner_limit - patience));
     last_progress_ = now;
   }

@@ -136,17 +136,29 @@ Expected<void> RunController::open_sequence() {
   return {};
 }
 
+// An analysis that falls silent is waited for as in the run; it or another may arm then.
 Expected<void> RunController::wait_until_armed(const std::stop_token& stop) {
-  const Instant began = clock_.now();
+  Instant attended = clock_.now();
   while (!stop.stop_requested()) {
     const auto& analysis = watch_->analysis();
-    watch_->follow(analysis && !analysis->message().empty() ? analysis->message()
-                                                            : "waiting for the analysis");
-    if (const auto answer = answer_of_analysis(began)) {
+    const auto unheard = clock_.now() - watch_->analysis_heard();
+    const bool is_silent = analysis && unheard > attention_limit;
+    watch_->follow(is_silent                                  ? silence_of_analysis()
+                   : analysis && !analysis->message().empty() ? analysis->message()
+                                                              : "waiting for the analysis");
+    if (is_silent && unheard <= analysis_limit) {
+      attended = clock_.now();
+    } else if (const auto answer = answer_of_analysis(attended)) {
       return *answer;
     }
   }
   return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
+}
+
+std::string RunController::silence_of_analysis() const {
+  return fmt::format(
+      "the analysis service {} has gone silent; waiting for it or another up to {} s",
+      watch_->analysis()->service().c_str(), analysis_limit.count());
 }
 
 // Until the analysis attends to the run and all of its results so far have come.
@@ -184,9 +196,9 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
               "interrupted before the run was resumed; nothing was excited");
 }
 
-std::optional<Expected<void>> RunController::answer_of_analysis(Instant began) const {
+std::optional<Expected<void>> RunController::answer_of_analysis(Instant since) const {
   const auto& analysis = watch_->analysis();
-  const auto waited = clock_.now() - began;
+  const auto waited = clock_.now() - since;
   if (analysis && analysis->arm() == wire::ARM_ARMED) {
     return Expected<void>{};
   }
@@ -236,11 +248,7 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   while (!everything_has_come()) {
     const Instant heard = watch_->analysis_heard();
     const bool attended = clock_.now() - heard <= attention_limit;
-    watch_->follow(attended ? "evaluating"
-                            : fmt::format("the analysis service {} has gone silent; waiting for it "
-                                          "or another up to {} s",
-                                          watch_->analysis()->service().c_str(),
-                                          analysis_limit.count()));
+    watch_->follow(attended ? "evaluating" : silence_of_analysis());
     if (!already_stopped && stop.stop_requested() &&
         watch_->measurement().state() != wire::MEASUREMENT_ABORTED) {
       watch_->set_state(wire::MEASUREMENT_ABORTED, "interrupted by the user");

@@ -60,7 +60,8 @@ private:
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> wait_until_known(const std::stop_token& stop);
   // Nothing while the analysis may still answer.
-  [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant began) const;
+  [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant since) const;
+  [[nodiscard]] std::string silence_of_analysis() const;
   Expected<void> wait_for_results(const std::stop_token& stop);
   void abort(const std::string& reason);
   [[nodiscard]] bool everything_has_come() const;

@@ -108,8 +108,7 @@ TEST_P(RunSessionArming, IsRefusedJustAfterItsLimitWithTheCause) {
   }
   work();
   acs_.answer_commands();
-  clock_.advance(one.limit);
-  work();
+  pass(one.limit);
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
   EXPECT_FALSE(session_->finished());
   clock_.advance(1ns);

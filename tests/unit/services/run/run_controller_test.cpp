@@ -113,7 +113,7 @@ TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenNobodyAnswers) {
 }
 
 TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenTheAnalysisDoesNotArm) {
-  clock_.at(RunController::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  clock_.every(1s, [this] { analysis_.report(wire::ARM_WAITING); });
   const auto outcome = conduct();
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
@@ -125,14 +125,40 @@ TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenTheAnalysisDoesNotArm) {
   EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
 }
 
+TEST_F(RunControllerTest, WaitsForAnAnalysisThatFallsSilentBeforeItArms) {
+  clock_.at(100ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  clock_.every(1s, [this] { // back after a minute
+    if (clock_.elapsed() > 67s) {
+      analysis_.report(wire::ARM_FINISHED);
+    } else if (clock_.elapsed() >= 60s) {
+      analysis_.report(wire::ARM_ARMED);
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_TRUE(was_excited());
+}
+
+TEST_F(RunControllerTest, GivesUpAnAnalysisThatStaysSilentBeforeItArms) {
+  clock_.at(100ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  const auto outcome = conduct();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
+  EXPECT_GT(clock_.elapsed(), RunController::analysis_limit);
+  EXPECT_LE(clock_.elapsed(),
+            RunController::analysis_limit + RunController::armed_limit + 4 * look);
+  EXPECT_FALSE(was_excited());
+}
+
 TEST_F(RunControllerTest, GoesOnWhenTheAnalysisArmsJustBeforeTheLimit) {
   clock_.at(RunController::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
   clock_.at(RunController::armed_limit - 1ms, [this] { analysis_.report(wire::ARM_ARMED); });
   clock_.every(1s, [this] {
     if (clock_.elapsed() > RunController::armed_limit + 7s) {
       analysis_.report(wire::ARM_FINISHED);
-    } else if (clock_.elapsed() >= RunController::armed_limit) {
-      analysis_.report(wire::ARM_ARMED);
+    } else if (clock_.elapsed() > RunController::answer_limit) {
+      analysis_.report(clock_.elapsed() < RunController::armed_limit ? wire::ARM_WAITING
+                                                                     : wire::ARM_ARMED);
     }
   });
   const auto outcome = conduct();
@@ -142,10 +168,13 @@ TEST_F(RunControllerTest, GoesOnWhenTheAnalysisArmsJustBeforeTheLimit) {
 }
 
 TEST_F(RunControllerTest, PassesOnWhyTheAnalysisRefusesTheRun) {
-  clock_.at(6s, [this] {
-    analysis_.report(wire::ARM_REFUSED, "source 'dau' of bench 'b' is silent: no packets");
+  clock_.every(1s, [this] {
+    if (clock_.elapsed() < 6s) {
+      analysis_.report(wire::ARM_WAITING);
+    } else {
+      analysis_.report(wire::ARM_REFUSED, "source 'dau' of bench 'b' is silent: no packets");
+    }
   });
-  clock_.at(1s, [this] { analysis_.report(wire::ARM_WAITING); });
   const auto outcome = conduct();
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::no_source);
