@@ -10,7 +10,8 @@ Every draw is a laboratory of its own: a run of three steps of which the fault m
 
 Held: the run ends with 0, has every value, valid, without loss and without flag, within five
 standard uncertainties of the undisturbed run's; the output is off in the end, and is never on for
-more than two seconds while its conductor is dead. Exit status 1 if a draw did not hold.
+more than two seconds while its conductor is dead. A run that found no analysis at its start and
+said so before anything was excited counts as refused. Exit status 1 if a draw did not hold.
 """
 
 import argparse
@@ -30,6 +31,7 @@ RUN_S = 11.0  # about what an undisturbed run takes, from its first word to its 
 CHANNELS = 3
 MAX_UNATTENDED_S = 2.0
 AGREEMENT_U = 5.0
+REFUSAL = "no analysis service answers for bench"
 
 
 def values(result):
@@ -96,6 +98,7 @@ def draw(arguments, case, vendors, number, undisturbed):
     begin_s = time.monotonic()
     repeated = 0
     problem = ""
+    refused = False
     try:
         with BenchLaboratory(arguments.programs, folder, vendors) as laboratory:
             run = laboratory.run("--run", "campaign")
@@ -108,12 +111,13 @@ def draw(arguments, case, vendors, number, undisturbed):
                 run = killed_service(laboratory, case, instant_s, away_s, run)
             status = run.wait()
             expect_off(laboratory)
-            if status != 0:
+            refused = REFUSAL in run.errors() and "step 1 of" not in run.errors()
+            if status != 0 and not refused:
                 raise Failure(f"exit status {status}: {run.errors().strip().splitlines()[-1:]}")
-            result = laboratory.result()
-            if undisturbed is None:
-                undisturbed = result
-            repeated = judge(result, undisturbed, len(laboratory.frequencies))
+            if not refused:
+                result = laboratory.result()
+                undisturbed = undisturbed or result
+                repeated = judge(result, undisturbed, len(laboratory.frequencies))
     except Failure as failure:
         problem = str(failure)
     took_s = time.monotonic() - begin_s
@@ -122,7 +126,13 @@ def draw(arguments, case, vendors, number, undisturbed):
         print(f"    start, away {away_s:.2f} s; logs in {folder})", flush=True)
     else:
         shutil.rmtree(folder)
-    return {"problem": problem, "repeated": repeated, "took_s": took_s, "result": undisturbed}
+    return {
+        "problem": problem,
+        "repeated": repeated,
+        "refused": refused,
+        "took_s": took_s,
+        "result": undisturbed,
+    }
 
 
 def campaign(arguments, case, vendors, pool, undisturbed):
@@ -137,7 +147,8 @@ def campaign(arguments, case, vendors, pool, undisturbed):
     longest_s = max(one["took_s"] for one in draws)
     print(
         f"{case:22} {vendors:11} {held:4} of {len(draws)} hold, "
-        f"{repeated} with a repeated step, longest {longest_s:.0f} s",
+        f"{repeated} with a repeated step, {sum(one['refused'] for one in draws)} refused, "
+        f"longest {longest_s:.0f} s",
         flush=True,
     )
     return held == len(draws)
