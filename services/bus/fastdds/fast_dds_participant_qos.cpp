@@ -7,6 +7,7 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
+#include "services/bus/fastdds/screened_transport.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 
@@ -69,7 +70,7 @@ void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
   }
   qos.transport().use_builtin_transports =
       false; // no shared memory: it throttles blocks and leaves files behind
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(screened(udp));
 }
 
 // Where it listens. Left alone, Fast DDS listens on every interface, multicast included, and
@@ -127,6 +128,9 @@ fast_dds_participant_qos(const ParticipantOptions& options) {
         (!options.peers.empty() || !options.multicast || !options.interface_name.empty())) {
       options.warn("the profiles file of Fast DDS has a default participant profile: peers, "
                    "multicast and interface are taken from there");
+    }
+    for (auto& transport : qos.transport().user_transports) {
+      transport = screened(transport);
     }
     return qos;
   }

@@ -1,0 +1,336 @@
+#include "services/bus/fastdds/rtps_screen.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+
+namespace dyncal::bus {
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+
+constexpr std::size_t header_bytes = 20;
+constexpr std::size_t submessage_header_bytes = 4;
+constexpr unsigned char protocol_major = 2;
+
+constexpr unsigned char acknack = 0x06;
+constexpr unsigned char heartbeat = 0x07;
+constexpr unsigned char gap = 0x08;
+constexpr unsigned char info_timestamp = 0x09;
+constexpr unsigned char info_source = 0x0c;
+constexpr unsigned char info_destination = 0x0e;
+constexpr unsigned char nack_frag = 0x12;
+constexpr unsigned char heartbeat_frag = 0x13;
+constexpr unsigned char data = 0x15;
+constexpr unsigned char data_frag = 0x16;
+constexpr unsigned char first_of_security = 0x30;
+constexpr unsigned char last_of_security = 0x34;
+
+constexpr unsigned char little_endian_flag = 0x01;
+constexpr unsigned char no_timestamp_flag = 0x02;
+constexpr unsigned char inline_qos_flag = 0x02;
+constexpr unsigned char data_flag = 0x04; // of DATA
+constexpr unsigned char key_flag = 0x08;  // of DATA
+constexpr unsigned char key_of_fragment_flag = 0x04;
+
+constexpr std::size_t entities_bytes = 8; // reader and writer
+constexpr std::size_t sequence_bytes = 8;
+constexpr std::size_t data_bytes_before_qos = 20;
+constexpr std::size_t fragment_bytes_before_qos = 32;
+constexpr std::size_t longest_plain_key_bytes = 16;
+
+constexpr std::uint16_t pid_pad = 0x0000;
+constexpr std::uint16_t pid_sentinel = 0x0001;
+constexpr std::uint16_t pid_key_hash = 0x0070;
+
+// Below this Fast DDS has no room for its list of missing fragments; both vendors send 1 kB and
+// more.
+constexpr std::uint32_t min_fragment_bytes = 64;
+constexpr std::uint32_t max_bits_of_set = 256;
+// Fast DDS visits each sample of a GAP. Longer than any source runs between two of its heartbeats.
+constexpr std::int64_t max_gap = 1 << 24;
+constexpr std::int64_t max_sequence = std::int64_t{1} << 48;
+constexpr std::size_t max_message_bytes = 1U << 20;
+
+template <class Number>
+Number number_at(Bytes bytes, std::size_t at, unsigned char flags) {
+  Number value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  if ((flags & little_endian_flag) != 0) {
+    return value;
+  }
+  if constexpr (sizeof value == 2) {
+    return static_cast<Number>(__builtin_bswap16(value));
+  } else {
+    return static_cast<Number>(__builtin_bswap32(value));
+  }
+}
+
+static_assert(std::endian::native == std::endian::little,
+              "byte orders here are written for little-endian machines");
+
+// Nothing where it is not one that a writer can have.
+std::optional<std::int64_t> sequence_at(Bytes bytes, std::size_t at, unsigned char flags) {
+  const auto high = static_cast<std::int32_t>(number_at<std::uint32_t>(bytes, at, flags));
+  const std::int64_t low = number_at<std::uint32_t>(bytes, at + 4, flags);
+  const std::int64_t sequence = std::int64_t{high} * (std::int64_t{1} << 32) + low;
+  return sequence >= 0 && sequence < max_sequence ? std::optional(sequence) : std::nullopt;
+}
+
+// Words of a bitmap behind its number of bits at `at`; nothing where they are not there.
+std::optional<std::size_t> bitmap_words(Bytes body, std::size_t at, unsigned char flags) {
+  if (at + 4 > body.size()) {
+    return std::nullopt;
+  }
+  const auto bits = number_at<std::uint32_t>(body, at, flags);
+  const std::size_t words = (std::size_t{bits} + 31) / 32;
+  return bits <= max_bits_of_set && at + 4 + 4 * words <= body.size() ? std::optional(words)
+                                                                      : std::nullopt;
+}
+
+struct InlineQos {
+  std::size_t end = 0;                      // where the payload begins
+  std::optional<std::size_t> key_hash = {}; // where the identifier of a key hash is
+};
+
+// Nothing where the list does not end within the submessage.
+std::optional<InlineQos> inline_qos(Bytes body, std::size_t begin, unsigned char flags) {
+  InlineQos found{begin};
+  if ((flags & inline_qos_flag) == 0) {
+    return found;
+  }
+  for (std::size_t at = begin; at + 4 <= body.size();) {
+    const auto id = number_at<std::uint16_t>(body, at, flags);
+    const std::size_t length = number_at<std::uint16_t>(body, at + 2, flags);
+    if (id == pid_sentinel) {
+      found.end = at + 4;
+      return found;
+    }
+    if (id == pid_key_hash) {
+      found.key_hash = at;
+    }
+    at += 4 + ((length + 3U) & ~std::size_t{3});
+  }
+  return std::nullopt;
+}
+
+// Where the inline QoS begins; nothing where it is not within the submessage.
+std::optional<std::size_t> qos_begin(Bytes body, std::size_t at_least, unsigned char flags) {
+  if (body.size() < at_least) {
+    return std::nullopt;
+  }
+  const std::size_t begin = 4U + number_at<std::uint16_t>(body, 2, flags);
+  return begin >= at_least && begin <= body.size() ? std::optional(begin) : std::nullopt;
+}
+
+bool acknack_is_whole(unsigned char flags, Bytes body) {
+  constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
+  const auto words = bitmap_words(body, bits_at, flags);
+  return words && bits_at + 4 + 4 * *words + 4 <= body.size() &&
+         sequence_at(body, entities_bytes, flags);
+}
+
+bool nack_frag_is_whole(unsigned char flags, Bytes body) {
+  constexpr std::size_t bits_at = entities_bytes + sequence_bytes + 4;
+  const auto words = bitmap_words(body, bits_at, flags);
+  return words && bits_at + 4 + 4 * *words + 4 <= body.size() &&
+         sequence_at(body, entities_bytes, flags);
+}
+
+bool heartbeat_is_whole(unsigned char flags, Bytes body) {
+  return body.size() >= entities_bytes + 2 * sequence_bytes + 4 &&
+         sequence_at(body, entities_bytes, flags) &&
+         sequence_at(body, entities_bytes + sequence_bytes, flags);
+}
+
+bool is_passed_unread(unsigned char id) {
+  return id >= first_of_security && id <= last_of_security;
+}
+
+} // namespace
+
+Bytes RtpsScreen::pass(Bytes datagram) {
+  if (datagram.size() < header_bytes || std::memcmp(datagram.data(), "RTPS", 4) != 0 ||
+      datagram[4] != protocol_major) {
+    return {};
+  }
+  begin(datagram.first(header_bytes));
+  for (std::size_t at = header_bytes; at + submessage_header_bytes <= datagram.size();) {
+    const unsigned char id = datagram[at];
+    const unsigned char flags = datagram[at + 1];
+    std::size_t length = number_at<std::uint16_t>(datagram, at + 2, flags);
+    at += submessage_header_bytes;
+    if (length == 0 && id != info_timestamp && id != 0x01) {
+      length = datagram.size() - at; // the last one
+    }
+    if (length > datagram.size() - at || used_ > max_message_bytes ||
+        !pass_submessage(id, flags, datagram.subspan(at, length))) {
+      return {};
+    }
+    at += (length + 3U) & ~std::size_t{3};
+  }
+  return used_ > header_bytes ? Bytes(buffer_.data(), used_) : Bytes();
+}
+
+void RtpsScreen::begin(Bytes header) {
+  used_ = 0;
+  append(header);
+}
+
+void RtpsScreen::append(Bytes bytes) {
+  if (buffer_.size() < used_ + bytes.size() + readable_bytes_behind) {
+    buffer_.resize(2 * (used_ + bytes.size() + readable_bytes_behind));
+  }
+  std::copy(bytes.begin(), bytes.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(used_));
+  used_ += bytes.size();
+}
+
+// Where its body is.
+unsigned char* RtpsScreen::append_submessage(unsigned char id, unsigned char flags, Bytes body) {
+  // A length of 0 stands for "to the end", which is where a longer one is.
+  auto length = static_cast<std::uint16_t>(body.size() > 0xffff ? 0 : body.size());
+  if ((flags & little_endian_flag) == 0) {
+    length = __builtin_bswap16(length);
+  }
+  unsigned char header[submessage_header_bytes] = {id, flags};
+  std::memcpy(header + 2, &length, sizeof length);
+  append(header);
+  const std::size_t at = used_;
+  append(body);
+  const unsigned char padding[3] = {};
+  append(Bytes(padding, (4 - used_ % 4) % 4));
+  return buffer_.data() + at;
+}
+
+// Returns false if the whole message is to be dropped.
+bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes body) {
+  bool whole = true;
+  switch (id) {
+  case data:
+    return pass_data(flags, body);
+  case data_frag:
+    return pass_fragments(flags, body);
+  case gap:
+    return pass_gap(flags, body);
+  case acknack:
+    whole = acknack_is_whole(flags, body);
+    break;
+  case nack_frag:
+    whole = nack_frag_is_whole(flags, body);
+    break;
+  case heartbeat:
+    whole = heartbeat_is_whole(flags, body);
+    break;
+  case heartbeat_frag:
+    whole = body.size() >= entities_bytes + sequence_bytes + 8;
+    break;
+  case info_timestamp:
+    whole = (flags & no_timestamp_flag) != 0 || body.size() >= 8;
+    break;
+  case info_source:
+    whole = body.size() == 20;
+    break;
+  case info_destination:
+    whole = body.size() >= 12;
+    break;
+  default:
+    if (!is_passed_unread(id)) {
+      return true; // left out
+    }
+  }
+  if (whole) {
+    append_submessage(id, flags, body);
+  }
+  return whole;
+}
+
+bool RtpsScreen::pass_data(unsigned char flags, Bytes body) {
+  const auto begin = qos_begin(body, data_bytes_before_qos, flags);
+  const auto qos = begin ? inline_qos(body, *begin, flags) : std::nullopt;
+  if (!qos || !sequence_at(body, 4 + entities_bytes, flags)) {
+    return false;
+  }
+  const bool has_data = (flags & data_flag) != 0;
+  const bool has_key = (flags & key_flag) != 0;
+  const std::size_t payload = body.size() - qos->end;
+  if ((has_data && has_key) || ((has_data || has_key) && payload == 0)) {
+    return false;
+  }
+  append_submessage(data, flags, body);
+  return true;
+}
+
+bool RtpsScreen::pass_fragments(unsigned char flags, Bytes body) {
+  const auto begin = qos_begin(body, fragment_bytes_before_qos, flags);
+  const auto qos = begin ? inline_qos(body, *begin, flags) : std::nullopt;
+  if (!qos || (flags & key_of_fragment_flag) != 0 ||
+      !sequence_at(body, 4 + entities_bytes, flags)) {
+    return false;
+  }
+  const std::uint64_t first = number_at<std::uint32_t>(body, 20, flags); // counts from 1
+  const std::uint64_t count = number_at<std::uint16_t>(body, 24, flags);
+  const std::uint64_t fragment_bytes = number_at<std::uint16_t>(body, 26, flags);
+  const std::uint64_t sample_bytes = number_at<std::uint32_t>(body, 28, flags);
+  const std::uint64_t payload = body.size() - qos->end;
+  if (first == 0 || count == 0 || fragment_bytes < min_fragment_bytes ||
+      sample_bytes < fragment_bytes || sample_bytes > max_sample_bytes) {
+    return false;
+  }
+  const std::uint64_t offset = (first - 1) * fragment_bytes;
+  if (offset >= sample_bytes || offset + (count - 1) * fragment_bytes >= sample_bytes ||
+      payload < std::min(count * fragment_bytes, sample_bytes - offset)) {
+    return false;
+  }
+  unsigned char* passed = append_submessage(data_frag, flags, body);
+  if (qos->key_hash) {
+    std::memcpy(passed + *qos->key_hash, &pid_pad, sizeof pid_pad);
+  }
+  return true;
+}
+
+// From `first` to before `end`.
+void RtpsScreen::append_gap(Bytes entities, std::int64_t first, std::int64_t end) {
+  unsigned char body[entities_bytes + 2 * sequence_bytes + 4] = {};
+  std::copy(entities.begin(), entities.end(), body);
+  const auto put = [&](std::size_t at, std::int64_t sequence) {
+    const auto high = static_cast<std::uint32_t>(sequence >> 32);
+    const auto low = static_cast<std::uint32_t>(sequence);
+    std::memcpy(body + at, &high, sizeof high);
+    std::memcpy(body + at + 4, &low, sizeof low);
+  };
+  put(entities_bytes, first);
+  put(entities_bytes + sequence_bytes, end);
+  append_submessage(gap, little_endian_flag, body);
+}
+
+bool RtpsScreen::pass_gap(unsigned char flags, Bytes body) {
+  constexpr std::size_t base_at = entities_bytes + sequence_bytes;
+  constexpr std::size_t bits_at = base_at + sequence_bytes;
+  const auto words = bitmap_words(body, bits_at, flags);
+  const auto first = words ? sequence_at(body, entities_bytes, flags) : std::nullopt;
+  const auto base = words ? sequence_at(body, base_at, flags) : std::nullopt;
+  if (!first || !base || *first == 0 || *base - *first > max_gap) {
+    return false;
+  }
+  const Bytes entities = body.first(entities_bytes);
+  if (*base > *first) {
+    append_gap(entities, *first, *base);
+  }
+  const std::int64_t bits = number_at<std::uint32_t>(body, bits_at, flags);
+  std::int64_t begin = -1; // of a run of set bits
+  for (std::int64_t bit = 0; bit <= bits; ++bit) {
+    const auto word_at = bits_at + 4 + 4 * static_cast<std::size_t>(bit / 32);
+    const bool set =
+        bit < bits && (number_at<std::uint32_t>(body, word_at, flags) >> (31 - bit % 32) & 1U) != 0;
+    if (set && begin < 0) {
+      begin = bit;
+    } else if (!set && begin >= 0) {
+      append_gap(entities, *base + begin, *base + bit);
+      begin = -1;
+    }
+  }
+  return true;
+}
+
+} // namespace dyncal::bus

@@ -1,0 +1,52 @@
+// What Fast DDS 2.9 is given of a datagram from the network: RTPS that it takes without harm.
+//
+// Two of its faults end or block a program when packets are lost, and no setting avoids them. A
+// sample in fragments whose key is known from its first one is filed under its instance before it
+// is whole; where it never becomes whole (its writer no longer has it) it is freed and stays filed,
+// and the next take() never returns. A GAP that lists single samples leaves their fragments where
+// they are, and hands them out as whole. So here
+//   DATA_FRAG  loses its key hash: Fast DDS then takes the key from the sample once it is whole
+//   GAP        becomes one GAP for each run of samples, without a list
+//
+// What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a
+// message whose lengths do not agree, statistics of Fast DDS itself (submessage 0x80, not used
+// here), fragments outside of their sample, samples of more than max_sample_bytes.
+//
+// DDSI-RTPS 2.2, chapters 8.3 and 9.4. One thread at a time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace dyncal::bus {
+
+class RtpsScreen {
+public:
+  // No message of the contract is longer.
+  static constexpr std::uint32_t max_sample_bytes = 64U << 20;
+
+  // The message to hand on, valid until the next call; empty if there is none. Up to
+  // readable_bytes_behind bytes behind it may be read: Fast DDS copies the last fragment of a
+  // sample in the length that the first one said.
+  [[nodiscard]] std::span<const unsigned char> pass(std::span<const unsigned char> datagram);
+
+  static constexpr std::size_t readable_bytes_behind = 1U << 16;
+
+private:
+  void begin(std::span<const unsigned char> header);
+  void append(std::span<const unsigned char> bytes);
+  unsigned char* append_submessage(unsigned char id, unsigned char flags,
+                                   std::span<const unsigned char> body);
+  void append_gap(std::span<const unsigned char> entities, std::int64_t first, std::int64_t end);
+  bool pass_submessage(unsigned char id, unsigned char flags, std::span<const unsigned char> body);
+  bool pass_data(unsigned char flags, std::span<const unsigned char> body);
+  bool pass_fragments(unsigned char flags, std::span<const unsigned char> body);
+  bool pass_gap(unsigned char flags, std::span<const unsigned char> body);
+
+  std::vector<unsigned char> buffer_;
+  std::size_t used_ = 0;
+};
+
+} // namespace dyncal::bus

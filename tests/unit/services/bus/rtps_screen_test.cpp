@@ -1,0 +1,194 @@
+#include "services/bus/fastdds/rtps_screen.hpp"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::bus {
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+Bytes operator+(Bytes left, const Bytes& right) {
+  left.insert(left.end(), right.begin(), right.end());
+  return left;
+}
+
+Bytes header() {
+  return {'R', 'T', 'P', 'S', 2, 1, 1, 16, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+}
+
+Bytes u16(unsigned value) {
+  return {static_cast<unsigned char>(value), static_cast<unsigned char>(value >> 8U)};
+}
+
+Bytes u32(std::uint32_t value) {
+  return u16(value & 0xffffU) + u16(value >> 16U);
+}
+
+Bytes sequence(std::uint64_t value) {
+  return u32(static_cast<std::uint32_t>(value >> 32U)) + u32(static_cast<std::uint32_t>(value));
+}
+
+Bytes submessage(unsigned char id, unsigned char flags, const Bytes& body) {
+  return Bytes{id, flags} + u16(static_cast<unsigned>(body.size())) + body;
+}
+
+const Bytes entities{0, 0, 1, 7, 0, 0, 1, 2};
+
+Bytes key_hash() {
+  return u16(0x70) + u16(16) + Bytes(16, 0xaa);
+}
+
+const Bytes sentinel = u16(1) + u16(0);
+
+struct Fragments {
+  std::uint32_t first = 1;
+  unsigned count = 1;
+  unsigned fragment_bytes = 100;
+  std::uint32_t sample_bytes = 250;
+  std::size_t payload = 100;
+  Bytes qos = key_hash() + sentinel;
+};
+
+Bytes fragments(const Fragments& of) {
+  return submessage(0x16, of.qos.empty() ? 0x01 : 0x03,
+                    u16(0) + u16(28) + entities + sequence(5) + u32(of.first) + u16(of.count) +
+                        u16(of.fragment_bytes) + u32(of.sample_bytes) + of.qos +
+                        Bytes(of.payload, 0x55));
+}
+
+Bytes data(const Bytes& qos, unsigned char flags = 0x07) {
+  return submessage(0x15, flags, u16(0) + u16(16) + entities + sequence(5) + qos + Bytes(8, 0x55));
+}
+
+Bytes heartbeat() {
+  return submessage(0x07, 0x01, entities + sequence(1) + sequence(5) + u32(3));
+}
+
+Bytes gap(std::uint64_t first, std::uint64_t base, std::uint32_t bits, const Bytes& words) {
+  return submessage(0x08, 0x01, entities + sequence(first) + sequence(base) + u32(bits) + words);
+}
+
+Bytes passed(const Bytes& datagram) {
+  RtpsScreen screen;
+  const auto bytes = screen.pass(datagram);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(RtpsScreen, LeavesWholeMessagesAsTheyAre) {
+  const Bytes timestamp = submessage(0x09, 0x01, sequence(77));
+  const Bytes destination = submessage(0x0e, 0x01, Bytes(12, 4));
+  const Bytes acknack =
+      submessage(0x06, 0x01, entities + sequence(3) + u32(33) + Bytes(8, 1) + u32(9));
+  const Bytes nack =
+      submessage(0x12, 0x01, entities + sequence(3) + u32(1) + u32(2) + u32(0) + u32(9));
+  const Bytes message = header() + destination + timestamp + data(key_hash() + sentinel) +
+                        heartbeat() + acknack + nack;
+  EXPECT_EQ(passed(message), message);
+}
+
+TEST(RtpsScreen, TakesTheKeyHashOutOfFragments) {
+  Bytes expected = header() + fragments({});
+  const std::size_t key_hash_at = header().size() + 4 + 32;
+  ASSERT_EQ(expected[key_hash_at], 0x70);
+  expected[key_hash_at] = 0;
+  EXPECT_EQ(passed(header() + fragments({})), expected);
+}
+
+TEST(RtpsScreen, MakesAGapOfEveryRunOfAList) {
+  // Of 40 samples from 12 on: the second and third, and the last.
+  const Bytes words = u32(0x60000000) + u32(0x01000000);
+  EXPECT_EQ(passed(header() + gap(10, 12, 40, words)),
+            header() + gap(10, 12, 0, {}) + gap(13, 15, 0, {}) + gap(51, 52, 0, {}));
+  EXPECT_EQ(passed(header() + gap(10, 10, 32, u32(0xffffffff))), header() + gap(10, 42, 0, {}));
+  EXPECT_EQ(passed(header() + gap(10, 12, 0, {})), header() + gap(10, 12, 0, {}));
+}
+
+TEST(RtpsScreen, ReadsBigEndian) {
+  const Bytes body = entities + Bytes{0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 12} +
+                     Bytes{0, 0, 0, 3, 0x20, 0, 0, 0};
+  const Bytes message = header() + Bytes{0x08, 0x00, 0, static_cast<unsigned char>(body.size())};
+  EXPECT_EQ(passed(message + body), header() + gap(10, 12, 0, {}) + gap(14, 15, 0, {}));
+}
+
+TEST(RtpsScreen, LeavesOutWhatNobodyNeeds) {
+  const Bytes statistics = submessage(0x80, 0x01, Bytes(48, 1));
+  const Bytes pad = submessage(0x01, 0x01, {});
+  EXPECT_EQ(passed(header() + statistics + heartbeat() + pad), header() + heartbeat());
+  EXPECT_TRUE(passed(header() + statistics).empty());
+}
+
+TEST(RtpsScreen, LetsALengthOfZeroReachToTheEnd) {
+  Bytes open = heartbeat();
+  open[2] = 0;
+  EXPECT_EQ(passed(header() + open), header() + heartbeat());
+}
+
+TEST(RtpsScreen, DropsWhatIsNoMessage) {
+  EXPECT_TRUE(passed({}).empty());
+  EXPECT_TRUE(passed(header()).empty());
+  Bytes other = header() + heartbeat();
+  other[0] = 'X';
+  EXPECT_TRUE(passed(other).empty());
+  other = header() + heartbeat();
+  other[4] = 1;
+  EXPECT_TRUE(passed(other).empty());
+}
+
+TEST(RtpsScreen, DropsAMessageWithASubmessageThatEndsTooSoon) {
+  for (const Bytes& one :
+       {heartbeat(), data(key_hash() + sentinel), fragments({}), gap(1, 2, 40, Bytes(8, 0xff)),
+        submessage(0x06, 0x01, entities + sequence(3) + u32(33) + Bytes(8, 1) + u32(9)),
+        submessage(0x0e, 0x01, Bytes(12, 4)), submessage(0x0c, 0x01, Bytes(20, 4))}) {
+    for (std::size_t kept = 4; kept < one.size(); ++kept) {
+      Bytes shorter(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(kept));
+      shorter[2] = static_cast<unsigned char>(kept - 4);
+      shorter[3] = 0;
+      const bool still_data = one[0] == 0x15 && kept > one.size() - 8; // with a shorter sample
+      EXPECT_EQ(passed(header() + heartbeat() + shorter).empty(), !still_data)
+          << "submessage " << int{one[0]} << " of " << kept << " bytes";
+      shorter = Bytes(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(kept));
+      EXPECT_TRUE(passed(header() + heartbeat() + shorter).empty());
+    }
+  }
+}
+
+TEST(RtpsScreen, DropsFragmentsThatAreNotWithinTheirSample) {
+  EXPECT_FALSE(passed(header() + fragments({})).empty());
+  EXPECT_FALSE(passed(header() + fragments({.first = 3, .payload = 50})).empty());
+  EXPECT_FALSE(passed(header() + fragments({.first = 2, .count = 2, .payload = 150})).empty());
+  const std::uint32_t too_long = RtpsScreen::max_sample_bytes + 1;
+  for (const Fragments& wrong :
+       {Fragments{.first = 0}, Fragments{.first = 4}, Fragments{.first = 0xffffffff},
+        Fragments{.count = 0}, Fragments{.count = 4, .payload = 400}, Fragments{.count = 0xffff},
+        Fragments{.payload = 99}, Fragments{.fragment_bytes = 0}, Fragments{.fragment_bytes = 63},
+        Fragments{.fragment_bytes = 251, .payload = 300}, Fragments{.sample_bytes = 99},
+        Fragments{.sample_bytes = too_long}, Fragments{.first = 3, .payload = 49}}) {
+    EXPECT_TRUE(passed(header() + fragments(wrong)).empty())
+        << wrong.first << ' ' << wrong.count << ' ' << wrong.fragment_bytes << ' '
+        << wrong.sample_bytes << ' ' << wrong.payload;
+  }
+}
+
+TEST(RtpsScreen, DropsInlineQosWithoutEndAndSequencesThatCannotBe) {
+  EXPECT_TRUE(passed(header() + data(key_hash())).empty());
+  EXPECT_TRUE(passed(header() + data(u16(0x70) + u16(0xffff) + Bytes(16, 0) + sentinel)).empty());
+  EXPECT_TRUE(passed(header() + data(sentinel, 0x0f)).empty()) << "data and key";
+  EXPECT_TRUE(passed(header() + gap(0, 2, 0, {})).empty());
+  EXPECT_TRUE(passed(header() + gap(1, 1ULL << 40U, 0, {})).empty());
+  EXPECT_TRUE(passed(header() + gap(1, 2, 257, Bytes(36, 0))).empty());
+  EXPECT_TRUE(passed(header() + gap(1ULL << 63U, 2, 0, {})).empty());
+}
+
+TEST(RtpsScreen, IsUsedAgainAndAgain) {
+  RtpsScreen screen;
+  const Bytes message = header() + heartbeat();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(screen.pass(header()).empty());
+    EXPECT_EQ(screen.pass(message).size(), message.size());
+  }
+}
+
+} // namespace
+} // namespace dyncal::bus
