@@ -152,7 +152,7 @@ settling_s = 0.5
 duration_s = 1.5
 [generator]
 driver = "scpi"
-address = "127.0.0.1:{self.ports['generator']}"
+address = "{self.generator_host()}:{self.ports['generator']}"
 level_per_volt = 50.0
 [sources.dau]
 driver = "smartup"
@@ -175,10 +175,10 @@ reference_phase_rad = 1.7e-3
 adc_delay_s = 1e-6
 """
 
-    def start_program(self, program, arguments):
+    def start_program(self, program, arguments, on_host=()):
         place = self.folder / f"{len(self.started):02}-{program}"
         place.mkdir(exist_ok=True)
-        command = [str(self.programs / program), *map(str, arguments)]
+        command = [*on_host, str(self.programs / program), *map(str, arguments)]
         environment = {"XDG_CACHE_HOME": str(self.folder / "cache")}
         self.started.append(Program(command, place / "log.txt", environment))
         return self.started[-1]
@@ -200,9 +200,13 @@ adc_delay_s = 1e-6
     def result(self):
         return json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
 
+    def generator_host(self):
+        return "127.0.0.1"
+
     def output_is_on(self):
         """What the generator itself answers."""
-        with socket.create_connection(("127.0.0.1", self.ports["generator"]), 10.0) as link:
+        place = (self.generator_host(), self.ports["generator"])
+        with socket.create_connection(place, 10.0) as link:
             link.settimeout(10.0)
             link.sendall(b":OUTPut1?\n")
             return link.makefile().readline().strip() == "ON"
