@@ -35,6 +35,7 @@ test_packages=(
   clang-format-14 clang-tidy-14                # how the code is written
   git python3
   nftables iproute2                            # packet loss between network namespaces
+  faketime                                     # clocks of hosts that are wrong
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
   python3-jsonschema                           # results against their schema

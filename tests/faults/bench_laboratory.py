@@ -113,19 +113,35 @@ class Program:
 
 
 class BenchLaboratory:
-    """Virtual bench, source services, analysis and guard; `vendors` a key of VENDORS."""
+    """Virtual bench, source services, analysis and guard; `vendors` a key of VENDORS.
 
-    def __init__(self, programs, folder, vendors, frequencies=("40", "80", "125")):
+    Several on one DDS domain: give the `domain` of another, names of their own, and `services`
+    without the analysis to all but one.
+    """
+
+    def __init__(
+        self,
+        programs,
+        folder,
+        vendors,
+        frequencies=("40", "80", "125"),
+        name="live",
+        domain=None,
+        services=SERVICES,
+        acs_rate_hz=20000,
+    ):
         self.programs = pathlib.Path(programs)
         self.folder = pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.vendors = VENDORS[vendors]
         self.frequencies = frequencies
-        self.domain, self.keeper = own_domain()
+        self.name = name
+        self.acs_rate_hz = acs_rate_hz
+        self.domain, self.keeper = (domain, None) if domain else own_domain()
         self.started = []
         self.services = {}
         self.start_virtual_bench()
-        for service in SERVICES:
+        for service in services:
             self.restart(service)
 
     def start_virtual_bench(self):
@@ -135,7 +151,8 @@ class BenchLaboratory:
             "dyncal-virtual-bench",
             ["--preset", "mpu9250-ptb", "--dau", self.dau, "--ports-file", ports_file]
             + ["--truth", self.folder / "truth.json"]
-            + ["--frequencies", ",".join(self.frequencies), "--levels", "20"],
+            + ["--frequencies", ",".join(self.frequencies), "--levels", "20"]
+            + ["--acs-rate", self.acs_rate_hz],
         )
         bench.wait_for_text(READY["dyncal-virtual-bench"])
         self.ports = json.loads(ports_file.read_text(encoding="utf-8"))
@@ -144,7 +161,7 @@ class BenchLaboratory:
 
     def bench_text(self):
         frequencies = ", ".join(f'"{one}"' for one in self.frequencies)
-        return f"""bench = "live"
+        return f"""bench = "{self.name}"
 [excitation]
 frequencies_hz = [{frequencies}]
 level = 20.0
@@ -214,7 +231,8 @@ adc_delay_s = 1e-6
     def close(self):
         for program in reversed(self.started):
             program.end()
-        self.keeper.close()
+        if self.keeper:
+            self.keeper.close()
 
     def __enter__(self):
         return self

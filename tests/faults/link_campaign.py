@@ -14,6 +14,7 @@ Exit status 1 if a draw did not hold, 77 where there are no network namespaces.
 
 import argparse
 import concurrent.futures
+import itertools
 import pathlib
 import random
 import shutil
@@ -23,10 +24,11 @@ import time
 
 import hosts
 from bench_laboratory import VENDORS, BenchLaboratory, Failure
-from kill_campaign import RUN_S, expect_off, judge
+from kill_campaign import expect_off, judge
 
 HOSTS = ("bench", "analysis", "operator")
 UNATTENDED_S = 4.0
+EXCITED_S = 7.0  # about what the three steps take
 HOST_OF = {"dyncal-analysis": "analysis", "dyncal": "operator"}
 
 
@@ -69,13 +71,14 @@ def watch_output(laboratory, until_s):
 
 def draw(arguments, host, down_s, vendors, number, undisturbed):
     chance = random.Random(f"{arguments.seed} {host} {down_s} {vendors} {number}")
-    instant_s = chance.uniform(2.0, RUN_S)
+    instant_s = chance.uniform(0.0, EXCITED_S)
     folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-link-"))
     problem, result, repeated = "", undisturbed, 0
     try:
         with SpreadLaboratory(arguments.programs, folder, vendors) as laboratory:
             run = laboratory.run()
             if host:
+                run.wait_for_text("step 1 of")
                 time.sleep(instant_s)  # the drawn instant
                 laboratory.hosts.set_cable(host, "down")
                 try:
@@ -92,7 +95,7 @@ def draw(arguments, host, down_s, vendors, number, undisturbed):
     except Failure as failure:
         problem = str(failure)
         print(f"{host} down {down_s:g} s, {vendors} draw {number}: {problem}")
-        print(f"    ({instant_s:.2f} s after the start; logs in {folder})", flush=True)
+        print(f"    ({instant_s:.2f} s after the first step began; logs in {folder})", flush=True)
     else:
         shutil.rmtree(folder)
     return {"problem": problem, "result": result, "repeated": repeated}
@@ -118,24 +121,24 @@ def main():
     if undisturbed["problem"]:
         return 1
     held = True
+    cells = list(itertools.product(arguments.hosts, arguments.down_s, arguments.vendors))
     with concurrent.futures.ThreadPoolExecutor(arguments.at_once) as pool:
-        for host in arguments.hosts:
-            for down_s in arguments.down_s:
-                for vendors in arguments.vendors:
-                    draws = [
-                        pool.submit(
-                            draw, arguments, host, down_s, vendors, number, undisturbed["result"]
-                        )
-                        for number in range(arguments.draws)
-                    ]
-                    good = [one.result() for one in draws if not one.result()["problem"]]
-                    repeated = sum(one["repeated"] > 0 for one in good)
-                    print(
-                        f"{host:9} down {down_s:3g} s {vendors:11} {len(good)} of {len(draws)} "
-                        f"hold, {repeated} with a repeated step",
-                        flush=True,
-                    )
-                    held &= len(good) == len(draws)
+        draws = {
+            cell: [
+                pool.submit(draw, arguments, *cell, number, undisturbed["result"])
+                for number in range(arguments.draws)
+            ]
+            for cell in cells
+        }
+        for (host, down_s, vendors), of_cell in draws.items():
+            good = [one.result() for one in of_cell if not one.result()["problem"]]
+            repeated = sum(one["repeated"] > 0 for one in good)
+            print(
+                f"{host:9} down {down_s:3g} s {vendors:11} {len(good)} of {len(of_cell)} hold, "
+                f"{repeated} with a repeated step",
+                flush=True,
+            )
+            held &= len(good) == len(of_cell)
     return 0 if held else 1
 
 

@@ -23,7 +23,11 @@ duration_s = 1.5
 driver = "file"
 play = {speed}
 path = "dau.csv"
-units = {{ acceleration_x = "m/s^2", acceleration_y = "m/s^2", acceleration_z = "m/s^2", sync = "V" }}
+[sources.dau.units]
+acceleration_x = "m/s^2"
+acceleration_y = "m/s^2"
+acceleration_z = "m/s^2"
+sync = "V"
 [sources.acs]
 driver = "file"
 play = {speed}
