@@ -1,0 +1,33 @@
+// How the records of a chunk are made smaller, and large again: as they are, or zstd where the
+// build has it.
+//
+// LZ4 is read by nobody here; the error says so. `size` comes from the file: it is bounded before
+// memory is taken. Plain functions, any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "services/error.hpp"
+
+namespace dyncal::recording {
+
+enum class Compression { none, zstd };
+
+// "none" or "zstd". Fails (bad_argument) on another name, and on zstd where the build has none.
+[[nodiscard]] services::Expected<Compression> parse_compression(const std::string& name);
+// As the file spells it: "" or "zstd".
+[[nodiscard]] const char* to_string(Compression compression);
+
+// Empty if it does not become smaller, or cannot be done.
+[[nodiscard]] std::string compress(std::string_view records, Compression compression);
+
+// More than any chunk of ours has; a foreign file with larger ones is not read.
+inline constexpr std::uint64_t max_chunk_bytes = std::uint64_t{1} << 30U;
+
+// Fails (bad_file) with a part of a sentence: what is wrong with the bytes.
+[[nodiscard]] services::Expected<std::string>
+uncompress(std::string_view bytes, const std::string& compression, std::uint64_t size);
+
+} // namespace dyncal::recording
