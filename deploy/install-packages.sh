@@ -18,16 +18,18 @@ build_packages=(
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
+  zlib1g-dev
 )
 # dyncal is built without what these are for where they cannot be had.
 optional_build_packages=(
   libsystemd-dev     # daemons tell systemd that they are ready
   prometheus-cpp-dev # --metrics of the daemons
+  libzstd-dev        # smaller recordings
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
   libssl3 libsndfile1 liblxi1 libtirpc3
-  libsystemd0 libprometheus-cpp-pull1.0
+  libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev

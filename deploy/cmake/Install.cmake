@@ -20,6 +20,7 @@ install(TARGETS
     dyncal-dau
     dyncal-dso
     dyncal-guard
+    dyncal-recorder
     dyncal-virtual-bench
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT programs)

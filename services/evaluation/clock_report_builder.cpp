@@ -38,6 +38,7 @@ void ClockReportBuilder::add(const SourceBlock& block) {
   if (!clock_) {
     return;
   }
+  last_block_ = BlockPosition{block.session, block.number};
   std::span<const std::int64_t> stamps = block.stamps_ns;
   if (stamps.empty()) {
     stamps_.resize(block.samples);
@@ -59,7 +60,7 @@ std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
     return {};
   }
   statistics->lost = lost;
-  ClockReport report{source_, std::move(*statistics)};
+  ClockReport report{source_, std::move(*statistics), {}, last_block_};
   if (has_own_clock_) {
     report.clock.u_mean_interval_s = std::numeric_limits<double>::quiet_NaN();
   }

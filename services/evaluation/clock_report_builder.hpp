@@ -32,6 +32,8 @@ public:
   // A block that the source's record has taken. REQUIRES: its sizes agree.
   void add(const SourceBlock& block);
 
+  [[nodiscard]] const std::optional<BlockPosition>& last_block() const { return last_block_; }
+
   // Empty when there were too few samples to report on.
   [[nodiscard]] std::vector<ClockReport> reports(std::uint64_t lost) const;
 
@@ -42,6 +44,7 @@ private:
   std::optional<analysis::SampleClock> clock_;
   bool has_own_clock_ = false;       // its stamps are not UTC
   bool states_uncertainty_ = false;  // of its stamps
+  std::optional<BlockPosition> last_block_;
   std::vector<std::int64_t> stamps_; // of a block whose stamps follow from a clock
 };
 

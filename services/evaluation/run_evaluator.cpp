@@ -33,7 +33,8 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
       summary_(*recipe_), runs_ahead_(limits.ahead && method_->can_run_ahead()),
-      clock_to_the_end_(limits.clock_to_the_end), never_waits_(limits.never_waits),
+      clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
+      never_waits_(limits.never_waits),
       evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
@@ -115,11 +116,18 @@ void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
   if (record == nullptr || finished_ || !record->add(block)) {
     return;
   }
-  if (clock_ && clock_->source() == source) {
-    clock_->add(block);
+  if (clock_ && clock_->source() == source && !lost_at_clock_end_) {
+    follow_clock(*record, block);
   }
   if (source_of_clock_alone()) {
     record->forget_before(std::numeric_limits<std::int64_t>::max());
+  }
+}
+
+void RunEvaluator::follow_clock(const SourceRecord& record, const SourceBlock& block) {
+  clock_->add(block);
+  if (clock_end_ && clock_->last_block() == clock_end_) {
+    lost_at_clock_end_ = record.lost();
   }
 }
 
@@ -137,7 +145,7 @@ bool RunEvaluator::has_all_steps() const {
 }
 
 std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
-  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() &&
+  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() && !lost_at_clock_end_ &&
                        !records_.of(clock_->source()).ended();
   return goes_on ? std::optional(clock_->source()) : std::nullopt;
 }
@@ -293,7 +301,8 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   finished_ = true;
   output.transfer_functions = summary_.transfer_functions();
   if (clock_) {
-    output.clock_reports = clock_->reports(records_.of(clock_->source()).lost());
+    output.clock_reports =
+        clock_->reports(lost_at_clock_end_.value_or(records_.of(clock_->source()).lost()));
   }
   for (ClockReport& report : method_->clock_reports()) {
     output.clock_reports.push_back(std::move(report));

@@ -63,6 +63,8 @@ struct EvaluationLimits {
   // The sample clock is followed to the end of its source, not only to the last step: for records
   // that are there already.
   bool clock_to_the_end = false;
+  // With that: it is followed to this block and no further, as a report made before covers it.
+  std::optional<BlockPosition> clock_end{};
   bool ahead = false; // in the caller's thread only: before the end of a step has come
 };
 
@@ -128,6 +130,7 @@ private:
   void keep_if_provisional(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   [[nodiscard]] Evaluation settlement();
+  void follow_clock(const SourceRecord& record, const SourceBlock& block);
   void finish(EvaluationOutput& output);
 
   std::shared_ptr<const Recipe> recipe_;
@@ -148,6 +151,8 @@ private:
   std::size_t steps_ready_ = 0;
   std::size_t next_step_ = 0; // not evaluated yet
   bool clock_to_the_end_;
+  std::optional<BlockPosition> clock_end_;
+  std::optional<std::uint64_t> lost_at_clock_end_; // once that block has come
   bool never_waits_;
   bool settling_ = false;
   bool finished_ = false;

@@ -64,7 +64,8 @@ Expected<std::string> uncompress(std::string_view bytes, const std::string& comp
   }
 #ifdef DYNCAL_HAVE_ZSTD
   if (compression == "zstd") {
-    if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != size) {
+    const auto known = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+    if (known == ZSTD_CONTENTSIZE_ERROR || (known != ZSTD_CONTENTSIZE_UNKNOWN && known != size)) {
       return fail(ErrorCode::bad_file, "its zstd frame is not of the size it claims");
     }
     std::string records(size, '\0');

@@ -24,7 +24,7 @@ enum class Compression { none, zstd };
 [[nodiscard]] std::string compress(std::string_view records, Compression compression);
 
 // More than any chunk of ours has; a foreign file with larger ones is not read.
-inline constexpr std::uint64_t max_chunk_bytes = std::uint64_t{1} << 30U;
+inline constexpr std::uint64_t max_chunk_bytes = std::uint64_t{256} << 20U;
 
 // Fails (bad_file) with a part of a sentence: what is wrong with the bytes.
 [[nodiscard]] services::Expected<std::string>

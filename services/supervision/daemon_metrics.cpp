@@ -44,6 +44,17 @@ constexpr MetricFamily evaluation{"dyncal_analysis_evaluation_seconds_total",
                                   "Time that the main loop of the analysis has spent with runs.",
                                   counter};
 
+constexpr MetricFamily stored{"dyncal_recorder_messages_stored_total",
+                              "Messages that are in the recordings.", counter};
+constexpr MetricFamily not_stored{"dyncal_recorder_messages_not_stored_total",
+                                  "Messages that came and could not be stored.", counter};
+constexpr MetricFamily missing{"dyncal_recorder_blocks_missing_total",
+                               "Blocks and records that never came, and could not be had again.",
+                               counter};
+constexpr MetricFamily file_size{"dyncal_recorder_file_bytes", "Size of the recording.", gauge};
+constexpr MetricFamily disk{"dyncal_recorder_disk_free_bytes", "Room left on its disk.", gauge};
+constexpr MetricFamily records{"dyncal_recorder_recording", "1 while it records the bench.", gauge};
+
 double number(std::uint64_t count) {
   return static_cast<double>(count);
 }
@@ -94,6 +105,16 @@ void report(const wire::SourceStatus& status, std::uint64_t messages_written, Me
   store.set(written, labels, number(messages_written));
   store.set(readers, labels, number(status.matched_readers()));
   report_state(status.state(), labels, store);
+}
+
+void report(const RecorderFigures& figures, MetricStore& store) {
+  const MetricLabels labels{{"bench", figures.bench}};
+  store.set(stored, labels, number(figures.stored));
+  store.set(not_stored, labels, number(figures.not_stored));
+  store.set(missing, labels, number(figures.missing));
+  store.set(file_size, labels, number(figures.file_bytes));
+  store.set(disk, labels, number(figures.free_bytes));
+  store.set(records, labels, figures.records ? 1.0 : 0.0);
 }
 
 void report(const AnalysisFigures& figures, MetricStore& store) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "services/contract/program_identity.hpp"
 #include "services/supervision/metric_store.hpp"
@@ -23,9 +24,21 @@ struct AnalysisFigures {
   std::uint64_t malformed_messages = 0;
 };
 
+// What a recorder has of one bench, since it was started.
+struct RecorderFigures {
+  std::string bench;
+  std::uint64_t stored = 0;     // messages that are in its files
+  std::uint64_t not_stored = 0; // messages that came and are not
+  std::uint64_t missing = 0;    // blocks and records that never came
+  std::uint64_t file_bytes = 0; // of the file it writes
+  std::uint64_t free_bytes = 0; // on the disk
+  bool records = false;
+};
+
 void report(const ProgramIdentity& program, MetricStore& store);
 void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store);
 void report(const AnalysisFigures& figures, MetricStore& store);
+void report(const RecorderFigures& figures, MetricStore& store);
 void report_malformed_messages(std::uint64_t count, MetricStore& store);
 
 } // namespace dyncal::services

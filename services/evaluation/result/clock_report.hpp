@@ -4,6 +4,8 @@
 // thread.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +14,18 @@
 
 namespace dyncal::services {
 
+// A block of a source.
+struct BlockPosition {
+  std::uint64_t session = 0;
+  std::uint64_t number = 0;
+  bool operator==(const BlockPosition&) const = default;
+};
+
 struct ClockReport {
   std::string source;
   analysis::SampleClockStatistics clock;
   std::vector<Flag> flags{};
+  std::optional<BlockPosition> last_block{}; // that it covers
 };
 
 } // namespace dyncal::services

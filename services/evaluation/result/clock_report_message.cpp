@@ -142,6 +142,10 @@ wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& repo
   write_lists(report.clock, message);
   message.flags() = sentences_of(report.flags);
   message.flag_names() = names_of(report.flags);
+  if (report.last_block) {
+    message.last_session(report.last_block->session);
+    message.last_block(report.last_block->number);
+  }
   return message;
 }
 
@@ -151,6 +155,9 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   read_numbers(message, report.clock);
   read_lists(message, report.clock);
   report.flags = flags_from_message(message.flags(), message.flag_names());
+  if (message.last_session() != 0) {
+    report.last_block = BlockPosition{message.last_session(), message.last_block()};
+  }
   if (report.flags.empty() && std::isnan(report.clock.u_mean_interval_s)) { // of an older writer
     report.flags.push_back(make_flag(ResultFlag::clock_uncertainty_unknown));
   }

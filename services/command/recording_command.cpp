@@ -1,0 +1,125 @@
+#include "services/command/recording_command.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "services/program/program.hpp"
+#include "services/recording/recording_reader.hpp"
+#include "services/recording/repair.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+namespace {
+
+void print_findings(const recording::ScanReport& report, const std::filesystem::path& path) {
+  for (const recording::Damage& damage : report.damages) {
+    fmt::print("{}\n", to_string(damage, path));
+  }
+  fmt::print("{}: {} messages in {} chunks can be read; {} places are damaged, {} chunks lost\n",
+             path.string(), report.messages, report.chunks - report.lost_chunks,
+             report.damage_count, report.lost_chunks);
+  if (report.unchecked_chunks > 0) {
+    fmt::print("{} chunks have no CRC: nothing shows whether they are sound\n",
+               report.unchecked_chunks);
+  }
+  if (!report.ended_in_order) {
+    fmt::print("its recorder did not end it (was it killed?); 'dyncal recording repair' makes a "
+               "file with an index\n");
+  }
+}
+
+std::string time_text(std::uint64_t utc_ns) {
+  const auto seconds = static_cast<std::time_t>(utc_ns / 1'000'000'000);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(seconds));
+}
+
+struct TopicCount {
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+};
+
+struct Contents {
+  std::map<std::string, TopicCount> topics;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+
+  void add(const recording::MessageInFile& message) {
+    TopicCount& topic = topics[message.channel.topic];
+    ++topic.messages;
+    topic.bytes += message.message.data.size();
+    first = first == 0 ? message.message.log_time : std::min(first, message.message.log_time);
+    last = std::max(last, message.message.log_time);
+  }
+};
+
+} // namespace
+
+int run_recording_check(const RecordingCommand& command) {
+  auto reader = recording::RecordingReader::open(command.file);
+  const auto report = reader ? reader->scan({}) : tl::unexpected(reader.error());
+  if (!report) {
+    return report_error(report.error());
+  }
+  print_findings(*report, command.file);
+  return report->damage_count == 0
+             ? 0
+             : report_error({ErrorCode::bad_file,
+                             fmt::format("{}: is damaged in {} places, listed above; 'dyncal "
+                                         "recording repair' saves what is sound",
+                                         command.file.string(), report->damage_count)});
+}
+
+int run_recording_repair(const RecordingCommand& command) {
+  std::filesystem::path repaired = command.repaired;
+  if (repaired.empty()) {
+    repaired = command.file;
+    repaired.replace_extension(".repaired.mcap");
+  }
+  const auto report = recording::repair(command.file, repaired, software_version());
+  if (!report) {
+    return report_error(report.error());
+  }
+  print_findings(*report, command.file);
+  fmt::print("wrote {}\n", repaired.string());
+  return 0;
+}
+
+int run_recording_info(const RecordingCommand& command) {
+  auto reader = recording::RecordingReader::open(command.file);
+  if (!reader) {
+    return report_error(reader.error());
+  }
+  Contents contents;
+  const auto report = reader->scan(
+      {.message = [&](const recording::MessageInFile& message) { contents.add(message); },
+       .attachment =
+           [](const recording::Attachment& attachment) {
+             fmt::print("attachment {} ({} bytes)\n", attachment.name, attachment.data.size());
+           },
+       .metadata =
+           [](const recording::Metadata& metadata) {
+             fmt::print("{}\n", metadata.name);
+             for (const auto& [key, value] : metadata.entries) {
+               fmt::print("  {} = {}\n", key, value);
+             }
+           }});
+  if (!report) {
+    return report_error(report.error());
+  }
+  fmt::print("written by {}\n", report->library);
+  if (report->messages > 0) {
+    fmt::print("from {} to {}, {:.1f} s\n", time_text(contents.first), time_text(contents.last),
+               static_cast<double>(contents.last - contents.first) * 1e-9);
+  }
+  for (const auto& [topic, count] : contents.topics) {
+    fmt::print("{:<20} {:>9} messages {:>12.3f} MB\n", topic, count.messages,
+               static_cast<double>(count.bytes) * 1e-6);
+  }
+  print_findings(*report, command.file);
+  return 0;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,91 @@
+// Reads an MCAP recording from its beginning to its end, whatever has happened to the file.
+//
+// Nothing is handed over that its CRC does not vouch for: messages of chunks, attachments. Every
+// length is held against the file before memory is taken. A chunk whose CRC is wrong is left out and
+// the reader goes on behind it; where a length is wrong it goes on with the next chunk that is
+// whole. Each of these is a Damage with place and sentence. A recording whose program was killed has
+// no damage: it is whole to its last flush, and `ended_in_order` is false. What the CRC of all the
+// data, of the summary or of metadata does not vouch for is a Damage too, with the records there.
+//
+// open() fails (bad_file) when the file cannot be read or is no MCAP file, scan() when reading
+// fails. Messages outside chunks have no CRC: they are not handed over, which is a Damage. Foreign
+// chunks without a CRC are read, and counted. One thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "drivers/link/file_descriptor.hpp"
+#include "services/error.hpp"
+#include "services/recording/mcap_record.hpp"
+
+namespace dyncal::recording {
+
+struct Damage {
+  std::uint64_t offset = 0; // in the file
+  std::uint64_t bytes = 0;
+  std::string what;
+};
+
+// "FILE: at byte 1234 (56 bytes): ..."
+[[nodiscard]] std::string to_string(const Damage& damage, const std::filesystem::path& path);
+
+// The views last until the call returns.
+struct MessageInFile {
+  const Channel& channel;
+  const Schema* schema = nullptr; // null: the channel has none, or it was lost
+  Message message;
+  std::uint64_t chunk = 0;    // offset of its chunk in the file
+  std::uint64_t position = 0; // of its record in the chunk's records
+};
+
+struct ScanEvents { // any may be empty
+  std::function<void(const MessageInFile&)> message;
+  std::function<void(const Attachment&)> attachment;
+  std::function<void(const Metadata&)> metadata;
+};
+
+struct ScanReport {
+  static constexpr std::size_t max_damages = 1000; // that are kept; more are counted
+
+  std::string library; // that wrote the file
+  std::uint64_t file_bytes = 0;
+  std::uint64_t messages = 0;
+  std::uint64_t chunks = 0;
+  std::uint64_t unchecked_chunks = 0; // without a CRC
+  std::uint64_t lost_chunks = 0;      // of the damages
+  std::uint64_t damage_count = 0;
+  std::vector<Damage> damages;
+  bool ended_in_order = false; // has a sound summary
+};
+
+class RecordingReader {
+public:
+  [[nodiscard]] static services::Expected<RecordingReader> open(const std::filesystem::path& path);
+  // Of a file that is open; `name` is for messages.
+  [[nodiscard]] static services::Expected<RecordingReader> read(drivers::FileDescriptor file,
+                                                                std::filesystem::path name);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] services::Expected<ScanReport> scan(const ScanEvents& events);
+  // The records of the chunk at this offset, with the CRC checked. Fails (bad_file) with a part of a
+  // sentence: what is wrong with it.
+  [[nodiscard]] services::Expected<std::string> chunk_records(std::uint64_t offset) const;
+
+private:
+  friend class Scan;
+
+  RecordingReader(std::filesystem::path path, drivers::FileDescriptor file, std::uint64_t size)
+      : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+  [[nodiscard]] services::Expected<std::string> bytes(std::uint64_t offset,
+                                                      std::uint64_t count) const;
+
+  std::filesystem::path path_;
+  drivers::FileDescriptor file_;
+  std::uint64_t size_ = 0;
+};
+
+} // namespace dyncal::recording

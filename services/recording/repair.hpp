@@ -1,0 +1,20 @@
+// Makes a recording that ended in order of one that did not, or that was damaged: every sound
+// message, attachment and metadata goes into a new file; the old one stays as it is.
+//
+// What could not be read stands in the new file, too: as metadata "dyncal.repair". Fails (bad_file)
+// as reader and writer do. Plain function, any thread.
+#pragma once
+
+#include <filesystem>
+
+#include "services/error.hpp"
+#include "services/recording/recording_reader.hpp"
+
+namespace dyncal::recording {
+
+// Returns what was found in the old file.
+[[nodiscard]] services::Expected<ScanReport> repair(const std::filesystem::path& path,
+                                                    const std::filesystem::path& repaired,
+                                                    const std::string& library);
+
+} // namespace dyncal::recording

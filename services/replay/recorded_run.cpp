@@ -1,0 +1,362 @@
+#include "services/replay/recorded_run.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "services/contract/source_block.hpp"
+#include "services/contract/source_description.hpp"
+#include "services/contract/source_kind.hpp"
+#include "services/contract/topics.hpp"
+#include "services/evaluation/recipe/recipe_message.hpp"
+#include "services/evaluation/result/clock_report_message.hpp"
+#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/run_evaluator.hpp"
+#include "services/recording/recorded_topics.hpp"
+#include "services/replay/recording_index.hpp"
+
+namespace dyncal::services {
+namespace {
+
+namespace topics = bus::topics;
+
+// At once, one a processor; each holds the samples of its step.
+constexpr std::size_t max_evaluations = 4;
+constexpr std::size_t max_damages_named = 20;
+// A source that has restarted is waited with for so long (services/analysis/source_streams.hpp).
+constexpr std::uint64_t session_limit_ns = 5'000'000'000;
+
+// Messages at other places of the file than where the walk is, by their chunks.
+class OtherPlaces {
+public:
+  explicit OtherPlaces(const recording::RecordingReader& reader) : reader_(reader) {}
+
+  // Its data last until the next call.
+  [[nodiscard]] Expected<recording::Message> at(const RecordedPlace& place) {
+    if (!records_ || chunk_ != place.chunk) {
+      auto records = reader_.chunk_records(place.chunk);
+      if (!records) {
+        return fail(records.error());
+      }
+      records_ = std::move(*records);
+      chunk_ = place.chunk;
+    }
+    const std::string_view records = *records_;
+    const std::uint64_t length = recording::number_at(records, place.position + 1, 8);
+    return *recording::parse_message(
+        records.substr(place.position + recording::head_bytes, length));
+  }
+
+private:
+  const recording::RecordingReader& reader_;
+  std::optional<std::string> records_;
+  std::uint64_t chunk_ = 0;
+};
+
+void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome) {
+  for (auto* results : {&output.results, &output.settled}) {
+    for (const StepResult& evaluated : *results) {
+      StepResult result = from_message(to_message(recipe, evaluated));
+      const auto known = std::find_if(
+          outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
+            return one.channel == result.channel && one.step == result.step &&
+                   one.repetition == result.repetition;
+          });
+      if (known == outcome.results.end()) {
+        outcome.results.push_back(std::move(result));
+      } else if (result.attempt >= known->attempt) {
+        *known = std::move(result);
+      }
+    }
+  }
+  for (const TransferFunction& function : output.transfer_functions) {
+    outcome.transfer_functions.push_back(from_message(to_message(recipe, function)));
+  }
+  for (const ClockReport& report : output.clock_reports) {
+    outcome.clock_reports.push_back(from_message(to_message(recipe, report)));
+  }
+}
+
+// The second walk: what was recorded goes to the evaluation.
+class Evaluating {
+public:
+  Evaluating(const recording::RecordingReader& reader, const RecordedRunIndex& index,
+             RunEvaluator& evaluator, RunOutcome& outcome)
+      : index_(index), evaluator_(evaluator), outcome_(outcome), others_(reader),
+        bench_(index.plan.bench().to_string()), run_(index.plan.run().to_string()) {
+    for (const std::string& name : evaluator.recipe().sources()) {
+      if (const auto found = index.sources.find(name); found != index.sources.end()) {
+        auto& source = sources_.try_emplace(name, Source{found->second}).first->second;
+        source.next = found->second.messages.begin();
+        // Without the answer in the recording its samples count from the first one.
+        source.answered = !found->second.answered.contains(run_);
+      }
+    }
+  }
+
+  void take(const recording::MessageInFile& message) {
+    if (!outcome_of_walk_ || evaluator_.finished()) {
+      return;
+    }
+    now_ = message.message.log_time;
+    const std::string& topic = message.channel.topic;
+    if (topic == topics::excitation) {
+      announce(message);
+    } else if (topic == topics::measurement) {
+      take_state(message);
+    } else if (topic == topics::dau_samples || topic == topics::acs_samples ||
+               topic == topics::can_samples) {
+      take_of_source<wire::SampleBlock>(message);
+    } else if (topic == topics::dso_record || topic == topics::tss_record) {
+      take_of_source<wire::TriggeredRecord>(message);
+    } else {
+      return;
+    }
+    collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
+  }
+
+  [[nodiscard]] Expected<void> finish(bool aborted) {
+    if (outcome_of_walk_ && !evaluator_.finished()) {
+      for (auto& [name, source] : sources_) {
+        hand_over_waiting(name, source, true);
+      }
+      evaluator_.end_of_excitation(aborted);
+      evaluator_.finish_now();
+      collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
+    }
+    return outcome_of_walk_;
+  }
+
+private:
+  struct Source {
+    const RecordedSource& recorded;
+    std::map<RecordedPosition, RecordedPlace>::const_iterator next{};
+    bool answered = false;
+    std::optional<std::uint64_t> described; // session
+    std::deque<wire::SampleBlock> waiting{};
+    std::uint64_t waiting_since = 0;
+  };
+
+  void announce(const recording::MessageInFile& message) {
+    const auto excitation = recording::decode<wire::Excitation>(message.message.data);
+    if (excitation && excitation->run() == run_) {
+      evaluator_.expect_announcements();
+      evaluator_.announce(from_message(*excitation));
+    }
+  }
+
+  void take_state(const recording::MessageInFile& message) {
+    const auto measurement = recording::decode<wire::Measurement>(message.message.data);
+    if (measurement && measurement->run() == run_ &&
+        (measurement->state() == wire::MEASUREMENT_DONE ||
+         measurement->state() == wire::MEASUREMENT_ABORTED)) {
+      evaluator_.end_of_excitation(measurement->state() == wire::MEASUREMENT_ABORTED);
+    }
+  }
+
+  // Everything of the source up to this message that has not been handed over yet.
+  template <class T>
+  void take_of_source(const recording::MessageInFile& message) {
+    const auto decoded = recording::decode<T>(message.message.data);
+    const auto found = decoded && decoded->bench() == bench_
+                           ? sources_.find(decoded->source().to_string())
+                           : sources_.end();
+    const std::uint64_t number = decoded ? recording::number_in_source(*decoded) : 0;
+    if (found == sources_.end() || (std::is_same_v<T, wire::TriggeredRecord> && number == 0)) {
+      return;
+    }
+    Source& source = found->second;
+    const RecordedPosition here = source.recorded.position(decoded->session(), number);
+    while (source.next != source.recorded.messages.end() && source.next->first <= here) {
+      const auto& [position, place] = *source.next++;
+      if (position == here) {
+        add(found->first, source, *decoded);
+        continue;
+      }
+      const auto elsewhere = others_.at(place);
+      const auto other = elsewhere ? recording::decode<T>(elsewhere->data) : std::nullopt;
+      if (!elsewhere) {
+        outcome_of_walk_ = fail(elsewhere.error());
+        return;
+      }
+      if (other) {
+        add(found->first, source, *other);
+      }
+    }
+  }
+
+  void describe(const std::string& name, Source& source, std::uint64_t session) {
+    if (source.described == session) {
+      return;
+    }
+    const auto of_session = source.recorded.descriptions.find(session);
+    if (of_session == source.recorded.descriptions.end() && source.described) {
+      return;
+    }
+    source.described = session;
+    if (of_session == source.recorded.descriptions.end() && !source.recorded.newest) {
+      outcome_of_walk_ = fail(
+          ErrorCode::no_source,
+          fmt::format("the recording holds no description of source '{}' of bench '{}'", name,
+                      bench_));
+      return;
+    }
+    const wire::SourceDescription& description =
+        of_session == source.recorded.descriptions.end() ? *source.recorded.newest
+                                                         : of_session->second;
+    if (auto described = evaluator_.describe(name, from_message(description)); !described) {
+      outcome_of_walk_ = std::move(described);
+    }
+  }
+
+  void add(const std::string& name, Source& source, const wire::SampleBlock& block) {
+    source.answered = source.answered || block.acknowledged_run() == run_;
+    if (!source.answered) {
+      return;
+    }
+    source.waiting.push_back(block);
+    hand_over_waiting(name, source, false);
+  }
+  void add(const std::string& name, Source& source, const wire::TriggeredRecord& record) {
+    describe(name, source, record.session());
+    if (outcome_of_walk_ && record.run() == run_) {
+      evaluator_.add(name, from_message(record));
+    }
+  }
+
+  // A new session waits as long as steps of the one before may still be evaluated.
+  void hand_over_waiting(const std::string& name, Source& source, bool at_once) {
+    while (outcome_of_walk_ && !source.waiting.empty()) {
+      const wire::SampleBlock& block = source.waiting.front();
+      if (source.waiting_since == 0) {
+        source.waiting_since = now_;
+      }
+      const bool overdue = at_once || now_ > source.waiting_since + session_limit_ns;
+      if (!overdue && !evaluator_.is_ready_for(name, block.session())) {
+        return;
+      }
+      describe(name, source, block.session());
+      if (outcome_of_walk_) {
+        evaluator_.add(name, view_block(block));
+      }
+      source.waiting.pop_front();
+      source.waiting_since = 0;
+    }
+  }
+
+  const RecordedRunIndex& index_;
+  RunEvaluator& evaluator_;
+  RunOutcome& outcome_;
+  OtherPlaces others_;
+  std::string bench_;
+  std::string run_;
+  std::map<std::string, Source> sources_;
+  std::uint64_t now_ = 0; // log_time
+  Expected<void> outcome_of_walk_;
+};
+
+void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {
+  for (const std::string& name : outcome.recipe->sources()) {
+    const auto found = index.sources.find(name);
+    if (found != index.sources.end() && found->second.newest) {
+      const wire::SourceDescription& description = *found->second.newest;
+      outcome.sources.push_back({name, from_wire(description.kind()), description.software(),
+                                 from_message(description)});
+    }
+  }
+  if (index.analysis) {
+    outcome.analysis_dds = index.analysis->dds();
+    outcome.analysis_software = index.analysis->software();
+    outcome.analysis_host = index.analysis->host();
+  }
+  outcome.began_utc_ns = static_cast<std::int64_t>(index.began);
+  outcome.ended_utc_ns = static_cast<std::int64_t>(index.ended);
+  if (index.newest.state() == wire::MEASUREMENT_ABORTED) {
+    outcome.interrupted = index.newest.message() == interrupted_by_user;
+    outcome.problem = outcome.interrupted ? "" : index.newest.message();
+  }
+}
+
+std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe& recipe,
+                                     const std::filesystem::path& path) {
+  std::vector<std::string> warnings;
+  const auto& damages = index.report.damages;
+  for (std::size_t i = 0; i < std::min(damages.size(), max_damages_named); ++i) {
+    warnings.push_back(recording::to_string(damages[i], path));
+  }
+  if (index.report.damage_count > max_damages_named) {
+    warnings.push_back(fmt::format("{}: {} more places are damaged ('dyncal recording check')",
+                                   path.string(), index.report.damage_count - max_damages_named));
+  }
+  if (index.ended == 0) {
+    warnings.push_back(fmt::format("{}: the end of the run is not in the recording", path.string()));
+  }
+  const std::string run = index.plan.run().to_string();
+  for (const std::string& name : recipe.sources()) {
+    const auto found = index.sources.find(name);
+    if (found == index.sources.end()) {
+      warnings.push_back(
+          fmt::format("{}: holds nothing of source '{}'", path.string(), name));
+    } else if (!found->second.answered.contains(run)) {
+      warnings.push_back(fmt::format("{}: the beginning of the run is missing in source '{}': look "
+                                     "whether steps were taken for others",
+                                     path.string(), name));
+    }
+  }
+  return warnings;
+}
+
+} // namespace
+
+Expected<RecordedRunOutcome> evaluate_recording(const RecordedRunWish& wish,
+                                                const std::stop_token& stop) {
+  auto reader = recording::RecordingReader::open(wish.recording);
+  if (!reader) {
+    return fail(reader.error());
+  }
+  const auto index = index_recording(*reader, wish.run);
+  if (!index) {
+    return fail(index.error());
+  }
+  auto recipe = wish.recipe ? Expected<Recipe>(*wish.recipe) : parse_recipe(index->plan);
+  if (!recipe) {
+    return fail(recipe.error());
+  }
+  recipe->bench = index->plan.bench().to_string();
+  recipe->run = index->plan.run().to_string();
+  RecordedRunOutcome result;
+  result.live_results = index->live_results;
+  result.outcome = outcome_of(*recipe);
+  result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
+  result.warnings = warnings_of(*index, *recipe, wish.recording);
+  add_setup(*index, result.outcome);
+  RunEvaluator evaluator(std::move(*recipe),
+                         {.evaluations_at_once = std::clamp<std::size_t>(
+                              std::thread::hardware_concurrency(), 1, max_evaluations),
+                          .clock_to_the_end = index->clock_end.has_value(),
+                          .clock_end = index->clock_end});
+  Evaluating evaluating(*reader, *index, evaluator, result.outcome);
+  const auto walked = reader->scan({.message =
+                                        [&](const recording::MessageInFile& message) {
+                                          if (!stop.stop_requested()) {
+                                            evaluating.take(message);
+                                          }
+                                        },
+                                    .attachment = {},
+                                    .metadata = {}});
+  if (!walked) {
+    return fail(walked.error());
+  }
+  const bool aborted = stop.stop_requested() || index->newest.state() != wire::MEASUREMENT_DONE;
+  if (const auto finished = evaluating.finish(aborted); !finished) {
+    return fail(finished.error());
+  }
+  result.outcome.interrupted = result.outcome.interrupted || stop.stop_requested();
+  sort_outcome(result.outcome);
+  return result;
+}
+
+} // namespace dyncal::services

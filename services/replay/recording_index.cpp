@@ -1,0 +1,196 @@
+#include "services/replay/recording_index.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/contract/topics.hpp"
+#include "services/recording/recorded_topics.hpp"
+
+namespace dyncal::services {
+namespace {
+
+namespace topics = bus::topics;
+
+// Everything that the first walk gathers, of all runs.
+class Gathering {
+public:
+  void take(const recording::MessageInFile& message) {
+    recording::for_each_recorded_topic([&]<class T>(const bus::Topic<T>& topic) {
+      if constexpr (is_looked_at<T>) {
+        if (message.channel.topic == topic.name) {
+          if (const auto decoded = recording::decode<T>(message.message.data)) {
+            take(*decoded, message);
+          } else {
+            ++undecodable_;
+          }
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] Expected<RecordedRunIndex> index(const std::filesystem::path& path,
+                                                 const std::string& wanted) {
+    if (runs_.empty()) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: holds no run (no Measurement)", path.string()));
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, run] : runs_) {
+      names.push_back(name);
+    }
+    if (wanted.empty() && names.size() > 1) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: holds several runs ({}): name one with --run", path.string(),
+                              fmt::join(names, ", ")));
+    }
+    const auto run = runs_.find(wanted.empty() ? names.front() : wanted);
+    if (run == runs_.end()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: holds no run '{}', but: {}", path.string(), wanted,
+                              fmt::join(names, ", ")));
+    }
+    RecordedRunIndex index = std::move(run->second);
+    index.sources = ordered(index.plan.bench().to_string());
+    return index;
+  }
+  [[nodiscard]] std::uint64_t undecodable() const { return undecodable_; }
+
+private:
+  template <class T>
+  static constexpr bool is_looked_at =
+      recording::is_of_source<T> || std::is_same_v<T, wire::Measurement> ||
+      std::is_same_v<T, wire::SourceDescription> || std::is_same_v<T, wire::ServiceStatus> ||
+      std::is_same_v<T, wire::SampleClockReport> || std::is_same_v<T, wire::CalibrationResult>;
+
+  struct Session {
+    std::int64_t began_utc_ns = 0;
+    std::map<std::uint64_t, RecordedPlace> messages;
+  };
+  struct Source {
+    std::map<std::uint64_t, wire::SourceDescription> descriptions;
+    std::optional<wire::SourceDescription> newest;
+    std::map<std::uint64_t, Session> sessions;
+    std::set<std::string> answered;
+  };
+  using SourceKey = std::pair<std::string, std::string>; // bench and source
+
+  void take(const wire::Measurement& measurement, const recording::MessageInFile& message) {
+    const auto [found, is_new] = runs_.try_emplace(measurement.run().to_string());
+    RecordedRunIndex& run = found->second;
+    if (is_new) {
+      run.plan = measurement;
+    }
+    run.newest = measurement;
+    const auto state = measurement.state();
+    if (state == wire::MEASUREMENT_RUNNING && run.began == 0) {
+      run.began = message.message.log_time;
+    }
+    if ((state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED) &&
+        run.ended == 0) {
+      run.ended = message.message.log_time;
+    }
+  }
+  void take(const wire::SourceDescription& description,
+            const recording::MessageInFile& /*message*/) {
+    Source& source = sources_[{description.bench().to_string(), description.source().to_string()}];
+    source.descriptions[description.session()] = description;
+    source.newest = description;
+  }
+  void take(const wire::ServiceStatus& status, const recording::MessageInFile& /*message*/) {
+    if (status.arm() == wire::ARM_ARMED || status.arm() == wire::ARM_FINISHED) {
+      if (const auto run = runs_.find(status.run().to_string()); run != runs_.end()) {
+        run->second.analysis = status;
+      }
+    }
+  }
+  void take(const wire::SampleClockReport& report, const recording::MessageInFile& /*message*/) {
+    const auto run = runs_.find(report.run().to_string());
+    if (run != runs_.end() && report.last_session() != 0) {
+      run->second.clock_end = BlockPosition{report.last_session(), report.last_block()};
+    }
+  }
+  void take(const wire::CalibrationResult& result, const recording::MessageInFile& /*message*/) {
+    if (const auto run = runs_.find(result.run().to_string()); run != runs_.end()) {
+      ++run->second.live_results;
+    }
+  }
+  template <class T>
+  void take(const T& message, const recording::MessageInFile& in_file) {
+    Source& source = sources_[{message.bench().to_string(), message.source().to_string()}];
+    if (!message.acknowledged_run().empty()) {
+      source.answered.insert(message.acknowledged_run());
+    }
+    const std::uint64_t number = recording::number_in_source(message);
+    if (std::is_same_v<T, wire::TriggeredRecord> && number == 0) {
+      return;
+    }
+    const auto [found, is_new] = source.sessions.try_emplace(message.session());
+    Session& session = found->second;
+    session.began_utc_ns = is_new ? message.received_utc_ns()
+                                  : std::min(session.began_utc_ns, message.received_utc_ns());
+    session.messages.try_emplace(number, RecordedPlace{in_file.chunk, in_file.position});
+  }
+
+  [[nodiscard]] std::map<std::string, RecordedSource> ordered(const std::string& bench) const {
+    std::map<std::string, RecordedSource> all;
+    for (const auto& [key, source] : sources_) {
+      if (key.first != bench) {
+        continue;
+      }
+      RecordedSource& one = all[key.second];
+      one.descriptions = source.descriptions;
+      one.newest = source.newest;
+      one.answered = source.answered;
+      for (const auto& [session, messages] : source.sessions) {
+        one.sessions.push_back(session);
+      }
+      std::stable_sort(one.sessions.begin(), one.sessions.end(), [&](auto a, auto b) {
+        return source.sessions.at(a).began_utc_ns < source.sessions.at(b).began_utc_ns;
+      });
+      for (std::size_t i = 0; i < one.sessions.size(); ++i) {
+        for (const auto& [number, place] : source.sessions.at(one.sessions[i]).messages) {
+          one.messages.emplace(RecordedPosition{i, number}, place);
+        }
+      }
+    }
+    return all;
+  }
+
+  std::map<std::string, RecordedRunIndex> runs_;
+  std::map<SourceKey, Source> sources_;
+  std::uint64_t undecodable_ = 0;
+};
+
+} // namespace
+
+RecordedPosition RecordedSource::position(std::uint64_t session, std::uint64_t number) const {
+  const auto found = std::find(sessions.begin(), sessions.end(), session);
+  return {static_cast<std::size_t>(found - sessions.begin()), number};
+}
+
+Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
+                                           const std::string& run) {
+  Gathering gathering;
+  auto report = reader.scan(
+      {.message = [&](const recording::MessageInFile& message) { gathering.take(message); },
+       .attachment = {},
+       .metadata = {}});
+  if (!report) {
+    return fail(report.error());
+  }
+  if (gathering.undecodable() > 0) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: {} messages are not of the contract of this version: read it with "
+                            "the version that wrote it ({})",
+                            reader.path().string(), gathering.undecodable(), report->library));
+  }
+  auto index = gathering.index(reader.path(), run);
+  if (index) {
+    index->report = std::move(*report);
+  }
+  return index;
+}
+
+} // namespace dyncal::services
