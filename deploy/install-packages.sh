@@ -18,18 +18,20 @@ build_packages=(
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
-  zlib1g-dev
+  zlib1g-dev libsqlite3-dev
 )
 # dyncal is built without what these are for where they cannot be had.
 optional_build_packages=(
   libsystemd-dev     # daemons tell systemd that they are ready
   prometheus-cpp-dev # --metrics of the daemons
   libzstd-dev        # smaller recordings
+  libpqxx-dev        # results of runs in PostgreSQL
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
   libssl3 libsndfile1 liblxi1 libtirpc3
   libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
+  libsqlite3-0 libpqxx-6.4
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
@@ -41,6 +43,7 @@ test_packages=(
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
   python3-jsonschema                           # results against their schema
+  postgresql-15                                # a server of the test's own, on a socket
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 

@@ -4,7 +4,7 @@
 
 namespace dyncal::services {
 
-void read_address_or_folder(TomlTable& table, const std::filesystem::path& folder, const char* what,
+void read_address_or_folder(TomlTable& table, NamedFiles& files, const char* what,
                             std::string& address, std::filesystem::path& path) {
   address = table.text("address");
   const std::string name = table.text("path");
@@ -12,7 +12,7 @@ void read_address_or_folder(TomlTable& table, const std::filesystem::path& folde
     table.refuse("address", fmt::format("or 'path' must be given, one of them: {}", what));
   }
   if (!name.empty()) {
-    path = std::filesystem::absolute(folder / name).lexically_normal();
+    path = files.resolve(name);
   }
 }
 

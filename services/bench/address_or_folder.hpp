@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <string>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-// One of the two must be given; `what` explains them. `path` becomes absolute from `folder`.
-void read_address_or_folder(TomlTable& table, const std::filesystem::path& folder, const char* what,
+// One of the two must be given; `what` explains them. `path` is looked up in `files`.
+void read_address_or_folder(TomlTable& table, NamedFiles& files, const char* what,
                             std::string& address, std::filesystem::path& path);
 
 } // namespace dyncal::services

@@ -75,9 +75,9 @@ std::optional<TomlTable> required_table(TomlTable& root, const std::string& key)
 }
 
 BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& path,
-                      std::string& problem) {
+                      NamedFiles::Place place, std::string& problem) {
   BenchFile file;
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  NamedFiles files(std::filesystem::absolute(path).parent_path(), place);
   TomlTable root(parsed, "", path.string(), problem);
   file.bench = root.required_text("bench");
   check_name(root, "bench", file.bench);
@@ -91,13 +91,13 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
     file.generator = read_generator(std::move(*generator), file.excitation);
   }
   if (auto sources = required_table(root, "sources")) {
-    file.sources = read_sources(std::move(*sources), folder);
+    file.sources = read_sources(std::move(*sources), files);
   }
   if (auto method = required_table(root, "method")) {
     file.method = read_method(std::move(*method), file.sources);
   }
   if (auto corrections = root.table("corrections")) {
-    file.corrections = read_corrections(std::move(*corrections), folder);
+    file.corrections = read_corrections(std::move(*corrections), files);
   }
   if (auto uncertainty = root.table("uncertainty")) {
     if (file.corrections.adc && uncertainty->has("adc_delay_s")) {
@@ -107,6 +107,7 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
     file.uncertainty = read_uncertainty(std::move(*uncertainty));
   }
   root.finish();
+  file.named_files = files.all();
   return file;
 }
 
@@ -119,12 +120,13 @@ const SourceSettings* BenchFile::source(const std::string& name) const {
   return found == sources.end() ? nullptr : &*found;
 }
 
-Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path) {
+Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path,
+                                     NamedFiles::Place place) {
   std::string problem;
   BenchFile file;
   try {
     const toml::table parsed = toml::parse(text, path.string());
-    file = read_tables(parsed, path, problem);
+    file = read_tables(parsed, path, place, problem);
   } catch (const toml::parse_error& error) {
     problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
                           error.description());
@@ -141,7 +143,7 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
   return file;
 }
 
-Expected<BenchFile> read_bench_file(const std::filesystem::path& path) {
+Expected<BenchFile> read_bench_file(const std::filesystem::path& path, NamedFiles::Place place) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
     return fail(ErrorCode::bad_file,
@@ -150,7 +152,7 @@ Expected<BenchFile> read_bench_file(const std::filesystem::path& path) {
   }
   std::ostringstream text;
   text << stream.rdbuf();
-  return parse_bench_file(text.str(), path);
+  return parse_bench_file(text.str(), path, place);
 }
 
 } // namespace dyncal::services

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "analysis/instrument/reference_calibration.hpp"
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
@@ -111,16 +112,21 @@ struct BenchFile {
   MethodSettings method;
   CorrectionSettings corrections;
   UncertaintySettings uncertainty;
+  std::vector<NamedFile> named_files;
 
   [[nodiscard]] const SourceSettings* source(const std::string& name) const;
 };
 
-// Fails (bad_file) with one sentence that begins "FILE:LINE: key 'table.key' ...".
-[[nodiscard]] Expected<BenchFile> read_bench_file(const std::filesystem::path& path);
+// Fails (bad_file) with one sentence that begins "FILE:LINE: key 'table.key' ...". `place`: where
+// the files are that it names.
+[[nodiscard]] Expected<BenchFile>
+read_bench_file(const std::filesystem::path& path,
+                NamedFiles::Place place = NamedFiles::Place::as_named);
 
 // The same from text that did not come from a file; `path` is for messages and as the folder of
 // relative paths.
-[[nodiscard]] Expected<BenchFile> parse_bench_file(const std::string& text,
-                                                   const std::filesystem::path& path);
+[[nodiscard]] Expected<BenchFile>
+parse_bench_file(const std::string& text, const std::filesystem::path& path,
+                 NamedFiles::Place place = NamedFiles::Place::as_named);
 
 } // namespace dyncal::services

@@ -48,11 +48,11 @@ std::optional<CanTimeSource> read_time_source(TomlTable& table) {
 }
 
 std::filesystem::path read_file_name(TomlTable& table, const std::string& key,
-                                     const std::string& name, const std::filesystem::path& folder) {
+                                     const std::string& name, NamedFiles& files) {
   if (name.empty()) {
     return {};
   }
-  const auto path = std::filesystem::absolute(folder / name).lexically_normal();
+  const auto path = files.resolve(name);
   if (!std::filesystem::is_regular_file(path)) {
     table.refuse(key,
                  fmt::format("names {}, which does not exist or is not a file", path.string()));
@@ -77,11 +77,11 @@ std::optional<double> optional_positive(TomlTable& table, const std::string& key
 
 } // namespace
 
-CanSourceSettings read_can_source(TomlTable& table, const std::filesystem::path& folder) {
+CanSourceSettings read_can_source(TomlTable& table, NamedFiles& files) {
   CanSourceSettings can;
-  can.log = read_file_name(table, "log", table.text("log"), folder);
+  can.log = read_file_name(table, "log", table.text("log"), files);
   can.interface_name = can.log.empty() ? table.required_text("interface") : table.text("interface");
-  can.dbc = read_file_name(table, "dbc", table.required_text("dbc"), folder);
+  can.dbc = read_file_name(table, "dbc", table.required_text("dbc"), files);
   can.messages = table.texts("messages");
   can.time_source = read_time_source(table);
   can.counter = table.text("counter");

@@ -20,12 +20,12 @@
 
 #include <filesystem>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-[[nodiscard]] CanSourceSettings read_can_source(TomlTable& table,
-                                                const std::filesystem::path& folder);
+[[nodiscard]] CanSourceSettings read_can_source(TomlTable& table, NamedFiles& files);
 
 } // namespace dyncal::services

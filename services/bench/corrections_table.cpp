@@ -9,15 +9,14 @@ namespace dyncal::services {
 
 namespace {
 
-void read_trigger_delay(TomlTable table, const std::filesystem::path& folder,
-                        CorrectionSettings& corrections) {
+void read_trigger_delay(TomlTable table, NamedFiles& files, CorrectionSettings& corrections) {
   if (!table.has("file")) {
     corrections.dso_delay_s = table.number("value_s", 0.0, "seconds");
     corrections.u_dso_delay_s = table.number("u_s", 0.0, "seconds");
   } else if (table.has("value_s") || table.has("u_s")) {
     table.refuse("file", "is given beside value_s or u_s; the file says both");
   } else {
-    const auto delay = read_dso_delay_file(folder / table.required_text("file"));
+    const auto delay = read_dso_delay_file(files.resolve(table.required_text("file")));
     if (delay) {
       corrections.dso_delay_s = delay->value_s;
       corrections.u_dso_delay_s = delay->u_s;
@@ -36,10 +35,10 @@ void read_trigger_delay(TomlTable table, const std::filesystem::path& folder,
   table.finish();
 }
 
-AdcCorrectionSettings read_adc(TomlTable table, const std::filesystem::path& folder) {
+AdcCorrectionSettings read_adc(TomlTable table, NamedFiles& files) {
   AdcCorrectionSettings adc;
   const std::string file = table.required_text("file");
-  adc.file = std::filesystem::absolute(folder / file).lexically_normal();
+  adc.file = files.resolve(file);
   if (!file.empty() && !std::filesystem::is_regular_file(adc.file)) {
     table.refuse("file",
                  fmt::format("names {}, which does not exist or is not a file", adc.file.string()));
@@ -54,13 +53,13 @@ AdcCorrectionSettings read_adc(TomlTable table, const std::filesystem::path& fol
 
 } // namespace
 
-CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path& folder) {
+CorrectionSettings read_corrections(TomlTable table, NamedFiles& files) {
   CorrectionSettings corrections;
   if (auto adc = table.table("adc")) {
-    corrections.adc = read_adc(std::move(*adc), folder);
+    corrections.adc = read_adc(std::move(*adc), files);
   }
   if (table.has("reference")) {
-    auto points = read_reference_file(folder / table.required_text("reference"));
+    auto points = read_reference_file(files.resolve(table.required_text("reference")));
     if (points) {
       corrections.reference = std::move(*points);
     } else {
@@ -69,7 +68,7 @@ CorrectionSettings read_corrections(TomlTable table, const std::filesystem::path
   }
   corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");
   if (auto delay = table.table("dso_delay")) {
-    read_trigger_delay(std::move(*delay), folder, corrections);
+    read_trigger_delay(std::move(*delay), files, corrections);
   }
   table.finish();
   return corrections;

@@ -10,12 +10,12 @@
 #include <filesystem>
 
 #include "services/bench/bench_file.hpp"
+#include "services/bench/named_files.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-// Relative paths are resolved from `folder`. What is not valid is refused in the table.
-[[nodiscard]] CorrectionSettings read_corrections(TomlTable table,
-                                                  const std::filesystem::path& folder);
+// Files are looked up in `files`. What is not valid is refused in the table.
+[[nodiscard]] CorrectionSettings read_corrections(TomlTable table, NamedFiles& files);
 
 } // namespace dyncal::services

@@ -19,10 +19,10 @@ double read_play_speed(TomlTable& table) {
   return table.one_of("play", {"at-once", "real-time"}, "at-once") == "real-time" ? 1.0 : 0.0;
 }
 
-FileSourceSettings read_file_source(TomlTable& table, const std::filesystem::path& folder) {
+FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files) {
   FileSourceSettings file;
   const std::string path = table.required_text("path");
-  file.path = std::filesystem::absolute(folder / path).lexically_normal();
+  file.path = files.resolve(path);
   if (!path.empty() && !std::filesystem::is_regular_file(file.path)) {
     table.refuse(
         "path", fmt::format("names {}, which does not exist or is not a file", file.path.string()));

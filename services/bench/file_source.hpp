@@ -7,13 +7,13 @@
 
 #include <filesystem>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-[[nodiscard]] FileSourceSettings read_file_source(TomlTable& table,
-                                                  const std::filesystem::path& folder);
+[[nodiscard]] FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files);
 
 // The key `play`: times real time; 0: at once.
 [[nodiscard]] double read_play_speed(TomlTable& table);

@@ -4,10 +4,9 @@
 
 namespace dyncal::services {
 
-OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table,
-                                                    const std::filesystem::path& folder) {
+OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table, NamedFiles& files) {
   OscilloscopeSourceSettings oscilloscope;
-  read_address_or_folder(table, folder,
+  read_address_or_folder(table, files,
                          "where the oscilloscope answers, or the folder with files of its shots",
                          oscilloscope.address, oscilloscope.path);
   oscilloscope.family = table.text("family");

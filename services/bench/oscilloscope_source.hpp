@@ -11,12 +11,13 @@
 
 #include <filesystem>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-[[nodiscard]] OscilloscopeSourceSettings
-read_oscilloscope_source(TomlTable& table, const std::filesystem::path& folder);
+[[nodiscard]] OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table,
+                                                                  NamedFiles& files);
 
 } // namespace dyncal::services

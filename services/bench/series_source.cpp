@@ -4,9 +4,9 @@
 
 namespace dyncal::services {
 
-SeriesSourceSettings read_series_source(TomlTable& table, const std::filesystem::path& folder) {
+SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files) {
   SeriesSourceSettings series;
-  read_address_or_folder(table, folder,
+  read_address_or_folder(table, files,
                          "where the sensor sends its series, or the folder it writes them into",
                          series.address, series.path);
   return series;

@@ -7,12 +7,12 @@
 
 #include <filesystem>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-[[nodiscard]] SeriesSourceSettings read_series_source(TomlTable& table,
-                                                      const std::filesystem::path& folder);
+[[nodiscard]] SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files);
 
 } // namespace dyncal::services

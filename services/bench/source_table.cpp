@@ -15,8 +15,7 @@ namespace dyncal::services {
 
 namespace {
 
-DriverSettings read_driver(TomlTable& table, const std::string& driver,
-                           const std::filesystem::path& folder) {
+DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFiles& files) {
   if (driver == "smartup") {
     return read_smartup_source(table);
   }
@@ -24,15 +23,15 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver,
     return read_socket_source(table);
   }
   if (driver == "can") {
-    return read_can_source(table, folder);
+    return read_can_source(table, files);
   }
   if (driver == "oscilloscope") {
-    return read_oscilloscope_source(table, folder);
+    return read_oscilloscope_source(table, files);
   }
   if (driver == "series") {
-    return read_series_source(table, folder);
+    return read_series_source(table, files);
   }
-  return driver == "file" ? read_file_source(table, folder) : FileSourceSettings{};
+  return driver == "file" ? read_file_source(table, files) : FileSourceSettings{};
 }
 
 void read_units(TomlTable& table, SourceSettings& source) {
@@ -47,14 +46,13 @@ void read_units(TomlTable& table, SourceSettings& source) {
   }
 }
 
-SourceSettings read_source(TomlTable table, const std::string& name,
-                           const std::filesystem::path& folder) {
+SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles& files) {
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
   const std::string driver =
       table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
-  source.driver = read_driver(table, driver, folder);
+  source.driver = read_driver(table, driver, files);
   source.identity = {.device = table.text("device"),
                      .serial = table.text("serial"),
                      .firmware = table.text("firmware")};
@@ -71,12 +69,12 @@ SourceSettings read_source(TomlTable table, const std::string& name,
 
 } // namespace
 
-std::vector<SourceSettings> read_sources(TomlTable table, const std::filesystem::path& folder) {
+std::vector<SourceSettings> read_sources(TomlTable table, NamedFiles& files) {
   std::vector<SourceSettings> sources;
   for (const std::string& name : table.keys()) {
     check_name(table, name, name);
     if (auto inner = table.table(name)) {
-      sources.push_back(read_source(std::move(*inner), name, folder));
+      sources.push_back(read_source(std::move(*inner), name, files));
     }
   }
   return sources;

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <vector>
 
+#include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/bench/toml_table.hpp"
 
 namespace dyncal::services {
 
-// Relative paths are resolved from `folder`. What is not valid is refused in the table.
-[[nodiscard]] std::vector<SourceSettings> read_sources(TomlTable table,
-                                                       const std::filesystem::path& folder);
+// Files are looked up in `files`. What is not valid is refused in the table.
+[[nodiscard]] std::vector<SourceSettings> read_sources(TomlTable table, NamedFiles& files);
 
 } // namespace dyncal::services

@@ -144,8 +144,15 @@ void add_recorded_time(RunOutcome& outcome) {
   }
 }
 
+// A run folder stands for the bench file in it, with its copies of the files.
+Expected<BenchFile> read_bench_or_folder(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(path)
+             ? read_bench_file(path / copied_bench_file, NamedFiles::Place::copies)
+             : read_bench_file(path);
+}
+
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
-  const auto bench = read_bench_file(command.bench_file);
+  const auto bench = read_bench_or_folder(command.bench_file);
   if (!bench) {
     return fail(bench.error());
   }

@@ -13,7 +13,7 @@
 namespace dyncal::services {
 
 struct AnalyseCommand {
-  std::filesystem::path bench_file;
+  std::filesystem::path bench_file; // or a run folder (services/run_folder)
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> figures;
 };

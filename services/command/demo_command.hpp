@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "services/command/kept_run.hpp"
+
 namespace dyncal::services {
 
 struct DemoCommand {
@@ -24,6 +26,7 @@ struct DemoCommand {
   std::optional<int> domain; // chosen by itself
   std::filesystem::path folder = "demo";
   std::optional<std::filesystem::path> json;
+  KeepOptions keep; // no run folder unless it names one
   std::optional<int> repetitions;
   std::optional<double> duration_s;
   bool trigger_phase_correction = true; // series time stamping

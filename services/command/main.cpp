@@ -12,6 +12,7 @@
 #include "services/command/doctor_command.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
+#include "services/command/keep_options.hpp"
 #include "services/command/model_command.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
@@ -36,6 +37,8 @@ void add_run(CLI::App& app, RunCommand& run) {
       ->excludes(wait);
   command->add_option("--json", run.json, "write the result to this file as JSON");
   command->add_option("--figures", run.figures, "write figures (SVG and CSV) into this folder");
+  run.keep.folder = "runs";
+  add_keep_options(*command, run.keep);
   add_network_options(*command, run.network);
 }
 
@@ -62,6 +65,9 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
   command->add_option("--output", demo.folder, "folder of all files")->capture_default_str();
   command->add_option("--json", demo.json,
                       "write the result to this file as JSON (default: result.json in the folder)");
+  command->add_option("--folder", demo.keep.folder,
+                      "keep the run below this folder as 'dyncal run' does (default: not)");
+  command->add_option("--store", demo.keep.store, "of that run, as of 'dyncal run'");
   command->add_option("--repetitions", demo.repetitions, "repetitions of the excitation list")
       ->check(CLI::Range(1, 1000));
   command
@@ -116,7 +122,8 @@ void add_doctor(CLI::App& app, DoctorCommand& doctor) {
 void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
   CLI::App* command = app.add_subcommand(
       "analyse", "evaluate the file sources of a bench file, without the network");
-  command->add_option("BENCH.toml", analyse.bench_file, "bench file")->required();
+  command->add_option("BENCH.toml", analyse.bench_file, "bench file, or the folder of a run")
+      ->required();
   command->add_option("--json", analyse.json, "write the result to this file as JSON");
   command->add_option("--figures", analyse.figures, "write figures (SVG and CSV) into this folder");
 }
@@ -275,6 +282,7 @@ struct Commands {
   IntervalsCommand intervals;
   ModelCommand model;
   RunCommand run;
+  StoreCommands store;
   WatchCommand watch;
   DoctorCommand doctor;
 };
@@ -297,6 +305,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (app.got_subcommand("guard-output")) {
     return guard_output(commands.guarded_generator, STDIN_FILENO);
+  }
+  if (const auto status = run_store(app, commands.store)) {
+    return *status;
   }
   const std::stop_token stop = stop_on_signals();
   if (app.got_subcommand("calibrate")) {
@@ -329,6 +340,7 @@ int main(int argc, char** argv) {
   add_run(app, commands.run);
   add_watch(app, commands.watch);
   add_doctor(app, commands.doctor);
+  add_store(app, commands.store);
   add_analyse(app, commands.analyse);
   add_compare(app, commands.compare);
   add_model(app, commands.model);

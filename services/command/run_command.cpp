@@ -1,9 +1,11 @@
 #include "services/command/run_command.hpp"
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,6 +28,12 @@ std::string run_from_time() {
   std::array<char, 32> text{};
   const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
   return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
+}
+
+bool is_run_from_time(const std::string& run) {
+  constexpr std::string_view form = "ddddddddTdddddd.dddZ"; // d: a digit
+  return std::equal(run.begin(), run.end(), form.begin(), form.end(),
+                    [](char c, char f) { return f == 'd' ? c >= '0' && c <= '9' : c == f; });
 }
 
 Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
@@ -55,64 +63,115 @@ std::string name_of_run(const RunCommand& command, int turn) {
   return turn == 1 ? command.run : fmt::format("{}-{}", command.run, turn);
 }
 
+// All that the attempts at a run have in common.
+struct Conduct {
+  const RunCommand& command;
+  const BenchFile& bench;
+  const std::vector<analysis::AdcCalibrationPoint>& adc;
+  bus::Participant& participant;
+  const ShowProgress& show;
+  const std::stop_token& stop;
+};
+
+void show_notice(const ShowProgress& show, const std::string& sentence) {
+  RunProgress progress;
+  progress.notice = sentence;
+  show(progress);
+}
+
+struct ConductedRun {
+  RunOutcome outcome;
+  std::unique_ptr<KeptRun> kept;
+};
+
+Expected<ConductedRun> conduct(const Conduct& run, const std::string& name) {
+  const bool resumes = !run.command.resume.empty();
+  auto kept = KeptRun::open(
+      run.command.keep, run.bench,
+      {.run = name,
+       .is_resumed = resumes,
+       .adc_file = adc_file_of(run.bench),
+       .notice = [show = &run.show](const std::string& sentence) { show_notice(*show, sentence); }},
+      run.participant);
+  if (!kept) {
+    return fail(kept.error());
+  }
+  const ShowProgress show = [&](const RunProgress& progress) {
+    (*kept)->note(progress);
+    run.show(progress);
+  };
+  RunController controller(run.participant, run.bench, name, show);
+  controller.set_keeping((*kept)->keeping());
+  auto outcome =
+      resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
+  if (!outcome) {
+    (*kept)->discard();
+    return fail(outcome.error());
+  }
+  outcome->adc_file = adc_file_of(run.bench);
+  return ConductedRun{std::move(*outcome), std::move(*kept)};
+}
+
 // Waits for the end of other runs; again when one of several that waited was quicker.
-Expected<RunOutcome> conduct_in_turn(const RunCommand& command, const BenchFile& bench,
-                                     const std::vector<analysis::AdcCalibrationPoint>& adc,
-                                     bus::Participant& participant, const ShowProgress& show,
-                                     const std::stop_token& stop) {
-  auto queue = BenchQueue::open(participant, bus::system_clock(), bench.bench);
+Expected<ConductedRun> conduct_in_turn(const Conduct& run) {
+  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
   if (!queue) {
     return fail(queue.error());
   }
   std::string shown;
   const auto show_phase = [&](const std::string& phase) {
     if (phase != std::exchange(shown, phase)) {
-      RunProgress progress;
-      progress.notice = phase;
-      show(progress);
+      show_notice(run.show, phase);
     }
   };
   for (int turn = 1;; ++turn) {
-    if (const auto free = queue->wait_until_free(show_phase, stop); !free) {
+    if (const auto free = queue->wait_until_free(show_phase, run.stop); !free) {
       return fail(free.error());
     }
-    auto outcome =
-        RunController(participant, bench, name_of_run(command, turn), show).conduct(adc, stop);
-    const bool refused = !outcome && outcome.error().code == ErrorCode::no_source;
-    if (!refused || stop.stop_requested() || !queue->taken_by()) {
-      return outcome;
+    auto conducted = conduct(run, name_of_run(run.command, turn));
+    const bool refused = !conducted && conducted.error().code == ErrorCode::no_source;
+    if (!refused || run.stop.stop_requested() || !queue->taken_by()) {
+      return conducted;
     }
   }
 }
 
 // Nobody else may conduct it: a run that lives is heard within a few seconds.
-Expected<RunOutcome> resume_run(const RunCommand& command, const BenchFile& bench,
-                                const std::vector<analysis::AdcCalibrationPoint>& adc,
-                                bus::Participant& participant, const ShowProgress& show,
-                                const std::stop_token& stop) {
-  auto queue = BenchQueue::open(participant, bus::system_clock(), bench.bench);
+Expected<ConductedRun> resume_run(const Conduct& run) {
+  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
   if (!queue) {
     return fail(queue.error());
   }
-  if (const auto other = queue->listen(stop)) {
+  if (const auto other = queue->listen(run.stop)) {
     return fail(ErrorCode::no_source,
                 fmt::format("bench '{}' is in use by {}; wait for its end, or end it there",
-                            bench.bench, *other));
+                            run.bench.bench, *other));
   }
-  return RunController(participant, bench, command.resume, show).resume(adc, stop);
+  return conduct(run, run.command.resume);
 }
 
-Expected<RunOutcome> conduct_as_told(const RunCommand& command, const BenchFile& bench,
-                                     const std::vector<analysis::AdcCalibrationPoint>& adc,
-                                     bus::Participant& participant, const ShowProgress& show,
-                                     const std::stop_token& stop) {
-  if (!command.resume.empty()) {
-    return resume_run(command, bench, adc, participant, show, stop);
+Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
+  if (!run.command.resume.empty()) {
+    return resume_run(run);
   }
-  if (command.wait) {
-    return conduct_in_turn(command, bench, adc, participant, show, stop);
+  if (run.command.wait) {
+    return conduct_in_turn(run);
   }
-  return RunController(participant, bench, name_of_run(command, 1), show).conduct(adc, stop);
+  return conduct(run, name_of_run(run.command, 1));
+}
+
+// The folder first, which is what is left if the rest fails.
+Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
+  const auto kept = run.kept->finish(run.outcome);
+  auto shown = show_outcome(run.outcome, command.json, command.figures);
+  if (const auto folder = run.kept->folder(); folder && kept) {
+    fmt::print("kept in {}\n", folder->string());
+  }
+  Expected<void> done = kept ? std::move(shown) : fail(kept.error());
+  if (!done && run.outcome.output_may_be_on) {
+    done.error().message += "; " + output_warning();
+  }
+  return done;
 }
 
 } // namespace
@@ -129,7 +188,6 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   if (const auto possible = check_outputs(command.json, command.figures); !possible) {
     return fail(possible.error());
   }
-  const std::optional<AdcFile> adc_file = adc_file_of(*bench);
   NetworkOptions network = command.network;
   add_network_settings(bench->network, network);
   auto participant = join_network(network, "dyncal-run");
@@ -138,20 +196,15 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   }
   ProgressLine progress(stderr);
   const ShowProgress show = [&](const RunProgress& state) { progress.show(state); };
-  auto outcome = conduct_as_told(command, *bench, *adc, *participant, show, stop);
+  auto run = conduct_as_asked({command, *bench, *adc, *participant, show, stop});
   progress.end();
-  if (!outcome) {
-    return outcome;
+  if (!run) {
+    return fail(run.error());
   }
-  outcome->adc_file = adc_file;
-  if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
-    Error error = shown.error();
-    if (outcome->output_may_be_on) {
-      error.message += "; " + output_warning();
-    }
-    return fail(std::move(error));
+  if (const auto shown = show_and_keep(command, *run); !shown) {
+    return fail(shown.error());
   }
-  return outcome;
+  return std::move(run->outcome);
 }
 
 int conclude(const RunOutcome& outcome) {

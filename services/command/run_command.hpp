@@ -1,6 +1,6 @@
 // `dyncal run BENCH.toml`: conducts a run with progress on standard error, the result table on
-// standard output, JSON and figures on request. Exit status 0 only when every planned step has a
-// valid result. Belongs to one thread.
+// standard output, its folder on the disk, JSON and figures on request. Exit status 0 only when
+// every planned step has a valid result. Belongs to one thread.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "services/command/kept_run.hpp"
 #include "services/program/program.hpp"
 #include "services/run/run_controller.hpp"
 
@@ -21,6 +22,7 @@ struct RunCommand {
   std::optional<std::filesystem::path> figures; // folder
   bool wait = false;                            // for the end of another run of the bench
   std::string resume;                           // the run to go on with; empty: a new one
+  KeepOptions keep;
   NetworkOptions network;
 };
 
@@ -31,6 +33,7 @@ struct RunCommand {
 // "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script
 // starts in the same second.
 [[nodiscard]] std::string run_from_time();
+[[nodiscard]] bool is_run_from_time(const std::string& run);
 
 // The points of the ADC calibration that the bench file names; none when it names none.
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>

@@ -9,6 +9,7 @@
 
 #include <spdlog/async.h>
 #include <spdlog/sinks/base_sink.h>
+#include <spdlog/sinks/dist_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -56,8 +57,11 @@ void use(std::shared_ptr<spdlog::logger> logger) {
   spdlog::set_default_logger(std::move(logger));
 }
 
+// Further sinks may come and go while others log (log_file.hpp).
 void write_at_once(const std::string& program) {
-  use(std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  auto sinks = std::make_shared<spdlog::sinks::dist_sink_mt>();
+  sinks->add_sink(std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  use(std::make_shared<spdlog::logger>(program, std::move(sinks)));
 }
 
 } // namespace

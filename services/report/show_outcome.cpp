@@ -44,6 +44,8 @@ std::vector<std::string> channels_without_a_result(const RunOutcome& outcome) {
   return {without.begin(), without.end()};
 }
 
+} // namespace
+
 // Results that took hours are not lost with a full disk.
 Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::path& path) {
   const nlohmann::ordered_json json = result_json(outcome);
@@ -59,8 +61,6 @@ Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::p
   }
   return written;
 }
-
-} // namespace
 
 Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
                              const std::optional<std::filesystem::path>& figures) {

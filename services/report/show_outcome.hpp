@@ -21,6 +21,10 @@ namespace dyncal::services {
                                           const std::optional<std::filesystem::path>& json,
                                           const std::optional<std::filesystem::path>& figures);
 
+// Writes the JSON file. Fails as show_outcome() does, with the results in the same refuge.
+[[nodiscard]] Expected<void> write_results(const RunOutcome& outcome,
+                                           const std::filesystem::path& path);
+
 // What to say last where RunOutcome::output_may_be_on: what is dangerous, and what to do.
 [[nodiscard]] std::string output_warning();
 

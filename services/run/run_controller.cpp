@@ -1,7 +1,6 @@
 #include "services/run/run_controller.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,6 +16,7 @@ using namespace std::chrono_literals;
 using Kind = RunOutlook::Kind;
 
 constexpr auto acknowledgment_limit = 2s;
+constexpr auto description_limit = 3s; // for what sources say of themselves
 
 } // namespace
 
@@ -34,7 +34,11 @@ RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_cal
   }
   watch_->set_state(wire::MEASUREMENT_PLANNED);
   // Only a run that is armed has the bench to itself: until then the generator may be another's.
-  if (const auto ready = wait_until_armed(stop).and_then([&] { return open_sequence(); }); !ready) {
+  const auto ready =
+      wait_until_armed(stop).and_then([&] { return check_before_first_step(stop); }).and_then([&] {
+        return open_sequence();
+      });
+  if (!ready) {
     watch_->set_state(wire::MEASUREMENT_ABORTED);
     return fail(ready.error());
   }
@@ -56,8 +60,9 @@ RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_cali
   if (const auto known = wait_until_known(stop); !known) {
     return fail(known.error()); // and not aborted: what the analysis holds of it is left as it is
   }
-  if (const auto opened = open_sequence(); !opened) {
-    return fail(opened.error());
+  const auto ready = check_before_first_step(stop).and_then([&] { return open_sequence(); });
+  if (!ready) {
+    return fail(ready.error());
   }
   sequence_->resume();
   return excite_and_collect(stop);
@@ -86,23 +91,12 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
   outcome_.ended_utc_ns = clock_.utc_now_ns();
   watch_->set_state(final_state(excited.has_value()), watch_->measurement().message());
   watch_->wait_for_acknowledgments(acknowledgment_limit);
-  sort_outcome();
+  sort_outcome(outcome_);
   return std::move(outcome_);
 }
 
 wire::MeasurementState RunController::final_state(bool excited) const {
   return outcome_.interrupted || !excited ? wire::MEASUREMENT_ABORTED : wire::MEASUREMENT_DONE;
-}
-
-void RunController::sort_outcome() {
-  const auto key = [](const StepResult& result) {
-    return std::tie(result.step, result.repetition, result.channel);
-  };
-  std::stable_sort(outcome_.results.begin(), outcome_.results.end(),
-                   [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  std::sort(
-      outcome_.transfer_functions.begin(), outcome_.transfer_functions.end(),
-      [](const TransferFunction& a, const TransferFunction& b) { return a.channel < b.channel; });
 }
 
 Expected<void>
@@ -121,6 +115,9 @@ RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibr
     return fail(watch.error());
   }
   watch_ = std::move(*watch);
+  if (keeping_.keep) {
+    watch_->on_new_results(keeping_.keep);
+  }
   return {};
 }
 
@@ -159,6 +156,19 @@ std::string RunController::silence_of_analysis() const {
   return fmt::format(
       "the analysis service {} has gone silent; waiting for it or another up to {} s",
       watch_->analysis()->service().c_str(), analysis_limit.count());
+}
+
+// Sources describe themselves when they are found, which may be after the analysis has armed.
+Expected<void> RunController::check_before_first_step(const std::stop_token& stop) {
+  if (!keeping_.check) {
+    return {};
+  }
+  const Instant began = clock_.now();
+  while (outcome_.sources.size() < outcome_.recipe->sources().size() &&
+         clock_.now() - began < description_limit && !stop.stop_requested()) {
+    watch_->follow("waiting for the descriptions of the sources");
+  }
+  return keeping_.check(outcome_);
 }
 
 // Until the analysis attends to the run and all of its results so far have come.

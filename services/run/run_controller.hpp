@@ -12,6 +12,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -26,6 +27,16 @@
 
 namespace dyncal::services {
 
+// How results are kept while the run goes on. Both may be empty; both are called by the thread that
+// conducts the run and must not make it wait.
+struct RunKeeping {
+  // When the run is armed and its sources are known: whether there is room for it. What it fails
+  // with is why nothing is excited.
+  std::function<Expected<void>(const RunOutcome& planned)> check;
+  // With all there is, as soon as results have come.
+  std::function<void(const RunOutcome& so_far)> keep;
+};
+
 class RunController {
 public:
   static constexpr std::chrono::seconds answer_limit{4}; // for an analysis service to answer
@@ -39,6 +50,9 @@ public:
                       std::move(show_progress)) {}
   RunController(RunEnvironment environment, const BenchFile& bench, std::string run,
                 ShowProgress show_progress);
+
+  // Before conduct() or resume().
+  void set_keeping(RunKeeping keeping) { keeping_ = std::move(keeping); }
 
   [[nodiscard]] Expected<RunOutcome>
   conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
@@ -56,6 +70,7 @@ private:
 
   Expected<void> open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
   Expected<void> open_sequence();
+  Expected<void> check_before_first_step(const std::stop_token& stop);
   Expected<RunOutcome> excite_and_collect(const std::stop_token& stop);
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> wait_until_known(const std::stop_token& stop);
@@ -67,13 +82,13 @@ private:
   [[nodiscard]] bool everything_has_come() const;
   [[nodiscard]] bool plays_files() const;
   [[nodiscard]] wire::MeasurementState final_state(bool excited) const;
-  void sort_outcome();
 
   RunEnvironment environment_;
   bus::Clock& clock_;
   const BenchFile& bench_;
   std::string run_;
   ShowProgress show_progress_;
+  RunKeeping keeping_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   RunOutcome outcome_;
   std::unique_ptr<RunWatch> watch_;

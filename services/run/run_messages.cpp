@@ -150,18 +150,22 @@ void RunMessages::take_sources(RunOutcome& outcome) {
   });
 }
 
-void RunMessages::take(RunOutcome& outcome) {
+std::size_t RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
   recipe_sha256_ = outcome.recipe_sha256;
-  signs_of_work_ +=
+  const std::size_t results =
       take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
         return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
       });
-  take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
-              [](const auto& a, const auto& b) { return a.channel == b.channel; });
-  take_newest(endpoints_.clock_reports, outcome.clock_reports,
-              [](const auto& a, const auto& b) { return a.source == b.source; });
+  signs_of_work_ += results;
+  const std::size_t functions =
+      take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
+                  [](const auto& a, const auto& b) { return a.channel == b.channel; });
+  const std::size_t reports =
+      take_newest(endpoints_.clock_reports, outcome.clock_reports,
+                  [](const auto& a, const auto& b) { return a.source == b.source; });
   take_status(outcome);
+  return results + functions + reports;
 }
 
 void RunMessages::take_status(RunOutcome& outcome) {

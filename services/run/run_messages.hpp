@@ -42,7 +42,8 @@ public:
   void wait_for_acknowledgments(std::chrono::nanoseconds limit);
 
   // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
-  void take(RunOutcome& outcome);
+  // Returns how many results have come, transfer functions and reports of clocks among them.
+  std::size_t take(RunOutcome& outcome);
   // How many results have come, those that came again too, and how often the analysis has reported
   // that it is at work on them.
   [[nodiscard]] std::size_t signs_of_work() const { return signs_of_work_; }

@@ -43,7 +43,9 @@ void RunWatch::set_state(wire::MeasurementState state, const std::string& messag
 }
 
 void RunWatch::look() {
-  messages_.take(outcome_);
+  if (messages_.take(outcome_) > 0 && new_results_) {
+    new_results_(outcome_);
+  }
   commands_.take();
   messages_.repeat_announcement();
   if (clock_.now() - measurement_published_ > alive_interval) {

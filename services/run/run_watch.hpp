@@ -53,6 +53,11 @@ public:
     messages_.wait_for_acknowledgments(limit);
   }
 
+  // Called by look() and follow() when results have come; must not wait.
+  void on_new_results(std::function<void(const RunOutcome&)> take) {
+    new_results_ = std::move(take);
+  }
+
   // Takes what has come, and repeats the Measurement when it is due.
   void look();
   // The same after a short wait for messages; shows `phase`.
@@ -88,6 +93,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   RunOutcome& outcome_;
   ShowProgress show_progress_;
+  std::function<void(const RunOutcome&)> new_results_;
   RunMessages messages_;
   RunCommands commands_;
   Instant measurement_published_;

@@ -47,7 +47,7 @@ FLOORS = {
         ["evaluation"],
         ["run"],
         ["report"],
-        ["model"],
+        ["model", "run_folder", "store"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
         ["doctor", "replay"],
         ["command"],

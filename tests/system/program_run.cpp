@@ -42,7 +42,8 @@ std::optional<std::filesystem::path> result_of(const std::vector<std::string>& a
 
 services::ChildProcess started(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
-                               services::ChildOutput output) {
+                               services::ChildOutput output, const std::filesystem::path& runs) {
+  setenv("DYNCAL_RUNS", runs.c_str(), 1); // run folders stay with the test
   auto process = services::ChildProcess::start(program, arguments, std::move(output));
   if (!process) {
     throw std::runtime_error(process.error().message);
@@ -61,7 +62,7 @@ ProgramRun::ProgramRun(const std::string& program, const std::vector<std::string
       errors_(folder / (std::filesystem::path(program).filename().string() + ".err")),
       began_(std::chrono::steady_clock::now()),
       process_(started(std::filesystem::path(DYNCAL_PROGRAMS) / program, arguments,
-                       {output_, errors_})) {}
+                       {output_, errors_}, folder / "runs")) {}
 
 ProgramRun::~ProgramRun() {
   process_.stop(std::chrono::seconds(5));
@@ -89,7 +90,7 @@ void ProgramRun::check_result() const {
   }
   const std::filesystem::path output = result_->string() + ".check";
   auto check = started(DYNCAL_PYTHON, {"-B", DYNCAL_CHECK_RESULT, schema_, result_->string()},
-                       {output, output});
+                       {output, output}, result_->parent_path());
   const auto exit = check.wait_for(std::chrono::seconds(60));
   if (exit && exit->status == status_not_checked) {
     std::cerr << read(output);

@@ -1,6 +1,21 @@
 #include "services/evaluation/result/run_outcome.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 namespace dyncal::services {
+
+void sort_outcome(RunOutcome& outcome) {
+  const auto sort_by = [](auto& all, auto key) {
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  };
+  sort_by(outcome.results, [](const StepResult& result) {
+    return std::tie(result.step, result.repetition, result.channel);
+  });
+  sort_by(outcome.transfer_functions,
+          [](const TransferFunction& function) { return function.channel; });
+}
 
 RunOutcome outcome_of(const Recipe& recipe) {
   RunOutcome outcome;

@@ -63,6 +63,9 @@ struct RunOutcome {
   std::string problem;           // why the run ended early; empty when it did not
 };
 
+// Results by step, repetition and channel; transfer functions by channel.
+void sort_outcome(RunOutcome& outcome);
+
 // Of a run that has no results yet.
 [[nodiscard]] RunOutcome outcome_of(const Recipe& recipe);
 

@@ -1,0 +1,30 @@
+// Options of the command line for what is kept of runs: the run folder, the store, and the commands
+// that look into it.
+#pragma once
+
+#include "services/command/history_command.hpp"
+#include "services/command/run_command.hpp"
+#include "services/command/store_command.hpp"
+
+namespace CLI { // NOLINT(readability-identifier-naming): of the library
+class App;
+}
+
+namespace dyncal::services {
+
+// --folder, --store
+void add_keep_options(CLI::App& command, KeepOptions& keep);
+
+struct StoreCommands {
+  StoreAddCommand add;
+  RunsCommand runs;
+  HistoryCommand history;
+};
+
+// The commands `store`, `runs` and `history`.
+void add_store(CLI::App& app, StoreCommands& commands);
+
+// Nothing when the command line has none of them.
+[[nodiscard]] std::optional<int> run_store(const CLI::App& app, const StoreCommands& commands);
+
+} // namespace dyncal::services

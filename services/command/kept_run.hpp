@@ -1,0 +1,78 @@
+// What is kept of a run while it goes on and when it is over: its folder (services/run_folder) with
+// results and log, and its entry in the store (services/store).
+//
+// The folder is made and the disk looked at before the first step; a run that is refused before it
+// leaves no folder. A store that cannot be written costs no run: the message says how to add it
+// later. Belongs to one thread.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "services/bench/bench_file.hpp"
+#include "services/bus/bus.hpp"
+#include "services/program/log_file.hpp"
+#include "services/run/run_controller.hpp"
+#include "services/run_folder/run_folder.hpp"
+
+namespace dyncal::services {
+
+struct KeepOptions {
+  std::optional<std::filesystem::path> folder; // of all runs; nothing: no run folder
+  std::string store;                           // as store_place() takes it
+};
+
+// Of the run whose results are kept.
+struct KeptRunSetup {
+  std::string run;
+  bool is_resumed = false;
+  std::optional<AdcFile> adc_file;
+  std::function<void(const std::string& sentence)> notice; // for a line of its own
+};
+
+class KeptRun {
+public:
+  using RateReader = bus::Reader<wire::SourceStatus>;
+
+  // Fails (bad_file) as RunFolder does, (network) as readers do.
+  [[nodiscard]] static Expected<std::unique_ptr<KeptRun>> open(const KeepOptions& options,
+                                                               const BenchFile& bench,
+                                                               KeptRunSetup setup,
+                                                               bus::Participant& participant);
+
+  // Valid as long as the object.
+  [[nodiscard]] RunKeeping keeping();
+  // What the progress line shows, for the log.
+  void note(const RunProgress& progress);
+  // When the run is over. Fails (bad_file) when the final results cannot be written.
+  [[nodiscard]] Expected<void> finish(const RunOutcome& outcome);
+  // Of a run that has excited nothing.
+  void discard();
+  // Nothing when none is kept.
+  [[nodiscard]] std::optional<std::filesystem::path> folder() const;
+
+private:
+  KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup,
+          std::unique_ptr<RunFolder> folder, std::optional<LogFile> log,
+          std::optional<RateReader> rates);
+  Expected<void> check(const RunOutcome& planned);
+  [[nodiscard]] RunOutcome completed(RunOutcome so_far) const;
+  void note_kept();
+  void say(const std::string& sentence);
+  void add_to_store(const RunOutcome& outcome);
+
+  KeepOptions options_;
+  const BenchFile& bench_;
+  KeptRunSetup setup_;
+  std::unique_ptr<RunFolder> folder_; // nothing: none is kept
+  std::optional<LogFile> log_;
+  std::optional<RateReader> rates_;
+  std::string last_line_;
+  std::size_t noted_results_ = 0;
+  bool noted_problem_ = false;
+};
+
+} // namespace dyncal::services

@@ -1,0 +1,61 @@
+// A database as the store uses it: statements with numbered parameters ($1, $2, ...), values, and
+// transactions of one writer at a time.
+//
+// Two adapters: sqlite_database (a file) and postgres_database (a server). The SQL is the same for
+// both: types TEXT, BIGINT, DOUBLE PRECISION, no generated keys, every parameter once and in order.
+// Doubles come back with the same bits. Fails (bad_file) with place, reason and what to do. Belongs
+// to one thread; programs that share a database wait for each other.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+using DatabaseValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+using DatabaseRow = std::vector<DatabaseValue>;
+
+class Database {
+public:
+  Database() = default;
+  virtual ~Database() = default;
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  // The rows of one statement; none of one that has no rows.
+  [[nodiscard]] virtual Expected<std::vector<DatabaseRow>>
+  execute(const std::string& statement, const std::vector<DatabaseValue>& values) = 0;
+  [[nodiscard]] Expected<std::vector<DatabaseRow>> execute(const std::string& statement) {
+    return execute(statement, {});
+  }
+  // All that `write` does, or nothing of it where it fails or the program dies. One writer at a
+  // time.
+  [[nodiscard]] Expected<void> transaction(const std::function<Expected<void>()>& write);
+
+private:
+  virtual Expected<void> begin_writing() = 0;
+};
+
+// "postgresql://USER@HOST/NAME", "postgres://..." or "host=... dbname=..." is a server, everything
+// else the path of a file.
+[[nodiscard]] bool is_server(const std::string& place);
+// The same without a password, for messages.
+[[nodiscard]] std::string without_password(const std::string& place);
+
+// Makes the file if there is none.
+[[nodiscard]] Expected<std::unique_ptr<Database>> open_sqlite(const std::string& path);
+// Fails (bad_argument) in a build without libpqxx.
+[[nodiscard]] Expected<std::unique_ptr<Database>> open_postgres(const std::string& place);
+
+// What a row holds; "", 0 and a quiet NaN in place of NULL.
+[[nodiscard]] std::string text_of(const DatabaseValue& value);
+[[nodiscard]] std::int64_t integer_of(const DatabaseValue& value);
+[[nodiscard]] double number_of(const DatabaseValue& value);
+
+} // namespace dyncal::services

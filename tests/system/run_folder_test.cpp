@@ -1,0 +1,151 @@
+// What a live run leaves on the disk: its folder, whole at any instant and refused before the
+// exciter moves; and its entry in the store.
+//
+// DYNCAL_KILLS: how often a run is killed (default 4, by hand 100).
+#include <csignal>
+#include <cstdlib>
+#include <random>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/live_bench.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+LiveBenchSettings quick_bench() {
+  LiveBenchSettings settings;
+  settings.bench_arguments = {"--speed", "8"};
+  settings.excitation = R"(frequencies_hz = ["20", "40", "80", "160"]
+level = 10.0
+repetitions = 3
+settling_s = 0.5
+duration_s = 1.0
+)";
+  return settings;
+}
+
+std::vector<fs::path> run_folders(const fs::path& runs) {
+  std::vector<fs::path> folders;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(runs / "live", none)) {
+    folders.push_back(entry.path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The number in the last line of the log that says how many results are in the file.
+std::size_t results_promised(const fs::path& folder) {
+  const std::string log = text_of(folder / "log.txt");
+  const std::size_t end = log.rfind(" results are in result.json");
+  if (end == std::string::npos) {
+    return 0;
+  }
+  return std::stoul(log.substr(log.rfind(' ', end - 1) + 1));
+}
+
+TEST(RunFolder, HoldsWhatTheRunWasMadeFromAndWhatCameOut) {
+  const auto folder = fresh_folder("run-folder");
+  LiveBench bench(folder, quick_bench());
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--run", "monday", "--json",
+                                 folder / "asked-for.json", "--folder", folder / "kept"});
+  ASSERT_EQ(run.wait(patience), 0) << run.errors();
+  const auto folders = run_folders(folder / "kept");
+  ASSERT_EQ(folders.size(), 1U);
+  EXPECT_THAT(folders[0].filename().string(), testing::MatchesRegex("[0-9]{8}T[0-9]{6}.*Z-monday"));
+  EXPECT_THAT(run.output(), HasSubstr("kept in " + folders[0].string()));
+  EXPECT_THAT(run.errors(), testing::ContainsRegex("needs about [0-9.]+ MB there, .* are free"));
+  EXPECT_EQ(text_of(folders[0] / "bench.toml"), text_of(bench.bench_file()));
+  EXPECT_EQ(text_of(folders[0] / "result.json"), text_of(folder / "asked-for.json"));
+  EXPECT_TRUE(fs::exists(folders[0] / "figures/transfer-function-dau-acceleration_z.svg"));
+  EXPECT_EQ(results_promised(folders[0]), 36U); // 12 steps, 3 channels
+  EXPECT_THAT(text_of(folders[0] / "log.txt"), HasSubstr("step 12 of 12, 160 Hz"));
+
+  const auto query = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--folder", folder / "kept"});
+    const auto place = folder / arguments.front();
+    fs::create_directories(place);
+    ProgramRun program("dyncal", arguments, place);
+    EXPECT_EQ(program.wait(patience), 0) << program.errors();
+    return program.output();
+  };
+  const auto runs = nlohmann::json::parse(query({"runs", "--json"}), nullptr, false);
+  ASSERT_EQ(runs["runs"].size(), 1U);
+  EXPECT_EQ(runs["runs"][0]["run"], "monday");
+  EXPECT_EQ(runs["runs"][0]["state"], "complete");
+  EXPECT_THAT(query({"store", "add", folders[0]}), HasSubstr("already there"));
+  const auto history = nlohmann::json::parse(query({"history", "dau", "--json"}), nullptr, false);
+  EXPECT_EQ(history["calibrations"].size(), 1U);
+  EXPECT_EQ(history["lines"].size(), 12U); // 4 frequencies, 3 channels
+}
+
+TEST(RunFolder, IsRefusedBeforeTheExciterMoves) {
+  const auto folder = fresh_folder("run-folder-refused");
+  LiveBench bench(folder, quick_bench());
+  std::ofstream(folder / "file") << "x";
+  for (const fs::path& root : {folder / "file", fs::path("/proc/runs")}) {
+    ProgramRun& run = bench.start({"run", bench.bench_file(), "--folder", root});
+    EXPECT_EQ(run.wait(patience), 1);
+    EXPECT_THAT(run.errors(), HasSubstr("the run folder cannot be made"));
+    EXPECT_THAT(run.errors(), Not(HasSubstr("step 1 of")));
+  }
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+}
+
+TEST(RunFolder, IsTheTruthWhereTheStoreCannotBeWritten) {
+  const auto folder = fresh_folder("run-folder-store");
+  LiveBench bench(folder, quick_bench());
+  ProgramRun& run = bench.start(
+      {"run", bench.bench_file(), "--folder", folder / "kept", "--store", "/proc/x.db"});
+  EXPECT_EQ(run.wait(patience), 0) << run.errors();
+  const auto folders = run_folders(folder / "kept");
+  ASSERT_EQ(folders.size(), 1U);
+  EXPECT_THAT(run.errors(), HasSubstr("dyncal store add " + folders[0].string()));
+  EXPECT_EQ(read_json(folders[0] / "result.json")["points"].size(), 36U);
+}
+
+TEST(RunFolder, HasEveryResultItPromisedWhenTheRunIsKilled) {
+  const auto folder = fresh_folder("run-folder-killed");
+  LiveBench bench(folder, quick_bench());
+  const char* wished = std::getenv("DYNCAL_KILLS");
+  const int kills = wished == nullptr ? 4 : std::atoi(wished);
+  std::mt19937 random(20261122);
+  std::uniform_real_distribution<double> instant_s(0.0, 4.0);
+  int with_results = 0;
+  for (int i = 0; i < kills; ++i) {
+    const fs::path runs = folder / ("runs-" + std::to_string(i));
+    ProgramRun& run = bench.start({"run", bench.bench_file(), "--wait", "--folder", runs});
+    ASSERT_TRUE(run.wait_for_error_text("run folder", patience)) << run.errors();
+    EXPECT_FALSE(run.wait(std::chrono::nanoseconds(
+        static_cast<std::int64_t>(1e9 * instant_s(random))))) // the instant of the kill
+        << run.errors();
+    run.send(SIGKILL);
+    EXPECT_EQ(run.wait(patience), 128 + SIGKILL);
+    const auto folders = run_folders(runs);
+    ASSERT_EQ(folders.size(), 1U);
+    const auto result = read_json(folders[0] / "result.json");
+    ASSERT_FALSE(result.is_discarded()) << folders[0];
+    EXPECT_GE(result["points"].size(), results_promised(folders[0]));
+    EXPECT_THAT(result["problem"].get<std::string>(), HasSubstr("has not ended"));
+    EXPECT_EQ(text_of(folders[0] / "bench.toml"), text_of(bench.bench_file()));
+    with_results += result["points"].empty() ? 0 : 1;
+    ASSERT_TRUE(bench.wait_for_output("OFF"));
+  }
+  EXPECT_GE(2 * with_results, kills);
+  RecordProperty("kills", kills);
+}
+
+} // namespace
+} // namespace dyncal::tests
