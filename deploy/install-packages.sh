@@ -26,12 +26,14 @@ optional_build_packages=(
   prometheus-cpp-dev # --metrics of the daemons
   libzstd-dev        # smaller recordings
   libpqxx-dev        # results of runs in PostgreSQL
+  libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
   libssl3 libsndfile1 liblxi1 libtirpc3
   libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
   libsqlite3-0 libpqxx-6.4
+  libxml2 libxmlsec1 libxmlsec1-openssl
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
@@ -44,6 +46,8 @@ test_packages=(
   python3-canmatrix                            # independent DBC decoder
   python3-jsonschema                           # results against their schema
   postgresql-15                                # a server of the test's own, on a socket
+  libxml2-utils openssl                        # certificates: independent validator, keys
+  weasyprint poppler-utils                     # reports as PDF, and their text
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 

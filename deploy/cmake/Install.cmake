@@ -27,6 +27,8 @@ install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT pr
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 install(FILES services/model/model.schema.json services/report/result.schema.json
   DESTINATION ${data} COMPONENT programs)
+# The schema of certificates, under licences of its own.
+install(DIRECTORY deploy/third-party/dcc DESTINATION ${data} COMPONENT programs)
 install(CODE "
   set(root \"${PROJECT_SOURCE_DIR}\")
   set(made \"${made}\")

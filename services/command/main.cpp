@@ -10,6 +10,7 @@
 #include "services/command/compare_command.hpp"
 #include "services/command/demo_command.hpp"
 #include "services/command/doctor_command.hpp"
+#include "services/command/document_options.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
 #include "services/command/keep_options.hpp"
@@ -277,6 +278,7 @@ struct Commands {
   CompareCommand compare;
   TriaxialCommand triaxial;
   DemoCommand demo;
+  DocumentCommands documents;
   FitCommand fit;
   std::string guarded_generator;
   IntervalsCommand intervals;
@@ -296,6 +298,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (app.got_subcommand("model")) {
     return run_model(commands.model);
+  }
+  if (has_document_command(app)) {
+    return run_document_command(app, commands.documents);
   }
   if (app.got_subcommand("fit")) {
     return run_fit(commands.fit);
@@ -345,6 +350,7 @@ int main(int argc, char** argv) {
   add_compare(app, commands.compare);
   add_model(app, commands.model);
   add_triaxial(app, commands.triaxial);
+  add_documents(app, commands.documents);
   add_fit(app, commands.fit);
   add_intervals(app, commands.intervals);
   add_calibrate(app, commands.calibrate);

@@ -2,96 +2,17 @@
 
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "services/report/checked_json.hpp"
 
 namespace dyncal::services {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-// Thrown and caught in this file: the sentence is the error.
-struct BadKey {
-  std::string sentence;
-};
-
-// One object of the file and its place there.
-class Node {
-public:
-  Node(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
-    if (!json_.is_object()) {
-      throw BadKey{fmt::format("{} is not an object", place_)};
-    }
-  }
-
-  [[nodiscard]] double number(const char* key) const {
-    const Json& value = at(key);
-    if (value.is_null()) {
-      return not_known;
-    }
-    if (!value.is_number()) {
-      throw BadKey{fmt::format("{}.{} is not a number", place_, key)};
-    }
-    return value.get<double>();
-  }
-  [[nodiscard]] std::string text(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_string()) {
-      throw BadKey{fmt::format("{}.{} is not a text", place_, key)};
-    }
-    return value.get<std::string>();
-  }
-  [[nodiscard]] bool boolean(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_boolean()) {
-      throw BadKey{fmt::format("{}.{} is neither true nor false", place_, key)};
-    }
-    return value.get<bool>();
-  }
-  [[nodiscard]] std::vector<std::string> texts(const char* key) const {
-    std::vector<std::string> result;
-    for (const Json& value : array(key)) {
-      if (!value.is_string()) {
-        throw BadKey{fmt::format("{}.{} is not a list of texts", place_, key)};
-      }
-      result.push_back(value.get<std::string>());
-    }
-    return result;
-  }
-  [[nodiscard]] std::vector<Node> nodes(const char* key) const {
-    std::vector<Node> result;
-    for (const Json& value : array(key)) {
-      result.emplace_back(
-          value, fmt::format("{}{}{}[{}]", place_, place_.empty() ? "" : ".", key, result.size()));
-    }
-    return result;
-  }
-  [[nodiscard]] Node node(const char* key) const { return {at(key), key}; }
-  [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }
-
-private:
-  [[nodiscard]] const Json& at(const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end()) {
-      throw BadKey{fmt::format("{}{}{} is missing", place_, place_.empty() ? "" : ".", key)};
-    }
-    return *found;
-  }
-  [[nodiscard]] const Json& array(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_array()) {
-      throw BadKey{fmt::format("{}.{} is not a list", place_, key)};
-    }
-    return value;
-  }
-
-  const Json& json_;
-  std::string place_;
-};
+using Node = CheckedJson;
 
 analysis::Distribution parse_distribution(const std::string& name) {
   using analysis::Distribution;

@@ -1,0 +1,21 @@
+// Which flags of a result forbid a certificate, and why: the one place that decides it.
+//
+// A flag forbids when the value may be wrong by more than its U, when U lacks a contribution, or
+// when the measurement was not the one that the certificate would state. What only made U larger,
+// or is stated beside the value, does not. Plain functions, any thread.
+#pragma once
+
+#include <string_view>
+
+#include "services/evaluation/result/result_flag.hpp"
+
+namespace dyncal::services {
+
+struct FlagVerdict {
+  bool forbids = true;
+  std::string_view reason;
+};
+
+[[nodiscard]] FlagVerdict verdict_on(ResultFlag flag);
+
+} // namespace dyncal::services

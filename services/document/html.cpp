@@ -1,0 +1,97 @@
+#include "services/document/html.hpp"
+
+#include <fmt/format.h>
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::string_view replacement = "\xef\xbf\xbd"; // U+FFFD
+
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+}
+
+} // namespace
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+    case '&':
+      result += "&amp;";
+      break;
+    case '<':
+      result += "&lt;";
+      break;
+    case '>':
+      result += "&gt;";
+      break;
+    case '"':
+      result += "&quot;";
+      break;
+    case '\'':
+      result += "&#39;";
+      break;
+    default:
+      if (is_control(c)) {
+        result += replacement;
+      } else {
+        result += c;
+      }
+    }
+  }
+  return result;
+}
+
+std::string element(std::string_view name, std::string_view text, std::string_view css_class) {
+  return css_class.empty()
+             ? fmt::format("<{0}>{1}</{0}>\n", name, escaped(text))
+             : fmt::format("<{0} class=\"{2}\">{1}</{0}>\n", name, escaped(text), css_class);
+}
+
+HtmlTable::HtmlTable(std::string css_class, std::vector<std::string> head)
+    : css_class_(std::move(css_class)), head_(std::move(head)) {}
+
+void HtmlTable::row(const std::vector<std::string>& cells) {
+  std::vector<std::string> html;
+  for (const std::string& cell : cells) {
+    html.push_back(escaped(cell));
+  }
+  html_row(html);
+}
+
+void HtmlTable::html_row(const std::vector<std::string>& cells) {
+  body_ += "<tr>";
+  for (const std::string& cell : cells) {
+    body_ += fmt::format("<td>{}</td>", cell);
+  }
+  body_ += "</tr>\n";
+}
+
+std::string HtmlTable::finish() const {
+  std::string text = fmt::format("<table class=\"{}\">\n<thead><tr>", css_class_);
+  for (const std::string& cell : head_) {
+    text += fmt::format("<th>{}</th>", cell);
+  }
+  return text + "</tr></thead>\n<tbody>\n" + body_ + "</tbody>\n</table>\n";
+}
+
+void DefinitionTable::add(std::string_view name, std::string_view text) {
+  if (!text.empty()) {
+    add_html(name, escaped(text));
+  }
+}
+
+void DefinitionTable::add_html(std::string_view name, std::string_view html) {
+  if (!html.empty()) {
+    body_ += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), html);
+  }
+}
+
+std::string DefinitionTable::finish() const {
+  return body_.empty() ? "" : "<table class=\"facts\"><tbody>\n" + body_ + "</tbody></table>\n";
+}
+
+} // namespace dyncal::services

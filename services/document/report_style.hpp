@@ -1,0 +1,10 @@
+// How a report looks, on the screen and on A4 paper: CSS without anything to fetch.
+#pragma once
+
+#include <string_view>
+
+namespace dyncal::services {
+
+[[nodiscard]] std::string_view report_style();
+
+} // namespace dyncal::services

@@ -1,0 +1,100 @@
+#include "services/report/stated_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "services/contract/evaluation_method.hpp"
+#include "services/report/rounding.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+StatedValue stated(double value, const StoredUncertainty& uncertainty, double scale) {
+  const RoundedValue rounded = round_by_uncertainty(scale * value, scale * uncertainty.expanded);
+  return {rounded.value, rounded.u, fmt::format("{:.2f}", uncertainty.k)};
+}
+
+bool is_usable(double value, const StoredUncertainty& uncertainty) {
+  return std::isfinite(value) && std::isfinite(uncertainty.expanded) &&
+         uncertainty.expanded > 0.0 && std::isfinite(uncertainty.k) && uncertainty.k >= 1.0;
+}
+
+} // namespace
+
+StatedValue stated_magnitude(const StoredValue& value) {
+  return stated(value.magnitude, value.of_magnitude, 1.0);
+}
+
+StatedValue stated_phase_rad(const StoredValue& value) {
+  return stated(value.phase_rad, value.of_phase, 1.0);
+}
+
+StatedValue stated_phase_deg(const StoredValue& value) {
+  return stated(value.phase_rad, value.of_phase, degrees_per_radian);
+}
+
+bool can_be_stated(const StoredValue& value) {
+  return is_usable(value.magnitude, value.of_magnitude) &&
+         is_usable(value.phase_rad, value.of_phase) && value.coverage_probability > 0.0 &&
+         value.coverage_probability < 1.0;
+}
+
+std::string coverage_percent(double probability) {
+  return fmt::format("{:.2f} %", 100.0 * probability);
+}
+
+std::string sign_convention() {
+  return "The transfer function H is the complex ratio of the sensor's output to the reference "
+         "quantity. Its phase arg H is the phase of the output minus the phase of the reference "
+         "quantity, both of the form cos(2 pi f t + phase) (ISO 2041): positive if the output "
+         "leads, negative if it is delayed. It is stated within (-pi, pi], that is "
+         "(-180 deg, 180 deg].";
+}
+
+std::string rounding_rule() {
+  return "Expanded uncertainties have two significant digits; each value is rounded to the "
+         "decimal place of its expanded uncertainty (JCGM 100:2008, 7.2.6).";
+}
+
+std::string method_description(const std::string& method) {
+  const auto known = parse_evaluation_method(method);
+  if (!known) {
+    return method;
+  }
+  switch (*known) {
+  case EvaluationMethod::analogue:
+    return "Sensor and reference are channels of one recording system with a common clock; "
+           "magnitude and phase follow from sine approximation of both.";
+  case EvaluationMethod::sample_timestamping:
+    return "Every sample of the digital sensor has a time stamp; a synchronisation signal that "
+           "both the sensor's acquisition unit and the reference system record links their "
+           "clocks; magnitude and phase follow from sine approximation over the stamped samples.";
+  case EvaluationMethod::series_timestamping:
+    return "The digital sensor records a series of samples after a trigger; an oscilloscope "
+           "records the synchronisation signal and the trigger; magnitude and phase follow from "
+           "sine approximation over all series.";
+  case EvaluationMethod::absolute_time:
+    return "The samples of sensor and reference both have time stamps in UTC; magnitude and phase "
+           "follow from sine approximation over the stamped samples.";
+  }
+  return method;
+}
+
+std::string frequency_range(const std::vector<StoredValue>& values) {
+  if (values.empty()) {
+    return "no frequency";
+  }
+  const auto [low, high] = std::minmax_element(
+      values.begin(), values.end(),
+      [](const StoredValue& a, const StoredValue& b) { return a.frequency_hz < b.frequency_hz; });
+  return values.size() == 1 ? fmt::format("{} Hz", low->frequency_text_hz)
+                            : fmt::format("{} values from {} Hz to {} Hz", values.size(),
+                                          low->frequency_text_hz, high->frequency_text_hz);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,64 @@
+// Whatever stands in a laboratory or sensor file: no crash, no hang; it is refused with a sentence
+// that names the file, or read, and then every text that it holds is one that a document may carry.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "services/laboratory/laboratory_file.hpp"
+#include "services/laboratory/sensor_file.hpp"
+
+namespace {
+
+using namespace dyncal::services;
+
+void require(bool holds) {
+  if (!holds) {
+    std::abort();
+  }
+}
+
+bool is_printable(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](unsigned char c) {
+    return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
+  });
+}
+
+void check(const Contact& contact) {
+  require(!contact.name.empty() && !contact.city.empty() && contact.country.size() == 2);
+  for (const std::string& text : {contact.name, contact.street, contact.city, contact.email}) {
+    require(is_printable(text));
+  }
+}
+
+void check(const LaboratoryFile& file) {
+  check(file.laboratory);
+  if (file.customer) {
+    check(*file.customer);
+  }
+  for (const Person& person : file.persons) {
+    require(!person.name.empty() && is_printable(person.name) && is_printable(person.role));
+  }
+  if (file.reference) {
+    require(!file.reference->certificate.empty() && !file.reference->equipment.serial.empty());
+  }
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  const auto laboratory = parse_laboratory_file(text, "/nowhere/lab.toml");
+  if (laboratory) {
+    check(*laboratory);
+  } else {
+    require(laboratory.error().message.starts_with("/nowhere/lab.toml"));
+  }
+  const auto sensor = parse_sensor_file(text, "/nowhere/sensor.toml");
+  if (sensor) {
+    require(!sensor->serial.empty() && is_printable(sensor->serial));
+  } else {
+    require(sensor.error().message.starts_with("/nowhere/sensor.toml"));
+  }
+  return 0;
+}
