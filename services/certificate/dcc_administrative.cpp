@@ -118,7 +118,7 @@ void add_traceability(XmlElement list, const ReferenceStandard& reference) {
   statement.add("dcc:traceable", "true");
   statement.add("dcc:reference", single_line(reference.certificate));
   add_text(statement, "dcc:declaration",
-           fmt::format("{} The reference, {}, serial number {}, was calibrated by {}, certificate "
+           fmt::format("{} The reference ({}, serial number {}) was calibrated by {}, certificate "
                        "{}{}.",
                        reference.traceability, reference.equipment.name, reference.equipment.serial,
                        reference.issued_by, reference.certificate,

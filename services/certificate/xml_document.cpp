@@ -45,13 +45,26 @@ tl::unexpected<Error> refused(const std::string& name, const std::string& reason
   return fail(ErrorCode::bad_file, fmt::format("{}: {}", name, reason));
 }
 
+// The XML declaration names no other encoding.
+bool declares_utf_8(std::string_view text) {
+  if (!text.starts_with("<?xml")) {
+    return true;
+  }
+  std::string declaration(text.substr(0, text.find("?>")));
+  std::transform(declaration.begin(), declaration.end(), declaration.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return declaration.find("encoding") == std::string::npos ||
+         declaration.find("\"utf-8\"") != std::string::npos ||
+         declaration.find("'utf-8'") != std::string::npos;
+}
+
 // What would give the parser something to declare, expand or fetch, or hide that it does.
 std::optional<std::string> danger_in(std::string_view text) {
   if (text.size() > max_document_bytes) {
     return "is larger than 64 MiB, which no certificate needs";
   }
   if (text.find('\0') != std::string_view::npos || text.starts_with("\xff\xfe") ||
-      text.starts_with("\xfe\xff")) {
+      text.starts_with("\xfe\xff") || !declares_utf_8(text)) {
     return "is not XML in UTF-8, in which certificates are read";
   }
   const std::size_t declared = text.find("<!");
@@ -63,13 +76,6 @@ std::optional<std::string> danger_in(std::string_view text) {
     }
   }
   return std::nullopt;
-}
-
-bool is_utf_8(const xmlDoc& document) {
-  std::string encoding = from_xml(document.encoding);
-  std::transform(encoding.begin(), encoding.end(), encoding.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return encoding.empty() || encoding == "UTF-8";
 }
 
 void collect(xmlNode* node, std::string_view name, std::string_view of_namespace,
@@ -205,8 +211,8 @@ Expected<XmlDocument> XmlDocument::parse(std::string_view text, const std::strin
     return refused(fmt::format("{}:{}", name, line), "is not well-formed XML: " + reason);
   }
   XmlDocument parsed(document);
-  if (xmlGetIntSubset(document) != nullptr || !is_utf_8(*document)) {
-    return refused(name, "has a DOCTYPE or another encoding than UTF-8");
+  if (xmlGetIntSubset(document) != nullptr) {
+    return refused(name, "has a DOCTYPE");
   }
   if (xmlDocGetRootElement(document) == nullptr) {
     return refused(name, "has no element");

@@ -72,8 +72,8 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; background: #f6f8fa; paddi
   border: 0.3pt solid #dde5eb; line-height: 1.35; }
 .signatures { break-inside: avoid; margin-top: 12mm; }
 .signatures .place { margin-bottom: 14mm; }
-.signers { display: flex; gap: 14mm; }
-.signer { width: 62mm; }
+.signers { display: flex; flex-wrap: wrap; }
+.signer { width: 62mm; margin: 0 14mm 10mm 0; }
 .signer .line { border-top: 0.7pt solid #1c2329; margin-bottom: 1.2mm; }
 .signer p { margin: 0; }
 .signer .name { font-weight: bold; }

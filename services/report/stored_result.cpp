@@ -204,8 +204,9 @@ Expected<StoredResult> read_stored_result(const std::filesystem::path& run) {
                                          "dyncal analyse wrote");
   }
   result.sha256 = sha256_hex(*text);
-  result.json = nlohmann::json::parse(*text, nullptr, false);
-  if (result.json.is_discarded()) {
+  result.json =
+      std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text, nullptr, false));
+  if (result.json->is_discarded()) {
     return fail(ErrorCode::bad_file, fmt::format("{}: not JSON, or not all of it; give a file that "
                                                  "dyncal run or dyncal analyse wrote",
                                                  result.file.string()));

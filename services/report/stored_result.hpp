@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -107,9 +108,9 @@ struct StoredResult {
   std::vector<StoredChannel> channels;
   std::vector<StoredValue> values;
   std::vector<StoredPoint> points;
-  nlohmann::json json;
+  std::shared_ptr<const nlohmann::json> json; // the whole file
 
-  [[nodiscard]] CheckedJson root() const { return {json, ""}; }
+  [[nodiscard]] CheckedJson root() const { return {*json, ""}; }
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::string& channel) const;
 };
