@@ -10,6 +10,9 @@
 //   live_samples, live_records
 //            a writer keeps the newest few seconds and waits for no reader; a reader gets the
 //            stream from now on, since blocks before it would hold up a run's beginning
+//   paced_samples
+//            as samples; when its readers have them, a writer keeps few: who needs them asks for
+//            them
 //   results  transient local, the newest of every key
 //   state    transient local, the newest of every key
 //   command  volatile, every one

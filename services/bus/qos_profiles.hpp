@@ -24,6 +24,11 @@ inline constexpr int repair_records = 32;
 // grows without bound because some part of it is stuck.
 inline constexpr int untaken_blocks = 1500;
 
+// What a writer that waits for its readers keeps of them when everybody has them, where it also can
+// give them to who comes late (Cyclone DDS). A writer in Cyclone DDS sends what it keeps to every
+// new reader in Fast DDS: more would hold up a run's beginning on a lossy link.
+inline constexpr int paced_late_joiner_blocks = 25;
+
 // Blocks of one source on their way to who catches up: the source waits for room.
 inline constexpr int catch_up_blocks = 250;
 
@@ -35,43 +40,48 @@ struct EndpointQos {
   bool transient_local; // late joiners get what the writer keeps
   bool keep_all;        // every sample: who has no room waits. Otherwise the newest of each key
   int samples_per_key;  // kept by a writer; waiting at a reader
+  int for_late_joiners; // of a writer, kept when everybody has them; Fast DDS keeps all of the
+                        // above
 };
 
 [[nodiscard]] constexpr EndpointQos qos_of_writer(Profile profile) {
   switch (profile) {
   case Profile::samples:
-    return {true, true, late_joiner_blocks};
+    return {true, true, late_joiner_blocks, late_joiner_blocks};
   case Profile::live_samples:
-    return {true, false, repair_blocks};
+    return {true, false, repair_blocks, repair_blocks};
   case Profile::live_records:
-    return {true, false, repair_records};
+    return {true, false, repair_records, repair_records};
+  case Profile::paced_samples:
+    return {true, true, late_joiner_blocks, paced_late_joiner_blocks};
   case Profile::command:
-    return {false, true, untaken_commands};
+    return {false, true, untaken_commands, 0};
   case Profile::catch_up:
-    return {true, true, catch_up_blocks};
+    return {true, true, catch_up_blocks, catch_up_blocks};
   case Profile::results:
   case Profile::state:
     break;
   }
-  return {true, false, 1};
+  return {true, false, 1, 1};
 }
 
 [[nodiscard]] constexpr EndpointQos qos_of_reader(Profile profile) {
   switch (profile) {
   case Profile::samples:
-    return {true, true, untaken_blocks};
+  case Profile::paced_samples:
+    return {true, true, untaken_blocks, 0};
   case Profile::live_samples:
   case Profile::live_records:
-    return {false, true, untaken_blocks};
+    return {false, true, untaken_blocks, 0};
   case Profile::command:
-    return {false, true, untaken_commands};
+    return {false, true, untaken_commands, 0};
   case Profile::catch_up:
-    return {true, true, catch_up_blocks};
+    return {true, true, catch_up_blocks, 0};
   case Profile::results:
   case Profile::state:
     break;
   }
-  return {true, false, 1};
+  return {true, false, 1, 0};
 }
 
 // One attempt of a vendor's write() waits this long for room in its history; the bus tries again

@@ -9,8 +9,18 @@
 namespace dyncal::bus {
 
 // `live_samples` and `live_records` are for writers of samples and records that wait for no reader,
-// and for readers that want none of those before them.
-enum class Profile { samples, live_samples, live_records, results, state, command, catch_up };
+// and for readers that want none of those before them; `paced_samples` is for writers that wait for
+// their readers and have kept everything elsewhere.
+enum class Profile {
+  samples,
+  live_samples,
+  live_records,
+  paced_samples,
+  results,
+  state,
+  command,
+  catch_up
+};
 
 template <class T>
 struct Topic {

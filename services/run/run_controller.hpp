@@ -39,8 +39,8 @@ struct RunKeeping {
 
 class RunController {
 public:
-  static constexpr std::chrono::seconds answer_limit{4}; // for an analysis service to answer
-  static constexpr std::chrono::seconds armed_limit{29}; // until it has armed or refused the run
+  static constexpr std::chrono::seconds answer_limit{12}; // for an analysis to answer
+  static constexpr std::chrono::seconds armed_limit{36};  // until it has armed or refused the run
   static constexpr std::chrono::seconds analysis_limit = StepSequence::away_limit; // of its silence
   static constexpr std::chrono::seconds results_limit = StepSequence::results_limit;
 

@@ -87,7 +87,7 @@ public:
 template <class Kind, class Message>
 Expected<std::unique_ptr<StreamWriter>>
 open(bus::Participant& participant, const SourceOptions& source, bus::Profile live_profile) {
-  const auto profile = waits(source.when_full) ? bus::Profile::samples : live_profile;
+  const auto profile = waits(source.when_full) ? bus::Profile::paced_samples : live_profile;
   auto writer = participant.writer<Message>(sample_topic(source.kind), profile, source.bench);
   if (!writer) {
     return fail(writer.error());

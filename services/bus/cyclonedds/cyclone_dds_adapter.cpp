@@ -96,7 +96,7 @@ Qos common_qos(const EndpointQos& wanted, const std::string& partition) {
 Qos writer_qos(const EndpointQos& wanted, const std::string& partition) {
   Qos qos = common_qos(wanted, partition);
   if (wanted.transient_local) {
-    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, wanted.samples_per_key,
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, wanted.for_late_joiners,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
   // True by default: the end of a writer would read as the end of all its instances.
