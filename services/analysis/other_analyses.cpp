@@ -5,6 +5,9 @@
 namespace dyncal::services {
 
 void OtherAnalyses::add(const wire::ServiceStatus& status, Instant now) {
+  if (!status.recording().empty()) {
+    return; // a recorder leads no run
+  }
   const std::string service = status.service().to_string();
   if (service == own_service_) {
     return;

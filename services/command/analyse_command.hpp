@@ -9,11 +9,15 @@
 #include <filesystem>
 #include <optional>
 #include <stop_token>
+#include <string>
 
 namespace dyncal::services {
 
 struct AnalyseCommand {
-  std::filesystem::path bench_file; // or a run folder (services/run_folder)
+  std::filesystem::path bench_file; // or a run folder (services/run_folder), or a recording
+                                    // (analyse_recording.hpp)
+  std::string run;                  // of the recording; empty: the only one
+  std::optional<std::filesystem::path> recipe; // bench file to evaluate the recording by
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> figures;
 };

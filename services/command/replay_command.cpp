@@ -14,9 +14,9 @@ Expected<double> parse_speed(const std::string& text) {
   double speed = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
   if (error != std::errc() || end != text.data() + text.size() || !(speed > 0.0)) {
-    return fail(ErrorCode::bad_argument,
-                fmt::format("invalid --speed '{}': give a multiple of real time above 0, or max",
-                            text));
+    return fail(
+        ErrorCode::bad_argument,
+        fmt::format("invalid --speed '{}': give a multiple of real time above 0, or max", text));
   }
   return speed;
 }

@@ -13,10 +13,10 @@
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
-#include "services/contract/digest.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/bench_queue.hpp"
+#include "services/run/run_plan.hpp"
 
 namespace dyncal::services {
 
@@ -41,16 +41,6 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
     return std::vector<analysis::AdcCalibrationPoint>{};
   }
   return read_adc_file(*bench.corrections.adc);
-}
-
-std::optional<AdcFile> adc_file_of(const BenchFile& bench) {
-  if (!bench.corrections.adc) {
-    return std::nullopt;
-  }
-  std::ifstream file(bench.corrections.adc->file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return AdcFile{bench.corrections.adc->file.string(), bench.corrections.adc->channel,
-                 sha256_hex(text)};
 }
 
 namespace {

@@ -39,9 +39,6 @@ struct RunCommand {
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
 read_adc_calibration(const BenchFile& bench);
 
-// Names the file of that calibration, as it is now; nothing when there is none.
-[[nodiscard]] std::optional<AdcFile> adc_file_of(const BenchFile& bench);
-
 // The exit status and, unless 0, one line on standard error.
 [[nodiscard]] int conclude(const RunOutcome& outcome);
 

@@ -123,6 +123,12 @@ std::string clock_line(const wire::SampleClockReport& report, const std::vector<
 }
 
 std::string run_line(const wire::ServiceStatus& status) {
+  if (!status.recording().empty()) {
+    const std::string problem = status.message().empty() ? "" : ": " + status.message();
+    return fmt::format("{}: recorded in {}, {} messages stored, {} not{}", status.bench().c_str(),
+                       status.recording(), status.messages_stored(), status.messages_not_stored(),
+                       problem);
+  }
   const std::string line =
       fmt::format("{} {}: {} {}, {} results", status.bench().c_str(), status.run().c_str(),
                   status.service().c_str(), arm_word(status.arm()), status.results_published());

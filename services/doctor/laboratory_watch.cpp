@@ -64,6 +64,9 @@ void LaboratoryWatch::take() {
     source.status = status;
   });
   readers_.analyses.take([this](const wire::ServiceStatus& status) {
+    if (!status.recording().empty()) {
+      return; // of a recorder
+    }
     view_.analyses[status.service().to_string()] = status;
   });
 }

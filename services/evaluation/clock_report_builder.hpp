@@ -42,8 +42,8 @@ private:
   std::optional<std::string> temperature_channel_;
   std::optional<std::size_t> temperature_column_;
   std::optional<analysis::SampleClock> clock_;
-  bool has_own_clock_ = false;       // its stamps are not UTC
-  bool states_uncertainty_ = false;  // of its stamps
+  bool has_own_clock_ = false;      // its stamps are not UTC
+  bool states_uncertainty_ = false; // of its stamps
   std::optional<BlockPosition> last_block_;
   std::vector<std::int64_t> stamps_; // of a block whose stamps follow from a clock
 };

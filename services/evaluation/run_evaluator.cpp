@@ -34,8 +34,7 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
       records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
       summary_(*recipe_), runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
-      never_waits_(limits.never_waits),
-      evaluations_(limits.evaluations_at_once) {
+      never_waits_(limits.never_waits), evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);
@@ -145,8 +144,8 @@ bool RunEvaluator::has_all_steps() const {
 }
 
 std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
-  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() && !lost_at_clock_end_ &&
-                       !records_.of(clock_->source()).ended();
+  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() &&
+                       !lost_at_clock_end_ && !records_.of(clock_->source()).ended();
   return goes_on ? std::optional(clock_->source()) : std::nullopt;
 }
 

@@ -102,8 +102,7 @@ void BenchRecordings::take(const wire::ServiceStatus& status) {
     return;
   }
   Run& run = *bench->second.run;
-  const bool has_all =
-      status.arm() == wire::ARM_FINISHED || status.arm() == wire::ARM_REFUSED;
+  const bool has_all = status.arm() == wire::ARM_FINISHED || status.arm() == wire::ARM_REFUSED;
   if (has_all && run.ends) {
     run.ends = std::min(*run.ends, clock_.now() + linger);
   }
@@ -119,8 +118,8 @@ void BenchRecordings::work() {
 
 void BenchRecordings::choose_file(const std::string& name, Bench& bench) {
   const Instant now = clock_.now();
-  if (bench.run && (now > bench.run->ends.value_or(Instant::max()) ||
-                    now - bench.run->heard > silence_limit)) {
+  if (bench.run &&
+      (now > bench.run->ends.value_or(Instant::max()) || now - bench.run->heard > silence_limit)) {
     over_.insert({name, bench.run->name});
     bench.run.reset();
   }

@@ -66,8 +66,8 @@ private:
   };
   struct Bench {
     std::unique_ptr<recording::Recorder> recorder;
-    std::string recorded_run; // empty: what lies between runs
-    std::optional<Run> run;   // that goes on
+    std::string recorded_run;         // empty: what lies between runs
+    std::optional<Run> run;           // that goes on
     recording::RecorderStatus before; // sums over recordings that have ended
   };
   struct Readers {

@@ -1,5 +1,6 @@
 // dyncal-recorder: records what the benches of a laboratory tell each other, in MCAP files.
 #include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
 
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/program.hpp"
@@ -69,6 +70,8 @@ Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
   (*supervisor)->describe("recordings in " + program.plan.folder.string());
   const std::stop_callback stopping(stop, [&] { (*supervisor)->stopping(); });
   (*supervisor)->serving();
+  spdlog::info("recorder ready ({}), recordings in {}", program.network.dds,
+               program.plan.folder.string());
   while (!stop.stop_requested()) {
     (*recordings)->work();
     for (const RecorderFigures& figures : (*recordings)->figures()) {

@@ -10,8 +10,8 @@ namespace {
 std::string portable(std::string name) {
   for (char& letter : name) {
     const auto code = static_cast<unsigned char>(letter);
-    const bool is_fine =
-        (code < 128 && std::isalnum(code) != 0) || std::string("._-+").find(letter) != std::string::npos;
+    const bool is_fine = (code < 128 && std::isalnum(code) != 0) ||
+                         std::string("._-+").find(letter) != std::string::npos;
     letter = is_fine ? letter : '_';
   }
   if (name.empty() || name.front() == '.') {

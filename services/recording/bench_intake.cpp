@@ -28,9 +28,9 @@ std::string run_of(const T& message) {
 }
 
 template <class T>
-constexpr bool is_result = std::is_same_v<T, wire::CalibrationResult> ||
-                           std::is_same_v<T, wire::TransferFunction> ||
-                           std::is_same_v<T, wire::SampleClockReport>;
+constexpr bool is_result =
+    std::is_same_v<T, wire::CalibrationResult> || std::is_same_v<T, wire::TransferFunction> ||
+    std::is_same_v<T, wire::SampleClockReport>;
 
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < max_runs) {
@@ -60,17 +60,15 @@ private:
 
 BenchIntake::BenchIntake(bus::Participant& participant, bus::Clock& clock, std::string bench,
                          std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink)
-    : participant_(participant), clock_(clock), bench_(std::move(bench)),
-      only_run_(std::move(run)),
+    : participant_(participant), clock_(clock), bench_(std::move(bench)), only_run_(std::move(run)),
       asker_(fmt::format("recorder/{:016x}", services::random_session())),
       wake_up_(std::move(wake_up)), sink_(std::move(sink)) {}
 
 Expected<std::unique_ptr<BenchIntake>>
 BenchIntake::open(bus::Participant& participant, bus::Clock& clock, std::string bench,
                   std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink) {
-  std::unique_ptr<BenchIntake> intake(new BenchIntake(participant, clock, std::move(bench),
-                                                      std::move(run), std::move(wake_up),
-                                                      std::move(sink)));
+  std::unique_ptr<BenchIntake> intake(new BenchIntake(
+      participant, clock, std::move(bench), std::move(run), std::move(wake_up), std::move(sink)));
   if (auto opened = intake->open_readers(); !opened) {
     return fail(opened.error());
   }
@@ -136,8 +134,8 @@ void BenchIntake::take(const Channel& channel, const T& message) {
 
 template <class T>
 void BenchIntake::take_again(const T& message) {
-  const auto found = message.bench() == bench_ ? sources_.find(message.source().to_string())
-                                               : sources_.end();
+  const auto found =
+      message.bench() == bench_ ? sources_.find(message.source().to_string()) : sources_.end();
   if (found == sources_.end()) {
     return;
   }

@@ -109,7 +109,7 @@ private:
   std::optional<AnswerReaders> answers_;
   std::map<std::string, Source> sources_;
   std::optional<Run> run_;
-  std::set<std::string> attached_; // runs whose bench file is in the recording
+  std::set<std::string> attached_;                // runs whose bench file is in the recording
   std::map<std::uint16_t, std::uint32_t> counts_; // of messages without a number, by channel
 };
 

@@ -9,8 +9,7 @@ namespace {
 
 template <class T>
 const T& first_with_name(const std::vector<T>& all, std::string_view name, std::string T::*member) {
-  return *std::find_if(all.begin(), all.end(),
-                       [&](const T& one) { return one.*member == name; });
+  return *std::find_if(all.begin(), all.end(), [&](const T& one) { return one.*member == name; });
 }
 
 std::vector<Schema> make_schemas() {

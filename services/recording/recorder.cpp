@@ -216,16 +216,14 @@ Recorder::~Recorder() = default;
 
 Expected<std::unique_ptr<Recorder>> Recorder::start(bus::Participant& participant,
                                                     RecorderOptions options) {
-  auto writer = RecordingWriter::create(options.path,
-                                        {.library = services::software_version(),
-                                         .schemas = recorded_schemas(),
-                                         .channels = recorded_channels(),
-                                         .compression = options.compression});
+  auto writer = RecordingWriter::create(options.path, {.library = services::software_version(),
+                                                       .schemas = recorded_schemas(),
+                                                       .channels = recorded_channels(),
+                                                       .compression = options.compression});
   if (!writer) {
     return fail(writer.error());
   }
-  auto begun =
-      writer->add_metadata(beginning_of(options, bus::system_clock().utc_now_ns()));
+  auto begun = writer->add_metadata(beginning_of(options, bus::system_clock().utc_now_ns()));
   if (!begun) {
     return fail(begun.error());
   }

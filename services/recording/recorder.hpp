@@ -12,8 +12,8 @@
 // ServiceStatus without a run; what was lost stands in the file as metadata "dyncal.losses", the
 // bench file of the run as attachment "recipe.toml".
 //
-// start() fails (bad_file) when the file exists or cannot be made, (network) as readers do. status()
-// from any thread, everything else from the owner's.
+// start() fails (bad_file) when the file exists or cannot be made, (network) as readers do.
+// status() from any thread, everything else from the owner's.
 #pragma once
 
 #include <cstdint>

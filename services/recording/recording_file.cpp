@@ -61,10 +61,9 @@ Expected<RecordingFile> RecordingFile::create(const std::filesystem::path& path,
                                               std::string_view beginning) {
   const std::string unfinished = fmt::format("{}.{}.part", path.string(), ::getpid());
   ::unlink(unfinished.c_str());
-  RecordingFile file(path,
-                     drivers::FileDescriptor(::open(unfinished.c_str(),
-                                                    O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC,
-                                                    for_everybody)));
+  RecordingFile file(
+      path, drivers::FileDescriptor(
+                ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, for_everybody)));
   if (!file.file_.is_open()) {
     return file.not_written(errno);
   }
@@ -110,8 +109,8 @@ Expected<void> RecordingFile::take_name(const std::filesystem::path& unfinished)
 
 Expected<void> RecordingFile::write(std::string_view bytes, std::uint64_t offset) const {
   while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(file_.number(), bytes.data(), bytes.size(),
-                                   static_cast<off_t>(offset));
+    const ssize_t count =
+        ::pwrite(file_.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) {
       continue;
     }
@@ -129,9 +128,9 @@ Expected<void> RecordingFile::extend(std::uint64_t needed) {
   const std::string end = shortest_end();
   const std::uint64_t least = end_ + head_bytes + needed + spare_bytes + end.size();
   const std::uint64_t limit = (least + page - 1) / page * page - end.size();
-  return write(end, limit)
-      .and_then([&] { return write(filler_head(end_, limit), end_); })
-      .map([&] { limit_ = limit; });
+  return write(end, limit).and_then([&] { return write(filler_head(end_, limit), end_); }).map([&] {
+    limit_ = limit;
+  });
 }
 
 Expected<void> RecordingFile::append(std::span<const std::string_view> parts, std::uint32_t crc) {
@@ -176,14 +175,15 @@ Expected<void> RecordingFile::finish(std::string_view ending) {
       return extended;
     }
   }
-  const auto finished = write(ending.substr(head_bytes), end_ + head_bytes)
-                            .and_then([&] { return write(ending.substr(0, head_bytes), end_); });
+  const auto finished = write(ending.substr(head_bytes), end_ + head_bytes).and_then([&] {
+    return write(ending.substr(0, head_bytes), end_);
+  });
   if (!finished) {
     return finished;
   }
   end_ = size;
-  const bool done = ::ftruncate(file_.number(), static_cast<off_t>(size)) == 0 &&
-                    ::fsync(file_.number()) == 0;
+  const bool done =
+      ::ftruncate(file_.number(), static_cast<off_t>(size)) == 0 && ::fsync(file_.number()) == 0;
   return done ? Expected<void>{} : not_written(errno);
 }
 

@@ -104,8 +104,8 @@ Expected<std::string> RecordingReader::chunk_records(std::uint64_t offset) const
   }
   auto records = records_of(*chunk);
   if (!records) {
-    return fail(ErrorCode::bad_file, fmt::format("{}the chunk is damaged: {}", where,
-                                                 records.error().message));
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}the chunk is damaged: {}", where, records.error().message));
   }
   return records;
 }

@@ -1,11 +1,12 @@
 // Reads an MCAP recording from its beginning to its end, whatever has happened to the file.
 //
 // Nothing is handed over that its CRC does not vouch for: messages of chunks, attachments. Every
-// length is held against the file before memory is taken. A chunk whose CRC is wrong is left out and
-// the reader goes on behind it; where a length is wrong it goes on with the next chunk that is
-// whole. Each of these is a Damage with place and sentence. A recording whose program was killed has
-// no damage: it is whole to its last flush, and `ended_in_order` is false. What the CRC of all the
-// data, of the summary or of metadata does not vouch for is a Damage too, with the records there.
+// length is held against the file before memory is taken. A chunk whose CRC is wrong is left out
+// and the reader goes on behind it; where a length is wrong it goes on with the next chunk that is
+// whole. Each of these is a Damage with place and sentence. A recording whose program was killed
+// has no damage: it is whole to its last flush, and `ended_in_order` is false. What the CRC of all
+// the data, of the summary or of metadata does not vouch for is a Damage too, with the records
+// there.
 //
 // open() fails (bad_file) when the file cannot be read or is no MCAP file, scan() when reading
 // fails. Messages outside chunks have no CRC: they are not handed over, which is a Damage. Foreign
@@ -71,8 +72,8 @@ public:
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] services::Expected<ScanReport> scan(const ScanEvents& events);
-  // The records of the chunk at this offset, with the CRC checked. Fails (bad_file) with a part of a
-  // sentence: what is wrong with it.
+  // The records of the chunk at this offset, with the CRC checked. Fails (bad_file) with a part of
+  // a sentence: what is wrong with it.
   [[nodiscard]] services::Expected<std::string> chunk_records(std::uint64_t offset) const;
 
 private:

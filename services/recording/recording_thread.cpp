@@ -114,8 +114,8 @@ void RecordingThread::write(const Item& item) {
                     writer_.path().string(), writer_.free_bytes() / 1'000'000));
   }
   if (!figures_.ended) {
-    const Expected<void> added = chunk != nullptr ? writer_.add_chunk(*chunk)
-                                                  : writer_.add_attachment(std::get<1>(item));
+    const Expected<void> added =
+        chunk != nullptr ? writer_.add_chunk(*chunk) : writer_.add_attachment(std::get<1>(item));
     if (!added) {
       end(added.error().message);
     }

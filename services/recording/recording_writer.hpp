@@ -32,8 +32,8 @@ struct WriterOptions {
 
 class RecordingWriter {
 public:
-  [[nodiscard]] static services::Expected<RecordingWriter>
-  create(const std::filesystem::path& path, WriterOptions options);
+  [[nodiscard]] static services::Expected<RecordingWriter> create(const std::filesystem::path& path,
+                                                                  WriterOptions options);
 
   // With its own CRC as entry "crc32", for the format has none.
   [[nodiscard]] services::Expected<void> add_metadata(Metadata metadata);

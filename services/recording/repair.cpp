@@ -55,12 +55,8 @@ public:
     }
     chunk_.add(definitions_.channel(message.channel.id), message.message);
   }
-  void add(const Attachment& attachment) {
-    note(writer_.add_attachment(attachment));
-  }
-  void add(const Metadata& metadata) {
-    note(writer_.add_metadata(metadata));
-  }
+  void add(const Attachment& attachment) { note(writer_.add_attachment(attachment)); }
+  void add(const Metadata& metadata) { note(writer_.add_metadata(metadata)); }
   void flush() {
     if (!chunk_.empty()) {
       note(writer_.add_chunk(chunk_));
@@ -105,10 +101,10 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
     return fail(reader.error());
   }
   Definitions definitions;
-  auto report = reader->scan(
-      {.message = [&](const MessageInFile& message) { definitions.add(message); },
-       .attachment = {},
-       .metadata = {}});
+  auto report =
+      reader->scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
+                    .attachment = {},
+                    .metadata = {}});
   if (!report) {
     return report;
   }

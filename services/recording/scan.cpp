@@ -390,8 +390,8 @@ Expected<bool> Scan::is_whole_chunk(std::uint64_t offset) {
       number_at(*fields, head_bytes + 32 + letters, 8) != length - 40 - letters) {
     return false;
   }
-  const bool whole = reader_.chunk_records(offset).has_value() &&
-                     number_at(*fields, head_bytes + 24, 4) != 0;
+  const bool whole =
+      reader_.chunk_records(offset).has_value() && number_at(*fields, head_bytes + 24, 4) != 0;
   failed_candidates_ += whole ? 0 : 1;
   return whole;
 }

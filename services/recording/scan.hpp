@@ -40,9 +40,9 @@ private:
   const RecordingReader& reader_;
   const ScanEvents& events_;
   ScanReport report_;
-  std::uint64_t offset_ = 0;          // of the record that is read
-  std::optional<std::uint32_t> crc_;  // of everything before it; nothing: not known
-  int failed_candidates_ = 0;         // of next_whole_chunk()
+  std::uint64_t offset_ = 0;         // of the record that is read
+  std::optional<std::uint32_t> crc_; // of everything before it; nothing: not known
+  int failed_candidates_ = 0;        // of next_whole_chunk()
   std::map<std::uint16_t, Schema> schemas_;
   struct KnownChannel {
     Channel channel;

@@ -66,8 +66,8 @@ private:
   void ask(std::uint64_t session, std::uint64_t number, Instant now);
 
   std::string asker_;
-  std::map<std::uint64_t, Stretches> had_; // by session
-  std::deque<std::uint64_t> sessions_;     // of had_, oldest first
+  std::map<std::uint64_t, Stretches> had_;                        // by session
+  std::deque<std::uint64_t> sessions_;                            // of had_, oldest first
   std::optional<std::pair<std::uint64_t, std::uint64_t>> newest_; // of the live messages
   std::deque<Request> waiting_;
   std::optional<Active> active_;

@@ -11,6 +11,7 @@
 #include "services/contract/source_kind.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
+#include "services/evaluation/result/adc_file_message.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
@@ -60,8 +61,8 @@ void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome)
   for (auto* results : {&output.results, &output.settled}) {
     for (const StepResult& evaluated : *results) {
       StepResult result = from_message(to_message(recipe, evaluated));
-      const auto known = std::find_if(
-          outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
+      const auto known =
+          std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
             return one.channel == result.channel && one.step == result.step &&
                    one.repetition == result.repetition;
           });
@@ -135,7 +136,7 @@ private:
     const RecordedSource& recorded;
     std::map<RecordedPosition, RecordedPlace>::const_iterator next{};
     bool answered = false;
-    std::optional<std::uint64_t> described; // session
+    std::optional<std::uint64_t> described{}; // session
     std::deque<wire::SampleBlock> waiting{};
     std::uint64_t waiting_since = 0;
   };
@@ -198,15 +199,15 @@ private:
     }
     source.described = session;
     if (of_session == source.recorded.descriptions.end() && !source.recorded.newest) {
-      outcome_of_walk_ = fail(
-          ErrorCode::no_source,
-          fmt::format("the recording holds no description of source '{}' of bench '{}'", name,
-                      bench_));
+      outcome_of_walk_ =
+          fail(ErrorCode::no_source,
+               fmt::format("the recording holds no description of source '{}' of bench '{}'", name,
+                           bench_));
       return;
     }
-    const wire::SourceDescription& description =
-        of_session == source.recorded.descriptions.end() ? *source.recorded.newest
-                                                         : of_session->second;
+    const wire::SourceDescription& description = of_session == source.recorded.descriptions.end()
+                                                     ? *source.recorded.newest
+                                                     : of_session->second;
     if (auto described = evaluator_.describe(name, from_message(description)); !described) {
       outcome_of_walk_ = std::move(described);
     }
@@ -263,8 +264,8 @@ void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {
     const auto found = index.sources.find(name);
     if (found != index.sources.end() && found->second.newest) {
       const wire::SourceDescription& description = *found->second.newest;
-      outcome.sources.push_back({name, from_wire(description.kind()), description.software(),
-                                 from_message(description)});
+      outcome.sources.push_back(
+          {name, from_wire(description.kind()), description.software(), from_message(description)});
     }
   }
   if (index.analysis) {
@@ -292,14 +293,14 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
                                    path.string(), index.report.damage_count - max_damages_named));
   }
   if (index.ended == 0) {
-    warnings.push_back(fmt::format("{}: the end of the run is not in the recording", path.string()));
+    warnings.push_back(
+        fmt::format("{}: the end of the run is not in the recording", path.string()));
   }
   const std::string run = index.plan.run().to_string();
   for (const std::string& name : recipe.sources()) {
     const auto found = index.sources.find(name);
     if (found == index.sources.end()) {
-      warnings.push_back(
-          fmt::format("{}: holds nothing of source '{}'", path.string(), name));
+      warnings.push_back(fmt::format("{}: holds nothing of source '{}'", path.string(), name));
     } else if (!found->second.answered.contains(run)) {
       warnings.push_back(fmt::format("{}: the beginning of the run is missing in source '{}': look "
                                      "whether steps were taken for others",

@@ -8,7 +8,8 @@
 //
 // With another recipe the same samples are evaluated by that one. Fails (bad_file) as
 // index_recording(), and as RunEvaluator::describe(). Whatever is damaged or missing in the file is
-// in `warnings` and, as lost samples, in the results. Blocks; evaluates steps in threads of its own.
+// in `warnings` and, as lost samples, in the results. Blocks; evaluates steps in threads of its
+// own.
 #pragma once
 
 #include <filesystem>

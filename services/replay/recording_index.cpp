@@ -87,8 +87,7 @@ private:
     if (state == wire::MEASUREMENT_RUNNING && run.began == 0) {
       run.began = message.message.log_time;
     }
-    if ((state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED) &&
-        run.ended == 0) {
+    if ((state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED) && run.ended == 0) {
       run.ended = message.message.log_time;
     }
   }

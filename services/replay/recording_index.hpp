@@ -49,8 +49,8 @@ struct RecordedSource {
 struct RecordedRunIndex {
   wire::Measurement plan; // as it came first
   wire::Measurement newest;
-  std::uint64_t began = 0; // log_time of state RUNNING; 0: not heard
-  std::uint64_t ended = 0; // log_time of the state behind it; 0: not heard
+  std::uint64_t began = 0;                       // log_time of state RUNNING; 0: not heard
+  std::uint64_t ended = 0;                       // log_time of the state behind it; 0: not heard
   std::map<std::string, RecordedSource> sources; // of the bench
   std::optional<wire::ServiceStatus> analysis;   // of the live run, the newest
   std::optional<BlockPosition> clock_end;        // of its clock report

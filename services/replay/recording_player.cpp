@@ -22,38 +22,36 @@ constexpr std::chrono::seconds acknowledgment_limit{5};
 // Benches of the file, by its descriptions, states and runs.
 Expected<std::string> recorded_bench(recording::RecordingReader& reader) {
   std::set<std::string> benches;
-  const auto report = reader.scan({.message =
-                                       [&](const recording::MessageInFile& message) {
-                                         if (message.channel.topic !=
-                                             bus::topics::source_description.name) {
-                                           return;
-                                         }
-                                         if (const auto one =
-                                                 recording::decode<wire::SourceDescription>(
-                                                     message.message.data)) {
-                                           benches.insert(one->bench().to_string());
-                                         }
-                                       },
-                                   .attachment = {},
-                                   .metadata = {}});
+  const auto report =
+      reader.scan({.message =
+                       [&](const recording::MessageInFile& message) {
+                         if (message.channel.topic != bus::topics::source_description.name) {
+                           return;
+                         }
+                         if (const auto one =
+                                 recording::decode<wire::SourceDescription>(message.message.data)) {
+                           benches.insert(one->bench().to_string());
+                         }
+                       },
+                   .attachment = {},
+                   .metadata = {}});
   if (!report) {
     return fail(report.error());
   }
   if (benches.size() != 1) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: {}", reader.path().string(),
-                            benches.empty()
-                                ? std::string("describes no source: there is nothing to replay")
-                                : fmt::format("holds several benches: {}",
-                                              fmt::join(benches, ", "))));
+    return fail(
+        ErrorCode::bad_file,
+        fmt::format("{}: {}", reader.path().string(),
+                    benches.empty()
+                        ? std::string("describes no source: there is nothing to replay")
+                        : fmt::format("holds several benches: {}", fmt::join(benches, ", "))));
   }
   return *benches.begin();
 }
 
 // Who sends as this bench; nothing if nobody was heard.
-Expected<std::optional<std::string>> live_sender(bus::Participant& participant,
-                                                 const std::string& bench,
-                                                 const std::stop_token& stop) {
+Expected<std::optional<std::string>>
+live_sender(bus::Participant& participant, const std::string& bench, const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
   auto descriptions = participant.reader(bus::topics::source_description, bench, wake_up);
   auto states = participant.reader(bus::topics::source_status, bench, wake_up);
@@ -161,8 +159,7 @@ Expected<Players> open_players(bus::Participant& participant, const std::string&
 // When what was recorded at a time is due.
 class Pace {
 public:
-  explicit Pace(double speed)
-      : speed_(speed), began_(bus::system_clock().now() + finding_time) {}
+  explicit Pace(double speed) : speed_(speed), began_(bus::system_clock().now() + finding_time) {}
 
   void wait_for_readers(const std::stop_token& stop) { wait_until(began_, stop); }
   void wait_for(std::uint64_t log_time, const std::stop_token& stop) {
@@ -240,8 +237,8 @@ Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
                                       return;
                                     }
                                     pace.wait_for(message.message.log_time, stop);
-                                    const bool written = player->second->play(
-                                        message.message.data, wish_.bench, replay);
+                                    const bool written = player->second->play(message.message.data,
+                                                                              wish_.bench, replay);
                                     ++(written ? figures.written : figures.not_written);
                                   },
                               .attachment = {},

@@ -1,8 +1,8 @@
 // Puts a recording back on DDS, in its own time or faster.
 //
 // What is put back says so: descriptions of sources name the file as their driver, states and runs
-// carry it in their message, the conductor of a run is "replay of FILE". A bench that is live in the
-// domain is refused (no_source): nobody shall take recorded samples for live ones; give another
+// carry it in their message, the conductor of a run is "replay of FILE". A bench that is live in
+// the domain is refused (no_source): nobody shall take recorded samples for live ones; give another
 // name of the bench, or another domain. Commands and requests are not put back, results and the
 // states of analyses only with `results`; without them an analysis service evaluates the run anew.
 //
@@ -46,8 +46,7 @@ public:
   [[nodiscard]] Expected<ReplayFigures> play(const std::stop_token& stop);
 
 private:
-  RecordingPlayer(bus::Participant& participant, ReplayWish wish,
-                  recording::RecordingReader reader)
+  RecordingPlayer(bus::Participant& participant, ReplayWish wish, recording::RecordingReader reader)
       : participant_(&participant), wish_(std::move(wish)), reader_(std::move(reader)) {}
 
   bus::Participant* participant_;

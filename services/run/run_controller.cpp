@@ -7,6 +7,7 @@
 
 #include "services/bus/host_network.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
+#include "services/evaluation/result/adc_file_message.hpp"
 #include "services/run/run_plan.hpp"
 
 namespace dyncal::services {
@@ -75,7 +76,7 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
   if (!excited) {
     outcome_.problem = excited.error().message;
   }
-  const std::string message = outcome_.interrupted ? "interrupted by the user" : outcome_.problem;
+  const std::string message = outcome_.interrupted ? interrupted_by_user : outcome_.problem;
   const auto state = final_state(excited.has_value());
   if (sequence_ || state == wire::MEASUREMENT_ABORTED) {
     watch_->set_state(state, message); // files go on RUNNING until the analysis has seen their end
@@ -107,6 +108,7 @@ RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibr
   }
   wire::Measurement measurement = to_message(*recipe);
   measurement.planned_utc_ns(clock_.utc_now_ns());
+  add_adc_file(adc_file_of(bench_), measurement);
   measurement.conductor(fmt::format("{}:{}", bus::host_name(), getpid()));
   outcome_ = outcome_of(*recipe);
   auto watch = RunWatch::open(environment_.participant, clock_, std::move(measurement), wake_up_,
@@ -261,7 +263,7 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
     watch_->follow(attended ? "evaluating" : silence_of_analysis());
     if (!already_stopped && stop.stop_requested() &&
         watch_->measurement().state() != wire::MEASUREMENT_ABORTED) {
-      watch_->set_state(wire::MEASUREMENT_ABORTED, "interrupted by the user");
+      watch_->set_state(wire::MEASUREMENT_ABORTED, interrupted_by_user);
     }
     const RunOutlook outlook = watch_->outlook();
     const bool is_at_work = watch_->signs_of_work() != signs_before;

@@ -1,6 +1,10 @@
 #include "services/run/run_plan.hpp"
 
+#include <fstream>
+#include <iterator>
+
 #include "analysis/base/frequency.hpp"
+#include "services/contract/digest.hpp"
 #include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
@@ -69,6 +73,16 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
     return fail(checked.error());
   }
   return recipe;
+}
+
+std::optional<AdcFile> adc_file_of(const BenchFile& bench) {
+  if (!bench.corrections.adc) {
+    return std::nullopt;
+  }
+  std::ifstream file(bench.corrections.adc->file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return AdcFile{bench.corrections.adc->file.string(), bench.corrections.adc->channel,
+                 sha256_hex(text)};
 }
 
 } // namespace dyncal::services

@@ -5,6 +5,7 @@
 // Plain functions, any thread.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {
 
@@ -19,5 +21,8 @@ namespace dyncal::services {
 [[nodiscard]] Expected<Recipe>
 plan_recipe(const BenchFile& file, const std::string& run,
             const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
+
+// The file of the ADC's calibration, as it is now; nothing when the bench file names none.
+[[nodiscard]] std::optional<AdcFile> adc_file_of(const BenchFile& bench);
 
 } // namespace dyncal::services

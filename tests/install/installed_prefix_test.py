@@ -30,6 +30,7 @@ PROGRAMS = [
     "dyncal-dau",
     "dyncal-dso",
     "dyncal-guard",
+    "dyncal-recorder",
     "dyncal-virtual-bench",
 ]
 

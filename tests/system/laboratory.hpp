@@ -111,6 +111,9 @@ private:
     if (program == "dyncal-dso") {
       return "is ready";
     }
+    if (program == "dyncal-recorder") {
+      return "recorder ready";
+    }
     if (program == "dyncal-guard") {
       return "guarding the output";
     }

@@ -15,6 +15,13 @@ void sort_outcome(RunOutcome& outcome) {
   });
   sort_by(outcome.transfer_functions,
           [](const TransferFunction& function) { return function.channel; });
+  sort_by(outcome.clock_reports, [](const ClockReport& report) { return report.source; });
+  if (outcome.recipe) {
+    const std::vector<std::string> order = outcome.recipe->sources();
+    sort_by(outcome.sources, [&](const RunSource& source) {
+      return std::find(order.begin(), order.end(), source.source) - order.begin();
+    });
+  }
 }
 
 RunOutcome outcome_of(const Recipe& recipe) {

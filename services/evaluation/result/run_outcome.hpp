@@ -63,7 +63,11 @@ struct RunOutcome {
   std::string problem;           // why the run ended early; empty when it did not
 };
 
-// Results by step, repetition and channel; transfer functions by channel.
+// What Measurement::message says of a run that the user ended.
+inline constexpr const char* interrupted_by_user = "interrupted by the user";
+
+// Puts everything that comes in any order into one: results by step, repetition and channel, the
+// rest by channel or source, sources as the recipe has them.
 void sort_outcome(RunOutcome& outcome);
 
 // Of a run that has no results yet.

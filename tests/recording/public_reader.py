@@ -1,0 +1,65 @@
+"""Opens a recording in the format's own Python library, CRC checks on: public_reader.py FILE
+
+Prints the number of messages. As a module: finds or installs the library.
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+READ = """
+import sys
+from mcap.reader import make_reader
+for path in sys.argv[1:]:
+    with open(path, "rb") as stream:
+        count = 0
+        for schema, channel, message in make_reader(stream, validate_crcs=True).iter_messages(
+                log_time_order=False):
+            count += 1
+            assert schema.encoding == "omgidl" and channel.message_encoding == "cdr"
+        print(count)
+"""
+
+
+def has_library(python):
+    probe = [python, "-c", "import mcap.reader"]
+    try:
+        return subprocess.run(probe, capture_output=True, check=False).returncode == 0
+    except OSError:
+        return False
+
+
+def interpreter(folder):
+    """A Python that has the library; None where it cannot be had. `folder` may take it."""
+    installed = pathlib.Path(folder) / "mcap-library"
+    candidates = [os.environ.get("DYNCAL_MCAP_PYTHON"), sys.executable, installed / "bin/python3"]
+    for python in candidates:
+        if python and has_library(str(python)):
+            return str(python)
+    steps = (
+        [sys.executable, "-m", "venv", str(installed)],
+        [str(installed / "bin/pip"), "install", "-q", "--timeout", "10", "--retries", "0", "mcap"],
+    )
+    for step in steps:
+        try:
+            done = subprocess.run(step, capture_output=True, check=False, timeout=120)
+        except (OSError, subprocess.TimeoutExpired):
+            return None
+        if done.returncode != 0:
+            return None
+    return str(installed / "bin/python3") if has_library(installed / "bin/python3") else None
+
+
+def count_messages(python, paths):
+    """Of each file, by the library's default reader. Raises with what it says."""
+    done = subprocess.run(
+        [python, "-c", READ, *map(str, paths)], capture_output=True, check=False, text=True
+    )
+    if done.returncode != 0:
+        raise RuntimeError(f"{paths}: {done.stderr}")
+    return [int(line) for line in done.stdout.split()]
+
+
+if __name__ == "__main__":
+    print(count_messages(sys.executable, sys.argv[1:]))

@@ -1,0 +1,44 @@
+#include "services/recording/repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.hpp"
+#include "tests/unit/services/recording/recorded_example.hpp"
+
+namespace dyncal::recording {
+namespace {
+
+TEST(Repair, SavesAllWholeChunksOfAFileCutAtAHundredPlaces) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "whole.mcap", {.chunks = 20});
+  const std::string whole = file_text(folder.path() / "whole.mcap");
+  for (std::size_t cut = 0; cut < 100; ++cut) {
+    const std::size_t size = magic.size() + (cut + 1) * (whole.size() - magic.size()) / 101;
+    const std::string damaged =
+        folder.write("cut" + std::to_string(cut) + ".mcap", whole.substr(0, size));
+    auto before = RecordingReader::open(damaged).value();
+    const ExampleRead expected = read_example(before);
+    const auto repaired = folder.path() / ("repaired" + std::to_string(cut) + ".mcap");
+    const auto report = repair(damaged, repaired, "dyncal test");
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->damage_count, expected.report.damage_count);
+    auto after = RecordingReader::open(repaired).value();
+    const ExampleRead read = read_example(after);
+    EXPECT_TRUE(read.report.ended_in_order);
+    EXPECT_EQ(read.report.damage_count, 0U);
+    EXPECT_EQ(read.numbers, expected.numbers);
+    EXPECT_EQ(read.attachments, expected.attachments);
+    EXPECT_EQ(read.metadata, expected.metadata + 1);
+  }
+}
+
+TEST(Repair, LeavesAFileThatIsThereAsItIs) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap");
+  folder.write("b.mcap", "mine");
+  EXPECT_FALSE(repair(folder.path() / "a.mcap", folder.path() / "b.mcap", "dyncal test"));
+  EXPECT_EQ(file_text(folder.path() / "b.mcap"), "mine");
+}
+
+} // namespace
+} // namespace dyncal::recording
