@@ -9,7 +9,7 @@ namespace dyncal::services {
 CheckedJson::CheckedJson(const nlohmann::json& json, std::string place)
     : json_(json), place_(std::move(place)) {
   if (!json_.is_object()) {
-    throw BadKey{place_.empty() ? "not a JSON object" : place_ + " is not an object"};
+    throw BadKey{(place_.empty() ? "the whole" : place_) + " is not an object"};
   }
 }
 

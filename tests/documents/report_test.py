@@ -194,7 +194,7 @@ class Report(unittest.TestCase):
             ("missing.json", None, "cannot be read"),
             ("broken.json", '{"schema": ', "not JSON"),
             ("other.json", '{"schema": {"name": "dyncal-model"}}', "dyncal-model"),
-            ("list.json", "[1]", "not a JSON object"),
+            ("list.json", "[1]", "is not an object"),
         ):
             file = self.folder / name
             if text is not None:
