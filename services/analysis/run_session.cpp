@@ -183,9 +183,10 @@ void RunSession::report_work(Instant now) {
   const auto waited = std::chrono::duration_cast<std::chrono::seconds>(now - last_progress_);
   if (evaluator_->is_evaluating() && waited > status_interval) {
     status_.message = fmt::format("evaluating a step, for {} s so far", waited.count());
-  } else if (streams_->is_catching_up() && streams_->recovered() > 0) {
-    status_.message = fmt::format("catching up with what the sources have sent: {} messages so far",
-                                  streams_->recovered());
+  } else if (streams_->is_catching_up() && (streams_->recovered() > 0 || waited > 0s)) {
+    status_.message = fmt::format("catching up with what the sources have sent: {} messages so "
+                                  "far, none for {} s",
+                                  streams_->recovered(), waited.count());
   }
 }
 
@@ -326,8 +327,9 @@ void RunSession::finish() {
 
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
-  const bool quiet = excitation_over() && status_.health != wire::HEALTH_WAITING &&
-                     now - last_progress_ > quiet_limit;
+  const bool may_come = status_.health == wire::HEALTH_WAITING ||
+                        (status_.health == wire::HEALTH_OK && streams_->is_catching_up());
+  const bool quiet = excitation_over() && !may_come && now - last_progress_ > quiet_limit;
   if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }

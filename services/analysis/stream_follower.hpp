@@ -47,7 +47,8 @@ public:
   using HandOver = std::function<void(const Message&)>;
 
   static constexpr std::chrono::seconds silence_limit{2};
-  static constexpr std::chrono::seconds answer_limit{10};
+  // On a link that the live messages nearly fill, the two ends of an answer take long to match.
+  static constexpr std::chrono::seconds answer_limit{30};
   static constexpr std::chrono::seconds stall_limit{5}; // between two messages of an answer
   static constexpr std::chrono::milliseconds request_interval{500};
   static constexpr std::size_t max_held_bytes = std::size_t{64} << 20U;

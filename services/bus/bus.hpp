@@ -183,8 +183,8 @@ private:
 // those of this build.
 [[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& name);
 [[nodiscard]] std::string to_string(Vendor vendor);
-// The first is the default of --dds: Cyclone DDS where there is a choice, because one malformed
-// packet ends every program with Fast DDS 2.9.
+// The first is the default of --dds: Cyclone DDS where there is a choice, because Fast DDS
+// 2.9 lives only behind its screen (services/bus/fastdds).
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();
 
 } // namespace dyncal::bus

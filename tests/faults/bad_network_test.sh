@@ -12,6 +12,8 @@
 #     --acs-rate HZ      of two channels (20000)
 #     --takeover SECONDS after the start of a run another analysis is started, and the one that
 #                        serves the run is killed (0: not)
+#     --garbage KIND     5000 malformed packets a second to the bench's and the analysis' host each
+#                        (rtps_garbage.py): no service may end or grow by 100 MB
 #
 # The long form, 960 runs:
 #   bad_network_test.sh build/bin --runs 20 --loss "0 3 10 20" --mbit "0 100 10"
@@ -20,12 +22,15 @@
 #   bad_network_test.sh build/bin --runs 20 --loss "0 3" --mbit "20 10" --takeover 8 --speed 1
 #     --acs-rate 50000 --vendors "FFF CCC FCF CFC"
 #
+# and of garbage (a mutated packet may be taken for a real one and stop a run, which then says so):
+#   bad_network_test.sh build/bin --runs 10 --loss 0 --garbage header --vendors "FFF CCC"
+#
 # Needs root, ip, tc, nft and python3; exits with 77 (skipped) and one line otherwise.
 set -euo pipefail
 
 programs=$1
 shift
-runs=1 losses=20 links=0 orders="FCF CFC" speed=2 acs_rate=20000 takeover=0
+runs=1 losses=20 links=0 orders="FCF CFC" speed=2 acs_rate=20000 takeover=0 garbage=
 while (($# > 1)); do
   case $1 in
   --runs) runs=$2 ;;
@@ -35,12 +40,14 @@ while (($# > 1)); do
   --speed) speed=$2 ;;
   --acs-rate) acs_rate=$2 ;;
   --takeover) takeover=$2 ;;
+  --garbage) garbage=$2 ;;
   *) echo "unknown option $1" && exit 2 ;;
   esac
   shift 2
 done
 
-. "$(dirname "${BASH_SOURCE[0]}")/bad_network.sh"
+here=$(dirname "${BASH_SOURCE[0]}")
+. "$here/bad_network.sh"
 make_hosts "dyncal run over a bad network" bench analysis operator
 command -v python3 >/dev/null || skip "there is no command python3"
 
@@ -105,6 +112,22 @@ replace_analysis() {
   wait "$old" 2>/dev/null || true
 }
 
+begin_garbage() {
+  [[ -n $garbage ]] || return 0
+  (on bench "$here/rtps_garbage.py" "${address[analysis]}" 46 "$garbage" 5000) &
+  (on analysis "$here/rtps_garbage.py" "${address[bench]}" 46 "$garbage" 5000) &
+}
+resident_mb() { awk '/VmRSS/ {printf "%d", $2 / 1024}' "/proc/$1/status" 2>/dev/null || true; }
+check_services() {
+  [[ -n $garbage ]] || return 0
+  local service now
+  for service in dyncal-analysis dyncal-acs; do
+    now=$(resident_mb "${services[$service]}")
+    echo "  $service: ${before[$service]} MB before $garbage packets, ${now:-ended} MB after"
+    ((${now:-100000} < before[$service] + 100)) || failed=$((failed + 1))
+  done
+}
+
 # One line: what is not as it must be; nothing if all is.
 compare() {
   python3 - "$folder/expected.json" "$folder/run.json" <<'PYTHON'
@@ -157,6 +180,11 @@ for order in $orders; do
       begin bench dyncal-acs "${order:0:1}" ", source " "$folder/bench.toml"
       whole=0
       begin_s=$SECONDS
+      declare -A before=()
+      for service in "${!services[@]}"; do
+        before[$service]=$(resident_mb "${services[$service]}")
+      done
+      begin_garbage
       for ((n = 0; n < runs; n++)); do
         one_run && whole=$((whole + 1)) || true
       done
@@ -167,7 +195,10 @@ for order in $orders; do
       ((loss == 0)) || report_lost_packets >"$folder/lost" || {
         echo "  FAILED: no packet was lost" && failed=$((failed + 1))
       }
+      check_services
       end_services
+      jobs -p | xargs -r kill 2>/dev/null || true # the garbage
+      wait
     done
   done
 done
