@@ -178,7 +178,7 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
 } // namespace
 
 int run_history(const HistoryCommand& command) {
-  auto store = Store::open(store_place(command.store.store, command.store.folder));
+  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
   if (!store) {
     return report_error(store.error());
   }

@@ -90,7 +90,7 @@ int run_store_add(const StoreAddCommand& command) {
 }
 
 int run_runs(const RunsCommand& command) {
-  auto store = Store::open(store_place(command.store.store, command.store.folder));
+  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
   if (!store) {
     return report_error(store.error());
   }

@@ -101,6 +101,16 @@ Expected<std::unique_ptr<Store>> Store::open(const std::string& place) {
   return std::unique_ptr<Store>(new Store(std::move(*database)));
 }
 
+Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) {
+  if (!is_server(place) && !std::filesystem::exists(place)) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: there is no store yet; 'dyncal run' makes it, or 'dyncal store "
+                            "add'; name another with --store",
+                            place));
+  }
+  return open(place);
+}
+
 Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
   const auto record = read_result_record(path);
   if (!record) {

@@ -62,7 +62,10 @@ struct Calibration {
 
 class Store {
 public:
+  // Makes it if there is none.
   [[nodiscard]] static Expected<std::unique_ptr<Store>> open(const std::string& place);
+  // Fails (bad_file) if there is none, for those who only look something up.
+  [[nodiscard]] static Expected<std::unique_ptr<Store>> open_existing(const std::string& place);
 
   // A result file or a run folder.
   [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);

@@ -183,6 +183,15 @@ INSTANTIATE_TEST_SUITE_P(, StoreTest,
                          testing::Values(tests::StoreKind::sqlite, tests::StoreKind::postgres),
                          tests::kind_name);
 
+TEST(OpenExistingStore, MakesNone) {
+  const tests::TemporaryFolder folder;
+  const auto place = folder.path() / "lab/dyncal.sqlite";
+  EXPECT_FALSE(Store::open_existing(place.string()));
+  EXPECT_FALSE(std::filesystem::exists(place.parent_path()));
+  ASSERT_TRUE(Store::open(place.string()));
+  EXPECT_TRUE(Store::open_existing(place.string()));
+}
+
 TEST(StorePlaceOption, IsBesideTheRunsUnlessGiven) {
   EXPECT_EQ(store_place("", "lab/runs"), "lab/runs/dyncal.sqlite");
   EXPECT_EQ(store_place("none", "lab/runs"), "");

@@ -1,0 +1,84 @@
+// What a run tells whoever keeps its results, and that it excites nothing where they cannot be
+// kept.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/run/run_controller.hpp"
+#include "tests/unit/services/run/played_analysis.hpp"
+#include "tests/unit/services/run/played_generator.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+class RunKeepingTest : public testing::Test {
+protected:
+  bus::SteppedClock clock_;
+  bus::MemoryNetwork network_{clock_};
+  tests::PlayedAnalysis analysis_{network_, "b", "r1"};
+  bus::Participant participant_ = network_.join("runner");
+  tests::PlayedInstrument instrument_{clock_};
+  std::stop_source stop_;
+
+  Expected<RunOutcome> conduct(RunKeeping keeping) {
+    BenchFile bench;
+    bench.bench = "b";
+    bench.excitation.frequencies_hz = {"40", "80"};
+    bench.excitation.levels_m_s2 = {10.0, 10.0};
+    bench.excitation.settling_s = 0.5;
+    bench.excitation.duration_s = 2.0;
+    bench.generator.driver = GeneratorDriver::scpi;
+    bench.generator.level_per_volt = 5.0;
+    bench.method.reference = {"acs", "reference"};
+    bench.method.sync_acs = {"acs", "sync"};
+    bench.method.sync_dau = {"dau", "sync"};
+    clock_.at(100ms, [this] { analysis_.report(wire::ARM_ARMED); });
+    clock_.every(1s, [this] {
+      if (!finished_) {
+        analysis_.report(wire::ARM_ARMED);
+      }
+    });
+    RunController controller({participant_, clock_, tests::connect_to(instrument_)}, bench, "r1",
+                             [](const RunProgress& /*progress*/) {});
+    controller.set_keeping(std::move(keeping));
+    return controller.conduct({}, stop_.get_token());
+  }
+
+  bool finished_ = false;
+};
+
+TEST_F(RunKeepingTest, ExcitesNothingWhereResultsCannotBeKept) {
+  const auto outcome = conduct({.check = [](const RunOutcome& planned) -> Expected<void> {
+                                  EXPECT_EQ(planned.planned_steps, 2U);
+                                  return fail(ErrorCode::bad_file, "/data: the disk is full");
+                                },
+                                .keep = {}});
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().message, "/data: the disk is full");
+  EXPECT_TRUE(instrument_.settings.empty());
+  EXPECT_EQ(analysis_.measurements().back().state(), wire::MEASUREMENT_ABORTED);
+}
+
+TEST_F(RunKeepingTest, HandsOverResultsAsTheyCome) {
+  std::vector<std::size_t> kept;
+  clock_.at(8s, [this] { analysis_.publish_result(1); });
+  clock_.at(10s, [this] {
+    analysis_.publish_result(2);
+    analysis_.publish_transfer_function("dau/acceleration_x");
+    finished_ = true;
+    analysis_.report(wire::ARM_FINISHED);
+  });
+  const auto outcome =
+      conduct({.check = {}, .keep = [&](const RunOutcome& so_far) {
+                 kept.push_back(so_far.results.size() + so_far.transfer_functions.size());
+               }});
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(kept.empty());
+  EXPECT_EQ(kept.front(), 1U);
+  EXPECT_EQ(kept.back(), 3U);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+}
+
+} // namespace
+} // namespace dyncal::services
