@@ -327,9 +327,8 @@ void RunSession::finish() {
 
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
-  const bool may_come = status_.health == wire::HEALTH_WAITING ||
-                        (status_.health == wire::HEALTH_OK && streams_->is_catching_up());
-  const bool quiet = excitation_over() && !may_come && now - last_progress_ > quiet_limit;
+  const bool quiet = excitation_over() && status_.health != wire::HEALTH_WAITING &&
+                     now - last_progress_ > quiet_limit;
   if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }

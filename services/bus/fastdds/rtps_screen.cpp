@@ -38,7 +38,6 @@ constexpr std::size_t entities_bytes = 8; // reader and writer
 constexpr std::size_t sequence_bytes = 8;
 constexpr std::size_t data_bytes_before_qos = 20;
 constexpr std::size_t fragment_bytes_before_qos = 32;
-constexpr std::size_t longest_plain_key_bytes = 16;
 
 constexpr std::uint16_t pid_pad = 0x0000;
 constexpr std::uint16_t pid_sentinel = 0x0001;
