@@ -15,8 +15,7 @@
 #include "services/command/intervals_command.hpp"
 #include "services/command/keep_options.hpp"
 #include "services/command/model_command.hpp"
-#include "services/command/recording_command.hpp"
-#include "services/command/replay_command.hpp"
+#include "services/command/recording_options.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
@@ -135,35 +134,6 @@ void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
                       "evaluate the recording by this bench file, not by the one of its run");
   command->add_option("--json", analyse.json, "write the result to this file as JSON");
   command->add_option("--figures", analyse.figures, "write figures (SVG and CSV) into this folder");
-}
-
-void add_recording(CLI::App& app, RecordingCommand& recording) {
-  CLI::App* command =
-      app.add_subcommand("recording", "check, repair or describe a recording (.mcap)");
-  command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what) {
-    CLI::App* verb = command->add_subcommand(name, what);
-    verb->add_option("FILE", recording.file, "recording")->required();
-    return verb;
-  };
-  add("check", "read all of it, and name every place that is damaged");
-  add("repair", "write what is sound of it into a new file with an index")
-      ->add_option("--output", recording.repaired, "the new file (default: FILE.repaired.mcap)");
-  add("info", "what is in it");
-}
-
-void add_replay(CLI::App& app, ReplayCommand& replay) {
-  CLI::App* command =
-      app.add_subcommand("replay", "put a recording back on DDS, marked as a replay");
-  command->add_option("RECORDING", replay.wish.recording, "recording (.mcap)")->required();
-  command->add_option("--speed", replay.speed, "multiple of real time, or max")
-      ->capture_default_str();
-  command->add_option("--bench", replay.wish.bench,
-                      "name of the bench on DDS (default: as it was recorded)");
-  command->add_flag("--without-results", replay.without_results,
-                    "leave out results and states of the analysis: a running analysis service "
-                    "evaluates the run anew");
-  add_network_options(*command, replay.network);
 }
 
 void add_fit(CLI::App& app, FitCommand& fit) {
@@ -320,21 +290,12 @@ struct Commands {
   std::string guarded_generator;
   IntervalsCommand intervals;
   ModelCommand model;
-  RecordingCommand recording;
-  ReplayCommand replay;
+  RecordingCommands recordings;
   RunCommand run;
   StoreCommands store;
   WatchCommand watch;
   DoctorCommand doctor;
 };
-
-int run_recording(const CLI::App& app, const RecordingCommand& recording) {
-  if (app.got_subcommand("repair")) {
-    return run_recording_repair(recording);
-  }
-  return app.got_subcommand("info") ? run_recording_info(recording)
-                                    : run_recording_check(recording);
-}
 
 int execute(const CLI::App& app, const Commands& commands) {
   if (app.got_subcommand("compare")) {
@@ -361,12 +322,12 @@ int execute(const CLI::App& app, const Commands& commands) {
   if (const auto status = run_store(app, commands.store)) {
     return *status;
   }
-  if (const CLI::App* recording = app.get_subcommand("recording"); recording->parsed()) {
-    return run_recording(*recording, commands.recording);
+  if (const auto status = run_recording(app, commands.recordings)) {
+    return *status;
   }
   const std::stop_token stop = stop_on_signals();
   if (app.got_subcommand("replay")) {
-    return run_replay(commands.replay, stop);
+    return run_replay(commands.recordings.replay, stop);
   }
   if (app.got_subcommand("calibrate")) {
     return run_calibrate(app, commands.calibrate, stop);
@@ -400,8 +361,7 @@ int main(int argc, char** argv) {
   add_doctor(app, commands.doctor);
   add_store(app, commands.store);
   add_analyse(app, commands.analyse);
-  add_recording(app, commands.recording);
-  add_replay(app, commands.replay);
+  add_recordings(app, commands.recordings);
   add_compare(app, commands.compare);
   add_model(app, commands.model);
   add_triaxial(app, commands.triaxial);

@@ -30,6 +30,10 @@ class Acknowledged:
         threading.Thread(target=self.read, args=(stream,), daemon=True).start()
 
     def read(self, stream):
+        with stream:
+            self.read_lines(stream)
+
+    def read_lines(self, stream):
         for line in stream:
             found = re.match(r"stored (\d+) (\d+) (.*)$", line)
             if found:

@@ -1,0 +1,56 @@
+#include "services/command/recording_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace dyncal::services {
+namespace {
+
+void add_recording(CLI::App& app, RecordingCommand& recording) {
+  CLI::App* command =
+      app.add_subcommand("recording", "check, repair or describe a recording (.mcap)");
+  command->require_subcommand(1);
+  const auto add = [&](const char* name, const char* what) {
+    CLI::App* verb = command->add_subcommand(name, what);
+    verb->add_option("FILE", recording.file, "recording")->required();
+    return verb;
+  };
+  add("check", "read all of it, and name every place that is damaged");
+  add("repair", "write what is sound of it into a new file with an index")
+      ->add_option("--output", recording.repaired, "the new file (default: FILE.repaired.mcap)");
+  add("info", "what is in it");
+}
+
+void add_replay(CLI::App& app, ReplayCommand& replay) {
+  CLI::App* command =
+      app.add_subcommand("replay", "put a recording back on DDS, marked as a replay");
+  command->add_option("RECORDING", replay.wish.recording, "recording (.mcap)")->required();
+  command->add_option("--speed", replay.speed, "multiple of real time, or max")
+      ->capture_default_str();
+  command->add_option("--bench", replay.wish.bench,
+                      "name of the bench on DDS (default: as it was recorded)");
+  command->add_flag("--without-results", replay.without_results,
+                    "leave out results and states of the analysis: a running analysis service "
+                    "evaluates the run anew");
+  add_network_options(*command, replay.network);
+}
+
+} // namespace
+
+void add_recordings(CLI::App& app, RecordingCommands& commands) {
+  add_recording(app, commands.recording);
+  add_replay(app, commands.replay);
+}
+
+std::optional<int> run_recording(const CLI::App& app, const RecordingCommands& commands) {
+  const CLI::App* command = app.get_subcommand("recording");
+  if (!command->parsed()) {
+    return std::nullopt;
+  }
+  if (command->got_subcommand("repair")) {
+    return run_recording_repair(commands.recording);
+  }
+  return command->got_subcommand("info") ? run_recording_info(commands.recording)
+                                         : run_recording_check(commands.recording);
+}
+
+} // namespace dyncal::services

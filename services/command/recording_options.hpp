@@ -1,0 +1,28 @@
+// The commands about recordings (.mcap) and their options: `recording check|repair|info`, `replay`.
+// Belongs to one thread.
+#pragma once
+
+#include <optional>
+
+#include "services/command/recording_command.hpp"
+#include "services/command/replay_command.hpp"
+
+namespace CLI { // NOLINT(readability-identifier-naming): of the library
+class App;
+}
+
+namespace dyncal::services {
+
+struct RecordingCommands {
+  RecordingCommand recording;
+  ReplayCommand replay;
+};
+
+// The options are kept in `commands`, which must outlive the parsing.
+void add_recordings(CLI::App& app, RecordingCommands& commands);
+
+// The exit status of `recording`; nothing where the command line does not have it.
+[[nodiscard]] std::optional<int> run_recording(const CLI::App& app,
+                                               const RecordingCommands& commands);
+
+} // namespace dyncal::services
