@@ -53,6 +53,8 @@ void add_keep_options(CLI::App& command, KeepOptions& keep) {
                   "folder of all runs; this one goes to BENCH/RUN in it (default: $DYNCAL_RUNS, or "
                   "runs in the current folder)")
       ->envname("DYNCAL_RUNS");
+  command.add_flag("--recording,!--no-recording", keep.recording,
+                   "record everything that the bench's programs tell each other (default)");
   command.add_option("--store", keep.store, store_help)->envname("DYNCAL_STORE");
 }
 

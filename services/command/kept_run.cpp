@@ -25,6 +25,19 @@ Expected<std::unique_ptr<RunFolder>> folder_of(const std::filesystem::path& root
   return RunFolder::create(root, bench, name);
 }
 
+Expected<std::unique_ptr<recording::Recorder>> start_recorder(const RunFolder& folder,
+                                                              const BenchFile& bench,
+                                                              const KeptRunSetup& setup,
+                                                              bus::Participant& participant) {
+  recording::RecorderOptions options;
+  options.path = folder.recording_path();
+  options.bench = bench.bench;
+  options.run = setup.run;
+  options.dds = setup.dds;
+  options.domain = setup.domain;
+  return recording::Recorder::start(participant, std::move(options));
+}
+
 std::string line_of(const RunProgress& progress) {
   if (!progress.notice.empty()) {
     return progress.notice;
@@ -43,17 +56,15 @@ std::string line_of(const RunProgress& progress) {
 } // namespace
 
 KeptRun::KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup,
-                 std::unique_ptr<RunFolder> folder, std::optional<LogFile> log,
-                 std::optional<RateReader> rates)
+                 std::optional<Disk> disk)
     : options_(std::move(options)), bench_(bench), setup_(std::move(setup)),
-      folder_(std::move(folder)), log_(std::move(log)), rates_(std::move(rates)) {}
+      disk_(std::move(disk)) {}
 
 Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, const BenchFile& bench,
                                                  KeptRunSetup setup,
                                                  bus::Participant& participant) {
   if (!options.folder) {
-    return std::unique_ptr<KeptRun>(
-        new KeptRun(options, bench, std::move(setup), nullptr, std::nullopt, std::nullopt));
+    return std::unique_ptr<KeptRun>(new KeptRun(options, bench, std::move(setup), std::nullopt));
   }
   auto folder = folder_of(*options.folder, bench, setup);
   if (!folder) {
@@ -62,37 +73,48 @@ Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, con
   auto log = LogFile::open((*folder)->path() / log_file_name);
   auto rates =
       participant.reader(bus::topics::source_status, bench.bench, std::make_shared<bus::WakeUp>());
-  if (auto error = first_error(log, rates)) {
+  auto recorder = options.recording ? start_recorder(**folder, bench, setup, participant)
+                                    : Expected<std::unique_ptr<recording::Recorder>>{};
+  if (auto error = first_error(log, rates, recorder)) {
+    if (recorder) {
+      recorder->reset();
+    }
     (*folder)->discard();
     return fail(std::move(*error));
   }
   log->write(fmt::format("bench '{}', run '{}', bench file {}", bench.bench, setup.run,
                          std::filesystem::absolute(bench.path).string()));
-  return std::unique_ptr<KeptRun>(new KeptRun(options, bench, std::move(setup), std::move(*folder),
-                                              std::move(*log), std::move(*rates)));
+  return std::unique_ptr<KeptRun>(new KeptRun(
+      options, bench, std::move(setup),
+      Disk{std::move(*folder), std::move(*log), std::move(*rates), std::move(*recorder)}));
 }
 
 RunKeeping KeptRun::keeping() {
-  if (!folder_) {
+  if (!disk_) {
     return {};
   }
-  return {.check = [this](const RunOutcome& planned) { return check(planned); },
-          .keep = [this](const RunOutcome& so_far) { folder_->results().keep(completed(so_far)); }};
+  return {
+      .check = [this](const RunOutcome& planned) { return check(planned); },
+      .keep =
+          [this](const RunOutcome& so_far) { disk_->folder->results().keep(completed(so_far)); }};
 }
 
 Expected<void> KeptRun::check(const RunOutcome& planned) {
   std::map<std::string, double> rates_hz;
-  rates_->take([&](const wire::SourceStatus& status) {
+  disk_->rates.take([&](const wire::SourceStatus& status) {
     rates_hz[status.source().to_string()] = status.rate_hz();
   });
-  const SpaceEstimate need = estimate_space(planned, bench_, rates_hz, false);
-  if (auto room = folder_->check_room(need); !room) {
+  SpaceEstimate need = estimate_space(planned, bench_, rates_hz, disk_->recorder != nullptr);
+  if (disk_->recorder) {
+    need.recording_bytes += recording::RecorderOptions{}.min_free_bytes; // it ends with less
+  }
+  if (auto room = disk_->folder->check_room(need); !room) {
     return room;
   }
   say(fmt::format("run folder {}; the run needs about {} there, {} are free",
-                  folder_->path().string(), size_text(need.bytes()),
-                  size_text(folder_->free_bytes())));
-  return folder_->results().begin(completed(planned));
+                  disk_->folder->path().string(), size_text(need.bytes()),
+                  size_text(disk_->folder->free_bytes())));
+  return disk_->folder->results().begin(completed(planned));
 }
 
 RunOutcome KeptRun::completed(RunOutcome so_far) const {
@@ -101,25 +123,26 @@ RunOutcome KeptRun::completed(RunOutcome so_far) const {
 }
 
 void KeptRun::note(const RunProgress& progress) {
-  if (!folder_) {
+  if (!disk_) {
     return;
   }
   note_kept();
+  note_recording();
   const std::string line = line_of(progress);
   if (!line.empty() && line != last_line_) {
-    log_->write(line);
+    disk_->log.write(line);
     last_line_ = line;
   }
 }
 
 // After the file is on the disk, so that no line promises what a kill could take.
 void KeptRun::note_kept() {
-  const std::size_t kept = folder_->results().results_kept();
+  const std::size_t kept = disk_->folder->results().results_kept();
   if (kept != noted_results_) {
     noted_results_ = kept;
-    log_->write(fmt::format("{} results are in {}", kept, result_file_name));
+    disk_->log.write(fmt::format("{} results are in {}", kept, result_file_name));
   }
-  const auto problem = folder_->results().problem();
+  const auto problem = disk_->folder->results().problem();
   if (problem && !noted_problem_) {
     say(fmt::format("{}; the run goes on, its results are tried again with every step",
                     problem->message));
@@ -127,21 +150,51 @@ void KeptRun::note_kept() {
   noted_problem_ = problem.has_value();
 }
 
+// The run goes on: its results come without it.
+void KeptRun::note_recording() {
+  if (!disk_->recorder || noted_end_of_recording_) {
+    return;
+  }
+  const recording::RecorderStatus status = disk_->recorder->status();
+  if (status.ended && !status.problem.empty()) {
+    noted_end_of_recording_ = true;
+    say(fmt::format("THE RUN IS NOT RECORDED ANY MORE: {}", status.problem));
+  }
+}
+
+void KeptRun::end_recording() {
+  if (!disk_->recorder) {
+    return;
+  }
+  const auto ended = disk_->recorder->stop();
+  if (!ended) {
+    say(fmt::format("the recording is not whole: {}", ended.error().message));
+  } else if (ended->not_stored > 0 || ended->missing > 0) {
+    say(fmt::format("the recording is not whole: {} messages were not stored, {} blocks of samples "
+                    "never came",
+                    ended->not_stored, ended->missing));
+  } else {
+    disk_->log.write(fmt::format("the recording has {} messages, {}", ended->stored,
+                                 size_text(ended->file_bytes)));
+  }
+}
+
 void KeptRun::say(const std::string& sentence) {
-  log_->write(sentence);
+  disk_->log.write(sentence);
   setup_.notice(sentence);
 }
 
 std::optional<std::filesystem::path> KeptRun::folder() const {
-  return folder_ ? std::optional(folder_->path()) : std::nullopt;
+  return disk_ ? std::optional(disk_->folder->path()) : std::nullopt;
 }
 
 Expected<void> KeptRun::finish(const RunOutcome& outcome) {
-  if (!folder_) {
+  if (!disk_) {
     return {};
   }
-  const auto written = folder_->finish(outcome);
-  log_->write(
+  end_recording();
+  const auto written = disk_->folder->finish(outcome);
+  disk_->log.write(
       written ? fmt::format("ended, {} results are in {}", outcome.results.size(), result_file_name)
               : written.error().message);
   if (!written) {
@@ -157,19 +210,19 @@ void KeptRun::add_to_store(const RunOutcome& outcome) {
     return;
   }
   auto added = Store::open(place).and_then(
-      [&](std::unique_ptr<Store> store) { return store->add(folder_->path()); });
+      [&](std::unique_ptr<Store> store) { return store->add(disk_->folder->path()); });
   if (!added) {
     say(fmt::format("run '{}' is not in the store ({}); all of it is in its folder: add it with "
                     "'dyncal store add {}'",
-                    outcome.run, added.error().message, folder_->path().string()));
+                    outcome.run, added.error().message, disk_->folder->path().string()));
   }
 }
 
 void KeptRun::discard() {
-  if (folder_) {
-    log_.reset();
-    folder_->discard();
-    folder_.reset();
+  if (disk_) {
+    disk_->recorder.reset();
+    disk_->folder->discard();
+    disk_.reset();
   }
 }
 

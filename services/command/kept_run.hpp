@@ -1,5 +1,5 @@
 // What is kept of a run while it goes on and when it is over: its folder (services/run_folder) with
-// results and log, and its entry in the store (services/store).
+// results, log and recording (services/recording), and its entry in the store (services/store).
 //
 // The folder is made and the disk looked at before the first step; a run that is refused before it
 // leaves no folder. A store that cannot be written costs no run: the message says how to add it
@@ -15,6 +15,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/program/log_file.hpp"
+#include "services/recording/recorder.hpp"
 #include "services/run/run_controller.hpp"
 #include "services/run_folder/run_folder.hpp"
 
@@ -22,7 +23,8 @@ namespace dyncal::services {
 
 struct KeepOptions {
   std::optional<std::filesystem::path> folder; // of all runs; nothing: no run folder
-  std::string store;                           // as store_place() takes it
+  bool recording = true;
+  std::string store; // as store_place() takes it
 };
 
 // Of the run whose results are kept.
@@ -30,6 +32,9 @@ struct KeptRunSetup {
   std::string run;
   bool is_resumed = false;
   std::optional<AdcFile> adc_file;
+  std::string
+      dds; // the name of the participant's implementation, and its domain, for the recording
+  int domain = 0;
   std::function<void(const std::string& sentence)> notice; // for a line of its own
 };
 
@@ -55,24 +60,32 @@ public:
   [[nodiscard]] std::optional<std::filesystem::path> folder() const;
 
 private:
+  // What is kept on the disk.
+  struct Disk {
+    std::unique_ptr<RunFolder> folder;
+    LogFile log;
+    RateReader rates;
+    std::unique_ptr<recording::Recorder> recorder; // nothing: not recorded
+  };
+
   KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup,
-          std::unique_ptr<RunFolder> folder, std::optional<LogFile> log,
-          std::optional<RateReader> rates);
+          std::optional<Disk> disk);
   Expected<void> check(const RunOutcome& planned);
   [[nodiscard]] RunOutcome completed(RunOutcome so_far) const;
   void note_kept();
+  void note_recording();
+  void end_recording();
   void say(const std::string& sentence);
   void add_to_store(const RunOutcome& outcome);
 
   KeepOptions options_;
   const BenchFile& bench_;
   KeptRunSetup setup_;
-  std::unique_ptr<RunFolder> folder_; // nothing: none is kept
-  std::optional<LogFile> log_;
-  std::optional<RateReader> rates_;
+  std::optional<Disk> disk_; // nothing: none is kept
   std::string last_line_;
   std::size_t noted_results_ = 0;
   bool noted_problem_ = false;
+  bool noted_end_of_recording_ = false;
 };
 
 } // namespace dyncal::services

@@ -58,6 +58,7 @@ struct Conduct {
   const RunCommand& command;
   const BenchFile& bench;
   const std::vector<analysis::AdcCalibrationPoint>& adc;
+  const NetworkOptions& network;
   bus::Participant& participant;
   const ShowProgress& show;
   const std::stop_token& stop;
@@ -81,6 +82,8 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& name) {
       {.run = name,
        .is_resumed = resumes,
        .adc_file = adc_file_of(run.bench),
+       .dds = run.network.dds,
+       .domain = run.network.domain,
        .notice = [show = &run.show](const std::string& sentence) { show_notice(*show, sentence); }},
       run.participant);
   if (!kept) {
@@ -186,7 +189,7 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   }
   ProgressLine progress(stderr);
   const ShowProgress show = [&](const RunProgress& state) { progress.show(state); };
-  auto run = conduct_as_asked({command, *bench, *adc, *participant, show, stop});
+  auto run = conduct_as_asked({command, *bench, *adc, network, *participant, show, stop});
   progress.end();
   if (!run) {
     return fail(run.error());

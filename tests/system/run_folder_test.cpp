@@ -56,6 +56,19 @@ std::size_t results_promised(const fs::path& folder) {
   return std::stoul(log.substr(log.rfind(' ', end - 1) + 1));
 }
 
+// The values of the steps to `last`, as text with every digit.
+std::set<std::string> values_to(int last, const nlohmann::json& result) {
+  std::set<std::string> values;
+  for (const auto& point : result["points"]) {
+    if (point["valid"].get<bool>() && point["step"].get<int>() <= last) {
+      values.insert(fmt::format("{} {} {} {}", point["step"].get<int>(),
+                                point["channel"].get<std::string>(), point["magnitude"].dump(),
+                                point["phase_rad"].dump()));
+    }
+  }
+  return values;
+}
+
 TEST(RunFolder, HoldsWhatTheRunWasMadeFromAndWhatCameOut) {
   const auto folder = fresh_folder("run-folder");
   LiveBench bench(folder, quick_bench());
@@ -72,6 +85,14 @@ TEST(RunFolder, HoldsWhatTheRunWasMadeFromAndWhatCameOut) {
   EXPECT_TRUE(fs::exists(folders[0] / "figures/transfer-function-dau-acceleration_z.svg"));
   EXPECT_EQ(results_promised(folders[0]), 36U); // 12 steps, 3 channels
   EXPECT_THAT(text_of(folders[0] / "log.txt"), HasSubstr("step 12 of 12, 160 Hz"));
+
+  const auto again_json = folder / "again.json";
+  ProgramRun again("dyncal", {"analyse", folders[0], "--json", again_json}, folder);
+  ASSERT_EQ(again.wait(patience), 0) << again.errors();
+  const auto result = read_json(folders[0] / "result.json");
+  const auto repeated = read_json(again_json);
+  EXPECT_EQ(result["points"], repeated["points"]);
+  EXPECT_EQ(result["transfer_function"], repeated["transfer_function"]);
 
   const auto query = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--folder", folder / "kept"});
@@ -173,6 +194,14 @@ TEST(RunFolder, HasEveryResultItPromisedWhenTheRunIsKilled) {
     EXPECT_GE(result["points"].size(), results_promised(folders[0]));
     EXPECT_THAT(result["problem"].get<std::string>(), HasSubstr("has not ended"));
     EXPECT_EQ(text_of(folders[0] / "bench.toml"), text_of(bench.bench_file()));
+    const auto again_json = folder / "again.json";
+    fs::remove(again_json);
+    ProgramRun again("dyncal", {"analyse", folders[0], "--json", again_json}, folder);
+    EXPECT_TRUE(again.wait(patience)); // not well: the run has not all of its steps
+    const auto repeated = read_json(again_json);
+    ASSERT_FALSE(repeated.is_discarded()) << again.errors();
+    // A recording has what came to a second before; six steps of this bench take longer.
+    EXPECT_THAT(values_to(12, repeated), testing::IsSupersetOf(values_to(step - 6, result)));
     expected += step > 3 ? 1 : 0;
     with_results += step > 3 && !result["points"].empty() ? 1 : 0;
     ASSERT_TRUE(bench.wait_for_output("OFF"));
