@@ -123,7 +123,8 @@ std::uint64_t lost_at(double mb_per_s, double seconds, const std::filesystem::pa
   fmt::print("recorder at {:.1f} MB/s: {} of {} blocks stored, {} not, {} missing\n", rate,
              status.stored, number, status.not_stored, status.missing);
   std::filesystem::remove(path);
-  return number - status.stored;
+  // The recorder's own states are in its recording, too.
+  return status.not_stored + status.missing + (status.stored < number ? number - status.stored : 0);
 }
 
 } // namespace
