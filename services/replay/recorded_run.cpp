@@ -86,7 +86,7 @@ class Evaluating {
 public:
   Evaluating(const recording::RecordingReader& reader, const RecordedRunIndex& index,
              RunEvaluator& evaluator, RunOutcome& outcome)
-      : index_(index), evaluator_(evaluator), outcome_(outcome), others_(reader),
+      : evaluator_(evaluator), outcome_(outcome), others_(reader),
         bench_(index.plan.bench().to_string()), run_(index.plan.run().to_string()) {
     for (const std::string& name : evaluator.recipe().sources()) {
       if (const auto found = index.sources.find(name); found != index.sources.end()) {
@@ -248,7 +248,6 @@ private:
     }
   }
 
-  const RecordedRunIndex& index_;
   RunEvaluator& evaluator_;
   RunOutcome& outcome_;
   OtherPlaces others_;

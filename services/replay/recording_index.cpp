@@ -134,7 +134,9 @@ private:
 
   [[nodiscard]] std::map<std::string, RecordedSource> ordered(const std::string& bench) const {
     std::map<std::string, RecordedSource> all;
-    for (const auto& [key, source] : sources_) {
+    for (const auto& of_source : sources_) {
+      const SourceKey& key = of_source.first;
+      const Source& source = of_source.second;
       if (key.first != bench) {
         continue;
       }

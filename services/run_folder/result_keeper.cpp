@@ -38,6 +38,10 @@ ResultKeeper::~ResultKeeper() {
 
 Expected<void> ResultKeeper::begin(RunOutcome planned) {
   complete(planned);
+  const std::lock_guard writing(writing_);
+  if (results_kept() > planned.results.size()) {
+    return {}; // of a resumed run: more has come meanwhile
+  }
   return write_json(path_, result_json(planned));
 }
 
@@ -65,6 +69,7 @@ void ResultKeeper::write_newest(const std::stop_token& stop) {
     RunOutcome state = *std::exchange(newest_, std::nullopt);
     lock.unlock();
     complete(state);
+    const std::lock_guard writing(writing_);
     const auto written = write_json(path_, result_json(state));
     lock.lock();
     problem_ = written ? std::nullopt : std::optional(written.error());

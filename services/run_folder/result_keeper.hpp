@@ -45,6 +45,7 @@ private:
   void write_newest(const std::stop_token& stop);
 
   const std::filesystem::path path_;
+  std::mutex writing_; // of the file; taken before the other where both are
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<RunOutcome> newest_; // not yet written

@@ -32,6 +32,7 @@ make_hosts() {
   [[ $(id -u) == 0 ]] || skip "it needs root"
   for tool in ip tc nft; do command -v "$tool" >/dev/null || skip "there is no command $tool"; done
   folder=$(mktemp -d)
+  export DYNCAL_RUNS=$folder/runs
   declare -gA address=()
   trap remove_hosts EXIT
   local host last=1

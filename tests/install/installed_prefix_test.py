@@ -82,7 +82,7 @@ def check_files(options, prefix):
         expect((prefix / name).is_file(), f"{name} is missing")
 
     units = files_below(prefix / "lib/systemd/system")
-    expect(len(units) == 6, f"6 units expected, {len(units)} found")
+    expect(len(units) == 7, f"7 units expected, {len(units)} found")
     for unit in units:
         started = re.search(r"^ExecStart=(\S+)", unit.read_text(), re.M)
         expect(started, f"{unit} starts nothing")

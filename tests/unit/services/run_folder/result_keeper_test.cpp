@@ -73,6 +73,18 @@ TEST_F(Keeper, WritesTheNewestStateInTheOrderOfSteps) {
   EXPECT_EQ(json["points"][39]["step"], 40);
 }
 
+// Results of the program before are there at once.
+TEST_F(Keeper, BeginsAResumedRunWhileItsResultsCome) {
+  for (std::size_t run = 0; run < 50; ++run) {
+    ResultKeeper keeper(path_);
+    keeper.keep(state(3));
+    ASSERT_TRUE(keeper.begin(state(2)));
+    ASSERT_TRUE(becomes_true([&] { return keeper.results_kept() == 3; }));
+    EXPECT_EQ(file()["points"].size(), 3U);
+    EXPECT_FALSE(keeper.problem());
+  }
+}
+
 TEST_F(Keeper, NeverCountsMoreThanTheFileHas) {
   ResultKeeper keeper(path_);
   for (std::size_t count = 1; count <= 200; ++count) {
