@@ -23,6 +23,8 @@ public:
   [[nodiscard]] std::uint64_t first_time() const { return first_time_; }
   [[nodiscard]] std::uint64_t last_time() const { return last_time_; }
   [[nodiscard]] const std::string& records() const { return records_; }
+  // Of the records; summed by the thread that adds them, so that the one that writes only writes.
+  [[nodiscard]] std::uint32_t crc() const { return crc_; }
   [[nodiscard]] const std::map<std::uint16_t, std::vector<IndexEntry>>& index() const {
     return index_;
   }
@@ -31,6 +33,7 @@ public:
 
 private:
   std::string records_;
+  std::uint32_t crc_ = 0;
   std::map<std::uint16_t, std::vector<IndexEntry>> index_;
   std::uint64_t messages_ = 0;
   std::uint64_t first_time_ = 0;

@@ -126,7 +126,7 @@ Expected<void> RecordingWriter::add_chunk(const Chunk& chunk) {
   head.first_time = chunk.first_time();
   head.last_time = chunk.last_time();
   head.uncompressed_size = records.size();
-  head.crc = crc32_of(records);
+  head.crc = chunk.crc();
   head.compression = smaller.empty() ? "" : to_string(options_.compression);
   std::string begin;
   append_chunk_head(begin, head, stored.size());
