@@ -30,10 +30,22 @@ struct Recorded {
   std::filesystem::path recording;
 };
 
+// The bench file with its files played at four times their speed: a run that is over before the
+// recorder has heard of its conductor is not recorded.
+std::filesystem::path played(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  const std::filesystem::path played = file.parent_path() / "played.toml";
+  std::ofstream out(played);
+  for (std::string line; std::getline(in, line);) {
+    out << line << '\n' << (line.starts_with("driver = ") ? "play = 4.0\n" : "");
+  }
+  return played;
+}
+
 Recorded record_run(const std::string& name, const std::string& dds, const std::string& recorder) {
   Recorded run;
   run.folder = fresh_folder(name);
-  run.bench = recorded_bench(run.folder, "files", "3");
+  run.bench = played(recorded_bench(run.folder, "files", "3"));
   run.live = run.folder / "live.json";
   run.recording = run.folder / "recordings/files/R1.mcap";
   Laboratory laboratory(run.folder);
@@ -95,7 +107,7 @@ TEST(Recording, IsEvaluatedByAnotherBenchFile) {
   ASSERT_EQ(again["points"].size(), live["points"].size());
   EXPECT_EQ(again["points"][0]["magnitude"], live["points"][0]["magnitude"]);
   EXPECT_GT(again["points"][0]["u_magnitude"].get<double>(),
-            10.0 * live["points"][0]["u_magnitude"].get<double>());
+            3.0 * live["points"][0]["u_magnitude"].get<double>());
 }
 
 TEST(Recording, IsRefusedWhenItIsNone) {
