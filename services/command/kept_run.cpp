@@ -6,6 +6,7 @@
 
 #include "services/bench/named_files.hpp"
 #include "services/command/run_command.hpp"
+#include "services/contract/time_name.hpp"
 #include "services/store/store.hpp"
 
 namespace dyncal::services {
@@ -20,8 +21,7 @@ Expected<std::unique_ptr<RunFolder>> folder_of(const std::filesystem::path& root
     }
   }
   const std::string now = run_from_time();
-  const std::string name =
-      is_run_from_time(setup.run) ? setup.run : run_folder_name(setup.run, now);
+  const std::string name = is_time_name(setup.run) ? setup.run : run_folder_name(setup.run, now);
   return RunFolder::create(root, bench, name);
 }
 

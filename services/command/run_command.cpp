@@ -1,11 +1,5 @@
 #include "services/command/run_command.hpp"
 
-#include <algorithm>
-#include <array>
-#include <ctime>
-#include <fstream>
-#include <iterator>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +7,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/command/progress_line.hpp"
+#include "services/contract/time_name.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/bench_queue.hpp"
@@ -21,19 +16,7 @@
 namespace dyncal::services {
 
 std::string run_from_time() {
-  const std::int64_t now_ms = utc_now_ns() / 1'000'000;
-  const auto seconds = static_cast<std::time_t>(now_ms / 1000);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
-  return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
-}
-
-bool is_run_from_time(const std::string& run) {
-  constexpr std::string_view form = "ddddddddTdddddd.dddZ"; // d: a digit
-  return std::equal(run.begin(), run.end(), form.begin(), form.end(),
-                    [](char c, char f) { return f == 'd' ? c >= '0' && c <= '9' : c == f; });
+  return time_name(utc_now_ns());
 }
 
 Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {

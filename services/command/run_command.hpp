@@ -33,7 +33,6 @@ struct RunCommand {
 // "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script
 // starts in the same second.
 [[nodiscard]] std::string run_from_time();
-[[nodiscard]] bool is_run_from_time(const std::string& run);
 
 // The points of the ADC calibration that the bench file names; none when it names none.
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>

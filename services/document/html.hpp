@@ -1,16 +1,14 @@
 // The few elements of HTML that a document needs, as text. Everything that comes from a file is
-// escaped here, so that no name in a result or laboratory file becomes markup. Any thread.
+// escaped (markup.hpp), so that no name in a result or laboratory file becomes markup. Any thread.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services {
+#include "services/report/figures/markup.hpp" // escaped(), for those who compose HTML
 
-// Text as it stands in an element or a quoted attribute; characters that XML does not allow become
-// U+FFFD.
-[[nodiscard]] std::string escaped(std::string_view text);
+namespace dyncal::services {
 
 // "<h2>text</h2>" and the like, with its text escaped.
 [[nodiscard]] std::string element(std::string_view name, std::string_view text,

@@ -1,11 +1,9 @@
 #include "services/recorder/bench_recordings.hpp"
 
-#include <array>
-#include <ctime>
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "services/contract/time_name.hpp"
 #include "services/recorder/recording_name.hpp"
 
 namespace dyncal::services {
@@ -14,17 +12,6 @@ namespace {
 constexpr const char* all_benches = "*";
 constexpr std::chrono::milliseconds max_wait{100};
 constexpr std::size_t max_benches = 1000;
-
-// "20261121T101530.125Z"
-std::string time_name(std::int64_t utc_ns) {
-  const std::int64_t now_ms = utc_ns / 1'000'000;
-  const auto seconds = static_cast<std::time_t>(now_ms / 1000);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &utc);
-  return fmt::format("{}.{:03}Z", std::string(text.data(), length), now_ms % 1000);
-}
 
 bool is_over(const wire::Measurement& measurement) {
   return measurement.state() == wire::MEASUREMENT_DONE ||

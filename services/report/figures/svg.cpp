@@ -4,34 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "services/report/figures/markup.hpp"
+
 namespace dyncal::services::figures {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-    case '&':
-      result += "&amp;";
-      break;
-    case '<':
-      result += "&lt;";
-      break;
-    case '>':
-      result += "&gt;";
-      break;
-    case '"':
-      result += "&quot;";
-      break;
-    default:
-      // XML knows no other control characters.
-      if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') {
-        result += c;
-      }
-    }
-  }
-  return result;
-}
 
 std::string attributes(const Stroke& stroke) {
   std::string result =
