@@ -27,8 +27,8 @@ bool is_server(const std::string& place) {
 }
 
 std::string without_password(const std::string& place) {
-  static const std::regex in_address("(postgres(?:ql)?://[^:/@]*):[^@]*@");
-  static const std::regex in_words("password=('[^']*'|[^ ]*)");
+  static const std::regex in_address("(postgres(?:ql)?://[^:/@]*):.*@");
+  static const std::regex in_words("password *= *('[^']*'|[^ ]*)");
   return std::regex_replace(std::regex_replace(place, in_address, "$1@"), in_words, "password=...");
 }
 

@@ -105,6 +105,8 @@ TEST(StorePlace, IsAServerByItsForm) {
 
 TEST(StorePlace, IsShownWithoutItsPassword) {
   EXPECT_EQ(without_password("postgresql://lab:se:cret@db/dyncal"), "postgresql://lab@db/dyncal");
+  EXPECT_EQ(without_password("postgresql://lab:se@c/ret@db/dyncal"), "postgresql://lab@db/dyncal");
+  EXPECT_EQ(without_password("host=db password = secret"), "host=db password=...");
   EXPECT_EQ(without_password("host=db password='se cret' dbname=x"),
             "host=db password=... dbname=x");
 }
