@@ -11,6 +11,8 @@
 #include <stop_token>
 #include <string>
 
+#include "services/report/run_figures.hpp"
+
 namespace dyncal::services {
 
 struct AnalyseCommand {
@@ -19,7 +21,7 @@ struct AnalyseCommand {
   std::string run;                  // of the recording; empty: the only one
   std::optional<std::filesystem::path> recipe; // bench file to evaluate the recording by
   std::optional<std::filesystem::path> json;
-  std::optional<std::filesystem::path> figures;
+  FigureFiles figures;
 };
 
 [[nodiscard]] int run_analyse(const AnalyseCommand& command, const std::stop_token& stop);

@@ -303,7 +303,7 @@ int run_demo(const DemoCommand& command, const std::stop_token& stop) {
   RunCommand run;
   run.bench_file = demo->folder / "bench.toml";
   run.json = command.json ? *command.json : demo->folder / "result.json";
-  run.figures = demo->folder;
+  run.figures.folder = demo->folder;
   run.keep = command.keep;
   run.network.dds = demo->dds["run"];
   run.network.domain = demo->domain;

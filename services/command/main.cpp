@@ -11,6 +11,7 @@
 #include "services/command/demo_command.hpp"
 #include "services/command/doctor_command.hpp"
 #include "services/command/document_options.hpp"
+#include "services/command/figure_options.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
 #include "services/command/keep_options.hpp"
@@ -38,7 +39,7 @@ void add_run(CLI::App& app, RunCommand& run) {
       ->excludes("--run")
       ->excludes(wait);
   command->add_option("--json", run.json, "write the result to this file as JSON");
-  command->add_option("--figures", run.figures, "write figures (SVG and CSV) into this folder");
+  add_figure_options(*command, run.figures);
   run.keep.folder = "runs";
   add_keep_options(*command, run.keep);
   add_network_options(*command, run.network);
@@ -133,7 +134,7 @@ void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
   command->add_option("--recipe", analyse.recipe,
                       "evaluate the recording by this bench file, not by the one of its run");
   command->add_option("--json", analyse.json, "write the result to this file as JSON");
-  command->add_option("--figures", analyse.figures, "write figures (SVG and CSV) into this folder");
+  add_figure_options(*command, analyse.figures);
 }
 
 void add_fit(CLI::App& app, FitCommand& fit) {

@@ -11,6 +11,7 @@
 
 #include "services/command/kept_run.hpp"
 #include "services/program/program.hpp"
+#include "services/report/run_figures.hpp"
 #include "services/run/run_controller.hpp"
 
 namespace dyncal::services {
@@ -19,9 +20,9 @@ struct RunCommand {
   std::filesystem::path bench_file;
   std::string run; // empty: made from the time
   std::optional<std::filesystem::path> json;
-  std::optional<std::filesystem::path> figures; // folder
-  bool wait = false;                            // for the end of another run of the bench
-  std::string resume;                           // the run to go on with; empty: a new one
+  FigureFiles figures; // folder
+  bool wait = false;   // for the end of another run of the bench
+  std::string resume;  // the run to go on with; empty: a new one
   KeepOptions keep;
   NetworkOptions network;
 };

@@ -9,7 +9,7 @@
 
 #include "services/contract/unit.hpp"
 #include "services/document/html.hpp"
-#include "services/report/figures/transfer_function.hpp"
+#include "services/report/figures/deviation.hpp"
 #include "services/report/rounding.hpp"
 #include "services/report/stated_value.hpp"
 
@@ -95,9 +95,10 @@ std::string with_own_ids(std::string svg, std::size_t figure) {
   return begin == std::string::npos ? "" : svg.substr(begin);
 }
 
-std::string transfer_svg(const StoredResult& result, const std::string& channel,
-                         const std::vector<StoredValue>& values, std::size_t figure) {
+figures::TransferFunctionData transfer_data(const StoredResult& result, const std::string& channel,
+                                            const std::vector<StoredValue>& values) {
   figures::TransferFunctionData data;
+  data.error_bars = figures::ErrorBars::expanded; // as the tables state
   data.title = channel;
   data.subtitle = fmt::format("bench {}, run {}", result.bench, result.run);
   data.unit = short_form(values.front().unit);
@@ -106,18 +107,39 @@ std::string transfer_svg(const StoredResult& result, const std::string& channel,
       data.repetitions.push_back(
           {point.repetition,
            {point.frequency_hz,
+            point.level_m_s2,
             {point.magnitude, point.u_magnitude, point.phase_rad, point.u_phase_rad},
-            joined(point.flag_names)}});
+            joined(point.flag_names)},
+           point.residual_rel});
     }
   }
   for (const StoredValue& value : values) {
     data.mean.push_back(
         {value.frequency_hz,
+         value.level_m_s2,
          {value.magnitude, value.of_magnitude.u, value.unwrapped_phase_rad, value.of_phase.u},
-         joined(value.flag_names)});
+         joined(value.flag_names),
+         value.of_magnitude.expanded,
+         value.of_phase.expanded});
   }
   data.group_delay = group_delay_of(result, channel);
-  return with_own_ids(figures::transfer_function_figure(data, "transfer-function").svg, figure);
+  return data;
+}
+
+std::string figure_element(const figures::Picture& picture, std::size_t number,
+                           const std::string& caption) {
+  return "<figure>\n" + with_own_ids(svg_of(picture), number) + element("figcaption", caption) +
+         "\n</figure>\n";
+}
+
+// Two a channel: `number` counts channels.
+std::string channel_figures(const figures::TransferFunctionData& data, std::size_t number) {
+  return figure_element(figures::transfer_function_figure(data, "").picture, 2 * number,
+                        "Repetitions (markers), mean with bars of the expanded uncertainty U "
+                        "(line); phase unwrapped; values with a flag have a ring.") +
+         figure_element(figures::deviation_figure(data, "").picture, 2 * number + 1,
+                        "Repetitions with bars of their standard uncertainty, against their mean "
+                        "(zero) with its expanded uncertainty U (band).");
 }
 
 std::string delay_sentence(const StoredResult& result, const std::string& channel) {
@@ -237,7 +259,7 @@ std::string missing_values(const StoredResult& result, const std::string& channe
 } // namespace
 
 std::string channel_section(const ReportContents& contents, const std::string& channel,
-                            std::size_t figure) {
+                            std::size_t number) {
   const StoredResult& result = contents.result;
   const std::vector<StoredValue> values = result.values_of(channel);
   std::string html = fmt::format("<section>\n<h2>Transfer function of {}</h2>\n", escaped(channel));
@@ -248,9 +270,7 @@ std::string channel_section(const ReportContents& contents, const std::string& c
   html += value_table(contents, values);
   html += missing_values(result, channel);
   html += delay_sentence(result, channel);
-  html += "<figure>\n" + transfer_svg(result, channel, values, figure);
-  html += "<figcaption>Repetitions (markers), mean with bars of one standard uncertainty (line); "
-          "phase unwrapped; values with a flag have a ring.</figcaption>\n</figure>\n";
+  html += channel_figures(transfer_data(result, channel, values), number);
   return html + budget_section(result, channel) + "</section>\n";
 }
 

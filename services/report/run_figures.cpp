@@ -1,13 +1,14 @@
 #include "services/report/run_figures.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "services/contract/unit.hpp"
 #include "services/report/expanded_uncertainty.hpp"
+#include "services/report/figures/deviation.hpp"
 #include "services/report/figures/sample_clock.hpp"
-#include "services/report/figures/transfer_function.hpp"
 #include "services/report/flag_legend.hpp"
 #include "services/report/result_table.hpp"
 
@@ -23,6 +24,13 @@ std::string run_line(const RunOutcome& outcome) {
   return fmt::format("bench {}, run {}", outcome.bench, outcome.run);
 }
 
+double fit_residual(const StepResult& result) {
+  const auto own =
+      std::find_if(result.signals.begin(), result.signals.end(),
+                   [&](const ChannelSignal& signal) { return signal.channel == result.channel; });
+  return own == result.signals.end() ? std::numeric_limits<double>::quiet_NaN() : own->residual;
+}
+
 figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
                                             const TransferFunction& function) {
   figures::TransferFunctionData data;
@@ -34,15 +42,21 @@ figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
       data.repetitions.push_back(
           {result.repetition,
            {result.frequency_hz,
+            result.level_m_s2,
             {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad},
-            flag_names(result.flags)}});
+            flag_names(result.flags)},
+           fit_residual(result)});
     }
   }
   for (const FrequencyPoint& point : function.points) {
+    const ExpandedUncertainty magnitude = magnitude_uncertainty(point.mean);
+    const ExpandedUncertainty phase = phase_uncertainty(point.mean);
     data.mean.push_back({point.frequency_hz,
-                         {point.mean.magnitude, magnitude_uncertainty(point.mean).u,
-                          point.unwrapped_phase_rad, phase_uncertainty(point.mean).u},
-                         flag_names(flags_of(outcome, function.channel, point))});
+                         point.level_m_s2,
+                         {point.mean.magnitude, magnitude.u, point.unwrapped_phase_rad, phase.u},
+                         flag_names(flags_of(outcome, function.channel, point)),
+                         magnitude.expanded,
+                         phase.expanded});
   }
   for (const FlagMeaning& meaning : flag_legend(flags_of(outcome, function))) {
     data.legend.push_back(legend_line(meaning));
@@ -73,13 +87,15 @@ std::vector<figures::Figure> clock_figures(const RunOutcome& outcome, const Cloc
 
 } // namespace
 
-Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome,
-                                                           const std::filesystem::path& folder) {
+std::vector<figures::Figure> run_figures(const RunOutcome& outcome, figures::ErrorBars error_bars) {
   std::vector<figures::Figure> drawn;
   for (const TransferFunction& function : outcome.transfer_functions) {
     if (responds(function)) {
+      figures::TransferFunctionData data = transfer_data(outcome, function);
+      data.error_bars = error_bars;
       drawn.push_back(figures::transfer_function_figure(
-          transfer_data(outcome, function), file_name("transfer-function", function.channel)));
+          data, file_name("transfer-function", function.channel)));
+      drawn.push_back(figures::deviation_figure(data, file_name("deviation", function.channel)));
     }
   }
   for (const ClockReport& report : outcome.clock_reports) {
@@ -87,8 +103,14 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
       drawn.push_back(std::move(figure));
     }
   }
+  return drawn;
+}
+
+Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome,
+                                                           const std::filesystem::path& folder,
+                                                           figures::ErrorBars error_bars) {
   std::vector<std::filesystem::path> paths;
-  for (const figures::Figure& figure : drawn) {
+  for (const figures::Figure& figure : run_figures(outcome, error_bars)) {
     const auto written = figures::write(figure, folder);
     if (!written) {
       return fail(written.error());

@@ -63,26 +63,26 @@ Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::p
 }
 
 Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
-                             const std::optional<std::filesystem::path>& figures) {
+                             const FigureFiles& figures) {
   if (json) {
     if (auto possible = check_output_file(*json); !possible) {
       return possible;
     }
   }
-  return figures ? check_output_folder(*figures) : Expected<void>{};
+  return figures.folder ? check_output_folder(*figures.folder) : Expected<void>{};
 }
 
 Expected<void> show_outcome(const RunOutcome& outcome,
                             const std::optional<std::filesystem::path>& json,
-                            const std::optional<std::filesystem::path>& figures) {
+                            const FigureFiles& figures) {
   fmt::print("bench {}, run {}{}\n", outcome.bench, outcome.run, result_table(outcome));
   if (json) {
     if (const auto written = write_results(outcome, *json); !written) {
       return fail(written.error());
     }
   }
-  if (figures) {
-    const auto written = write_figures(outcome, *figures);
+  if (figures.folder) {
+    const auto written = write_figures(outcome, *figures.folder, figures.error_bars);
     if (!written) {
       return fail(written.error());
     }

@@ -8,18 +8,19 @@
 
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/report/run_figures.hpp"
 
 namespace dyncal::services {
 
 // Before the run: fails (bad_file) when what show_outcome() is to write could not be written now.
 [[nodiscard]] Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
-                                           const std::optional<std::filesystem::path>& figures);
+                                           const FigureFiles& figures);
 
 // Prints the table and writes the files asked for. Fails (bad_file) when one cannot be written; the
 // results are then kept in the folder for temporary files, if they can be, and the error says so.
 [[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome,
                                           const std::optional<std::filesystem::path>& json,
-                                          const std::optional<std::filesystem::path>& figures);
+                                          const FigureFiles& figures);
 
 // Writes the JSON file. Fails as show_outcome() does, with the results in the same refuge.
 [[nodiscard]] Expected<void> write_results(const RunOutcome& outcome,

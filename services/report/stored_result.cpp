@@ -64,6 +64,18 @@ StoredContribution contribution_of(const CheckedJson& node) {
           .u_phase_rad = node.number("u_phase_rad")};
 }
 
+// Of the channel itself; results of older versions have none.
+double residual_of(const CheckedJson& point) {
+  if (point.has("signals")) {
+    for (const CheckedJson& signal : point.nodes("signals")) {
+      if (signal.text("channel") == point.text("channel")) {
+        return signal.number("residual_rel");
+      }
+    }
+  }
+  return not_known;
+}
+
 StoredPoint point_of(const CheckedJson& node) {
   StoredPoint point{.channel = node.text("channel"),
                     .frequency_text_hz = node.text("frequency_text_hz"),
@@ -80,6 +92,7 @@ StoredPoint point_of(const CheckedJson& node) {
                     .measured_frequency_hz = node.number_or("measured_frequency_hz", not_known),
                     .measured_level_m_s2 = node.number_or("measured_level_m_s2", not_known),
                     .temperature_degc = node.number_or("temperature_degc", not_known),
+                    .residual_rel = residual_of(node),
                     .has_monte_carlo = node.has("monte_carlo"),
                     .lost = samples_of(node, "lost"),
                     .data_sha256 = node.text("data_sha256"),

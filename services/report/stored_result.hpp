@@ -70,6 +70,7 @@ struct StoredPoint { // one repetition
   double measured_frequency_hz = 0.0; // NaN: not known, like those below
   double measured_level_m_s2 = 0.0;
   double temperature_degc = 0.0;
+  double residual_rel = 0.0; // of the fit of the channel, over its amplitude
   bool has_monte_carlo = false;
   std::uint64_t lost = 0;
   std::string data_sha256;

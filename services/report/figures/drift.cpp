@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
-
-#include "services/report/figures/panel.hpp"
 
 namespace dyncal::services::figures {
 namespace {
 
-constexpr double width = 820;
-constexpr double left = 92;
-constexpr double right = width - 24;
-constexpr double panel_height = 250;
-constexpr double gap = 20;
-constexpr double x_labels = 56;
-constexpr double header_room = 96;
 constexpr std::size_t max_lines = 6;
 
 constexpr double percent = 100.0;
@@ -89,19 +81,11 @@ std::string csv_of(const DriftData& data) {
 } // namespace
 
 Figure drift_figure(const DriftData& data, const std::string& name) {
-  Panel magnitudes = quantity_panel(data, magnitude, "magnitude: deviation ± U in %");
-  magnitudes.x_tick_labels = false;
-  Panel phases = quantity_panel(data, phase, "phase: deviation ± U in degrees");
-  for (Series& series : phases.series) {
-    series.label.clear(); // they are those of the other panel
-  }
-  Svg svg(width, header_room + 2 * panel_height + gap + x_labels);
-  const double top =
-      draw_header(svg, data.title, data.subtitle, {&magnitudes, &phases}, left, right);
-  const double height = panel_height + (header_room - top) / 2;
-  draw(svg, magnitudes, {left, top, right - left, height});
-  draw(svg, phases, {left, top + height + gap, right - left, height});
-  return {name, svg.finish(), csv_of(data)};
+  Picture picture{.title = {data.title, data.subtitle}};
+  picture.panels = {quantity_panel(data, magnitude, "magnitude: deviation ± U in %"),
+                    quantity_panel(data, phase, "phase: deviation ± U in degrees")};
+  picture.panels.front().x_tick_labels = false;
+  return {name, std::move(picture), csv_of(data)};
 }
 
 } // namespace dyncal::services::figures

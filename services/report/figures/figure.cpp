@@ -16,7 +16,7 @@ Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
   const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"),
                                                     folder / (figure.name + ".csv")};
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (auto written = write_output_file(paths[i], i == 0 ? figure.svg : figure.csv); !written) {
+    if (auto written = write_output_file(paths[i], i == 0 ? figure.svg() : figure.csv); !written) {
       return fail(written.error());
     }
   }

@@ -1,4 +1,4 @@
-// A figure as two texts: the picture (SVG) and its numbers (CSV), and how both become files.
+// A figure: its picture and its numbers (CSV), and how both become files.
 //
 // Every CSV has comment lines that begin with "#", one header line that names the units, and
 // numbers with 17 significant digits, so that reading them gives back the same bits.
@@ -9,18 +9,15 @@
 #include <vector>
 
 #include "services/error.hpp"
+#include "services/report/figures/picture.hpp"
 
 namespace dyncal::services::figures {
 
-struct FigureTitle {
-  std::string title{};
-  std::string subtitle{}; // may be empty
-};
-
 struct Figure {
   std::string name; // of the files, without their endings
-  std::string svg;
+  Picture picture;
   std::string csv;
+  [[nodiscard]] std::string svg() const { return svg_of(picture); }
 };
 
 // Writes NAME.svg and NAME.csv into the folder, which is made when it is missing, and returns their

@@ -2,20 +2,17 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "services/report/figures/panel.hpp"
 #include "services/report/figures/regular_intervals.hpp"
 #include "services/report/figures/sample_clock.hpp"
 
 namespace dyncal::services::figures {
 namespace {
 
-constexpr double width = 820;
-constexpr double height = 470;
-constexpr double left = 92;
-constexpr double right = width - 24;
+constexpr double panel_height = 330;
 constexpr int max_bins = 90;
 
 struct Histogram {
@@ -122,7 +119,7 @@ std::string subtitle_of(const analysis::SampleClockStatistics& clock, const Hist
   return text;
 }
 
-std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
+std::string csv_of(const PictureTitle& title, const analysis::SampleClockStatistics& clock) {
   auto csv = csv_comment(title.title) + csv_comment("tick " + csv_number(clock.tick_s) + " s");
   csv += "interval_ticks,interval_ns,count\n";
   for (const auto& c : clock.histogram) {
@@ -134,7 +131,7 @@ std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatisti
 
 } // namespace
 
-Figure interval_histogram_figure(const FigureTitle& title,
+Figure interval_histogram_figure(const PictureTitle& title,
                                  const analysis::SampleClockStatistics& clock,
                                  const std::string& name) {
   const auto histogram = merge_bins(clock);
@@ -152,11 +149,10 @@ Figure interval_histogram_figure(const FigureTitle& title,
   }
   panel.y_range = counts;
 
-  Svg svg(width, height);
-  const double top =
-      draw_header(svg, title.title, subtitle_of(clock, histogram), {&panel}, left, right);
-  draw(svg, panel, {left, top, right - left, height - top - 58});
-  return {name, svg.finish(), csv_of(title, clock)};
+  Picture picture{.title = {title.title, subtitle_of(clock, histogram)},
+                  .panel_height = panel_height};
+  picture.panels.push_back(std::move(panel));
+  return {name, std::move(picture), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

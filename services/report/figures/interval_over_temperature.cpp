@@ -3,19 +3,15 @@
 
 #include <fmt/format.h>
 
-#include "services/report/figures/panel.hpp"
 #include "services/report/figures/regular_intervals.hpp"
 #include "services/report/figures/sample_clock.hpp"
 
 namespace dyncal::services::figures {
 namespace {
 
-constexpr double width = 820;
-constexpr double height = 500;
-constexpr double left = 92;
-constexpr double right = width - 24;
+constexpr double panel_height = 360;
 
-std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
+std::string csv_of(const PictureTitle& title, const analysis::SampleClockStatistics& clock) {
   auto csv =
       csv_comment(title.title) +
       csv_comment("kind: one interval, or mean and standard deviation of a bin of temperature");
@@ -35,7 +31,7 @@ std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatisti
 
 } // namespace
 
-Figure interval_over_temperature_figure(const FigureTitle& title,
+Figure interval_over_temperature_figure(const PictureTitle& title,
                                         const analysis::SampleClockStatistics& clock,
                                         const std::string& name) {
   const auto singles =
@@ -79,10 +75,9 @@ Figure interval_over_temperature_figure(const FigureTitle& title,
     subtitle += fmt::format("{}{} beyond the axis (lost or doubled samples)",
                             subtitle.empty() ? "" : "; ", outside);
   }
-  Svg svg(width, height);
-  const double top = draw_header(svg, title.title, subtitle, {&panel}, left, right);
-  draw(svg, panel, {left, top, right - left, height - top - 58});
-  return {name, svg.finish(), csv_of(title, clock)};
+  Picture picture{.title = {title.title, subtitle}, .panel_height = panel_height};
+  picture.panels.push_back(std::move(panel));
+  return {name, std::move(picture), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

@@ -1,19 +1,16 @@
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "services/report/figures/panel.hpp"
 #include "services/report/figures/regular_intervals.hpp"
 #include "services/report/figures/sample_clock.hpp"
 
 namespace dyncal::services::figures {
 namespace {
 
-constexpr double width = 820;
 constexpr double panel_height = 230;
-constexpr double left = 92;
-constexpr double right = width - 24;
 
 RegularIntervals regular_intervals(const analysis::SampleClockStatistics& clock) {
   std::vector<WeightedInterval> weighted;
@@ -76,7 +73,7 @@ Panel close_up_panel(const analysis::SampleClockStatistics& clock,
   return panel;
 }
 
-std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock) {
+std::string csv_of(const PictureTitle& title, const analysis::SampleClockStatistics& clock) {
   auto csv =
       csv_comment(title.title) + csv_comment("kind: smallest, mean and largest interval of a "
                                              "stretch, or one interval of the close-up");
@@ -96,7 +93,7 @@ std::string csv_of(const FigureTitle& title, const analysis::SampleClockStatisti
   return csv;
 }
 
-std::string subtitle_of(const FigureTitle& title, const analysis::SampleClockStatistics& clock,
+std::string subtitle_of(const PictureTitle& title, const analysis::SampleClockStatistics& clock,
                         const RegularIntervals& regular) {
   const auto outside =
       std::count_if(clock.over_time.begin(), clock.over_time.end(), [&](const auto& bucket) {
@@ -112,21 +109,14 @@ std::string subtitle_of(const FigureTitle& title, const analysis::SampleClockSta
 
 } // namespace
 
-Figure interval_over_time_figure(const FigureTitle& title,
+Figure interval_over_time_figure(const PictureTitle& title,
                                  const analysis::SampleClockStatistics& clock,
                                  const std::string& name) {
   const auto regular = regular_intervals(clock);
-  const auto overview = overview_panel(clock, regular);
-  const auto close_up = close_up_panel(clock, regular);
-  constexpr double header_room = 100;
-  constexpr double between = 62;
-  Svg svg(width, header_room + 2 * panel_height + between + 58);
-  const double top = draw_header(svg, title.title, subtitle_of(title, clock, regular),
-                                 {&overview, &close_up}, left, right);
-  const double height = panel_height + (header_room - top) / 2;
-  draw(svg, overview, {left, top, right - left, height});
-  draw(svg, close_up, {left, top + height + between, right - left, height});
-  return {name, svg.finish(), csv_of(title, clock)};
+  Picture picture{.title = {title.title, subtitle_of(title, clock, regular)},
+                  .panel_height = panel_height};
+  picture.panels = {overview_panel(clock, regular), close_up_panel(clock, regular)};
+  return {name, std::move(picture), csv_of(title, clock)};
 }
 
 } // namespace dyncal::services::figures

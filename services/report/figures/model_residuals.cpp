@@ -4,22 +4,12 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "services/report/figures/panel.hpp"
-
 namespace dyncal::services::figures {
 namespace {
-
-constexpr double width = 980;
-constexpr double left = 92;
-constexpr double between = 96; // room for the labels of the right panels
-constexpr double panel_width = 0.5 * (width - left - between - 24);
-constexpr double panel_height = 210;
-constexpr double gap = 20;
-constexpr double x_labels = 56;
-constexpr double header_room = 96;
 
 constexpr double percent = 100.0;
 constexpr double degrees = 180.0 / std::numbers::pi;
@@ -128,21 +118,13 @@ std::string csv_of(const ModelResidualData& data) {
 } // namespace
 
 Figure model_residual_figure(const ModelResidualData& data, const std::string& name) {
-  const Panel magnitudes = in_unit(data, magnitude, "magnitude: residual in %", false);
-  const Panel magnitudes_in_u = in_u(data, magnitude, "residual in u", false);
-  const Panel phases = in_unit(data, phase, "phase: residual in degrees", true);
-  const Panel phases_in_u = in_u(data, phase, "residual in u", true);
-  Svg svg(width, header_room + 2 * panel_height + gap + x_labels);
-  const double top = draw_header(svg, data.title, data.subtitle, {&magnitudes, &magnitudes_in_u},
-                                 left, width - 24);
-  const double height = panel_height + (header_room - top) / 2;
-  const double right = left + panel_width + between;
-  const double low = top + height + gap;
-  draw(svg, magnitudes, {left, top, panel_width, height});
-  draw(svg, magnitudes_in_u, {right, top, panel_width, height});
-  draw(svg, phases, {left, low, panel_width, height});
-  draw(svg, phases_in_u, {right, low, panel_width, height});
-  return {name, svg.finish(), csv_of(data)};
+  Picture picture{
+      .title = {data.title, data.subtitle}, .columns = 2, .width = 980, .panel_height = 210};
+  picture.panels = {in_unit(data, magnitude, "magnitude: residual in %", false),
+                    in_u(data, magnitude, "residual in u", false),
+                    in_unit(data, phase, "phase: residual in degrees", true),
+                    in_u(data, phase, "residual in u", true)};
+  return {name, std::move(picture), csv_of(data)};
 }
 
 } // namespace dyncal::services::figures

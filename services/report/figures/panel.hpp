@@ -28,6 +28,7 @@ struct Series {
   bool joined = false; // by a line
   std::string dashes{};
   double line_width = 1.4;
+  bool in_enlargement = true;
 };
 
 struct Bar {
@@ -57,7 +58,8 @@ struct Panel {
   std::string dots_label{};
   std::optional<Range> y_range{}; // in place of the range of the data
   bool x_tick_labels = true;
-  bool fills_x = false; // the data reach from edge to edge
+  bool fills_x = false;        // the data reach from edge to edge
+  bool enlarges_low_x = false; // in a free corner (enlargement.hpp)
   double font_size = 12;
 };
 

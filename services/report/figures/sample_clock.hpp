@@ -16,18 +16,18 @@ namespace dyncal::services::figures {
 
 // Counts on a logarithmic axis; a bin is a whole number of ticks, so that the lattice of the stamps
 // makes no comb. The subtitle is that of the numbers.
-[[nodiscard]] Figure interval_histogram_figure(const FigureTitle& title,
+[[nodiscard]] Figure interval_histogram_figure(const PictureTitle& title,
                                                const analysis::SampleClockStatistics& clock,
                                                const std::string& name);
 
 // Single intervals as dots, and mean and standard deviation for each bin of temperature.
-[[nodiscard]] Figure interval_over_temperature_figure(const FigureTitle& title,
+[[nodiscard]] Figure interval_over_temperature_figure(const PictureTitle& title,
                                                       const analysis::SampleClockStatistics& clock,
                                                       const std::string& name);
 
 // The whole run above, smallest to largest interval of every bucket; consecutive intervals around
 // one event below.
-[[nodiscard]] Figure interval_over_time_figure(const FigureTitle& title,
+[[nodiscard]] Figure interval_over_time_figure(const PictureTitle& title,
                                                const analysis::SampleClockStatistics& clock,
                                                const std::string& name);
 

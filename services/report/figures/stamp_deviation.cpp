@@ -3,19 +3,14 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
-
-#include "services/report/figures/panel.hpp"
 
 namespace dyncal::services::figures {
 namespace {
 
-constexpr double width = 820;
 constexpr double panel_height = 210;
-constexpr double left = 92;
-constexpr double right = width - 24;
-constexpr double between = 62;
 constexpr int wanted_bins = 60;
 
 constexpr double hours_from_s = 2 * 3600.0; // a longer record has its time in hours
@@ -67,7 +62,7 @@ Panel histogram_panel(const StampDeviationData& data) {
 Panel allan_panel(const StampDeviationData& data) {
   Panel panel;
   panel.x_label = "averaging time in s";
-  panel.y_label = "Allan deviation";
+  panel.y_label = "Allan deviation (relative)";
   panel.x_scale = Scale::logarithmic;
   panel.y_scale = Scale::logarithmic;
   Series series{
@@ -95,20 +90,12 @@ std::string csv_of(const StampDeviationData& data) {
 } // namespace
 
 Figure stamp_deviation_figure(const StampDeviationData& data, const std::string& name) {
-  std::vector<Panel> panels{time_panel(data), histogram_panel(data)};
+  Picture picture{.title = {data.title, data.subtitle}, .panel_height = panel_height};
+  picture.panels = {time_panel(data), histogram_panel(data)};
   if (!data.allan.empty()) {
-    panels.push_back(allan_panel(data));
+    picture.panels.push_back(allan_panel(data));
   }
-  constexpr double header_room = 76;
-  const auto rows = static_cast<double>(panels.size());
-  Svg svg(width, header_room + rows * panel_height + (rows - 1) * between + 58);
-  double top = draw_header(svg, data.title, data.subtitle, {}, left, right);
-  const double height = panel_height + (header_room - top) / rows;
-  for (const Panel& panel : panels) {
-    draw(svg, panel, {left, top, right - left, height});
-    top += height + between;
-  }
-  return {name, svg.finish(), csv_of(data)};
+  return {name, std::move(picture), csv_of(data)};
 }
 
 } // namespace dyncal::services::figures

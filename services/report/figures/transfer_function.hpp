@@ -1,7 +1,6 @@
 // The complex transfer function as a picture: magnitude above, phase below, over frequency on a
 // logarithmic axis, every repetition with a marker of its own, the mean as a line with error bars
-// of one standard uncertainty, and the low frequencies enlarged where the plot has room (figure 5
-// of the paper).
+// of u or U, and the low frequencies enlarged where the plot has room (figure 5 of the paper).
 //
 // Means with a flag have a ring around them, and the legend below the panels explains each flag.
 //
@@ -11,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,15 +21,26 @@
 
 namespace dyncal::services::figures {
 
+enum class ErrorBars {
+  standard, // u
+  expanded, // U, for a coverage of 95.45 %
+};
+[[nodiscard]] const char* symbol_of(ErrorBars bars);
+
 struct ValueOverFrequency {
   double frequency_hz = 0.0;
+  double level_m_s2 = 0.0;          // as planned
   analysis::ComparedResult value{}; // with standard uncertainties
   std::string flags{};              // names, separated by spaces
+  double expanded_magnitude = 0.0;  // U; of means
+  double expanded_phase_rad = 0.0;
 };
 
 struct RepetitionPoint {
   std::uint32_t repetition = 0;
   ValueOverFrequency point{};
+  // What the fitted sine leaves of the channel, over its amplitude; NaN: not known.
+  double residual_rel = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct TransferFunctionData {
@@ -40,7 +51,17 @@ struct TransferFunctionData {
   std::vector<ValueOverFrequency> mean{}; // unwrapped phase
   std::optional<analysis::GroupDelay> group_delay{};
   std::vector<std::string> legend{}; // one sentence for each flag, below the panels
+  ErrorBars error_bars = ErrorBars::standard;
 };
+
+// Half the length of a mean's error bar.
+[[nodiscard]] double half_magnitude_bar(const ValueOverFrequency& mean, ErrorBars bars);
+[[nodiscard]] double half_phase_bar(const ValueOverFrequency& mean, ErrorBars bars);
+
+// The mean at the frequency and level of a repetition; null where there is none. Lives as long as
+// the data.
+[[nodiscard]] const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,
+                                                const TransferFunctionData& data);
 
 [[nodiscard]] Figure transfer_function_figure(const TransferFunctionData& data,
                                               const std::string& name);

@@ -159,7 +159,7 @@ TEST(ChannelModel, IsWholeAsJson) {
 TEST(ChannelModel, HasAFigureOfItsResiduals) {
   const figures::Figure figure = model_figure(modelled(measured(sensor, band)));
   EXPECT_EQ(figure.name, "model-residuals-dau-acceleration");
-  EXPECT_NE(figure.svg.find("second order with delay"), std::string::npos);
+  EXPECT_NE(figure.svg().find("second order with delay"), std::string::npos);
   EXPECT_NE(figure.csv.find("# resonance_hz = "), std::string::npos);
 }
 

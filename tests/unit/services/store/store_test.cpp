@@ -1,8 +1,11 @@
 #include "services/store/store.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <random>
 
@@ -148,14 +151,16 @@ TEST_P(StoreTest, GivesTheCalibrationsOfASensorByTime) {
   EXPECT_TRUE(store_->calibrations("42")->empty()); // the reference is calibrated by nobody
 }
 
-// Another process adds results and is killed in the middle of it.
+// Another process adds results and is killed in the middle of it, at a drawn instant after the
+// first.
 TEST_P(StoreTest, HasEveryResultWholeOrNotAtAllWhenAWriterIsKilled) {
   std::mt19937 random(4711);
   std::uniform_int_distribution<int> delay_us(1'000, 60'000);
   int number = 0;
-  std::int64_t there = 0;
   for (int kill_number = 0; kill_number < 10; ++kill_number) {
     number += 100;
+    std::array<int, 2> added{};
+    ASSERT_EQ(pipe2(added.data(), O_CLOEXEC), 0);
     const pid_t writer = fork();
     if (writer == 0) {
       auto own = Store::open(place_);
@@ -163,19 +168,26 @@ TEST_P(StoreTest, HasEveryResultWholeOrNotAtAllWhenAWriterIsKilled) {
         const auto path = folder_.write(
             "killed.json",
             tests::text_of(tests::outcome_of({.run = fmt::format("k{}", number + i)})));
-        static_cast<void>((*own)->add(path).has_value());
+        if ((*own)->add(path)) {
+          static_cast<void>(write(added[1], "+", 1));
+        }
       }
       _exit(1);
     }
+    close(added[1]);
+    pollfd first{.fd = added[0], .events = POLLIN, .revents = 0};
+    constexpr int limit_ms = 120'000;
+    EXPECT_EQ(poll(&first, 1, limit_ms), 1);
     usleep(static_cast<useconds_t>(delay_us(random)));
     kill(writer, SIGKILL);
     waitpid(writer, nullptr, 0);
-    there = count("results");
+    close(added[0]);
+    const std::int64_t there = count("results");
     EXPECT_EQ(count("points"), 4 * there);
     EXPECT_EQ(count("sources"), 2 * there);
     EXPECT_EQ(count("samples"), there);
+    EXPECT_GT(there, kill_number);
   }
-  EXPECT_GT(there, 0);
   EXPECT_TRUE(add(ExampleResult{.run = "afterwards"}));
 }
 

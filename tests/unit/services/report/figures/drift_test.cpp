@@ -34,8 +34,8 @@ DriftData drift(std::size_t frequencies) {
 
 TEST(DriftFigure, ShowsEveryCalibrationOfAFewFrequencies) {
   const Figure figure = drift_figure(drift(20), "drift");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  const auto texts = texts_of(figure.svg);
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  const auto texts = texts_of(figure.svg());
   EXPECT_THAT(texts, Contains("days since the first calibration"));
   EXPECT_THAT(texts, Contains("10 Hz"));
   EXPECT_THAT(texts, Contains("200 Hz"));
@@ -49,8 +49,8 @@ TEST(DriftFigure, WritesEveryNumber) {
 
 TEST(DriftFigure, SaysSoWithoutPoints) {
   const Figure figure = drift_figure({.title = "nothing"}, "drift");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Contains("no data"));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Contains("no data"));
 }
 
 } // namespace

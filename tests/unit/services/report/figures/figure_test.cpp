@@ -26,18 +26,20 @@ std::string content(const std::filesystem::path& path) {
 }
 
 TEST_F(FigureFiles, AreWrittenIntoAFolderThatIsMade) {
-  const auto paths = write({"name", "<svg/>", "a,b\n"}, folder_ / "new" / "folder");
+  const Figure figure{"name", {.title = {"a title", ""}}, "a,b\n"};
+  const auto paths = write(figure, folder_ / "new" / "folder");
   ASSERT_TRUE(paths) << paths.error().message;
   EXPECT_THAT(*paths, testing::ElementsAre(folder_ / "new/folder/name.svg",
                                            folder_ / "new/folder/name.csv"));
-  EXPECT_EQ(content((*paths)[0]), "<svg/>");
+  EXPECT_EQ(content((*paths)[0]), figure.svg());
+  EXPECT_THAT(figure.svg(), HasSubstr("a title"));
   EXPECT_EQ(content((*paths)[1]), "a,b\n");
 }
 
 TEST_F(FigureFiles, ThatCannotBeWrittenAreNamedInTheError) {
   const auto in_the_way = folder_ / "file";
   std::ofstream(in_the_way) << "x";
-  const auto paths = write({"name", "", ""}, in_the_way);
+  const auto paths = write({"name", {}, ""}, in_the_way);
   ASSERT_FALSE(paths);
   EXPECT_EQ(paths.error().code, ErrorCode::bad_file);
   EXPECT_THAT(paths.error().message, HasSubstr(in_the_way.string()));
@@ -45,7 +47,7 @@ TEST_F(FigureFiles, ThatCannotBeWrittenAreNamedInTheError) {
 
 TEST_F(FigureFiles, AreNotLeftHalfWrittenWithoutAnError) {
   std::filesystem::create_directory(folder_ / "name.csv");
-  const auto paths = write({"name", "<svg/>", "a"}, folder_);
+  const auto paths = write({"name", {}, "a"}, folder_);
   ASSERT_FALSE(paths);
   EXPECT_THAT(paths.error().message, HasSubstr("name.csv"));
 }

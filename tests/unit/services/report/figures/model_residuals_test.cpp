@@ -31,9 +31,9 @@ ModelResidualData residuals() {
 
 TEST(ModelResidualFigure, ShowsEveryPointInItsUnitAndInU) {
   const Figure figure = model_residual_figure(residuals(), "residuals");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_EQ(count_elements(figure.svg, "circle"), 2U * 3 + 1); // two panels and the legend
-  const auto texts = texts_of(figure.svg);
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_EQ(count_elements(figure.svg(), "circle"), 2U * 3 + 1); // two panels and the legend
+  const auto texts = texts_of(figure.svg());
   EXPECT_THAT(texts, Contains(HasSubstr("magnitude: residual in %")));
   EXPECT_THAT(texts, Contains(HasSubstr("phase: residual in degrees")));
   EXPECT_THAT(texts, Contains("residual in u").Times(2));
@@ -49,8 +49,8 @@ TEST(ModelResidualFigure, WritesEveryNumber) {
 
 TEST(ModelResidualFigure, SaysSoWithoutPoints) {
   const Figure figure = model_residual_figure({.title = "nothing"}, "residuals");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Contains("no data"));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Contains("no data"));
 }
 
 } // namespace

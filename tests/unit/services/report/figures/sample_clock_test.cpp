@@ -36,16 +36,16 @@ SampleClockStatistics histogram_of(std::vector<IntervalHistogramBin> counts) {
 
 // Besides the bars: the background, the background and frame of the panel, and its clip.
 std::size_t bars_of(const Figure& figure) {
-  return count_elements(figure.svg, "rect") - 4;
+  return count_elements(figure.svg(), "rect") - 4;
 }
 
 TEST(IntervalHistogram, HasABarForEveryTickOfANarrowDistribution) {
   const auto figure = interval_histogram_figure(
       {"intervals"},
       histogram_of({count_of(107670, 1), count_of(107671, 3000), count_of(107673, 20)}), "h");
-  EXPECT_EQ(problem_of(figure.svg), "");
+  EXPECT_EQ(problem_of(figure.svg()), "");
   EXPECT_EQ(bars_of(figure), 3U);
-  EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("= 1 tick")));
+  EXPECT_THAT(texts_of(figure.svg()), Contains(HasSubstr("= 1 tick")));
 }
 
 TEST(IntervalHistogram, MergesWholeTicksOfAWideDistribution) {
@@ -55,8 +55,8 @@ TEST(IntervalHistogram, MergesWholeTicksOfAWideDistribution) {
   }
   const auto figure = interval_histogram_figure({"intervals"}, histogram_of(counts), "h");
   EXPECT_EQ(bars_of(figure), 84U); // 1000 ticks, 12 a bin
-  EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("= 12 ticks")));
-  EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("2\u202f000 intervals")));
+  EXPECT_THAT(texts_of(figure.svg()), Contains(HasSubstr("= 12 ticks")));
+  EXPECT_THAT(texts_of(figure.svg()), Contains(HasSubstr("2\u202f000 intervals")));
 }
 
 TEST(IntervalHistogram, HasNoBarForATickThatDidNotOccur) {
@@ -70,7 +70,7 @@ TEST(IntervalHistogram, CountsWhatALostSampleMadeInsteadOfShowingIt) {
   const auto figure = interval_histogram_figure(
       {"intervals"}, histogram_of({count_of(107671, 3000), count_of(2 * 107671, 2)}), "h");
   EXPECT_EQ(bars_of(figure), 1U);
-  EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("2 beyond the axis")));
+  EXPECT_THAT(texts_of(figure.svg()), Contains(HasSubstr("2 beyond the axis")));
   EXPECT_THAT(figure.csv, ContainsRegex("\n215342,[0-9.]+,2\n"));
 }
 
@@ -78,10 +78,10 @@ TEST(IntervalHistogram, IsDrawnWhenThereIsNothingOrNothingVaries) {
   const std::vector<std::vector<IntervalHistogramBin>> degenerate = {
       {}, {count_of(1, 0)}, {count_of(0, 7)}, {count_of(107671, 1)}, {count_of(107671, 1000000)}};
   for (const auto& counts : degenerate) {
-    EXPECT_EQ(problem_of(interval_histogram_figure({"intervals"}, histogram_of(counts), "h").svg),
+    EXPECT_EQ(problem_of(interval_histogram_figure({"intervals"}, histogram_of(counts), "h").svg()),
               "");
   }
-  EXPECT_THAT(texts_of(interval_histogram_figure({}, {}, "h").svg), Contains("no data"));
+  EXPECT_THAT(texts_of(interval_histogram_figure({}, {}, "h").svg()), Contains("no data"));
 }
 
 TEST(IntervalHistogram, NeedsNoTick) {
@@ -98,28 +98,28 @@ TEST(IntervalOverTemperature, ShowsEveryIntervalAndEveryBin) {
   }
   clock.over_temperature = {{27.25, 996925, 15, 25}, {27.75, 996975, 15, 25}, {28.5, 0, 0, 0}};
   const auto figure = interval_over_temperature_figure({"t"}, clock, "t");
-  EXPECT_EQ(problem_of(figure.svg), "");
+  EXPECT_EQ(problem_of(figure.svg()), "");
   std::size_t dots = 0;
-  for (auto at = figure.svg.find("h0"); at != std::string::npos;
-       at = figure.svg.find("h0", at + 1)) {
+  for (auto at = figure.svg().find("h0"); at != std::string::npos;
+       at = figure.svg().find("h0", at + 1)) {
     ++dots;
   }
   EXPECT_EQ(dots, 50U);
-  EXPECT_EQ(count_elements(figure.svg, "circle"), 2U + 2U)
+  EXPECT_EQ(count_elements(figure.svg(), "circle"), 2U + 2U)
       << "two bins with a count, two in the legend";
   EXPECT_THAT(figure.csv, HasSubstr("kind,temperature_degc,interval_ns,sd_interval_ns,count\n"));
 }
 
 TEST(IntervalOverTemperature, IsDrawnWhenThereIsNothingOrNothingVaries) {
-  EXPECT_EQ(problem_of(interval_over_temperature_figure({}, {}, "t").svg), "");
+  EXPECT_EQ(problem_of(interval_over_temperature_figure({}, {}, "t").svg()), "");
   SampleClockStatistics equal;
   equal.scatter_temperature_degc = {28, 28};
   equal.scatter_interval_ns = {5e5, 5e5};
-  EXPECT_EQ(problem_of(interval_over_temperature_figure({"t"}, equal, "t").svg), "");
+  EXPECT_EQ(problem_of(interval_over_temperature_figure({"t"}, equal, "t").svg()), "");
   SampleClockStatistics uneven;
   uneven.scatter_temperature_degc = {28, 29};
   uneven.scatter_interval_ns = {5e5};
-  EXPECT_EQ(problem_of(interval_over_temperature_figure({"t"}, uneven, "t").svg), "");
+  EXPECT_EQ(problem_of(interval_over_temperature_figure({"t"}, uneven, "t").svg()), "");
 }
 
 TEST(IntervalOverTime, ShowsEveryIntervalOfTheCloseUp) {
@@ -132,9 +132,9 @@ TEST(IntervalOverTime, ShowsEveryIntervalOfTheCloseUp) {
     clock.close_up_ns.push_back(i == 20 ? 489200 : (i == 21 ? 480800 : 485000));
   }
   const auto figure = interval_over_time_figure({"bma280"}, clock, "time");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_EQ(count_elements(figure.svg, "circle"), 40U + 1);
-  EXPECT_THAT(texts_of(figure.svg), Contains("488"));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_EQ(count_elements(figure.svg(), "circle"), 40U + 1);
+  EXPECT_THAT(texts_of(figure.svg()), Contains("488"));
   EXPECT_THAT(figure.csv, HasSubstr("kind,time_s,minimum_ns,mean_ns,maximum_ns\n"));
 }
 
@@ -143,17 +143,17 @@ TEST(IntervalOverTime, IsNotFlattenedByALostSample) {
   for (int i = 0; i < 100; ++i) {
     clock.over_time.push_back({0.01 * i, 484990, i == 50 ? 970000.0 : 485010.0, 485000});
   }
-  const auto texts = texts_of(interval_over_time_figure({"bma280"}, clock, "time").svg);
+  const auto texts = texts_of(interval_over_time_figure({"bma280"}, clock, "time").svg());
   EXPECT_THAT(texts, Contains("485.000"));
   EXPECT_THAT(texts, Contains(HasSubstr("in 1 of 100 stretches")));
 }
 
 TEST(IntervalOverTime, IsDrawnWhenThereIsNothingOrOnePoint) {
-  EXPECT_EQ(problem_of(interval_over_time_figure({}, {}, "time").svg), "");
+  EXPECT_EQ(problem_of(interval_over_time_figure({}, {}, "time").svg()), "");
   SampleClockStatistics one;
   one.over_time = {{0, 1e6, 1e6, 1e6}};
   one.close_up_ns = {1e6};
-  EXPECT_EQ(problem_of(interval_over_time_figure({"one"}, one, "time").svg), "");
+  EXPECT_EQ(problem_of(interval_over_time_figure({"one"}, one, "time").svg()), "");
 }
 
 TEST(RegularIntervals, AreThoseWithinHalfOfTheMedian) {

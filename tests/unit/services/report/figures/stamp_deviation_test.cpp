@@ -27,18 +27,19 @@ StampDeviationData data_of(std::size_t seconds) {
 
 TEST(StampDeviationFigure, IsWellFormedAndHoldsEveryDeviation) {
   const Figure figure = stamp_deviation_figure(data_of(300), "time");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Contains(HasSubstr("Allan deviation")));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Contains(HasSubstr("Allan deviation")));
   EXPECT_THAT(figure.csv, HasSubstr("# positive: too late\nsession,time_s,deviation_s\n1,0,0\n"));
   EXPECT_EQ(std::count(figure.csv.begin(), figure.csv.end(), '\n'), 3 + 300);
 }
 
 TEST(StampDeviationFigure, TakesRecordsOfDaysAndOnesWithoutAnything) {
-  EXPECT_THAT(texts_of(stamp_deviation_figure(data_of(20000), "time").svg), Contains("time in h"));
+  EXPECT_THAT(texts_of(stamp_deviation_figure(data_of(20000), "time").svg()),
+              Contains("time in h"));
   StampDeviationData nothing;
-  EXPECT_EQ(problem_of(stamp_deviation_figure(nothing, "time").svg), "");
+  EXPECT_EQ(problem_of(stamp_deviation_figure(nothing, "time").svg()), "");
   nothing.deviations = {{0, 1.0, 0.0}};
-  EXPECT_EQ(problem_of(stamp_deviation_figure(nothing, "time").svg), "");
+  EXPECT_EQ(problem_of(stamp_deviation_figure(nothing, "time").svg()), "");
 }
 
 } // namespace

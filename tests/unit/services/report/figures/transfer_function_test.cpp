@@ -26,6 +26,7 @@ TransferFunctionData low_pass(std::size_t frequencies) {
   for (std::size_t i = 0; i < frequencies; ++i) {
     const double frequency_hz = 10 * std::pow(10.0, 0.1 * static_cast<double>(i));
     const ValueOverFrequency mean{frequency_hz,
+                                  1.0,
                                   {1 / std::hypot(1.0, frequency_hz / 180), 1e-3,
                                    -2 * std::numbers::pi * frequency_hz * delay_s, 2e-3}};
     data.mean.push_back(mean);
@@ -57,7 +58,7 @@ std::size_t lines_without_comments(const std::string& csv) {
 
 TEST(TransferFunctionFigure, ShowsEveryPointOfEveryRepetitionInBothPanels) {
   const auto svg =
-      transfer_function_figure(low_pass(4), "tf").svg; // too few low frequencies for an inset
+      transfer_function_figure(low_pass(4), "tf").svg(); // too few low frequencies for an inset
   EXPECT_EQ(problem_of(svg), "");
   // #1 are circles: one for each point and panel, and one in the legend.
   EXPECT_EQ(count_elements(svg, "circle"), 2U * 4 + 1);
@@ -65,7 +66,7 @@ TEST(TransferFunctionFigure, ShowsEveryPointOfEveryRepetitionInBothPanels) {
 
 TEST(TransferFunctionFigure, EnlargesLowFrequenciesWhereThereIsRoom) {
   const std::size_t frequencies = 14;
-  const auto svg = transfer_function_figure(low_pass(frequencies), "tf").svg;
+  const auto svg = transfer_function_figure(low_pass(frequencies), "tf").svg();
   EXPECT_EQ(problem_of(svg), "");
   EXPECT_EQ(count_elements(svg, "circle"), 2 * frequencies + 2 * (frequencies / 2) + 1);
 }
@@ -76,15 +77,15 @@ TEST(TransferFunctionFigure, DrawsWrappedRepetitionsInTheTurnOfTheMean) {
   for (std::size_t i = 0; i < data.repetitions.size(); ++i) {
     unwrapped.repetitions[i].point.value.phase_rad = data.mean[i / 3].value.phase_rad;
   }
-  EXPECT_EQ(transfer_function_figure(data, "tf").svg,
-            transfer_function_figure(unwrapped, "tf").svg);
+  EXPECT_EQ(transfer_function_figure(data, "tf").svg(),
+            transfer_function_figure(unwrapped, "tf").svg());
 }
 
 TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
   auto data = low_pass(14);
   data.unit = "(rad/s)/(m/s²)";
   data.group_delay = line_of(delay_s, 0.0);
-  const auto texts = texts_of(transfer_function_figure(data, "tf").svg);
+  const auto texts = texts_of(transfer_function_figure(data, "tf").svg());
   for (const auto* text : {"acc-1: dau/acceleration_z", "frequency in Hz",
                            "magnitude in (rad/s)/(m/s²)", "phase (lead) in rad", "#1", "#2", "#3",
                            "group delay 8.1 ms", "10", "20", "50", "100", "200"}) {
@@ -94,15 +95,15 @@ TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
 
 TEST(TransferFunctionFigure, IsDrawnWithoutData) {
   const auto figure = transfer_function_figure({}, "tf");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Contains("no data"));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Contains("no data"));
   EXPECT_EQ(lines_without_comments(figure.csv), 1U);
 }
 
 TEST(TransferFunctionFigure, IsDrawnForOnePoint) {
   const auto figure = transfer_function_figure(low_pass(1), "tf");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Not(Contains("no data")));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Not(Contains("no data")));
 }
 
 TEST(TransferFunctionFigure, LeavesOutPointsThatAreNoNumbers) {
@@ -111,9 +112,27 @@ TEST(TransferFunctionFigure, LeavesOutPointsThatAreNoNumbers) {
   data.repetitions[6].point.value.magnitude = std::numeric_limits<double>::quiet_NaN();
   data.repetitions[3].point.value.phase_rad = std::numeric_limits<double>::infinity();
   const auto figure = transfer_function_figure(data, "tf");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_EQ(count_elements(figure.svg, "circle"), 2U * 4 + 1 - 2);
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_EQ(count_elements(figure.svg(), "circle"), 2U * 4 + 1 - 2);
   EXPECT_THAT(figure.csv, HasSubstr("nan"));
+}
+
+TEST(TransferFunctionFigure, ShowsTheExpandedUncertaintyWhereThatIsChosen) {
+  TransferFunctionData data = low_pass(4);
+  for (ValueOverFrequency& mean : data.mean) {
+    mean.expanded_magnitude = 2.5 * mean.value.u_magnitude;
+    mean.expanded_phase_rad = 3 * mean.value.u_phase_rad;
+  }
+  const Picture standard = transfer_function_figure(data, "tf").picture;
+  data.error_bars = ErrorBars::expanded;
+  const Picture expanded = transfer_function_figure(data, "tf").picture;
+  EXPECT_EQ(standard.panels[0].series[0].label, "mean ± u");
+  EXPECT_EQ(expanded.panels[0].series[0].label, "mean ± U");
+  for (std::size_t i = 0; i < data.mean.size(); ++i) {
+    EXPECT_EQ(standard.panels[0].series[0].points.at(i).half_bar, 1e-3);
+    EXPECT_EQ(expanded.panels[0].series[0].points.at(i).half_bar, 2.5e-3);
+    EXPECT_EQ(expanded.panels[1].series[0].points.at(i).half_bar, 6e-3);
+  }
 }
 
 TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
@@ -122,8 +141,8 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
   const auto csv = transfer_function_figure(data, "tf").csv;
   EXPECT_THAT(csv, HasSubstr("phase: lead, rad"));
   EXPECT_THAT(
-      csv,
-      HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags\n"));
+      csv, HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,"
+                     "U_magnitude,U_phase_rad\n"));
   EXPECT_THAT(csv, HasSubstr("intercept 0.25 rad"));
   EXPECT_THAT(csv, HasSubstr("\nmean,10,"));
   EXPECT_EQ(lines_without_comments(csv), 1U + 2 * 3 + 2);
@@ -132,19 +151,19 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
 TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   auto data = low_pass(4);
   const auto without = transfer_function_figure(data, "tf");
-  EXPECT_THAT(texts_of(without.svg), Not(Contains("flagged, see below")));
+  EXPECT_THAT(texts_of(without.svg()), Not(Contains("flagged, see below")));
   data.mean[1].flags = "samples_lost";
   data.repetitions[4].point.flags = "samples_lost";
   data.legend = {"samples_lost (dau: samples lost): " + std::string(200, 'a') + " and more"};
   const auto figure = transfer_function_figure(data, "tf");
-  EXPECT_EQ(problem_of(figure.svg), "");
-  EXPECT_THAT(texts_of(figure.svg), Contains("flagged, see below"));
-  EXPECT_THAT(texts_of(figure.svg), Contains("samples_lost (dau: samples lost):"));
-  EXPECT_THAT(texts_of(figure.svg), Contains("and more"));
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  EXPECT_THAT(texts_of(figure.svg()), Contains("flagged, see below"));
+  EXPECT_THAT(texts_of(figure.svg()), Contains("samples_lost (dau: samples lost):"));
+  EXPECT_THAT(texts_of(figure.svg()), Contains("and more"));
   // Two panels, and the sample in the legend.
-  EXPECT_EQ(count_elements(figure.svg, "circle"), count_elements(without.svg, "circle") + 3);
+  EXPECT_EQ(count_elements(figure.svg(), "circle"), count_elements(without.svg(), "circle") + 3);
   EXPECT_THAT(figure.csv, HasSubstr("# flag samples_lost (dau: samples lost): aaa"));
-  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost\n3,"));
+  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,\n3,"));
 }
 
 } // namespace

@@ -1,0 +1,20 @@
+#include "services/command/figure_options.hpp"
+
+#include <map>
+#include <string>
+
+namespace dyncal::services {
+
+void add_figure_options(CLI::App& command, FigureFiles& files) {
+  using figures::ErrorBars;
+  CLI::Option* folder =
+      command.add_option("--figures", files.folder, "write figures (SVG and CSV) into this folder");
+  command
+      .add_option("--error-bars", files.error_bars,
+                  "what the bars of the figures show: standard (u, default) or expanded (U)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ErrorBars>{
+          {"standard", ErrorBars::standard}, {"expanded", ErrorBars::expanded}}))
+      ->needs(folder);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,13 @@
+// Options of the commands that write figures of a run: --figures and --error-bars. Any thread.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "services/report/run_figures.hpp"
+
+namespace dyncal::services {
+
+// `files` must live until the command line has been parsed.
+void add_figure_options(CLI::App& command, FigureFiles& files);
+
+} // namespace dyncal::services
