@@ -5,6 +5,8 @@
 #include <cstring>
 #include <optional>
 
+#include "services/bus/discovery.hpp"
+
 namespace dyncal::bus {
 namespace {
 
@@ -28,6 +30,7 @@ constexpr unsigned char first_of_security = 0x30;
 constexpr unsigned char last_of_security = 0x34;
 
 constexpr unsigned char little_endian_flag = 0x01;
+constexpr unsigned char final_flag = 0x02; // of ACKNACK
 constexpr unsigned char no_timestamp_flag = 0x02;
 constexpr unsigned char inline_qos_flag = 0x02;
 constexpr unsigned char data_flag = 0x04; // of DATA
@@ -64,6 +67,13 @@ Number number_at(Bytes bytes, std::size_t at, unsigned char flags) {
   } else {
     return static_cast<Number>(__builtin_bswap32(value));
   }
+}
+
+void put_number(unsigned char* at, std::uint32_t value, unsigned char flags) {
+  if ((flags & little_endian_flag) == 0) {
+    value = __builtin_bswap32(value);
+  }
+  std::memcpy(at, &value, sizeof value);
 }
 
 static_assert(std::endian::native == std::endian::little,
@@ -121,13 +131,6 @@ std::optional<std::size_t> qos_begin(Bytes body, std::size_t at_least, unsigned 
   }
   const std::size_t begin = 4U + number_at<std::uint16_t>(body, 2, flags);
   return begin >= at_least && begin <= body.size() ? std::optional(begin) : std::nullopt;
-}
-
-bool acknack_is_whole(unsigned char flags, Bytes body) {
-  constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
-  const auto words = bitmap_words(body, bits_at, flags);
-  return words && bits_at + 4 + 4 * *words + 4 <= body.size() &&
-         sequence_at(body, entities_bytes, flags);
 }
 
 bool nack_frag_is_whole(unsigned char flags, Bytes body) {
@@ -213,8 +216,7 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
   case gap:
     return pass_gap(flags, body);
   case acknack:
-    whole = acknack_is_whole(flags, body);
-    break;
+    return pass_acknack(flags, body);
   case nack_frag:
     whole = nack_frag_is_whole(flags, body);
     break;
@@ -242,6 +244,28 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
     append_submessage(id, flags, body);
   }
   return whole;
+}
+
+bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
+  constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
+  const auto words = bitmap_words(body, bits_at, flags);
+  const auto base = words ? sequence_at(body, entities_bytes, flags) : std::nullopt;
+  if (!base || bits_at + 4 + 4 * *words + 4 > body.size()) {
+    return false;
+  }
+  const std::size_t count_at = bits_at + 4 + 4 * *words;
+  const auto count = number_at<std::uint32_t>(body, count_at, flags);
+  const bool begins_anew = *base == 1 && *words == 0 && count == 0 && (flags & final_flag) == 0;
+  const Bytes source = Bytes(buffer_).subspan(header_bytes - guid_prefix_bytes, guid_prefix_bytes);
+  const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
+  unsigned char* passed = append_submessage(acknack, flags, body);
+  if (begins_anew) {
+    std::memset(passed + entities_bytes, 0, sequence_bytes);
+    put_number(passed + count_at, acknack_counts_.begin_anew(pair), flags);
+  } else {
+    put_number(passed + count_at, acknack_counts_.continued(pair, count), flags);
+  }
+  return true;
 }
 
 bool RtpsScreen::pass_data(unsigned char flags, Bytes body) {

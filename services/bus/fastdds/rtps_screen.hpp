@@ -8,6 +8,9 @@
 //   DATA_FRAG  loses its key hash: Fast DDS then takes the key from the sample once it is whole
 //   GAP        becomes one GAP for each run of samples, without a list
 //
+// Where a reader in Cyclone DDS begins anew, it takes no notice (acknack_counts.hpp). So
+//   ACKNACK    of that kind becomes one for sample 0 with a new count
+//
 // What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a
 // message whose lengths do not agree, statistics of Fast DDS itself (submessage 0x80, not used
 // here), fragments outside of their sample, samples of more than max_sample_bytes.
@@ -19,6 +22,8 @@
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "services/bus/fastdds/acknack_counts.hpp"
 
 namespace dyncal::bus {
 
@@ -41,12 +46,14 @@ private:
                                    std::span<const unsigned char> body);
   void append_gap(std::span<const unsigned char> entities, std::int64_t first, std::int64_t end);
   bool pass_submessage(unsigned char id, unsigned char flags, std::span<const unsigned char> body);
+  bool pass_acknack(unsigned char flags, std::span<const unsigned char> body);
   bool pass_data(unsigned char flags, std::span<const unsigned char> body);
   bool pass_fragments(unsigned char flags, std::span<const unsigned char> body);
   bool pass_gap(unsigned char flags, std::span<const unsigned char> body);
 
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;
+  AcknackCounts acknack_counts_;
 };
 
 } // namespace dyncal::bus

@@ -88,6 +88,27 @@ TEST(RtpsScreen, LeavesWholeMessagesAsTheyAre) {
   EXPECT_EQ(passed(message), message);
 }
 
+Bytes acknack(unsigned char flags, std::uint64_t base, std::uint32_t count) {
+  return submessage(0x06, flags, entities + sequence(base) + u32(0) + u32(count));
+}
+
+TEST(RtpsScreen, MakesAReaderThatBeginsAnewOneThatFastDdsTakesNoticeOf) {
+  RtpsScreen screen;
+  const auto expect_passed = [&screen](const Bytes& message, const Bytes& expected) {
+    const auto bytes = screen.pass(header() + message);
+    EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), header() + expected);
+  };
+  expect_passed(acknack(0x03, 9, 40), acknack(0x03, 9, 40));
+  expect_passed(acknack(0x01, 1, 0), acknack(0x01, 0, 41)); // as Cyclone DDS begins anew
+  expect_passed(acknack(0x01, 1, 41), acknack(0x01, 1, 42));
+  expect_passed(acknack(0x03, 1, 0), acknack(0x03, 1, 1)); // asks for no answer: not that
+  // The same in big endian.
+  const Bytes body = entities + Bytes{0, 0, 0, 0, 0, 0, 0, 1} + Bytes(8, 0);
+  const Bytes begun = entities + Bytes(15, 0) + Bytes{43};
+  const Bytes head{0x06, 0x00, 0, 24};
+  expect_passed(head + body, head + begun);
+}
+
 TEST(RtpsScreen, TakesTheKeyHashOutOfFragments) {
   Bytes expected = header() + fragments({});
   const std::size_t key_hash_at = header().size() + 4 + 32;
