@@ -11,6 +11,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 class Figures:
     cpu_s: float
     resident_mb: float
+    peak_mb: float
     descriptors: int
     threads: int
 
@@ -24,6 +25,7 @@ def figures(pid):
     return Figures(
         cpu_s=(int(after_name[11]) + int(after_name[12])) / TICKS_PER_S,
         resident_mb=int(status["VmRSS"].split()[0]) / 1024.0,
+        peak_mb=int(status["VmHWM"].split()[0]) / 1024.0,
         descriptors=len(os.listdir(place / "fd")),
         threads=int(status["Threads"]),
     )
