@@ -63,7 +63,8 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
     refuse(recipe.error().message);
     return;
   }
-  const EvaluationLimits limits = limits_of(*recipe);
+  EvaluationLimits limits = limits_of(*recipe);
+  limits.behind = begin == SourceStreams::Begin::behind;
   evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), limits);
   streams_.emplace(participant_, wake_up_, bench_, run_, *evaluator_, begin);
   if (begin == SourceStreams::Begin::behind) {

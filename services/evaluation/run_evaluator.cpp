@@ -31,8 +31,9 @@ Evaluation completed(Evaluation evaluation, std::uint32_t attempt, std::optional
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
-      records_(*recipe_, method_->searches(), limits.samples_of_a_source), level_watch_(*recipe_),
-      summary_(*recipe_), runs_ahead_(limits.ahead && method_->can_run_ahead()),
+      records_(*recipe_, method_->searches(), limits.samples_of_a_source, limits.behind),
+      level_watch_(*recipe_), summary_(*recipe_),
+      runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
       never_waits_(limits.never_waits), evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());

@@ -66,6 +66,8 @@ struct EvaluationLimits {
   // With that: it is followed to this block and no further, as a report made before covers it.
   std::optional<BlockPosition> clock_end{};
   bool ahead = false; // in the caller's thread only: before the end of a step has come
+  // The run began before: its samples come before what was announced about them (step_search.hpp).
+  bool behind = false;
 };
 
 class RunEvaluator {

@@ -6,15 +6,15 @@
 namespace dyncal::services {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
-                       std::size_t capacity)
+                       std::size_t capacity, bool behind)
     : excitation_(recipe) {
   for (const std::string& source : recipe.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }
   for (const SearchedChannel& one : searched) {
-    searches_.push_back(
-        {one.channel.source, one.sources,
-         StepSearch(recipe, excitation_.order(), of(one.channel.source), one.channel.channel)});
+    searches_.push_back({one.channel.source, one.sources,
+                         StepSearch(recipe, excitation_.order(), of(one.channel.source),
+                                    one.channel.channel, behind)});
   }
 }
 

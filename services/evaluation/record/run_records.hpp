@@ -41,9 +41,9 @@ struct SourceInterval {
 
 class RunRecords {
 public:
-  // `capacity`: samples that a source's record holds.
+  // `capacity`: samples that a source's record holds. `behind`: step_search.hpp.
   RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
-             std::size_t capacity = SourceRecord::default_capacity);
+             std::size_t capacity = SourceRecord::default_capacity, bool behind = false);
   RunRecords(const RunRecords&) = delete; // its searches look at it
   RunRecords& operator=(const RunRecords&) = delete;
 

@@ -8,9 +8,11 @@ namespace dyncal::services {
 namespace {
 
 constexpr double ns_per_s = 1e9;
+constexpr double distinct_frequencies_rel = 0.01; // that no window of one is one of the other
 constexpr std::int64_t max_quiet_ns = 2'000'000'000;
 
 constexpr std::int64_t beginning_of_time = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t end_of_time = std::numeric_limits<std::int64_t>::max();
 
 std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
@@ -27,13 +29,14 @@ TimeInterval evaluated_part(const analysis::ExcitationWindow& window, const Reci
 } // namespace
 
 StepSearch::StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
-                       std::string sync_channel)
+                       std::string sync_channel, bool behind)
     : recipe_(recipe), order_(order), record_(record), sync_channel_(std::move(sync_channel)),
-      search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
+      behind_(behind), search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
 
 void StepSearch::search_step(std::size_t step) {
   step_ = step;
   finder_.reset();
+  in_place_.reset();
   expected_.reset();
   expected_until_ns_ = beginning_of_time;
   fed_ = 0;
@@ -54,11 +57,14 @@ void StepSearch::advance(std::size_t last_step) {
     if (!finder_) {
       return;
     }
-    if (!finder_->ended()) {
+    if (const auto window = finder_->window(); behind_ && window && was_passed_over(*window)) {
+      search_step(step_ + 1);
+    } else if (finder_->ended()) {
+      accept(*window);
+    } else {
       expect();
       return;
     }
-    accept(*finder_->window());
   }
 }
 
@@ -79,25 +85,64 @@ void StepSearch::feed() {
   if (!finder_) {
     finder_.emplace(order_.step(step_).frequency);
   }
+  push_good(*finder_,
+            static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten()),
+            end_of_time);
+  fed_ = record_.forgotten() + record_.stamps_ns().size();
+  if (record_.ended()) {
+    finder_->finish();
+  }
+}
+
+// The samples from where the search is to before `end_ns`, from the `from`-th that is held on.
+void StepSearch::push_good(analysis::ExcitationWindowFinder& finder, std::size_t from,
+                           std::int64_t end_ns) const {
   const auto stamps = record_.stamps_ns();
   const auto flags = record_.flags();
-  const auto sync = record_.column(*channel);
-  const auto good = [&](std::size_t i) { return flags[i] == 0 && stamps[i] >= search_from_ns_; };
-  auto i = static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten());
-  while (i < stamps.size()) {
+  const auto sync = record_.column(*record_.channel(sync_channel_));
+  const auto good = [&](std::size_t i) {
+    return flags[i] == 0 && stamps[i] >= search_from_ns_ && stamps[i] < end_ns;
+  };
+  for (std::size_t i = from; i < stamps.size();) {
     const std::size_t begin = i;
     while (i < stamps.size() && good(i)) {
       ++i;
     }
-    finder_->push(stamps.subspan(begin, i - begin), sync.subspan(begin, i - begin));
+    finder.push(stamps.subspan(begin, i - begin), sync.subspan(begin, i - begin));
     while (i < stamps.size() && !good(i)) {
       ++i;
     }
   }
-  fed_ = record_.forgotten() + stamps.size();
-  if (record_.ended()) {
-    finder_->finish();
+}
+
+// A later step lies between the step before and this window.
+bool StepSearch::was_passed_over(const analysis::ExcitationWindow& window) {
+  if (in_place_ == window.excited_begin_ns) {
+    return false;
   }
+  for (std::size_t later = step_ + 1; later < order_.size(); ++later) {
+    if (shows_before(later, window.excited_begin_ns)) {
+      return true;
+    }
+  }
+  in_place_ = window.excited_begin_ns;
+  return false;
+}
+
+bool StepSearch::shows_before(std::size_t step, std::int64_t end_ns) const {
+  const RecipeStep& planned = order_.step(step);
+  const std::int64_t excited_ns = to_ns(planned.settling_s + planned.duration_s);
+  const auto stamps = record_.stamps_ns();
+  const std::int64_t begin_ns = std::max(search_from_ns_, stamps.empty() ? end_ns : stamps.front());
+  const double ratio = planned.frequency.hz() / order_.step(step_).frequency.hz();
+  if (std::abs(ratio - 1.0) < distinct_frequencies_rel || end_ns - begin_ns < excited_ns) {
+    return false;
+  }
+  analysis::ExcitationWindowFinder finder(planned.frequency);
+  push_good(finder, 0, end_ns);
+  finder.finish();
+  const auto window = finder.window();
+  return window && window->end_ns - window->begin_ns >= excited_ns / 2;
 }
 
 // Looks once a frame: in between, the window that is found so far does not change.

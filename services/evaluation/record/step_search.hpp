@@ -6,6 +6,10 @@
 // end of the one before; the search never goes back but when the source was restarted. What it
 // finds depends on the samples only, not on how they came.
 //
+// Where samples come before what was announced about them (`behind`), nobody says that a step was
+// over without being found, and its repeat behind all others would be taken for it. Then a step was
+// passed over when a later one, of another frequency, was excited before what shows of it.
+//
 // Belongs to one thread; the record and the recipe must outlive it.
 #pragma once
 
@@ -26,7 +30,7 @@ class StepSearch {
 public:
   // `order` too outlives the search.
   StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
-             std::string sync_channel);
+             std::string sync_channel, bool behind = false);
 
   // Looks at the samples that have come since the last call, as far as `last_step`.
   void advance(std::size_t last_step);
@@ -62,6 +66,10 @@ private:
   void feed();
   void expect();
   void accept(const analysis::ExcitationWindow& window);
+  [[nodiscard]] bool was_passed_over(const analysis::ExcitationWindow& window);
+  [[nodiscard]] bool shows_before(std::size_t step, std::int64_t end_ns) const;
+  void push_good(analysis::ExcitationWindowFinder& finder, std::size_t from,
+                 std::int64_t end_ns) const;
   [[nodiscard]] std::optional<TimeInterval>
   quiet_time(const analysis::ExcitationWindow& window) const;
 
@@ -69,13 +77,15 @@ private:
   const StepOrder& order_;
   const SourceRecord& record_;
   std::string sync_channel_;
+  bool behind_;
   std::uint32_t restarts_ = 0;
   std::size_t step_ = 0;
   std::int64_t search_from_ns_;
   std::uint64_t fed_ = 0; // samples of the record, counted from its very first
   std::optional<analysis::ExcitationWindowFinder> finder_;
   std::map<std::size_t, Found> found_;
-  std::optional<Found> expected_;  // of the step that is searched
+  std::optional<std::int64_t> in_place_; // beginning of a window that no later step is before
+  std::optional<Found> expected_;        // of the step that is searched
   std::int64_t expected_until_ns_; // newest stamp up to which this need not be looked at again
 };
 

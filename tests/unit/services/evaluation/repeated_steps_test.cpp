@@ -13,20 +13,27 @@ namespace dyncal::services {
 namespace {
 
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Ne;
 
 using State = StepAnnouncement::State;
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>; // step and attempt
 
 constexpr double first_block_samples = 50.0 * 997e-6; // of the DAU, s
 
 // Steps 1 and 2 are planned, at 40 and 80 Hz; what is excited is `played`, 2 s each.
 class RepeatedSteps : public testing::TestWithParam<bool> {
 protected:
-  void play(std::vector<tests::SyntheticStep> played, std::size_t lost_block = 0) {
+  void play(std::vector<tests::SyntheticStep> played, EvaluationLimits limits = {},
+            std::size_t lost_block = 0) {
     const tests::SyntheticRun planned;
     const tests::SyntheticRun run{.steps = std::move(played), .lost_block = lost_block};
-    evaluator_.emplace(*parse_recipe(planned.measurement()), EvaluationLimits{.ahead = GetParam()});
+    limits.ahead = GetParam();
+    evaluator_.emplace(*parse_recipe(planned.measurement()), limits);
     ASSERT_TRUE(tests::describe(*evaluator_, run.acs_description()));
     ASSERT_TRUE(tests::describe(*evaluator_, run.dau_description()));
     acs_ = run.acs_blocks();
@@ -85,8 +92,6 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(AheadOfTheEndOrNot, RepeatedSteps, testing::Bool());
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
-
 TEST_P(RepeatedSteps, AConductedRunIsNotFinishedBeforeItsExcitationIsOver) {
   play({{"40", 10.0}, {"80", 10.0}, {"40", 0.0}});
   excite(1, 2.3);
@@ -100,8 +105,39 @@ TEST_P(RepeatedSteps, AConductedRunIsNotFinishedBeforeItsExcitationIsOver) {
   EXPECT_EQ(functions_[0].points.size(), 2U);
 }
 
+// As where the run is taken over from a service that has died: all samples come before what was
+// announced about them.
+TEST_P(RepeatedSteps, ARepeatIsNotTakenForAStepThatWasNeverFound) {
+  play({{"40", 0.0}, {"80", 10.0}, {"40", 10.0}, {"40", 0.0}}, {.behind = true});
+  evaluator_->expect_announcements();
+  send_until(6.3);
+  EXPECT_THAT(steps_and_attempts(), Each(Ne(Pair{1, 2}))) << "not announced yet";
+  evaluator_->announce({.step = 1, .state = State::done, .attempt = 2, .repeated_steps = {1}});
+  send_until(7.9);
+  end();
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}, Pair{1, 2}));
+  EXPECT_FALSE(results_[0].valid);
+  EXPECT_THAT(results_[0].problem, HasSubstr("no steady sine of 40 Hz"));
+  EXPECT_TRUE(results_[1].valid) << results_[1].problem;
+  EXPECT_TRUE(results_[2].valid) << results_[2].problem;
+  EXPECT_NEAR(results_[2].magnitude, 0.95, 1e-3);
+}
+
+TEST_P(RepeatedSteps, AStepInItsPlaceIsFoundWhereARunIsTakenOver) {
+  play({{"40", 10.0}, {"80", 10.0}, {"40", 10.0}, {"40", 0.0}}, {.behind = true});
+  evaluator_->expect_announcements();
+  send_until(6.3);
+  evaluator_->announce({.step = 1, .state = State::done, .attempt = 2, .repeated_steps = {1}});
+  send_until(7.9);
+  end();
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}, Pair{1, 2}));
+  for (const StepResult& result : results_) {
+    EXPECT_TRUE(result.valid) << result.problem;
+  }
+}
+
 TEST_P(RepeatedSteps, AStepWithALossIsReplaced) {
-  play({{"40", 10.0}, {"80", 10.0}, {"40", 10.0}}, 22); // about 1.1 s: in the first
+  play({{"40", 10.0}, {"80", 10.0}, {"40", 10.0}}, {}, 22); // about 1.1 s: in the first
   excite(1, 2.3);
   excite(2, 4.3);
   ASSERT_EQ(results_.size(), 2U);
