@@ -24,7 +24,7 @@ case $2 in
   programs)
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
     targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
-      dyncal-recorder dyncal-virtual-bench
+      dyncal-recorder dyncal-virtual-bench guide
       dyncal_analysis_models) # which no program links, but is installed
     ;;
   *)

@@ -27,6 +27,7 @@ optional_build_packages=(
   libzstd-dev        # smaller recordings
   libpqxx-dev        # results of runs in PostgreSQL
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
+  cmark-gfm python3          # the guide as HTML
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3

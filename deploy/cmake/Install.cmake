@@ -1,6 +1,7 @@
 # What `cmake --install` brings to a machine:
 #
-#   programs     the programs, the units that start them, the limits that the host should have
+#   programs     the programs, the units that start them, the limits that the host should have, the
+#                guide and the files of the example laboratory
 #   development  headers, static libraries, CMake package and pkg-config files, the contract (IDL)
 #
 # `cmake --install build --prefix DIR [--component development]`: paths inside installed files are
@@ -25,6 +26,10 @@ install(TARGETS
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT programs)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+install(DIRECTORY deploy/example-lab DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+if(DYNCAL_GUIDE_FOLDER)
+  install(DIRECTORY ${DYNCAL_GUIDE_FOLDER} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+endif()
 install(FILES services/model/model.schema.json services/report/result.schema.json
   DESTINATION ${data} COMPONENT programs)
 # The schema of certificates, under licences of its own.

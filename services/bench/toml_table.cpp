@@ -88,11 +88,24 @@ const toml::node* TomlTable::find(const std::string& key) {
 }
 
 const toml::node* TomlTable::node(const std::string& key) {
+  tell(key, {});
   return find(key);
 }
 
 std::string TomlTable::full_name(const std::string& key) const {
   return name_.empty() ? key : name_ + "." + key;
+}
+
+void TomlTable::tell(const std::string& key, AskedKey what) const {
+  if (AskedKeys* const listening = AskedKeys::listening()) {
+    what.name = full_name(key);
+    listening->add(std::move(what));
+  }
+}
+
+bool TomlTable::has(const std::string& key) const {
+  tell(key, {});
+  return table_.contains(key);
 }
 
 std::string TomlTable::where(const std::string& key) const {
@@ -102,13 +115,14 @@ std::string TomlTable::where(const std::string& key) const {
 }
 
 void TomlTable::refuse(const std::string& key, const std::string& what) {
-  std::string& place = has(key) ? problem_ : about_absent_key_;
+  std::string& place = table_.contains(key) ? problem_ : about_absent_key_;
   if (place.empty()) {
     place = fmt::format("{}: key '{}' {}", where(key), full_name(key), what);
   }
 }
 
 std::string TomlTable::required_text(const std::string& key) {
+  tell(key, {.type = "text"});
   if (find(key) == nullptr) {
     refuse(key, "is missing");
     return {};
@@ -121,6 +135,7 @@ std::string TomlTable::required_text(const std::string& key) {
 }
 
 std::string TomlTable::text(const std::string& key, const std::string& otherwise) {
+  tell(key, {.type = "text", .value = otherwise.empty() ? "" : fmt::format("\"{}\"", otherwise)});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return otherwise;
@@ -133,6 +148,7 @@ std::string TomlTable::text(const std::string& key, const std::string& otherwise
 }
 
 std::optional<double> TomlTable::optional_number(const std::string& key, const std::string& unit) {
+  tell(key, {.type = "number", .unit = unit});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return std::nullopt;
@@ -146,10 +162,12 @@ std::optional<double> TomlTable::optional_number(const std::string& key, const s
 }
 
 double TomlTable::number(const std::string& key, double otherwise, const std::string& unit) {
+  tell(key, {.type = "number", .unit = unit, .value = fmt::format("{}", otherwise)});
   return optional_number(key, unit).value_or(otherwise);
 }
 
 int TomlTable::whole_number(const std::string& key, int otherwise, int least) {
+  tell(key, {.type = "whole number", .value = fmt::format("{}", otherwise)});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return otherwise;
@@ -163,6 +181,7 @@ int TomlTable::whole_number(const std::string& key, int otherwise, int least) {
 }
 
 bool TomlTable::yes_no(const std::string& key, bool otherwise) {
+  tell(key, {.type = "true or false", .value = otherwise ? "true" : "false"});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return otherwise;
@@ -175,6 +194,7 @@ bool TomlTable::yes_no(const std::string& key, bool otherwise) {
 }
 
 std::vector<std::string> TomlTable::texts(const std::string& key) {
+  tell(key, {.type = "list of texts"});
   std::vector<std::string> values;
   const toml::node* found = find(key);
   if (found == nullptr) {
@@ -197,6 +217,7 @@ std::vector<std::string> TomlTable::texts(const std::string& key) {
 }
 
 std::vector<double> TomlTable::numbers(const std::string& key, const std::string& unit) {
+  tell(key, {.type = "number or list of numbers", .unit = unit});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return {};
@@ -223,6 +244,7 @@ std::vector<double> TomlTable::numbers(const std::string& key, const std::string
 }
 
 std::map<std::string, std::string> TomlTable::text_map(const std::string& key) {
+  tell(key, {.type = "table of texts"});
   std::map<std::string, std::string> values;
   const toml::node* found = find(key);
   if (found == nullptr) {
@@ -246,6 +268,9 @@ std::map<std::string, std::string> TomlTable::text_map(const std::string& key) {
 
 std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& words,
                               const std::string& otherwise) {
+  tell(key, {.type = "text",
+             .value = otherwise.empty() ? "" : fmt::format("\"{}\"", otherwise),
+             .choices = words});
   if (!has(key) && otherwise.empty()) {
     refuse(key, fmt::format("is missing: one of {}", fmt::join(words, ", ")));
   }
@@ -257,6 +282,7 @@ std::string TomlTable::one_of(const std::string& key, const std::vector<std::str
 }
 
 std::optional<TomlTable> TomlTable::table(const std::string& key) {
+  tell(key, {.type = "table"});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return std::nullopt;
@@ -269,6 +295,7 @@ std::optional<TomlTable> TomlTable::table(const std::string& key) {
 }
 
 std::vector<std::string> TomlTable::keys() const {
+  tell("NAME", {.type = "table"}); // names that the file chooses
   std::vector<std::string> names;
   for (const auto& entry : table_) {
     names.emplace_back(entry.first.str());

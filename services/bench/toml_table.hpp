@@ -13,6 +13,8 @@
 
 #include <toml++/toml.h>
 
+#include "services/bench/asked_keys.hpp"
+
 namespace dyncal::services {
 
 class TomlTable {
@@ -21,7 +23,7 @@ public:
   // first problem found.
   TomlTable(const toml::table& table, std::string name, std::string file, std::string& problem);
 
-  [[nodiscard]] bool has(const std::string& key) const { return table_.contains(key); }
+  [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] std::string required_text(const std::string& key);
   [[nodiscard]] std::string text(const std::string& key, const std::string& otherwise = "");
   [[nodiscard]] double number(const std::string& key, double otherwise, const std::string& unit);
@@ -54,6 +56,8 @@ public:
 private:
   [[nodiscard]] const toml::node* find(const std::string& key);
   [[nodiscard]] std::string full_name(const std::string& key) const;
+  // Tells whoever collects what is asked for; `what.name` is filled in here.
+  void tell(const std::string& key, AskedKey what) const;
 
   const toml::table& table_;
   std::string name_;

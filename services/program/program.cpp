@@ -39,6 +39,7 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
       ->check(vendor_validator())
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain: one per laboratory")
+      ->envname("DYNCAL_DOMAIN")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
   app.add_option("--peer", options.peers,

@@ -78,8 +78,14 @@ def check_files(options, prefix):
         "include/dyncal/idl/dyncal.h",
         "share/dyncal/idl/dyncal.idl",
         "share/doc/dyncal/LICENSE",
+        "share/doc/dyncal/example-lab/documents/laboratory.toml",
     ]:
         expect((prefix / name).is_file(), f"{name} is missing")
+
+    guide = options.build / "share/doc/dyncal/guide"
+    for page in files_below(guide) if guide.exists() else []:
+        installed = prefix / "share/doc/dyncal/guide" / page.relative_to(guide)
+        expect(installed.is_file(), f"{installed.relative_to(prefix)} is missing")
 
     units = files_below(prefix / "lib/systemd/system")
     expect(len(units) == 7, f"7 units expected, {len(units)} found")
