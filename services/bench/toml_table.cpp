@@ -308,7 +308,7 @@ std::string TomlTable::lines_without(const std::set<std::string>& keys) const {
   add_lines(table_, "", keys, lines);
   std::string text;
   for (const auto& [key, value] : lines) {
-    text += key + " = " + value + "\n";
+    text += fmt::format("{} = {}\n", key, value);
   }
   return text;
 }
