@@ -16,18 +16,18 @@ import readers
 
 PAGE = pages.GUIDE / "flags.md"
 TITLE = """\
-| flag | in the table | meaning, and what to do | repeated | certificate |
-|---|---|---|---|---|
+| flag | meaning, and what to do | repeated | certificate |
+|---|---|---|---|
 """
 
 
 def table_of(flags):
     rows = []
     for flag in flags:
-        said = f"`{flag['sentence']}`" if flag["sentence"] else ""
+        said = f"*{flag['sentence']}*: " if flag["sentence"] else ""
         certificate = "refused" if flag["forbids"] else "stated"
         rows.append(
-            f"| `{flag['name']}` | {said} | {flag['explanation']} | "
+            f"| `{flag['name']}` | {said}{flag['explanation']} | "
             f"{'yes' if flag['repeated'] else 'no'} | {certificate}: {flag['reason']} |\n"
         )
     return TITLE + "".join(rows)

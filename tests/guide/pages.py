@@ -4,7 +4,7 @@ A code block says in its first line what it is:
 
     sh                 commands, run in order by run_page.py
     text               what the commands above print; `...` stands for what varies
-    text status=1      the same of commands that fail with this status
+    text status=1      the same of commands of which one fails with this status; several: 0,1
     toml bench.toml    a whole file, written under this name (any language)
     toml in bench.toml keys that belong into a file that is there already, or into one of
                        deploy/example-lab
