@@ -160,6 +160,7 @@ class Page:
                 "TZ": "UTC",
                 "DYNCAL_DOMAIN": str(domain),
                 "EXAMPLES": str(pages.EXAMPLES),
+                **{k: v for k, v in os.environ.items() if k.endswith("SAN_OPTIONS")},
             },
         )
 
