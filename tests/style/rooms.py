@@ -47,7 +47,7 @@ FLOORS = {
         ["evaluation"],
         ["run"],
         ["report"],
-        ["laboratory", "model", "run_folder", "store"],
+        ["laboratory", "live", "model", "run_folder", "store"],
         ["certificate", "document"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
         ["doctor", "replay"],

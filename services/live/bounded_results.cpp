@@ -1,0 +1,66 @@
+#include "services/live/bounded_results.hpp"
+
+namespace dyncal::services::live {
+namespace {
+
+template <class List>
+void shorten(List& list, std::size_t most) {
+  if (list.size() > most) {
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(most), list.end());
+  }
+}
+
+void bound(std::vector<Flag>& flags, const Limits& limits) {
+  shorten(flags, limits.channels);
+  for (Flag& flag : flags) {
+    flag.sentence = bounded(flag.sentence);
+  }
+}
+
+} // namespace
+
+void bound(StepResult& result, const Limits& limits) {
+  for (std::string* text : {&result.frequency_text_hz, &result.problem, &result.unit}) {
+    *text = bounded(*text);
+  }
+  shorten(result.fits, limits.channels);
+  shorten(result.budget, limits.channels);
+  shorten(result.signals, limits.channels);
+  shorten(result.samples, limits.channels);
+  for (analysis::Contribution& row : result.budget) {
+    row.subject = bounded(row.subject);
+  }
+  for (analysis::ChannelFit& fit : result.fits) {
+    fit.channel = bounded(fit.channel);
+  }
+  bound(result.flags, limits);
+}
+
+void bound(TransferFunction& function, const Limits& limits) {
+  shorten(function.points, limits.rows);
+  for (FrequencyPoint& point : function.points) {
+    point.frequency_text_hz = bounded(point.frequency_text_hz);
+  }
+  if (function.group_delay) {
+    function.group_delay->phase_covariance = {}; // its square: nobody here needs it
+  }
+  function.unit = bounded(function.unit);
+  function.group_delay_problem = bounded(function.group_delay_problem);
+  bound(function.flags, limits);
+}
+
+void bound(ClockReport& report, const Limits& limits) {
+  analysis::SampleClockStatistics& clock = report.clock;
+  shorten(clock.modes_s, limits.rows);
+  shorten(clock.histogram, limits.rows);
+  shorten(clock.over_time, limits.rows);
+  shorten(clock.close_up_ns, limits.rows);
+  shorten(clock.events, limits.rows);
+  shorten(clock.over_temperature, limits.rows);
+  shorten(clock.scatter_temperature_degc, limits.rows);
+  shorten(clock.scatter_interval_ns, limits.rows);
+  shorten(clock.allan, limits.rows);
+  bound(report.flags, limits);
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,21 @@
+#include "services/live/condition.hpp"
+
+namespace dyncal::services::live {
+
+const char* to_string(Severity severity) {
+  switch (severity) {
+  case Severity::ok:
+    break;
+  case Severity::note:
+    return "note";
+  case Severity::warning:
+    return "warning";
+  case Severity::error:
+    return "error";
+  case Severity::stale:
+    return "stale";
+  }
+  return "ok";
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,35 @@
+// How well something is, and the reason in one sentence; and what happened when. Plain data and
+// functions; any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace dyncal::services::live {
+
+// The worse the higher. Stale: nothing is known, for nothing is heard any more.
+enum class Severity { ok, note, warning, error, stale };
+// "warning"
+[[nodiscard]] const char* to_string(Severity severity);
+
+struct Condition {
+  Severity severity = Severity::ok;
+  std::string what; // empty: nothing is wrong
+
+  // Takes the other one if it is worse.
+  void worsen(Severity other, std::string reason) {
+    if (other > severity) {
+      severity = other;
+      what = std::move(reason);
+    }
+  }
+};
+
+struct Event {
+  std::int64_t utc_ns = 0;
+  std::string bench;
+  Severity severity = Severity::note;
+  std::string text;
+};
+
+} // namespace dyncal::services::live

@@ -1,0 +1,370 @@
+#include "services/live/laboratory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "services/bus/names.hpp"
+#include "services/evaluation/result/clock_report_message.hpp"
+#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/live/bounded_results.hpp"
+#include "services/live/changes.hpp"
+
+namespace dyncal::services::live {
+
+const Bench* Laboratory::bench(const std::string& name) const {
+  const auto found = benches_.find(name);
+  return found == benches_.end() ? nullptr : &found->second;
+}
+
+// Of a message that has just come; null if there is no room.
+Bench* Laboratory::bench_of(const std::string& name) {
+  auto found = benches_.find(name);
+  if (found == benches_.end()) {
+    if (!bus::check_bench_name(name) ||
+        (benches_.size() >= limits_.benches && !make_room_for_bench())) {
+      ++left_out_.benches;
+      return nullptr;
+    }
+    found = benches_.try_emplace(name).first;
+    found->second.name = name;
+  }
+  Bench& bench = found->second;
+  bench.heard = clock_.now();
+  bench.heard_utc_ns = clock_.utc_now_ns();
+  changed(bench);
+  return &bench;
+}
+
+bool Laboratory::make_room_for_bench() {
+  const auto oldest =
+      std::min_element(benches_.begin(), benches_.end(), [](const auto& a, const auto& b) {
+        return a.second.heard < b.second.heard;
+      });
+  if (oldest == benches_.end() || clock_.now() - oldest->second.heard <= gone_limit) {
+    return false;
+  }
+  benches_.erase(oldest);
+  ++number_;
+  return true;
+}
+
+Source* Laboratory::source_of(Bench& bench, const std::string& name) {
+  const auto found = bench.sources.find(name);
+  if (found == bench.sources.end() && bench.sources.size() >= limits_.sources) {
+    ++left_out_.sources;
+    return nullptr;
+  }
+  Source& source = found == bench.sources.end() ? bench.sources[name] : found->second;
+  source.name = name;
+  source.heard = clock_.now();
+  source.heard_utc_ns = clock_.utc_now_ns();
+  source.is_silent = false;
+  return &source;
+}
+
+Run* Laboratory::run_of(Bench& bench, const std::string& name) {
+  auto found = bench.runs.find(name);
+  if (found == bench.runs.end()) {
+    if (name.empty() || (bench.runs.size() >= limits_.runs && !make_room_for_run(bench))) {
+      ++left_out_.runs;
+      return nullptr;
+    }
+    found = bench.runs.try_emplace(name).first;
+    found->second.name = name;
+  }
+  found->second.heard = clock_.now();
+  return &found->second;
+}
+
+// The run that nobody conducts and that was heard of longest ago makes way.
+bool Laboratory::make_room_for_run(Bench& bench) {
+  const bus::Clock::Instant now = clock_.now();
+  const auto is_in_use = [&](const Run& run) {
+    return !run.is_over() && !run.is_left_alone(now) && run.conductor_heard.has_value();
+  };
+  auto oldest = bench.runs.end();
+  for (auto run = bench.runs.begin(); run != bench.runs.end(); ++run) {
+    const bool is_older = oldest == bench.runs.end() || run->second.heard < oldest->second.heard;
+    if (!is_in_use(run->second) && is_older) {
+      oldest = run;
+    }
+  }
+  if (oldest == bench.runs.end()) {
+    return false;
+  }
+  bench.runs.erase(oldest);
+  ++left_out_.runs;
+  return true;
+}
+
+std::size_t Laboratory::results() const {
+  std::size_t sum = 0;
+  for (const auto& [name, bench] : benches_) {
+    for (const auto& [run_name, run] : bench.runs) {
+      sum += run.results.size();
+    }
+  }
+  return sum;
+}
+
+bool Laboratory::make_room_for_result(const Run& run) {
+  return run.results.size() < limits_.results_of_run &&
+         (results() < limits_.results || drop_results_of_oldest(run));
+}
+
+// Of all runs but this one.
+bool Laboratory::drop_results_of_oldest(const Run& run) {
+  Run* oldest = nullptr;
+  for (auto& [name, bench] : benches_) {
+    for (auto& [run_name, other] : bench.runs) {
+      const bool is_older = oldest == nullptr || other.heard < oldest->heard;
+      if (&other != &run && !other.results.empty() && is_older) {
+        oldest = &other;
+      }
+    }
+  }
+  if (oldest == nullptr) {
+    return false;
+  }
+  left_out_.results += oldest->results.size();
+  oldest->results.clear();
+  oldest->newest_result.reset();
+  ++oldest->results_number;
+  return true;
+}
+
+void Laboratory::take(const wire::SourceDescription& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Source* source = bench == nullptr ? nullptr : source_of(*bench, message.source().to_string());
+  if (source != nullptr) {
+    source->take(message, limits_);
+  }
+}
+
+void Laboratory::take(const wire::SourceStatus& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  if (bench == nullptr) {
+    return;
+  }
+  const auto known = bench->sources.find(message.source().to_string());
+  const Source before = known == bench->sources.end() ? Source{} : known->second;
+  if (Source* source = source_of(*bench, message.source().to_string())) {
+    source->take(message, limits_, clock_.now());
+    note(*bench, changes_of(before, *source));
+  }
+}
+
+void Laboratory::take(const wire::Measurement& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  const RunBefore before = state_before(*run);
+  run->take(message, limits_, clock_.now());
+  note(*bench, changes_of(before, *run));
+}
+
+void Laboratory::take(const wire::Excitation& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  const bool was_aborted = run->now && run->now->step.state == StepState::aborted;
+  run->take(message, clock_.now());
+  if (run->now->step.state == StepState::aborted && !was_aborted) {
+    note(*bench, Severity::warning,
+         fmt::format("{}: the excitation of step {} was broken off", run->name,
+                     run->now->step.step));
+  }
+}
+
+void Laboratory::take(const wire::CalibrationResult& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  StepResult result = from_message(message);
+  bound(result, limits_);
+  Run::ResultKey key{result.step, result.repetition, result.channel};
+  const auto known = run->results.find(key);
+  if (known == run->results.end() && !make_room_for_result(*run)) {
+    ++left_out_.results;
+    return;
+  }
+  if (known != run->results.end() && result.attempt < known->second.attempt) {
+    return;
+  }
+  const bool is_new = known == run->results.end() || known->second.valid;
+  if (!result.valid && is_new) {
+    note(*bench, Severity::warning,
+         fmt::format("{}: no result of {} in step {}: {}", run->name, result.channel, result.step,
+                     result.problem));
+  }
+  run->results.insert_or_assign(key, std::move(result));
+  run->newest_result = std::move(key);
+  ++run->results_number;
+}
+
+void Laboratory::take(const wire::TransferFunction& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  TransferFunction function = from_message(message);
+  const bool is_known = run->transfer_functions.contains(function.channel);
+  if (!is_known && run->transfer_functions.size() >= limits_.channels) {
+    ++left_out_.results;
+    return;
+  }
+  bound(function, limits_);
+  run->transfer_functions.insert_or_assign(function.channel, std::move(function));
+  ++run->results_number;
+}
+
+void Laboratory::take(const wire::SampleClockReport& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  ClockReport report = from_message(message);
+  const bool is_known = run->clock_reports.contains(report.source);
+  if (!is_known && run->clock_reports.size() >= limits_.sources) {
+    ++left_out_.results;
+    return;
+  }
+  bound(report, limits_);
+  run->clock_reports.insert_or_assign(report.source, std::move(report));
+  ++run->results_number;
+}
+
+void Laboratory::take(const wire::ServiceStatus& message) {
+  Bench* bench = bench_of(message.bench().to_string());
+  if (bench == nullptr) {
+    return;
+  }
+  take_service(*bench, message);
+  if (!message.recording().empty() || message.run().to_string().empty()) {
+    return;
+  }
+  Run* run = run_of(*bench, message.run().to_string());
+  if (run == nullptr) {
+    return;
+  }
+  const RunBefore before = state_before(*run);
+  run->take(message, clock_.now());
+  note(*bench, changes_of(before, *run));
+}
+
+void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) {
+  const std::string name = message.service().to_string();
+  const auto known = bench.services.find(name);
+  if (known == bench.services.end() && bench.services.size() >= limits_.services) {
+    ++left_out_.services;
+    return;
+  }
+  Service& service = bench.services[name];
+  const std::string message_before = service.message;
+  service = {.name = name,
+             .run = message.run().to_string(),
+             .health = message.health() == wire::HEALTH_OK       ? Health::ok
+                       : message.health() == wire::HEALTH_FAILED ? Health::failed
+                                                                 : Health::waiting,
+             .message = bounded(message.message()),
+             .software = bounded(message.software()),
+             .dds = bounded(message.dds()),
+             .host = bounded(message.host()),
+             .process_id = message.process_id(),
+             .recording = bounded(message.recording()),
+             .messages_stored = message.messages_stored(),
+             .messages_not_stored = message.messages_not_stored(),
+             .heard = clock_.now(),
+             .heard_utc_ns = clock_.utc_now_ns()};
+  if (service.is_recorder() && !service.message.empty() && service.message != message_before) {
+    note(bench, Severity::error, "recorder: " + service.message);
+  }
+}
+
+void Laboratory::set_programs(std::vector<HeardProgram> programs, std::vector<HostClock> clocks) {
+  if (programs.size() != programs_.size() || clocks.size() != clocks_.size()) {
+    ++number_;
+  }
+  programs_ = std::move(programs);
+  clocks_ = std::move(clocks);
+}
+
+void Laboratory::work() {
+  const bus::Clock::Instant now = clock_.now();
+  for (auto& [name, bench] : benches_) {
+    for (auto& [source_name, source] : bench.sources) {
+      if (!source.is_silent && now - source.heard > silence_limit) {
+        source.is_silent = true;
+        changed(bench);
+        if (source.state != SourceState::ended) {
+          note(bench, Severity::stale, fmt::format("{} has gone silent", source_name));
+        }
+      }
+    }
+    const BenchState state = state_of(bench, now);
+    if (state != bench.state) {
+      if (state == BenchState::silent) {
+        note(bench, Severity::stale, condition_of(bench, now).what);
+      }
+      bench.state = state;
+      changed(bench);
+    }
+  }
+}
+
+void Laboratory::note(Bench& bench, Severity severity, std::string text) {
+  bench.events.push_back({clock_.utc_now_ns(), bench.name, severity, bounded(text)});
+  if (bench.events.size() > limits_.events) {
+    bench.events.pop_front();
+  }
+  changed(bench);
+}
+
+void Laboratory::note(Bench& bench, std::vector<Condition> changes) {
+  for (Condition& change : changes) {
+    note(bench, change.severity, std::move(change.what));
+  }
+}
+
+std::optional<ClockOffset> Laboratory::clock_of(const std::string& host) const {
+  const auto found = std::find_if(clocks_.begin(), clocks_.end(),
+                                  [&](const HostClock& clock) { return clock.host == host; });
+  return found == clocks_.end() ? std::nullopt : std::optional(found->clock);
+}
+
+std::optional<ClockOffset> Laboratory::worst_clock(const Bench& bench) const {
+  std::optional<ClockOffset> worst;
+  for (const auto& [name, source] : bench.sources) {
+    const auto clock = clock_of(source.host);
+    if (clock && (!worst || std::abs(clock->offset_s) > std::abs(worst->offset_s))) {
+      worst = clock;
+    }
+  }
+  return worst;
+}
+
+std::vector<Event> Laboratory::events() const {
+  std::vector<Event> all;
+  for (const auto& [name, bench] : benches_) {
+    all.insert(all.end(), bench.events.begin(), bench.events.end());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Event& a, const Event& b) { return a.utc_ns < b.utc_ns; });
+  if (all.size() > limits_.events) {
+    all.erase(all.begin(), all.end() - static_cast<std::ptrdiff_t>(limits_.events));
+  }
+  return all;
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,47 @@
+#include "services/live/laboratory_readers.hpp"
+
+#include "services/contract/topics.hpp"
+
+namespace dyncal::services::live {
+
+Expected<LaboratoryReaders> LaboratoryReaders::open(bus::Participant& participant,
+                                                    const std::string& bench,
+                                                    const ProgramIdentity& own, bus::Clock& clock,
+                                                    const std::shared_ptr<bus::WakeUp>& wake_up) {
+  namespace topics = bus::topics;
+  auto descriptions = participant.reader(topics::source_description, bench, wake_up);
+  auto sources = participant.reader(topics::source_status, bench, wake_up);
+  auto measurements = participant.reader(topics::measurement, bench, wake_up);
+  auto excitation = participant.reader(topics::excitation, bench, wake_up);
+  auto services = participant.reader(topics::service_status, bench, wake_up);
+  auto results = participant.reader(topics::calibration_result, bench, wake_up);
+  auto functions = participant.reader(topics::transfer_function, bench, wake_up);
+  auto clocks = participant.reader(topics::sample_clock_report, bench, wake_up);
+  auto asker = ClockAsker::open(participant, own, clock, wake_up);
+  if (const auto error = first_error(descriptions, sources, measurements, excitation, services,
+                                     results, functions, clocks, asker)) {
+    return fail(*error);
+  }
+  return LaboratoryReaders(Readers{std::move(*descriptions), std::move(*sources),
+                                   std::move(*measurements), std::move(*excitation),
+                                   std::move(*services), std::move(*results), std::move(*functions),
+                                   std::move(*clocks)},
+                           std::move(*asker));
+}
+
+void LaboratoryReaders::work(Laboratory& laboratory) {
+  const auto feed = [&](const auto& message) { laboratory.take(message); };
+  readers_.descriptions.take(feed);
+  readers_.sources.take(feed);
+  readers_.measurements.take(feed);
+  readers_.excitation.take(feed);
+  readers_.services.take(feed);
+  readers_.results.take(feed);
+  readers_.functions.take(feed);
+  readers_.clocks.take(feed);
+  asker_.work();
+  laboratory.set_programs(asker_.programs(), asker_.other_hosts());
+  laboratory.work();
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,302 @@
+#include "services/live/run.hpp"
+
+#include <algorithm>
+
+#include "services/contract/evaluation_method_message.hpp"
+
+namespace dyncal::services::live {
+namespace {
+
+RunState state_of(wire::MeasurementState state) {
+  switch (state) {
+  case wire::MEASUREMENT_PLANNED:
+    return RunState::planned;
+  case wire::MEASUREMENT_RUNNING:
+    return RunState::running;
+  case wire::MEASUREMENT_DONE:
+    return RunState::done;
+  case wire::MEASUREMENT_ABORTED:
+    return RunState::aborted;
+  }
+  return RunState::unknown;
+}
+
+StepState state_of(wire::ExcitationState state) {
+  switch (state) {
+  case wire::EXCITATION_SETTLING:
+    return StepState::settling;
+  case wire::EXCITATION_STEADY:
+    return StepState::steady;
+  case wire::EXCITATION_DONE:
+    return StepState::done;
+  case wire::EXCITATION_ABORTED:
+    return StepState::aborted;
+  }
+  return StepState::open;
+}
+
+AnalysisState state_of(wire::ArmState state) {
+  switch (state) {
+  case wire::ARM_WAITING:
+    return AnalysisState::waiting;
+  case wire::ARM_ARMED:
+    return AnalysisState::armed;
+  case wire::ARM_REFUSED:
+    return AnalysisState::refused;
+  case wire::ARM_FINISHED:
+    return AnalysisState::finished;
+  }
+  return AnalysisState::waiting;
+}
+
+Health health_of(wire::HealthState state) {
+  switch (state) {
+  case wire::HEALTH_OK:
+    return Health::ok;
+  case wire::HEALTH_FAILED:
+    return Health::failed;
+  case wire::HEALTH_WAITING:
+    return Health::waiting;
+  }
+  return Health::ok;
+}
+
+// How far the steps are is not in the plan: those of the one before keep it.
+std::vector<Step> steps_of(const wire::Measurement& measurement, const std::vector<Step>& before,
+                           const Limits& limits) {
+  std::vector<Step> steps;
+  for (const wire::PlannedStep& planned : measurement.steps()) {
+    if (steps.size() == limits.steps) {
+      break;
+    }
+    Step step{.step = planned.step(),
+              .frequency_text_hz = bounded(planned.frequency_text_hz()),
+              .level_m_s2 = planned.level_m_s2(),
+              .repetition = planned.repetition(),
+              .settling_s = planned.settling_s(),
+              .duration_s = planned.duration_s()};
+    if (steps.size() < before.size() && before[steps.size()].step == step.step) {
+      step.state = before[steps.size()].state;
+      step.attempt = before[steps.size()].attempt;
+    }
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+double seconds(bus::Clock::Instant::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+bool is_driven(StepState state) {
+  return state == StepState::settling || state == StepState::steady;
+}
+
+} // namespace
+
+const char* to_string(RunState state) {
+  switch (state) {
+  case RunState::unknown:
+    break;
+  case RunState::planned:
+    return "planned";
+  case RunState::running:
+    return "running";
+  case RunState::done:
+    return "done";
+  case RunState::aborted:
+    return "aborted";
+  }
+  return "unknown";
+}
+
+const char* to_string(StepState state) {
+  switch (state) {
+  case StepState::open:
+    break;
+  case StepState::settling:
+    return "settling";
+  case StepState::steady:
+    return "steady";
+  case StepState::done:
+    return "done";
+  case StepState::aborted:
+    return "aborted";
+  }
+  return "open";
+}
+
+const char* to_string(AnalysisState state) {
+  switch (state) {
+  case AnalysisState::waiting:
+    break;
+  case AnalysisState::armed:
+    return "armed";
+  case AnalysisState::refused:
+    return "refused";
+  case AnalysisState::finished:
+    return "finished";
+  }
+  return "waiting";
+}
+
+const char* to_string(Health health) {
+  switch (health) {
+  case Health::ok:
+    break;
+  case Health::failed:
+    return "failed";
+  case Health::waiting:
+    return "waiting";
+  }
+  return "ok";
+}
+
+RunState Run::state() const {
+  if (announced && *announced != RunState::unknown) {
+    return *announced;
+  }
+  if (!analysis) {
+    return RunState::unknown;
+  }
+  switch (analysis->state) {
+  case AnalysisState::waiting:
+    return RunState::planned;
+  case AnalysisState::armed:
+    return RunState::running;
+  case AnalysisState::refused:
+    return RunState::aborted;
+  case AnalysisState::finished:
+    break;
+  }
+  return RunState::done;
+}
+
+bool Run::is_over() const {
+  return state() == RunState::done || state() == RunState::aborted;
+}
+
+bool Run::is_paused() const {
+  const bool analysis_waits = analysis && analysis->health == Health::waiting;
+  return state() == RunState::running && (analysis_waits || !message.empty());
+}
+
+bool Run::is_left_alone(Instant at) const {
+  return !is_over() && conductor_heard && at - *conductor_heard > conductor_limit;
+}
+
+std::int64_t Run::time_utc_ns() const {
+  return planned_utc_ns != 0 || !analysis ? planned_utc_ns : analysis->published_utc_ns;
+}
+
+std::optional<double> Run::time_left_s(Instant at) const {
+  const bool is_conducted = state() == RunState::planned || state() == RunState::running;
+  if (!plan || !is_conducted || is_left_alone(at)) {
+    return std::nullopt;
+  }
+  double left_s = 0.0;
+  for (const Step& step : plan->steps) {
+    const double whole_s = step.settling_s + step.duration_s;
+    if (is_driven(step.state)) {
+      left_s += now ? std::clamp(whole_s - seconds(at - now->began), 0.0, whole_s) : whole_s;
+    } else if (step.state == StepState::open || step.state == StepState::aborted) {
+      left_s += whole_s;
+    }
+  }
+  return left_s;
+}
+
+std::size_t Run::steps_done() const {
+  const auto is_done = [](const Step& step) { return step.state == StepState::done; };
+  return plan ? static_cast<std::size_t>(
+                    std::count_if(plan->steps.begin(), plan->steps.end(), is_done))
+              : 0;
+}
+
+std::size_t Run::invalid_results() const {
+  return static_cast<std::size_t>(std::count_if(
+      results.begin(), results.end(), [](const auto& result) { return !result.second.valid; }));
+}
+
+std::size_t Run::flagged_results() const {
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(),
+                    [](const auto& result) { return !result.second.flags.empty(); }));
+}
+
+void Run::take(const wire::Measurement& measurement, const Limits& limits, Instant at) {
+  announced = state_of(measurement.state());
+  message = bounded(measurement.message());
+  planned_utc_ns = measurement.planned_utc_ns();
+  const std::vector<Step> before = plan ? std::move(plan->steps) : std::vector<Step>{};
+  plan = Plan{.method =
+                  from_wire(measurement.method()).value_or(EvaluationMethod::sample_timestamping),
+              .reference = bounded(measurement.reference()),
+              .sync_acs = bounded(measurement.sync_acs()),
+              .sync_dau = bounded(measurement.sync_dau()),
+              .sync_dso = bounded(measurement.sync_dso()),
+              .dut = {},
+              .recipe_sha256 = bounded(measurement.recipe_sha256()),
+              .conductor = bounded(measurement.conductor()),
+              .steps = steps_of(measurement, before, limits)};
+  for (const std::string& channel : measurement.dut()) {
+    if (plan->dut.size() < limits.channels) {
+      plan->dut.push_back(bounded(channel));
+    }
+  }
+  conductor_heard = at;
+}
+
+void Run::take(const wire::Excitation& excitation, Instant at) {
+  const std::uint32_t attempt = std::max(excitation.attempt(), 1U);
+  const bool is_new = !now || now->step.step != excitation.step() || now->step.attempt != attempt;
+  if (is_new) {
+    now.emplace();
+    now->began = at;
+  }
+  now->heard = at;
+  now->begin_utc_ns = excitation.window_begin_utc_ns();
+  now->end_utc_ns = excitation.window_end_utc_ns();
+  now->step.step = excitation.step();
+  now->step.frequency_text_hz = bounded(excitation.frequency_text_hz());
+  now->step.level_m_s2 = excitation.level_m_s2();
+  now->step.repetition = excitation.repetition();
+  now->step.state = state_of(excitation.state());
+  now->step.attempt = attempt;
+  conductor_heard = at;
+  if (!plan) {
+    return;
+  }
+  bool is_before = true; // who came late has not heard of those before it
+  for (Step& step : plan->steps) {
+    if (step.step == excitation.step()) {
+      step.state = now->step.state;
+      step.attempt = attempt;
+      now->step.settling_s = step.settling_s;
+      now->step.duration_s = step.duration_s;
+      is_before = false;
+    } else if (is_before && attempt == 1 && step.state == StepState::open) {
+      step.state = StepState::done;
+      step.attempt = 1;
+    } else if (is_driven(step.state)) {
+      step.state = StepState::done;
+    }
+  }
+}
+
+void Run::take(const wire::ServiceStatus& status, Instant at) {
+  const std::string service = status.service().to_string();
+  const bool leads = status.arm() != wire::ARM_WAITING;
+  if (analysis && analysis->service != service && !leads && at - analysis->heard < silence_limit) {
+    return; // another analysis, which waits for the one that leads the run
+  }
+  analysis = AnalysisReport{.service = service,
+                            .state = state_of(status.arm()),
+                            .health = health_of(status.health()),
+                            .message = bounded(status.message()),
+                            .results = status.results_published(),
+                            .published_utc_ns = status.published_utc_ns(),
+                            .heard = at};
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,205 @@
+#include "services/live/run_json.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "services/report/json_number.hpp"
+
+namespace dyncal::services::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json fit_json(const analysis::ChannelFit& channel_fit) {
+  const analysis::SineFit& fit = channel_fit.fit;
+  const double samples = static_cast<double>(std::max<std::uint64_t>(fit.samples, 1));
+  return {{"channel", channel_fit.channel},
+          {"frequency_hz", json_number(channel_fit.frequency.hz())},
+          {"u_frequency_hz", json_number(channel_fit.u_frequency_hz)},
+          {"phase_origin_ns", std::to_string(channel_fit.phase_origin_ns)},
+          {"sine", json_number(fit.sine)},
+          {"cosine", json_number(fit.cosine)},
+          {"offset", json_number(fit.offset)},
+          {"u_sine", json_number(std::sqrt(fit.covariance[0]))},
+          {"u_cosine", json_number(std::sqrt(fit.covariance[3]))},
+          {"u_offset", json_number(std::sqrt(fit.covariance[5]))},
+          {"residual_rms", json_number(std::sqrt(fit.rss / samples))},
+          {"sample_count", fit.samples}};
+}
+
+Json signals_json(const StepResult& result) {
+  Json signals = Json::array();
+  for (const ChannelSignal& signal : result.signals) {
+    signals.push_back({{"channel", signal.channel},
+                       {"thd", json_number(signal.thd)},
+                       {"u_thd", json_number(signal.u_thd)},
+                       {"residual_rel", json_number(signal.residual)},
+                       {"residual_over_noise", json_number(signal.over_noise)}});
+  }
+  return signals;
+}
+
+Json transfer_json(const TransferFunction& function) {
+  Json points = Json::array();
+  for (const FrequencyPoint& point : function.points) {
+    points.push_back({{"frequency_text_hz", point.frequency_text_hz},
+                      {"frequency_hz", json_number(point.frequency_hz)},
+                      {"level_m_s2", json_number(point.level_m_s2)},
+                      {"magnitude", json_number(point.mean.magnitude)},
+                      {"u_magnitude", json_number(point.mean.u_magnitude)},
+                      {"phase_rad", json_number(point.mean.phase_rad)},
+                      {"u_phase_rad", json_number(point.mean.u_phase_rad)},
+                      {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
+                      {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
+                      {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
+                      {"repetitions", point.mean.repetitions}});
+  }
+  Json json{{"channel", function.channel},
+            {"unit", function.unit},
+            {"lost", function.lost},
+            {"flags", flags_json(function.flags)},
+            {"group_delay_s", nullptr},
+            {"u_group_delay_s", nullptr},
+            {"group_delay_problem", function.group_delay_problem}};
+  if (function.group_delay) {
+    json["group_delay_s"] = json_number(function.group_delay->delay_s);
+    json["u_group_delay_s"] = json_number(function.group_delay->u_delay_s);
+  }
+  json["points"] = std::move(points);
+  return json;
+}
+
+Json course_json(const analysis::SampleClockStatistics& clock) {
+  Json course = Json::array();
+  for (const analysis::IntervalBucket& bucket : clock.over_time) {
+    course.push_back({{"time_s", json_number(bucket.time_s)},
+                      {"min_interval_ns", json_number(bucket.minimum_ns)},
+                      {"max_interval_ns", json_number(bucket.maximum_ns)},
+                      {"mean_interval_ns", json_number(bucket.mean_ns)}});
+  }
+  return course;
+}
+
+Json histogram_json(const analysis::SampleClockStatistics& clock) {
+  Json histogram = Json::array();
+  for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
+    histogram.push_back({{"interval_ticks", std::to_string(bin.ticks)},
+                         {"interval_ns", json_number(bin.interval_ns)},
+                         {"interval_count", bin.count}});
+  }
+  return histogram;
+}
+
+Json clock_json(const ClockReport& report) {
+  const analysis::SampleClockStatistics& clock = report.clock;
+  Json events = Json::array();
+  for (const analysis::IntervalEvent& event : clock.events) {
+    events.push_back({{"kind", event.kind},
+                      {"sample", std::to_string(event.sample)},
+                      {"time_s", json_number(event.time_s)},
+                      {"size_ns", json_number(event.size_ns)},
+                      {"missing_samples", event.missing}});
+  }
+  return {{"source", report.source},
+          {"interval_count", clock.intervals},
+          {"mean_interval_s", json_number(clock.mean_interval_s)},
+          {"u_mean_interval_s", json_number(clock.u_mean_interval_s)},
+          {"sd_interval_s", json_number(clock.sd_s)},
+          {"min_interval_s", json_number(clock.minimum_s)},
+          {"median_interval_s", json_number(clock.median_s)},
+          {"max_interval_s", json_number(clock.maximum_s)},
+          {"nominal_rate_hz", json_number(clock.nominal_rate_hz)},
+          {"mean_rate_hz", json_number(clock.mean_rate_hz)},
+          {"tick_s", json_number(clock.tick_s)},
+          {"event_count", clock.event_count},
+          {"lost", clock.lost},
+          {"flags", flags_json(report.flags)},
+          {"histogram", histogram_json(clock)},
+          {"over_time", course_json(clock)},
+          {"events", std::move(events)}};
+}
+
+} // namespace
+
+Json flags_json(const std::vector<Flag>& flags) {
+  Json list = Json::array();
+  for (const Flag& flag : flags) {
+    list.push_back({{"name", name_of(flag.kind)},
+                    {"text", flag.sentence},
+                    {"meaning", explanation_of(flag.kind)}});
+  }
+  return list;
+}
+
+Json point_json(const StepResult& result) {
+  Json fits = Json::array();
+  for (const analysis::ChannelFit& fit : result.fits) {
+    fits.push_back(fit_json(fit));
+  }
+  Json json{{"channel", result.channel},
+            {"step", result.step},
+            {"repetition", result.repetition},
+            {"attempt", result.attempt},
+            {"frequency_text_hz", result.frequency_text_hz},
+            {"frequency_hz", json_number(result.frequency_hz)},
+            {"level_m_s2", json_number(result.level_m_s2)},
+            {"valid", result.valid},
+            {"problem", result.problem},
+            {"magnitude", json_number(result.magnitude)},
+            {"u_magnitude", json_number(result.u_magnitude)},
+            {"phase_rad", json_number(result.phase_rad)},
+            {"u_phase_rad", json_number(result.u_phase_rad)},
+            {"unit", result.unit},
+            {"lost", result.lost},
+            {"flags", flags_json(result.flags)},
+            {"provisional", result.provisional},
+            {"temperature_degc", nullptr},
+            {"sample_rate_hz", nullptr},
+            {"u_sample_rate_hz", nullptr},
+            {"fits", std::move(fits)},
+            {"signals", signals_json(result)}};
+  if (result.temperature_degc) {
+    json["temperature_degc"] = json_number(*result.temperature_degc);
+  }
+  if (result.series) {
+    json["sample_rate_hz"] = json_number(result.series->sample_rate_hz);
+    json["u_sample_rate_hz"] = json_number(result.series->u_sample_rate_hz);
+  }
+  return json;
+}
+
+Json budget_json(const StepResult& result) {
+  Json rows = Json::array();
+  for (const analysis::Contribution& row : result.budget) {
+    rows.push_back({{"kind", to_string(row.kind)},
+                    {"subject", row.subject},
+                    {"name", row.name()},
+                    {"distribution", to_string(row.distribution)},
+                    {"repeats", to_string(row.repeats)},
+                    {"degrees_of_freedom", json_number(row.degrees_of_freedom)},
+                    {"u_magnitude_rel", json_number(row.u_magnitude_rel)},
+                    {"u_phase_rad", json_number(row.u_phase_rad)}});
+  }
+  return rows;
+}
+
+Json run_json(const Run& run) {
+  Json json{{"run", run.name},
+            {"state", to_string(run.state())},
+            {"points", Json::array()},
+            {"transfer", Json::array()},
+            {"clock", Json::array()}};
+  for (const auto& [key, result] : run.results) {
+    json["points"].push_back(point_json(result));
+  }
+  for (const auto& [channel, function] : run.transfer_functions) {
+    json["transfer"].push_back(transfer_json(function));
+  }
+  for (const auto& [source, report] : run.clock_reports) {
+    json["clock"].push_back(clock_json(report));
+  }
+  return json;
+}
+
+} // namespace dyncal::services::live

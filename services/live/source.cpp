@@ -1,0 +1,133 @@
+#include "services/live/source.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "services/contract/source_description.hpp"
+
+namespace dyncal::services::live {
+namespace {
+
+SourceState state_of(wire::SourceState state) {
+  switch (state) {
+  case wire::SOURCE_STARTING:
+    return SourceState::starting;
+  case wire::SOURCE_RUNNING:
+    return SourceState::running;
+  case wire::SOURCE_SILENT:
+    return SourceState::silent;
+  case wire::SOURCE_ENDED:
+    return SourceState::ended;
+  case wire::SOURCE_FAILED:
+    return SourceState::failed;
+  }
+  return SourceState::unknown;
+}
+
+} // namespace
+
+const char* to_string(SourceState state) {
+  switch (state) {
+  case SourceState::unknown:
+    break;
+  case SourceState::starting:
+    return "starting";
+  case SourceState::running:
+    return "running";
+  case SourceState::silent:
+    return "silent";
+  case SourceState::ended:
+    return "ended";
+  case SourceState::failed:
+    return "failed";
+  }
+  return "unknown";
+}
+
+void Source::take(const wire::SourceDescription& message_, const Limits& limits) {
+  session = message_.session();
+  kind = from_wire(message_.kind());
+  description = from_message(message_);
+  software = bounded(message_.software());
+  host = bounded(message_.host());
+  process_id = message_.process_id();
+  auto& channels = description->channels;
+  channels.resize(std::min(channels.size(), limits.channels));
+  for (drivers::ChannelDescription& channel : channels) {
+    channel.name = bounded(channel.name);
+    channel.quantity = bounded(channel.quantity);
+    channel.unit = bounded(channel.unit);
+  }
+  for (std::string* text :
+       {&description->device, &description->serial, &description->firmware, &description->driver}) {
+    *text = bounded(*text);
+  }
+}
+
+void Source::take(const wire::SourceStatus& status, const Limits& limits, Instant now) {
+  const bool continues = state != SourceState::unknown && session == status.session();
+  const std::uint64_t lost_before = lost();
+  session = status.session();
+  state = state_of(status.state());
+  rate_hz = status.rate_hz();
+  counts = {.received = status.received(),
+            .lost_in_device = status.lost_in_device(),
+            .lost_on_way = status.lost_in_transit(),
+            .duplicates = status.duplicates(),
+            .rejected = status.rejected(),
+            .stamps_not_trusted = status.stamps_not_trusted(),
+            .causes = {},
+            .clock_uncertainty_s = status.clock_uncertainty_s()};
+  for (const wire::NamedCount& cause : status.causes()) {
+    if (counts.causes.size() < limits.channels) {
+      counts.add_cause(bounded(cause.name()), cause.value());
+    }
+  }
+  dropped_in_service = status.dropped_in_service();
+  buffer_fill = status.buffer_fill();
+  matched_readers = status.matched_readers();
+  message = bounded(status.message());
+  if (continues && lost() > lost_before) {
+    lost_more = now;
+  }
+}
+
+Condition condition_of(const Source& source, bus::Clock::Instant now) {
+  Condition condition;
+  if (source.is_silent && source.state != SourceState::ended) {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - source.heard);
+    condition.worsen(Severity::stale,
+                     fmt::format("{}: not heard for {} s", source.name, seconds.count()));
+  }
+  const auto reason = [&](const char* otherwise) {
+    return fmt::format("{}: {}", source.name, source.message.empty() ? otherwise : source.message);
+  };
+  if (source.state == SourceState::failed) {
+    condition.worsen(Severity::error, reason("failed"));
+  } else if (source.state == SourceState::silent) {
+    condition.worsen(Severity::error, reason("its instrument sends nothing"));
+  } else if (!source.message.empty()) {
+    condition.worsen(Severity::warning, reason(""));
+  }
+  const auto samples = fmt::format("{}: {} samples lost", source.name, source.lost());
+  if (source.lost_more && now - *source.lost_more < loss_limit) {
+    condition.worsen(Severity::warning, samples);
+  }
+  if (source.buffer_fill > 0.5) {
+    condition.worsen(Severity::warning,
+                     fmt::format("{}: its buffer is {:.0f} % full: the network does not take its "
+                                 "samples",
+                                 source.name, source.buffer_fill * 100.0));
+  }
+  if (source.lost() > 0) {
+    condition.worsen(Severity::note, samples);
+  }
+  if (source.counts.stamps_not_trusted > 0) {
+    condition.worsen(Severity::note, fmt::format("{}: {} stamps not trusted", source.name,
+                                                 source.counts.stamps_not_trusted));
+  }
+  return condition;
+}
+
+} // namespace dyncal::services::live

@@ -1,0 +1,58 @@
+// A source of a bench as it describes itself and as it is now. Plain data; one thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "drivers/sample_block.hpp"
+#include "drivers/sample_counts.hpp"
+#include "idl/dyncal.h"
+#include "services/bus/clock.hpp"
+#include "services/contract/source_kind.hpp"
+#include "services/live/condition.hpp"
+#include "services/live/limits.hpp"
+
+namespace dyncal::services::live {
+
+// Of its own report; whether it is heard at all is Source::is_silent.
+enum class SourceState { unknown, starting, running, silent, ended, failed };
+// "running"
+[[nodiscard]] const char* to_string(SourceState state);
+
+struct Source {
+  using Instant = bus::Clock::Instant;
+
+  std::string name;
+  std::uint64_t session = 0; // of its newest message
+  std::optional<SourceKind> kind;
+  std::optional<drivers::SourceDescription> description;
+  std::string software;
+  std::string host;
+  std::uint32_t process_id = 0;
+
+  SourceState state = SourceState::unknown; // before its first status
+  double rate_hz = 0.0;
+  drivers::SampleCounts counts; // samples since its program was started
+  std::uint64_t dropped_in_service = 0;
+  double buffer_fill = 0.0;
+  std::uint32_t matched_readers = 0;
+  std::string message; // empty: nothing is wrong
+
+  Instant heard{};
+  std::int64_t heard_utc_ns = 0;
+  std::optional<Instant> lost_more; // when its losses have risen last, since we listen
+  bool is_silent = false;           // nothing was heard for silence_limit
+
+  [[nodiscard]] std::uint64_t lost() const {
+    return counts.lost_in_device + counts.lost_on_way + dropped_in_service;
+  }
+
+  void take(const wire::SourceDescription& message, const Limits& limits);
+  void take(const wire::SourceStatus& message, const Limits& limits, Instant now);
+};
+
+[[nodiscard]] Condition condition_of(const Source& source, bus::Clock::Instant now);
+
+} // namespace dyncal::services::live
