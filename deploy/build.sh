@@ -26,6 +26,9 @@ case $2 in
     targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
       dyncal-recorder dyncal-virtual-bench guide
       dyncal_analysis_models) # which no program links, but is installed
+    if grep -q 'bin/dyncal-web' "$directory/build.ninja"; then # not without cpp-httplib
+      targets+=(dyncal-web)
+    fi
     ;;
   *)
     echo "build.sh: '$2' is neither with-tests nor programs" >&2

@@ -28,6 +28,7 @@ optional_build_packages=(
   libpqxx-dev        # results of runs in PostgreSQL
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
   cmark-gfm python3          # the guide as HTML
+  libcpp-httplib-dev # dyncal-web
 )
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
@@ -35,6 +36,7 @@ run_packages=(
   libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
   libsqlite3-0 libpqxx-6.4
   libxml2 libxmlsec1 libxmlsec1-openssl
+  libcpp-httplib0.11 libjs-dygraphs
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev

@@ -24,6 +24,9 @@ install(TARGETS
     dyncal-recorder
     dyncal-virtual-bench
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+if(TARGET dyncal-web)
+  install(TARGETS dyncal-web RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+endif()
 install(FILES deploy/sysctl/60-dyncal.conf DESTINATION lib/sysctl.d COMPONENT programs)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 install(DIRECTORY deploy/example-lab DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)

@@ -133,14 +133,7 @@ Expected<std::unique_ptr<RunFolder>> RunFolder::create(const std::filesystem::pa
 Expected<std::unique_ptr<RunFolder>> RunFolder::reopen(const std::filesystem::path& root,
                                                        const BenchFile& bench,
                                                        const std::string& run) {
-  std::error_code unknown;
-  fs::path newest;
-  const fs::path folders = fs::absolute(root / bench.bench).lexically_normal();
-  for (const auto& entry : fs::directory_iterator(folders, unknown)) {
-    if (entry.is_directory(unknown) && is_of_run(entry.path().filename().string(), plain(run))) {
-      newest = std::max(newest, entry.path());
-    }
-  }
+  const fs::path newest = find_run_folder(root, bench.bench, run);
   if (newest.empty()) {
     return std::unique_ptr<RunFolder>();
   }
@@ -185,6 +178,19 @@ void RunFolder::discard() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
   fs::remove(path_.parent_path(), ignored); // of the bench, if it was the only one
+}
+
+std::filesystem::path find_run_folder(const std::filesystem::path& root, const std::string& bench,
+                                      const std::string& run) {
+  std::error_code unknown;
+  fs::path newest;
+  const fs::path folders = fs::absolute(root / bench).lexically_normal();
+  for (const auto& entry : fs::directory_iterator(folders, unknown)) {
+    if (entry.is_directory(unknown) && is_of_run(entry.path().filename().string(), plain(run))) {
+      newest = std::max(newest, entry.path());
+    }
+  }
+  return newest;
 }
 
 std::string run_folder_name(const std::string& run, const std::string& time_text) {

@@ -65,6 +65,11 @@ private:
 // `time_text`: now, as runs are named by it.
 [[nodiscard]] std::string run_folder_name(const std::string& run, const std::string& time_text);
 
+// The newest folder of that run of the bench; empty: there is none.
+[[nodiscard]] std::filesystem::path find_run_folder(const std::filesystem::path& root,
+                                                    const std::string& bench,
+                                                    const std::string& run);
+
 // Whether a program that conducts the run has the folder open now.
 [[nodiscard]] bool is_in_use(const std::filesystem::path& run_folder);
 

@@ -55,6 +55,17 @@ constexpr MetricFamily file_size{"dyncal_recorder_file_bytes", "Size of the reco
 constexpr MetricFamily disk{"dyncal_recorder_disk_free_bytes", "Room left on its disk.", gauge};
 constexpr MetricFamily records{"dyncal_recorder_recording", "1 while it records the bench.", gauge};
 
+constexpr MetricFamily visitors{"dyncal_web_visitors", "Visitors that listen to events.", gauge};
+constexpr MetricFamily requests{"dyncal_web_requests_total", "Requests that came.", counter};
+constexpr MetricFamily refused{"dyncal_web_requests_refused_total",
+                               "Requests that were refused, by reason.", counter};
+constexpr MetricFamily shown{"dyncal_web_benches", "Benches that are shown.", gauge};
+constexpr MetricFamily no_room{"dyncal_web_messages_left_out_total",
+                               "Messages of benches, sources or runs beyond what is held.",
+                               counter};
+constexpr MetricFamily not_seen{"dyncal_web_samples_missed_total",
+                                "Samples of shown signals that never came.", counter};
+
 double number(std::uint64_t count) {
   return static_cast<double>(count);
 }
@@ -79,6 +90,17 @@ void report(const ProgramIdentity& program, MetricStore& store) {
   store.set(build_info,
             {{"program", program.program}, {"version", program.software}, {"dds", program.dds}},
             1.0);
+}
+
+void report(const WebFigures& figures, MetricStore& store) {
+  store.set(visitors, {}, static_cast<double>(figures.visitors));
+  store.set(requests, {}, number(figures.requests));
+  for (const auto& [reason, count] : figures.refused) {
+    store.set(refused, {{"reason", reason}}, number(count));
+  }
+  store.set(shown, {}, number(figures.benches));
+  store.set(no_room, {}, number(figures.left_out));
+  store.set(not_seen, {}, number(figures.samples_missed));
 }
 
 void report_malformed_messages(std::uint64_t count, MetricStore& store) {

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "services/contract/program_identity.hpp"
 #include "services/supervision/metric_store.hpp"
@@ -35,10 +37,21 @@ struct RecorderFigures {
   bool records = false;
 };
 
+// What dyncal-web does.
+struct WebFigures {
+  int visitors = 0; // that listen to events now
+  std::uint64_t requests = 0;
+  std::vector<std::pair<std::string, std::uint64_t>> refused; // by reason
+  std::uint64_t benches = 0;                                  // that are shown
+  std::uint64_t left_out = 0;                                 // messages that had no room
+  std::uint64_t samples_missed = 0;                           // of signals that were looked at
+};
+
 void report(const ProgramIdentity& program, MetricStore& store);
 void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store);
 void report(const AnalysisFigures& figures, MetricStore& store);
 void report(const RecorderFigures& figures, MetricStore& store);
+void report(const WebFigures& figures, MetricStore& store);
 void report_malformed_messages(std::uint64_t count, MetricStore& store);
 
 } // namespace dyncal::services

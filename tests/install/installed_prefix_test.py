@@ -35,6 +35,12 @@ PROGRAMS = [
 ]
 
 
+def programs(options):
+    """dyncal-web is not built where cpp-httplib is missing."""
+    has_web = (options.build / "bin" / "dyncal-web").exists()
+    return PROGRAMS + ["dyncal-web"] * has_web
+
+
 def run(*command, **more):
     """The output of a command that must succeed."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **more)
@@ -69,7 +75,7 @@ def files_below(folder):
 
 def check_files(options, prefix):
     install(options, prefix)
-    for name in PROGRAMS:
+    for name in programs(options):
         expect(os.access(prefix / "bin" / name, os.X_OK), f"bin/{name} is missing")
     for name in [
         "lib/sysctl.d/60-dyncal.conf",
@@ -118,7 +124,7 @@ def check_files(options, prefix):
 
 def check_programs(options, prefix):
     install(options, prefix)
-    for name in PROGRAMS:
+    for name in programs(options):
         printed = run(prefix / "bin" / name, "--version")
         expect(printed.startswith(f"dyncal {options.version}"), f"{name} --version: {printed}")
     data = prefix / "data.csv"

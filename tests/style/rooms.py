@@ -39,7 +39,7 @@ FLOORS = {
         ["output"],
         ["contract", "report/figures"],
         ["bench", "bus", "supervision"],
-        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "host_clocks"],
+        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "host_clocks", "live_signals"],
         ["program"],
         ["evaluation/recipe", "recording", "source"],
         ["evaluation/record", "evaluation/result"],
@@ -50,7 +50,7 @@ FLOORS = {
         ["laboratory", "live", "model", "run_folder", "store"],
         ["certificate", "document"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
-        ["doctor", "replay"],
+        ["doctor", "replay", "web"],
         ["command"],
     ],
 }

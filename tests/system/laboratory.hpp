@@ -114,6 +114,9 @@ private:
     if (program == "dyncal-recorder") {
       return "recorder ready";
     }
+    if (program == "dyncal-web") {
+      return "web ready";
+    }
     if (program == "dyncal-guard") {
       return "guarding the output";
     }

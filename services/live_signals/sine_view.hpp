@@ -1,0 +1,35 @@
+// The sine of the excitation in the newest samples of a channel, and what it leaves: to see that
+// something is there and how clean it is. The frequency is the planned one, taken as exact.
+//
+// Fails (no_source) with less than two periods or what analysis::fit_sine() refuses, in its words.
+// Plain function; any thread.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/base/frequency.hpp"
+#include "analysis/sine/sine_fit.hpp"
+#include "services/error.hpp"
+#include "services/live_signals/channel_ring.hpp"
+#include "services/live_signals/trace.hpp"
+
+namespace dyncal::services {
+
+struct SineView {
+  analysis::SineFit fit;
+  std::int64_t phase_origin_ns = 0;
+  double residual_rms = 0.0;
+  std::vector<TraceColumn> columns;   // of the last four periods
+  std::vector<TraceColumn> residuals; // of all that was fitted
+};
+
+inline constexpr std::size_t max_fitted_samples = std::size_t{1} << 15U;
+
+[[nodiscard]] Expected<SineView> view_sine(std::span<const Sample> samples,
+                                           const analysis::Frequency& frequency,
+                                           std::size_t columns);
+
+} // namespace dyncal::services

@@ -1,0 +1,274 @@
+#include "services/web/actions.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/bench/bench_file.hpp"
+#include "services/contract/time_name.hpp"
+#include "services/contract/topics.hpp"
+#include "services/live/laboratory_json.hpp"
+#include "services/web/laboratory_answers.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* target = "conductor";
+
+void answer_action(bool accepted, const std::string& by, const std::string& message,
+                   httplib::Response& response) {
+  const Json json{{"answer", accepted ? "accepted" : "refused"}, {"by", by}, {"message", message}};
+  response.status = accepted ? 200 : 409;
+  response.set_content(live::json_text(json), "application/json");
+}
+
+std::optional<wire::CommandKind> kind_of(const std::string& word) {
+  const std::map<std::string, wire::CommandKind> kinds{{"repeat", wire::COMMAND_REPEAT},
+                                                       {"abort", wire::COMMAND_ABORT},
+                                                       {"pause", wire::COMMAND_PAUSE},
+                                                       {"continue", wire::COMMAND_CONTINUE}};
+  const auto found = kinds.find(word);
+  return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+// The folder's own bench files, by name.
+std::vector<std::string> bench_files_of(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(folder, unknown)) {
+    if (entry.path().extension() == ".toml" && entry.is_regular_file(unknown)) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::path& file,
+                                       const fs::path& runs_folder) {
+  std::vector<std::string> arguments{"run",       file.string(), "--dds",
+                                     network.dds, "--domain",    std::to_string(network.domain)};
+  if (!runs_folder.empty()) {
+    arguments.insert(arguments.end(), {"--folder", runs_folder.string()});
+  }
+  for (const std::string& peer : network.peers) {
+    arguments.insert(arguments.end(), {"--peer", peer});
+  }
+  if (network.no_multicast) {
+    arguments.emplace_back("--no-multicast");
+  }
+  if (!network.interface_name.empty()) {
+    arguments.insert(arguments.end(), {"--interface", network.interface_name});
+  }
+  return arguments;
+}
+
+} // namespace
+
+Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
+                 Board& board, HttpDoor& door)
+    : options_(std::move(options)), participant_(participant), clock_(clock), board_(board),
+      door_(door) {
+  if (options_.token) {
+    token_.emplace(*options_.token, clock);
+  }
+}
+
+bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response) {
+  if (!token_) {
+    door_.refuse(Refusal::not_permitted, 403,
+                 "this daemon takes no actions; it was started without --token-file", request,
+                 response);
+    return false;
+  }
+  switch (token_->check(request.get_header_value("Authorization"))) {
+  case TokenAnswer::right:
+    return true;
+  case TokenAnswer::wrong:
+    door_.refuse(Refusal::wrong_token, 401, "the token is wrong", request, response);
+    response.set_header("WWW-Authenticate", "Bearer");
+    return false;
+  case TokenAnswer::too_many:
+    break;
+  }
+  door_.refuse(Refusal::too_many_tokens, 429, "too many wrong tokens; try again in a minute",
+               request, response);
+  response.set_header("Retry-After", "60");
+  return false;
+}
+
+bool Actions::post(const httplib::Request& request, httplib::Response& response) {
+  const auto address = bench_address(request.path);
+  const bool is_command = address && address->part == "command";
+  if (!is_command && request.path != "/api/run") {
+    return false;
+  }
+  if (!is_permitted(request, response)) {
+    return true;
+  }
+  if (is_command) {
+    command(address->bench, request, response);
+  } else {
+    start_run(request, response);
+  }
+  spdlog::info("{} of {}: {} {}", request.path, request.remote_addr, response.status,
+               response.body);
+  return true;
+}
+
+bool Actions::get(const httplib::Request& request, httplib::Response& response) {
+  if (request.path != "/api/bench-files") {
+    return false;
+  }
+  if (is_permitted(request, response)) {
+    list_bench_files(response);
+  }
+  return true;
+}
+
+void Actions::command(const std::string& bench, const httplib::Request& request,
+                      httplib::Response& response) {
+  const Json body = Json::parse(request.body, nullptr, false);
+  const std::string word =
+      body.is_object()
+          ? body.value("command", Json()).is_string() ? body["command"].get<std::string>() : ""
+          : "";
+  const auto kind = kind_of(word);
+  const Json step = body.is_object() ? body.value("step", Json()) : Json();
+  const Json run = body.is_object() ? body.value("run", Json()) : Json();
+  const bool has_step = step.is_number_unsigned() && step.get<std::uint64_t>() > 0 &&
+                        step.get<std::uint64_t>() < 1'000'000;
+  if (!kind || !run.is_string() || (*kind == wire::COMMAND_REPEAT && !has_step)) {
+    door_.refuse(Refusal::malformed, 400,
+                 "the body must be {\"command\": \"repeat|abort|pause|continue\", \"run\": RUN, "
+                 "\"step\": N of repeat}",
+                 request, response);
+    return;
+  }
+  wire::Command message;
+  message.bench(bench);
+  message.target(target);
+  message.kind(*kind);
+  message.run(run.get<std::string>());
+  message.sender(options_.sender);
+  message.step(has_step ? step.get<std::uint32_t>() : 0);
+  send(message, word, response);
+}
+
+bool Actions::shows_effect(const wire::Command& command) const {
+  return board_.look([&](const live::Laboratory& laboratory) {
+    const live::Bench* bench = laboratory.bench(command.bench().to_string());
+    const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+    if (run == nullptr || run->name != command.run()) {
+      return false;
+    }
+    switch (command.kind()) {
+    case wire::COMMAND_ABORT:
+      return run->is_over();
+    case wire::COMMAND_PAUSE:
+      return run->is_paused();
+    case wire::COMMAND_CONTINUE:
+      return !run->is_paused();
+    default:
+      return false; // a step is repeated when the planned ones are done
+    }
+  });
+}
+
+void Actions::send(wire::Command command, const std::string& word, httplib::Response& response) {
+  const std::string bench_name = command.bench().to_string();
+  const auto conductor =
+      board_.look([&](const live::Laboratory& laboratory) -> std::optional<std::string> {
+        const live::Bench* bench = laboratory.bench(bench_name);
+        const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+        const bool is_conducted = run != nullptr && run->name == command.run() && !run->is_over() &&
+                                  run->conductor_heard && !run->is_left_alone(clock_.now());
+        return is_conducted ? std::optional(run->plan ? run->plan->conductor : "") : std::nullopt;
+      });
+  if (!conductor) {
+    answer_action(false, "", "nobody conducts this run of the bench now", response);
+    return;
+  }
+  const std::lock_guard lock(mutex_);
+  auto writer = participant_.writer(bus::topics::command, bench_name);
+  if (!writer) {
+    answer_action(false, "", writer.error().message, response);
+    return;
+  }
+  const auto end = clock_.now() + effect_limit;
+  bool was_heard = false;
+  while (clock_.now() < end) {
+    was_heard = was_heard || writer->matched_readers() > 0;
+    writer->write(command, std::chrono::milliseconds(100));
+    if (!door_.wait_until(clock_.now() + command_interval) || shows_effect(command)) {
+      break;
+    }
+  }
+  if (command.kind() == wire::COMMAND_REPEAT && was_heard) {
+    answer_action(
+        true, *conductor,
+        fmt::format("step {} is excited once more after the planned steps", command.step()),
+        response);
+  } else if (shows_effect(command)) {
+    answer_action(true, *conductor, word + ": done", response);
+  } else {
+    answer_action(false, *conductor,
+                  fmt::format("{} had no effect within {} s", word, effect_limit.count()),
+                  response);
+  }
+}
+
+void Actions::list_bench_files(httplib::Response& response) const {
+  Json files = Json::array();
+  for (const std::string& name : bench_files_of(options_.benches_folder)) {
+    const auto bench = read_bench_file(options_.benches_folder / name);
+    files.push_back({{"file", name},
+                     {"bench", bench ? Json(bench->bench) : Json(nullptr)},
+                     {"problem", bench ? Json(nullptr) : Json(bench.error().message)}});
+  }
+  response.set_content(live::json_text({{"files", std::move(files)}}), "application/json");
+}
+
+void Actions::start_run(const httplib::Request& request, httplib::Response& response) {
+  const Json body = Json::parse(request.body, nullptr, false);
+  const Json file = body.is_object() ? body.value("file", Json()) : Json();
+  const std::vector<std::string> known = bench_files_of(options_.benches_folder);
+  if (!file.is_string() || std::find(known.begin(), known.end(), file) == known.end()) {
+    answer_action(false, "", "there is no such bench file in the folder of --benches", response);
+    return;
+  }
+  const auto name = file.get<std::string>();
+  const std::lock_guard lock(mutex_);
+  if (const auto run = runs_.find(name); run != runs_.end() && !run->second.running()) {
+    runs_.erase(run);
+  }
+  if (runs_.contains(name)) {
+    answer_action(false, "", name + ": a run of this bench file is under way", response);
+    return;
+  }
+  std::error_code unknown;
+  const fs::path logs =
+      (options_.runs_folder.empty() ? fs::temp_directory_path(unknown) : options_.runs_folder);
+  const fs::path log =
+      logs / fmt::format("{}-{}.log", name, time_name(bus::system_clock().utc_now_ns()));
+  auto child = ChildProcess::start(
+      program_folder() / "dyncal",
+      run_arguments(options_.network, options_.benches_folder / name, options_.runs_folder),
+      {log, log});
+  if (!child) {
+    answer_action(false, "", child.error().message, response);
+    return;
+  }
+  const std::string started = fmt::format("dyncal run {} is process {}, its output is in {}", name,
+                                          child->id(), log.string());
+  runs_.emplace(name, std::move(*child));
+  answer_action(true, "dyncal run", started, response);
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,69 @@
+// What visitors with the token may do: command the conductor of a run, and start a run.
+//
+// A command is repeated until its effect shows, for `effect_limit` at most; the answer says what
+// came of it. A run is a `dyncal run` of a bench file of one folder, one at a time of a file; what
+// it prints is in a file beside the runs. It is asked to end when the daemon ends. Every request is
+// logged with its outcome. Any thread; one command at a time.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <httplib.h>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+#include "services/program/child_process.hpp"
+#include "services/program/program.hpp"
+#include "services/web/access_token.hpp"
+#include "services/web/board.hpp"
+#include "services/web/http_door.hpp"
+
+namespace dyncal::services::web {
+
+struct ActionOptions {
+  std::optional<std::string> token; // nothing: no actions at all
+  std::filesystem::path benches_folder;
+  std::filesystem::path runs_folder;
+  NetworkOptions network;
+  std::string sender; // "dyncal-web:4711@lab-1"
+};
+
+class Actions {
+public:
+  static constexpr std::chrono::seconds effect_limit{3};
+  static constexpr std::chrono::milliseconds command_interval{250};
+
+  // All outlive the object.
+  Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock, Board& board,
+          HttpDoor& door);
+
+  [[nodiscard]] bool may_act() const { return token_.has_value(); }
+  // False: the address is another's.
+  [[nodiscard]] bool post(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] bool get(const httplib::Request& request, httplib::Response& response);
+
+private:
+  [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response);
+  void command(const std::string& bench, const httplib::Request& request,
+               httplib::Response& response);
+  void send(wire::Command command, const std::string& word, httplib::Response& response);
+  [[nodiscard]] bool shows_effect(const wire::Command& command) const;
+  void start_run(const httplib::Request& request, httplib::Response& response);
+  void list_bench_files(httplib::Response& response) const;
+
+  ActionOptions options_;
+  std::optional<AccessToken> token_;
+  bus::Participant& participant_;
+  bus::Clock& clock_;
+  Board& board_;
+  HttpDoor& door_;
+  std::mutex mutex_;
+  std::map<std::string, ChildProcess> runs_; // by bench file
+};
+
+} // namespace dyncal::services::web

@@ -1,0 +1,74 @@
+// The newest state of the laboratory between the thread that feeds it and those that show it.
+//
+// Texts of JSON are made when somebody asks, at most once in `text_age`, and shared by all who ask
+// meanwhile: visitors cost writing, not counting. Results are made anew only when they change.
+// Policy: the newest wins, nothing queues. Any thread.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "services/live/laboratory.hpp"
+
+namespace dyncal::services::web {
+
+using Text = std::shared_ptr<const std::string>;
+
+class Board {
+public:
+  static constexpr std::chrono::milliseconds text_age{200};
+  static constexpr std::size_t max_texts = 256;
+  // Adds what the daemon knows of itself to the laboratory.
+  using AddDaemon = std::function<void(nlohmann::ordered_json&)>;
+
+  // `clock` outlives the object.
+  Board(bus::Clock& clock, AddDaemon add_daemon)
+      : laboratory_(clock), add_daemon_(std::move(add_daemon)) {}
+
+  template <class Change>
+  void change(Change&& change) {
+    const std::lock_guard lock(mutex_);
+    change(laboratory_);
+  }
+  template <class Look>
+  auto look(Look&& look) const {
+    const std::lock_guard lock(mutex_);
+    return look(laboratory_);
+  }
+
+  [[nodiscard]] Text laboratory();
+  // Null: no such bench.
+  [[nodiscard]] Text bench(const std::string& name);
+  // Of its current run if `run` is empty; null: no such bench or run. `files` is added.
+  using AddFiles = std::function<void(const std::string& run, nlohmann::ordered_json&)>;
+  [[nodiscard]] Text results(const std::string& bench, const std::string& run,
+                             const AddFiles& add_files);
+  // Of the laboratory, or of the results of the current run of a bench.
+  [[nodiscard]] std::uint64_t number() const;
+  [[nodiscard]] std::uint64_t results_number(const std::string& bench) const;
+
+private:
+  struct Made {
+    Text text;
+    bus::Clock::Instant when;
+    std::uint64_t number = 0; // of results
+  };
+
+  [[nodiscard]] Text keep(const std::string& key, const nlohmann::ordered_json& json,
+                          std::uint64_t number = 0);
+  [[nodiscard]] Text young(const std::string& key);
+
+  mutable std::mutex mutex_;
+  live::Laboratory laboratory_;
+  AddDaemon add_daemon_;
+  std::map<std::string, Made> texts_;
+};
+
+} // namespace dyncal::services::web

@@ -1,0 +1,172 @@
+#include "services/web/laboratory_answers.hpp"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "services/live/laboratory_json.hpp"
+#include "services/live/run_json.hpp"
+#include "services/web/http_door.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 6> parts{"run",      "budget", "signal",
+                                                "spectrum", "fit",    "command"};
+
+// 0: it is no number.
+std::uint32_t number_of(const std::string& text) {
+  std::uint32_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  return parsed.ec == std::errc() && parsed.ptr == end ? number : 0;
+}
+
+void answer_text(const Text& text, const char* otherwise, httplib::Response& response) {
+  if (text) {
+    response.set_content(*text, "application/json");
+  } else {
+    answer_error(404, "not_known", otherwise, response);
+  }
+}
+
+void send_file(const RunFile& file, httplib::Response& response) {
+  auto stream = std::make_shared<std::ifstream>(file.path, std::ios::binary);
+  if (!*stream) {
+    answer_error(404, "not_known", "the file cannot be read", response);
+    return;
+  }
+  const std::string name = file.path.filename().string();
+  const bool is_picture = name.ends_with(".svg");
+  response.set_header("Content-Security-Policy",
+                      "default-src 'none'; style-src 'unsafe-inline'; sandbox");
+  response.set_header("Content-Disposition",
+                      fmt::format("{}; filename*=UTF-8''{}", is_picture ? "inline" : "attachment",
+                                  percent_encoded(name)));
+  response.set_content_provider(
+      file.bytes, media_type(name),
+      [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        std::vector<char> bytes(std::min<std::size_t>(length, 64 * 1024));
+        stream->seekg(static_cast<std::streamoff>(offset));
+        stream->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        const auto count = static_cast<std::size_t>(stream->gcount());
+        return count > 0 && sink.write(bytes.data(), count);
+      });
+}
+
+} // namespace
+
+std::optional<BenchAddress> bench_address(std::string_view path) {
+  constexpr std::string_view begin = "/api/bench/";
+  if (!path.starts_with(begin) || path.size() == begin.size()) {
+    return std::nullopt;
+  }
+  const std::string_view rest = path.substr(begin.size());
+  const auto slash = rest.rfind('/');
+  if (slash != std::string_view::npos) {
+    for (const std::string_view part : parts) {
+      if (rest.substr(slash + 1) == part && slash > 0) {
+        return BenchAddress{std::string(rest.substr(0, slash)), std::string(part)};
+      }
+    }
+  }
+  return BenchAddress{std::string(rest), ""};
+}
+
+Text LaboratoryAnswers::results(const std::string& bench, const std::string& run) const {
+  return board_.results(bench, run, [&](const std::string& name, Json& json) {
+    json["files"] = Json::array();
+    for (const RunFile& file : files_.files_of(bench, name)) {
+      json["files"].push_back(
+          {{"name", file.name},
+           {"bytes", file.bytes},
+           {"href", fmt::format("/files/{}/{}/{}", percent_encoded(bench), percent_encoded(name),
+                                percent_encoded(file.name))}});
+    }
+  });
+}
+
+bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Response& response) const {
+  if (request.path == "/api/laboratory") {
+    answer_text(board_.laboratory(), "", response);
+    return true;
+  }
+  if (answer_file(request, response)) {
+    return true;
+  }
+  const auto address = bench_address(request.path);
+  if (!address) {
+    return false;
+  }
+  if (address->part.empty()) {
+    answer_text(board_.bench(address->bench), "no bench of this name was heard of", response);
+  } else if (address->part == "run") {
+    answer_text(results(address->bench, request.get_param_value("run")),
+                "no such run of this bench was heard of", response);
+  } else if (address->part == "budget") {
+    answer_budget(address->bench, request, response);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,
+                                      httplib::Response& response) const {
+  const std::string run_name = request.get_param_value("run");
+  const live::Run::ResultKey key{number_of(request.get_param_value("step")),
+                                 number_of(request.get_param_value("repetition")),
+                                 request.get_param_value("channel")};
+  const auto json = board_.look([&](const live::Laboratory& laboratory) -> std::optional<Json> {
+    const live::Bench* bench = laboratory.bench(name);
+    if (bench == nullptr) {
+      return std::nullopt;
+    }
+    const auto named = bench->runs.find(run_name);
+    const live::Run* run = run_name.empty()             ? bench->current_run()
+                           : named == bench->runs.end() ? nullptr
+                                                        : &named->second;
+    if (run == nullptr || !run->results.contains(key)) {
+      return std::nullopt;
+    }
+    const StepResult& result = run->results.at(key);
+    return Json{{"bench", name},
+                {"run", run->name},
+                {"channel", result.channel},
+                {"step", result.step},
+                {"repetition", result.repetition},
+                {"contributions", live::budget_json(result)}};
+  });
+  answer_text(json ? std::make_shared<const std::string>(live::json_text(*json)) : nullptr,
+              "no such result was heard of", response);
+}
+
+bool LaboratoryAnswers::answer_file(const httplib::Request& request,
+                                    httplib::Response& response) const {
+  constexpr std::string_view begin = "/files/";
+  if (!request.path.starts_with(begin)) {
+    return false;
+  }
+  const std::string rest = request.path.substr(begin.size());
+  const auto first = rest.find('/');
+  const auto second = first == std::string::npos ? first : rest.find('/', first + 1);
+  const auto file =
+      second == std::string::npos
+          ? std::nullopt
+          : files_.find(rest.substr(0, first), rest.substr(first + 1, second - first - 1),
+                        rest.substr(second + 1));
+  if (file) {
+    send_file(*file, response);
+  } else {
+    answer_error(404, "not_known", "the run has no such file", response);
+  }
+  return true;
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,76 @@
+// dyncal-web: serves a page that shows what the benches of a laboratory do.
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/program/program.hpp"
+#include "services/version.hpp"
+#include "services/web/web_service.hpp"
+
+namespace dyncal::services {
+namespace {
+
+struct WebProgram {
+  NetworkOptions network;
+  std::string listen = "127.0.0.1:8080";
+  web::WebOptions web;
+};
+
+void add_options(CLI::App& app, WebProgram& program) {
+  app.add_option("--listen", program.listen,
+                 "where the page is served; other than loopback: in networks that you trust")
+      ->capture_default_str();
+  app.add_option("--own-name", program.web.own_names,
+                 "name of this computer that browsers may use (repeatable; its host name, "
+                 "localhost and addresses are known)");
+  app.add_option("--runs", program.web.runs_folder, "folder of all runs, for downloads")
+      ->envname("DYNCAL_RUNS");
+  app.add_option("--store", program.web.store,
+                 "file or postgresql://... of all results, for the history of a sensor, or none "
+                 "(default: dyncal.sqlite in the folder of all runs)")
+      ->envname("DYNCAL_STORE");
+  app.add_option("--token-file", program.web.token_file,
+                 "file with the secret that actions need; without one there are no actions");
+  app.add_option("--benches", program.web.benches_folder,
+                 "folder of bench files that a run may be started with (needs --token-file)");
+  app.add_option("--guide", program.web.guide_folder, "folder of the guide's pages");
+  app.add_option("--javascript", program.web.javascript_folder,
+                 "folder of the JavaScript libraries of this computer")
+      ->capture_default_str();
+  add_network_options(app, program.network);
+  add_metrics_option(app, program.web.metrics);
+}
+
+Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
+  const auto listen = drivers::parse_address(program.listen);
+  if (!listen) {
+    return fail(ErrorCode::bad_argument,
+                "--listen " + program.listen + " is not ADDRESS:PORT, such as 127.0.0.1:8080");
+  }
+  program.web.listen = *listen;
+  auto service = web::WebService::create(program.network, program.web);
+  if (!service) {
+    return fail(service.error());
+  }
+  return (*service)->serve(stop);
+}
+
+} // namespace
+} // namespace dyncal::services
+
+int main(int argc, char** argv) {
+  using namespace dyncal;
+  CLI::App app{"Serves a page that shows what the benches of a laboratory do: state, signals, "
+               "results, history."};
+  app.set_version_flag("--version", services::build_description());
+  services::WebProgram program;
+  services::add_options(app, program);
+  CLI11_PARSE(app, argc, argv);
+  services::set_up_log("dyncal-web");
+  const std::stop_token stop = services::stop_on_signals();
+  const auto served = services::serve(program, stop);
+  if (!served) {
+    return services::report_error(served.error());
+  }
+  services::finish_log();
+  return 0;
+}

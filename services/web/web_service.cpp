@@ -1,0 +1,192 @@
+#include "services/web/web_service.hpp"
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/bus/host_network.hpp"
+#include "services/host_clocks/clock_responder.hpp"
+#include "services/live/laboratory_readers.hpp"
+#include "services/live_signals/signal_tap.hpp"
+#include "services/store/store.hpp"
+#include "services/supervision/supervisor.hpp"
+#include "services/version.hpp"
+#include "services/web/access_token.hpp"
+#include "services/web/actions.hpp"
+#include "services/web/board.hpp"
+#include "services/web/event_stream.hpp"
+#include "services/web/history_answers.hpp"
+#include "services/web/http_door.hpp"
+#include "services/web/laboratory_answers.hpp"
+#include "services/web/run_files.hpp"
+#include "services/web/signal_answers.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+constexpr const char* all_benches = "*";
+constexpr std::chrono::milliseconds max_wait{100};
+
+DoorOptions door_options(const WebOptions& options) {
+  DoorOptions door{.listen = options.listen,
+                   .own_names = options.own_names,
+                   .javascript_folder = options.javascript_folder,
+                   .guide_folder = options.guide_folder};
+  door.own_names.push_back(bus::host_name());
+  return door;
+}
+
+} // namespace
+
+struct WebService::Parts {
+  Parts(bus::Participant joined, const ProgramIdentity& own, const WebOptions& web,
+        ActionOptions action_options)
+      : participant(std::move(joined)), identity(own), options(web),
+        board(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
+        files(web.runs_folder), door(door_options(web), clock), answers(board, files),
+        tap(participant, clock), signals(board, tap, clock),
+        events(board, answers, door,
+               [this](const std::string& bench, const httplib::Request& request) {
+                 return signals.signal(bench, request);
+               }),
+        history(store_of(web)),
+        actions(std::move(action_options), participant, clock, board, door) {}
+
+  void add_daemon(nlohmann::ordered_json& json) const {
+    json["daemon"] = {{"host", identity.host},
+                      {"version", identity.software},
+                      {"vendor", identity.dds},
+                      {"samples_missed", std::to_string(tap.missed())},
+                      {"visitors", events.listeners()}};
+    json["may_act"] = actions.may_act();
+  }
+  static std::string store_of(const WebOptions& web) {
+    return web.store.empty() && web.runs_folder.empty() ? ""
+                                                        : store_place(web.store, web.runs_folder);
+  }
+  void add_answers();
+  void report();
+
+  bus::Clock& clock = bus::system_clock();
+  bus::Participant participant;
+  ProgramIdentity identity;
+  WebOptions options;
+  std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
+  std::unique_ptr<Supervisor> supervisor;
+  std::unique_ptr<ClockResponder> responder;
+  std::optional<live::LaboratoryReaders> readers;
+  Board board;
+  RunFiles files;
+  HttpDoor door;
+  LaboratoryAnswers answers;
+  SignalTap tap;
+  SignalAnswers signals;
+  EventStream events;
+  HistoryAnswers history;
+  Actions actions;
+};
+
+// In the order in which they are asked.
+void WebService::Parts::add_answers() {
+  const auto ask = [](auto& answers_of) {
+    return [&answers_of](const httplib::Request& request, httplib::Response& response) {
+      return answers_of.answer(request, response);
+    };
+  };
+  door.on_get(ask(answers));
+  door.on_get(ask(signals));
+  door.on_get(ask(events));
+  door.on_get(ask(history));
+  door.on_get(
+      [this](const auto& request, auto& response) { return actions.get(request, response); });
+  door.on_post(
+      [this](const auto& request, auto& response) { return actions.post(request, response); });
+}
+
+void WebService::Parts::report() {
+  WebFigures figures{.visitors = events.listeners(),
+                     .requests = door.requests(),
+                     .refused = {},
+                     .benches = 0,
+                     .left_out = 0,
+                     .samples_missed = tap.missed()};
+  for (std::size_t i = 0; i < refusal_count; ++i) {
+    const auto reason = static_cast<Refusal>(i);
+    figures.refused.emplace_back(to_string(reason), door.refusals().of(reason));
+  }
+  board.look([&](const live::Laboratory& laboratory) {
+    const live::LeftOut& out = laboratory.left_out();
+    figures.benches = laboratory.benches().size();
+    figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
+  });
+  supervisor->report(figures);
+  supervisor->report_malformed_messages(participant.malformed_messages());
+}
+
+WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+WebService::~WebService() = default;
+
+Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& network,
+                                                         const WebOptions& options) {
+  auto participant = join_network(network, "dyncal-web");
+  if (!participant) {
+    return fail(participant.error());
+  }
+  auto supervisor = Supervisor::create(this_program("dyncal-web", software_version(), network.dds),
+                                       options.metrics);
+  if (!supervisor) {
+    return fail(supervisor.error());
+  }
+  ActionOptions actions{.token = {},
+                        .benches_folder = options.benches_folder,
+                        .runs_folder = options.runs_folder,
+                        .network = network,
+                        .sender = service_name((*supervisor)->identity())};
+  if (!options.token_file.empty()) {
+    auto token = read_token(options.token_file);
+    if (!token) {
+      return fail(token.error());
+    }
+    actions.token = std::move(*token);
+  }
+  auto parts = std::make_unique<Parts>(std::move(*participant), (*supervisor)->identity(), options,
+                                       std::move(actions));
+  parts->supervisor = std::move(*supervisor);
+  auto responder = ClockResponder::start(parts->participant, parts->identity);
+  auto readers = live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
+                                               parts->clock, parts->wake_up);
+  if (const auto error = first_error(responder, readers)) {
+    return fail(*error);
+  }
+  parts->responder = std::move(*responder);
+  parts->readers.emplace(std::move(*readers));
+  return std::unique_ptr<WebService>(new WebService(std::move(parts)));
+}
+
+Expected<void> WebService::serve(const std::stop_token& stop) {
+  Parts& parts = *parts_;
+  parts.add_answers();
+  if (const auto started = parts.door.start(); !started) {
+    return fail(started.error());
+  }
+  if (!std::filesystem::exists(parts.options.javascript_folder + "/dygraphs/dygraph.min.js")) {
+    spdlog::warn("{}/dygraphs is missing: the page shows no charts (Debian: libjs-dygraphs)",
+                 parts.options.javascript_folder);
+  }
+  const std::string address =
+      drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.door.port())}
+          .text();
+  parts.supervisor->describe("page at http://" + address + "/");
+  const std::stop_callback stopping(stop, [&] { parts.supervisor->stopping(); });
+  parts.supervisor->serving();
+  spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
+  while (!stop.stop_requested()) {
+    parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
+    parts.board.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
+    parts.report();
+    parts.supervisor->turned();
+  }
+  parts.door.stop();
+  return {};
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,50 @@
+// The daemon: feeds the board from the bus, and opens the door.
+//
+// The main loop (serve()) takes what has come and reports to the supervisor; requests are answered
+// by the threads of the door. Samples are read only while somebody looks at a signal. One thread,
+// but for what the door does.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "drivers/link/address.hpp"
+#include "services/error.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services::web {
+
+struct WebOptions {
+  drivers::Address listen{"127.0.0.1", 8080}; // port 0: any free one
+  std::vector<std::string> own_names;
+  std::filesystem::path runs_folder; // empty: no downloads
+  std::string store;                 // as store_place() takes it
+  std::filesystem::path token_file;  // empty: no actions
+  std::filesystem::path benches_folder;
+  std::string guide_folder;
+  std::string javascript_folder = "/usr/share/javascript";
+  std::string metrics; // ADDRESS:PORT; empty: none
+};
+
+class WebService {
+public:
+  // Fails as the network, the token file and the address do.
+  [[nodiscard]] static Expected<std::unique_ptr<WebService>> create(const NetworkOptions& network,
+                                                                    const WebOptions& options);
+  ~WebService();
+  WebService(const WebService&) = delete;
+  WebService& operator=(const WebService&) = delete;
+
+  [[nodiscard]] Expected<void> serve(const std::stop_token& stop);
+
+private:
+  struct Parts;
+  explicit WebService(std::unique_ptr<Parts> parts);
+
+  std::unique_ptr<Parts> parts_;
+};
+
+} // namespace dyncal::services::web

@@ -1,0 +1,69 @@
+#include "services/web/board.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/bus/memory/stepped_clock.hpp"
+#include "tests/unit/services/live/messages.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace std::chrono_literals;
+
+class BoardTest : public testing::Test {
+protected:
+  template <class Message>
+  void take(const Message& message) {
+    board_.change([&](live::Laboratory& laboratory) { laboratory.take(message); });
+  }
+  Text results(const std::string& run = "") {
+    return board_.results("acc-1", run, [this](const std::string&, Json& json) {
+      ++made_;
+      json["files"] = Json::array();
+    });
+  }
+  bus::SteppedClock clock_;
+  Board board_{clock_, [](Json& json) { json["daemon"] = "here"; }};
+  int made_ = 0;
+};
+
+TEST_F(BoardTest, MakesATextOnceForAllWhoAsk) {
+  take(live::status_of("acc-1", "dau"));
+  const Text first = board_.laboratory();
+  take(live::status_of("acc-2", "dau"));
+  EXPECT_EQ(board_.laboratory(), first);
+  clock_.advance(Board::text_age);
+  const Json json = Json::parse(*board_.laboratory());
+  EXPECT_EQ(json["benches"].size(), 2U);
+  EXPECT_EQ(json["daemon"], "here");
+}
+
+TEST_F(BoardTest, MakesResultsAnewWhenTheyChange) {
+  EXPECT_EQ(results(), nullptr);
+  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  take(live::result_of("acc-1", "r1", 1, 0.3));
+  const Text first = results();
+  ASSERT_NE(first, nullptr);
+  clock_.advance(10s);
+  EXPECT_EQ(results(), first);
+  EXPECT_EQ(made_, 1);
+  const std::uint64_t number = board_.results_number("acc-1");
+  take(live::result_of("acc-1", "r1", 2, 0.4));
+  EXPECT_NE(board_.results_number("acc-1"), number);
+  const Json json = Json::parse(*results());
+  EXPECT_EQ(json["points"].size(), 2U);
+  EXPECT_EQ(json["points"][1]["magnitude"], 0.4);
+  EXPECT_EQ(json["runs"][0]["run"], "r1");
+  EXPECT_EQ(results("r2"), nullptr);
+}
+
+TEST_F(BoardTest, HasNoTextOfABenchThatIsNotKnown) {
+  EXPECT_EQ(board_.bench("acc-1"), nullptr);
+  take(live::status_of("acc-1", "dau"));
+  EXPECT_EQ(Json::parse(*board_.bench("acc-1"))["sources"].size(), 1U);
+}
+
+} // namespace
+} // namespace dyncal::services::web
