@@ -36,7 +36,7 @@ run_packages=(
   libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
   libsqlite3-0 libpqxx-6.4
   libxml2 libxmlsec1 libxmlsec1-openssl
-  libcpp-httplib0.11 libjs-dygraphs
+  libcpp-httplib0.11 libjs-dygraphs # dyncal-web, and the charts of its page
 )
 test_packages=(
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
@@ -51,6 +51,7 @@ test_packages=(
   postgresql-15                                # a server of the test's own, on a socket
   libxml2-utils openssl                        # certificates: independent validator, keys
   weasyprint poppler-utils                     # reports as PDF, and their text
+  chromium libjs-dygraphs                      # the page in a browser
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 

@@ -1,0 +1,151 @@
+/**
+ * Results as tables: the means with U, and every repetition with its flags and what it lost. Values
+ * are rounded by their uncertainty; the title of a cell has every digit.
+ */
+
+import { element, name_element, set_name, set_shown, set_text, table_in_scroll } from "./element.js";
+import { KeyedList } from "./keyed_list.js";
+import {
+  count_text, full, is_number, rounded_by_uncertainty, significant, UNKNOWN,
+} from "./number_text.js";
+import { half_bar } from "./run_data.js";
+import { unit_text } from "./unit_text.js";
+
+const number = (text, title = null) => ({ text, title, number: true });
+
+const MEAN_HEADINGS = [
+  number("f / Hz"), number("level / (m/s²)"), number("|H|"), number("U(|H|)", "expanded, 95.45 %"),
+  number("arg H / rad", "lead: a delay is negative"), number("U / rad", "expanded, 95.45 %"),
+  number("k", "of magnitude; of phase in the title"), number("n", "repetitions"), "flags",
+];
+const POINT_HEADINGS = [
+  number("step"), number("f / Hz"), number("level / (m/s²)"), number("repetition"), "valid",
+  number("|H|"), number("u(|H|)"), number("arg H / rad"), number("u / rad"), number("lost"),
+  "flags", { text: "budget" },
+];
+const MAX_ROWS = 2000;
+
+export class ResultTable {
+  /** on_budget: called with {channel, step, repetition} */
+  constructor(on_budget) {
+    this.unit = element("span", { "data-field": "unit" });
+    const means = table_in_scroll("Means over the repetitions", MEAN_HEADINGS);
+    const points = table_in_scroll("Every repetition", POINT_HEADINGS);
+    this.means = new KeyedList(means.body, (p) => `${p.frequency_text_hz} ${p.level_m_s2}`,
+                               () => new MeanRow());
+    this.points = new KeyedList(points.body, (p) => `${p.step} ${p.repetition}`,
+                                () => new PointRow(on_budget));
+    this.no_means = element("p", { class: "quiet" },
+                            "The means with their U come when the run is over.");
+    this.means_root = means.root;
+    this.root = element("section", { class: "panel", "data-panel": "table" },
+                        element("div", { class: "panel-head" }, element("h2", {}, "Table"),
+                                this.unit),
+                        element("h3", {}, "Means over the repetitions"), this.no_means, means.root,
+                        element("details", { open: true },
+                                element("summary", {}, "Every repetition"), points.root));
+  }
+
+  update(points, means, unit) {
+    const short = unit_text(unit);
+    set_text(this.unit, unit ? `|H| in ${short || "one (dimensionless)"}` : "unit not known");
+    const is_final = means.is_final;
+    set_shown(this.no_means, !is_final);
+    set_shown(this.means_root, is_final);
+    this.means.update((is_final ? means.points : []).map((p) => ({ ...p, unit: short })));
+    this.points.update(points.slice(-MAX_ROWS).map((p) => ({ ...p, unit: short })));
+  }
+}
+
+function number_cell() {
+  return element("td", { class: "number" });
+}
+
+// A value and its u in two cells, to the digits of u.
+function show_pair([value_cell, u_cell], value, u, unit, is_shown = true) {
+  const { value: text, u: u_text } = rounded_by_uncertainty(value, u);
+  set_text(value_cell, is_shown ? text : UNKNOWN);
+  set_text(u_cell, is_shown ? u_text : UNKNOWN);
+  value_cell.title = full(value, unit);
+  u_cell.title = full(u, unit);
+}
+
+function show_flags(node, flags) {
+  const names = [...new Set((flags ?? []).map(({ name }) => name))];
+  set_name(node, names.length ? `▲ ${names.join(", ")}` : "none", 80);
+  node.classList.toggle("flagged", names.length > 0);
+}
+
+class MeanRow {
+  constructor() {
+    this.frequency = element("th", { scope: "row", class: "number" });
+    this.cells = Array.from({ length: 7 }, number_cell);
+    this.flags = name_element("");
+    this.root = element("tr", {}, this.frequency, this.cells, element("td", {}, this.flags));
+  }
+
+  update(p) {
+    const [level, magnitude, u_magnitude, phase, u_phase, k, n] = this.cells;
+    set_text(this.frequency, p.frequency_text_hz);
+    set_text(level, significant(p.level_m_s2));
+    show_pair([magnitude, u_magnitude], p.magnitude, half_bar(p, "magnitude", "U"), p.unit);
+    show_pair([phase, u_phase], p.phase_rad, half_bar(p, "phase", "U"), "rad");
+    set_text(k, significant(p.k_magnitude, 3));
+    k.title = `|H|: ${full(p.k_magnitude)}, arg H: ${full(p.k_phase)}`;
+    set_text(n, count_text(p.repetitions));
+    show_flags(this.flags, p.flags);
+    this.root.dataset.frequency = p.frequency_text_hz;
+  }
+}
+
+class PointRow {
+  constructor(on_budget) {
+    this.cells = Array.from({ length: 8 }, number_cell);
+    this.step = element("th", { scope: "row", class: "number" });
+    this.valid = element("td");
+    this.flags = name_element("");
+    this.button = element("button", { type: "button", class: "small",
+                                      onclick: () => on_budget(this.point) }, "Budget");
+    const [f, level, repetition, ...values] = this.cells;
+    this.root = element("tr", {}, this.step, f, level, repetition, this.valid, values,
+                        element("td", {}, this.flags), element("td", {}, this.button));
+  }
+
+  update(p) {
+    this.point = p;
+    const [f, level, repetition, magnitude, u_magnitude, phase, u_phase, lost] = this.cells;
+    set_text(this.step, `${p.step}${p.attempt > 1 ? ` (attempt ${p.attempt})` : ""}`);
+    set_text(f, p.frequency_text_hz);
+    set_text(level, significant(p.level_m_s2));
+    set_text(repetition, p.repetition);
+    set_name(this.valid, valid_text(p), 60);
+    show_pair([magnitude, u_magnitude], p.magnitude, p.u_magnitude, p.unit, p.valid);
+    show_pair([phase, u_phase], p.phase_rad, p.u_phase_rad, "rad", p.valid);
+    set_text(lost, count_text(p.lost));
+    show_flags(this.flags, p.flags);
+    this.button.disabled = !p.valid;
+    this.button.setAttribute("aria-label", `Budget of step ${p.step}, repetition ${p.repetition}`);
+    this.root.dataset.step = String(p.step);
+    this.root.dataset.valid = String(p.valid);
+  }
+}
+
+function valid_text({ valid, problem, provisional }) {
+  if (!valid) {
+    return `✕ ${problem || "no result"}`;
+  }
+  return provisional ? "◔ provisional" : "✓";
+}
+
+/** The whole table as CSV, every digit. */
+export function table_csv(points, unit) {
+  const keys = ["channel", "step", "attempt", "repetition", "frequency_text_hz", "level_m_s2",
+                "valid", "magnitude", "u_magnitude", "phase_rad", "u_phase_rad", "lost"];
+  const cell = (value) => (is_number(value) || typeof value === "boolean" ? String(value)
+    : `"${String(value ?? "").replace(/"/g, '""')}"`);
+  const lines = points.map((p) => [...keys.map((key) => cell(p[key])),
+                                   cell((p.flags ?? []).map(({ name }) => name).join(" "))]);
+  return `# magnitude in ${String(unit || "a unit that is not known").replace(/\s/g, " ")}; phase: ` +
+    "lead, rad; u: standard uncertainty\n" +
+    [[...keys, "flags"], ...lines].map((line) => line.join(",")).join("\n") + "\n";
+}

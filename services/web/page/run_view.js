@@ -1,0 +1,244 @@
+/**
+ * A run: its results as they come, point by point, what they are worth, and what it left on disk.
+ */
+
+import { bench_path, get } from "./api.js";
+import { BudgetPanel } from "./budget_panel.js";
+import { ClockPanel } from "./clock_panel.js";
+import { DownloadPanel } from "./download_panel.js";
+import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
+import { FlagPanel } from "./flag_panel.js";
+import { duration_text, rounded_by_uncertainty, utc_text } from "./number_text.js";
+import { ResponseChart } from "./response_chart.js";
+import { ResultTable, table_csv } from "./result_table.js";
+import { href_of } from "./route.js";
+import {
+  BARS, channels_of, deviation_series, flags_of, means_of, points_of, response_series, summary_of,
+} from "./run_data.js";
+import { StateBadge } from "./state_badge.js";
+import { quantity_in } from "./unit_text.js";
+
+const CURRENT = "";
+
+export class RunView {
+  constructor(page, route) {
+    this.page = page;
+    this.bench = route.bench ?? page.laboratory?.benches?.[0]?.bench ?? null;
+    this.asked_run = route.run;
+    this.run = null;
+    this.state = new StateBadge("state");
+    this.heading = name_element(this.bench ?? "no bench yet", 48);
+    this.run_name = name_element("", 80);
+    this.age = element("p", { class: "age", "data-field": "age" });
+    this.note = element("p", { class: "message", "data-field": "message" });
+    this.progress = element("p", { class: "quiet", "data-field": "progress" });
+    this.delay = element("p", { class: "quiet", "data-field": "group_delay" });
+    this.benches = new Choice("Bench", (bench) => this.go(bench, null));
+    this.runs = new Choice("Run", (run) => this.go(this.bench, run === CURRENT ? null : run));
+    this.channel = new Choice("Channel", () => this.show());
+    this.bars = new Choice("Bars", () => this.show());
+    this.bars.offer(BARS);
+    const on_pick = (point) => this.show_budget(point);
+    this.magnitude = new ResponseChart({ title: "Magnitude", on_pick });
+    this.phase = new ResponseChart({ title: "Phase", on_pick });
+    this.magnitude_deviation = new ResponseChart({ title: "Deviation of the magnitude from the mean",
+                                                   height: 190, on_pick });
+    this.phase_deviation = new ResponseChart({ title: "Deviation of the phase from the mean",
+                                               height: 190, on_pick });
+    this.budget = new BudgetPanel();
+    this.flags = new FlagPanel();
+    this.clock_panel = new ClockPanel();
+    this.table = new ResultTable(on_pick);
+    this.files = new DownloadPanel();
+    this.csv = element("button", { type: "button", class: "small", onclick: () => this.save_csv() },
+                       "This table as CSV");
+    this.root = this.make_root();
+    if (this.asked_run !== null) {
+      this.ask_once();
+    }
+  }
+
+  make_root() {
+    return element(
+      "div", { class: "view", "data-view": "run", "data-bench": this.bench },
+      element("div", { class: "view-head" },
+              element("h1", {}, "Run ", this.run_name, " of ", this.heading), this.state.root,
+              this.age),
+      element("div", { class: "tools no-print" }, this.benches.root, this.runs.root,
+              this.channel.root, this.bars.root),
+      this.note, this.progress, this.delay,
+      element("section", { class: "panel", "aria-label": "Transfer function" },
+              element("h2", {}, "Transfer function"),
+              element("div", { class: "pair" }, this.magnitude.root, this.phase.root,
+                      this.magnitude_deviation.root, this.phase_deviation.root)),
+      this.budget.root, this.flags.root, this.table.root, this.clock_panel.root, this.files.root,
+    );
+  }
+
+  go(bench, run) {
+    window.location.hash = href_of("run", bench, run);
+  }
+
+  wants() {
+    return this.bench ? { bench: this.bench } : {};
+  }
+
+  // An earlier run does not change any more.
+  async ask_once() {
+    try {
+      this.take(await get(bench_path(this.bench, "/run"), { run: this.asked_run }));
+    } catch (problem) {
+      set_text(this.note, `✕ ${problem.message}`);
+    }
+  }
+
+  receive(name, data) {
+    if (name === "laboratory") {
+      this.receive_laboratory(data);
+    } else if (name === "run" && data.bench === this.bench) {
+      if (this.asked_run === null || data.run === this.asked_run) {
+        this.take(data);
+      }
+    }
+  }
+
+  receive_laboratory({ benches = [] }) {
+    if (this.bench === null && benches.length > 0) {
+      window.location.replace(href_of("run", benches[0].bench));
+      return;
+    }
+    this.benches.offer(benches.map(({ bench }) => ({ value: bench, text: bench })), this.bench);
+    this.tile = benches.find(({ bench }) => bench === this.bench) ?? null;
+    this.show_progress();
+    this.tick();
+  }
+
+  is_current() {
+    return this.tile !== null && this.tile !== undefined && this.run?.run === this.tile.run;
+  }
+
+  show_progress() {
+    const tile = this.tile;
+    if (!tile) {
+      return;
+    }
+    if (this.is_current()) {
+      this.state.update(tile.state);
+      set_text(this.progress, tile.state === "done" ? `All ${tile.step_count ?? "–"} steps are done.`
+        : `Step ${tile.step ?? "–"} of ${tile.step_count ?? "–"}, ` +
+        `${tile.frequency_text_hz ? `${tile.frequency_text_hz} Hz, ` : ""}` +
+        `${duration_text(tile.time_left_s)} left`);
+    } else if (this.run) {
+      const listed = (this.run.runs ?? []).find(({ run }) => run === this.run.run);
+      this.state.update(this.run.state ?? listed?.state);
+      set_text(this.progress, "An earlier run.");
+    }
+  }
+
+  // Asked once a second, the same answer comes again and again.
+  is_known(run) {
+    const { generation } = this.page.connection;
+    const is_same = this.run?.run === run.run && this.run.number === run.number &&
+      this.generation === generation;
+    this.generation = generation;
+    return is_same;
+  }
+
+  take(run) {
+    if (this.is_known(run)) {
+      return;
+    }
+    this.run = run;
+    set_name(this.run_name, run.run ?? "", 80);
+    set_attribute(this.root, "data-number", run.number);
+    set_attribute(this.root, "data-run", run.run);
+    const earlier = (run.runs ?? []).map(({ run: name, planned_utc_ms }) => ({
+      value: name, text: `${name} (${utc_text(planned_utc_ms)})`,
+    }));
+    this.runs.offer([{ value: CURRENT, text: "current run" }, ...earlier],
+                    this.asked_run ?? CURRENT);
+    const channels = channels_of(run);
+    this.channel.offer(channels.map((value) => ({ value, text: value })));
+    set_name(this.note, run.message ?? "", 300);
+    this.show_progress();
+    this.show();
+  }
+
+  show() {
+    const { run } = this;
+    if (!run) {
+      return;
+    }
+    const channel = this.channel.value ?? "";
+    const means = means_of(run, channel);
+    const points = points_of(run, channel);
+    const unit = means.transfer?.unit ?? points.find(({ valid }) => valid)?.unit ?? "";
+    cancelAnimationFrame(this.frame);
+    this.frame = requestAnimationFrame(() => this.show_charts(run, channel, means, unit));
+    this.show_delay(means.transfer);
+    this.table.update(points, means, unit);
+    this.flags.update(flags_of(run, channel), points);
+    this.clock_panel.update(run.clock ?? []);
+    this.files.update(run.files, this.csv);
+  }
+
+  show_charts(run, channel, means, unit) {
+    const bars = this.bars.value;
+    const of = (make, quantity) => make(run, channel, means, quantity, bars);
+    this.magnitude.show(of(response_series, "magnitude"), quantity_in("magnitude", unit),
+                        summary_of(means, "magnitude"));
+    this.phase.show(of(response_series, "phase"), "phase (lead) in rad", summary_of(means, "phase"));
+    this.magnitude_deviation.show(of(deviation_series, "magnitude"), "deviation in %",
+                                  summary_of(means, "deviation"));
+    this.phase_deviation.show(of(deviation_series, "phase"), "deviation in °",
+                              summary_of(means, "deviation"));
+  }
+
+  show_delay(transfer) {
+    if (!transfer || typeof transfer.group_delay_s !== "number") {
+      set_text(this.delay, transfer?.group_delay_problem
+        ? `No group delay: ${transfer.group_delay_problem}` : "");
+      return;
+    }
+    const { value, u } = rounded_by_uncertainty(1e3 * transfer.group_delay_s,
+                                                1e3 * transfer.u_group_delay_s);
+    set_text(this.delay, `Group delay ${value} ms (u ${u} ms)`);
+  }
+
+  show_budget({ channel, step, repetition }) {
+    const point = points_of(this.run, channel).find((p) =>
+      p.step === step && p.repetition === repetition);
+    if (!point) {
+      return;
+    }
+    this.budget.ask(this.bench, this.run.run, point).then(() => {
+      this.budget.root.scrollIntoView({ block: "nearest" });
+    });
+  }
+
+  save_csv() {
+    const channel = this.channel.value ?? "";
+    const points = points_of(this.run, channel);
+    const text = table_csv(points, quantity_in("", points[0]?.unit).trim());
+    const url = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+    element("a", { href: url, download: "table.csv" }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  }
+
+  tick() {
+    if (this.tile && this.is_current()) {
+      set_text(this.age, this.page.clock.age_text(this.tile.last_message_utc_ms));
+      this.root.classList.toggle("is-stale",
+                                 this.page.clock.is_stale(this.tile.last_message_utc_ms));
+    }
+  }
+
+  leave() {
+    cancelAnimationFrame(this.frame);
+    for (const chart of [this.magnitude, this.phase, this.magnitude_deviation,
+                         this.phase_deviation]) {
+      chart.destroy();
+    }
+    this.clock_panel.leave();
+  }
+}

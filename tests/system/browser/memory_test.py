@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""A day of a laboratory does not make the page grow: JavaScript's heap and the number of elements
+at a third of the day and at its end.
+
+The day is played fast, every 600th of its 86400 seconds; DYNCAL_BROWSER_DAY=1 plays all of them.
+"""
+
+import os
+import time
+
+import played_state
+from page_case import PageCase, run
+
+SECONDS = 86400
+STEPS = 51
+RUN_S = 3600
+EVERY_S = int(os.environ.get("DYNCAL_BROWSER_DAY", "600"))
+MAX_GROWTH = 1.10
+
+
+class Memory(PageCase):
+    def play(self, page, begin_s, end_s):
+        """The states between two seconds of the day, in portions of one answer each."""
+        lab = self.laboratory
+        for second in range(begin_s, end_s, EVERY_S):
+            run_number, within = divmod(second, RUN_S)
+            lab.origin_ms = played_state.BEGIN_UTC_MS + 1000 * second
+            for name in lab.benches:
+                if within < EVERY_S:
+                    lab.points[name] = []
+                    lab.is_over[name] = False
+                    lab.benches[name].update(run=f"run-{run_number}", state="running")
+                    lab.runs[name] = [{"run": f"run-{n}", "state": "done",
+                                       "planned_utc_ms": played_state.BEGIN_UTC_MS + n * RUN_S}
+                                      for n in range(run_number - 20, run_number + 1)]
+                step = min(STEPS, 1 + within * STEPS // (RUN_S - 120))
+                lab.measure(name, step, {**played_state.point(step, seed=run_number),
+                                         "u_magnitude": 1e-3 + 1e-9 * second})
+                if within > RUN_S - 120:
+                    lab.finish(name)
+            if second % 600 < EVERY_S:
+                lab.events = [*lab.events[-199:], {
+                    "utc_ms": lab.origin_ms, "bench": "acc-1", "severity": "note",
+                    "text": f"second {second} of the day"}]
+            lab.changed()
+            page.wait_for(f"Number(document.querySelector('.view').dataset.number) >= {lab.number}")
+
+    def grow(self, view):
+        for name in ("acc-1", "acc-2", "acc-3"):
+            self.laboratory.add_bench(name)
+        self.laboratory.events = [
+            {"utc_ms": played_state.BEGIN_UTC_MS - 1000 * n, "bench": "acc-1", "severity": "note",
+             "text": f"{n} s before the day"} for n in range(200, 0, -1)]  # as many as there may be
+        page = self.open(view)
+        page.wait_for("document.querySelector('.view')?.dataset.number")
+        began = time.monotonic()
+        self.play(page, 0, SECONDS // 3)
+        third = page.heap_bytes(), page.value("document.querySelectorAll('*').length")
+        self.play(page, SECONDS // 3, SECONDS)
+        end = page.heap_bytes(), page.value("document.querySelectorAll('*').length")
+        print(f"\n{view or 'laboratory'}: {SECONDS // EVERY_S} states in "
+              f"{time.monotonic() - began:.0f} s; heap {third[0] / 1e6:.2f} MB at a third, "
+              f"{end[0] / 1e6:.2f} MB at the end; {third[1]} and {end[1]} elements")
+        self.assertLess(end[0], MAX_GROWTH * third[0] + 200e3)
+        # Elements differ by what the hour has: a run just begun, or done.
+        self.assertLess(end[1], MAX_GROWTH * third[1] + 4 * 200)
+
+    def test_laboratory(self):
+        self.grow("")
+
+    def test_bench(self):
+        self.grow("bench/acc-1")
+
+    def test_run(self):
+        self.grow("run/acc-1")
+
+    def test_going_from_view_to_view_leaves_nothing_behind(self):
+        self.laboratory.add_bench("acc-1")
+        for step in range(1, STEPS + 1):
+            self.laboratory.measure("acc-1", step)
+        self.laboratory.finish("acc-1")
+        page = self.open()
+        rounds = 9
+
+        def go_round():
+            for view in ("bench/acc-1", "run/acc-1", "history", ""):
+                page.value(f"location.hash = '#/{view}'")
+                name = view.split("/")[0] or "laboratory"
+                page.wait_for(f"document.querySelector('.view').dataset.view === '{name}'")
+                if view == "run/acc-1":
+                    page.wait_for("document.querySelectorAll('[data-step]').length === 51")
+                if view == "history":
+                    page.wait_for("document.querySelectorAll('[data-panel=en] tr').length > 50")
+
+        for _ in range(rounds // 3):
+            go_round()
+        third = page.heap_bytes()
+        for _ in range(rounds - rounds // 3):
+            go_round()
+        end = page.heap_bytes()
+        print(f"\n{rounds} rounds through the views: heap {third / 1e6:.2f} MB after a third, "
+              f"{end / 1e6:.2f} MB at the end")
+        # Four views each time: one that stays would be 8 times its own few hundred kB.
+        self.assertLess(end, MAX_GROWTH * third + 500e3)
+
+
+if __name__ == "__main__":
+    run()

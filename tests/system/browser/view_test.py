@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""The four views show what the state holds: the same numbers, with the digits that their
+uncertainty leaves them, and every digit in the title."""
+
+import json
+
+import played_state
+from page_case import PageCase, run, text_of, texts_of
+from played_laboratory import example
+
+
+class Views(PageCase):
+    def setUp(self):
+        super().setUp()
+        example_laboratory = example()
+        self.laboratory = example_laboratory
+        self.server.laboratory = example_laboratory
+        self.server.server.laboratory = example_laboratory
+
+    def field(self, page, bench, name):
+        selector = f'[data-bench="{bench}"] [data-field="{name}"]'
+        return page.value(text_of(selector))
+
+    def test_laboratory_shows_every_bench_the_worst_first(self):
+        page = self.open()
+        page.wait_for("document.querySelectorAll('.tile').length === 3")
+        self.assertEqual(page.value("[...document.querySelectorAll('.tile')].map(t => "
+                                    "t.dataset.bench)"), ["gyro", "acc-2", "acc-1"])
+        self.assertEqual(self.field(page, "acc-1", "state"), "running")
+        self.assertEqual(self.field(page, "acc-1", "step"), "24 of 51, repetition 2")
+        self.assertEqual(self.field(page, "acc-1", "excitation"), "40 Hz, 10 m/s², steady")
+        self.assertEqual(self.field(page, "acc-1", "time_left"), "5 min 24 s")
+        self.assertEqual(self.field(page, "acc-1", "results"), "24, 0 invalid, 1 flagged")
+        self.assertEqual(self.field(page, "acc-1", "recording"), "recording, 81.2 MB")
+        self.assertEqual(self.field(page, "acc-2", "worst"), "dau: 12 samples lost")
+        self.assertRegex(self.field(page, "gyro", "age"), "silent for 1 min 3\\d s")
+        result = self.laboratory.benches["acc-1"]["last_result"]
+        title = page.value("document.querySelector('[data-bench=\"acc-1\"] "
+                           "[data-field=last_result]').title")
+        self.assertIn(repr(result["magnitude"]), title)
+        self.assertEqual(len(page.value(texts_of(".panel tbody tr"))), 7)
+        self.assertEqual(page.value(text_of("[data-field=counts]")),
+                         "3 benches: ◌ 1 silent, ▶ 1 running, ✓ 1 done")
+        self.assertEqual(len(page.value(texts_of(".events li"))), 4)
+
+    def test_laboratory_is_filtered_by_text_and_severity(self):
+        page = self.open()
+        page.wait_for("document.querySelectorAll('.tile').length === 3")
+        page.value("(e => { e.value = 'acc'; e.dispatchEvent(new Event('input')); })"
+                   "(document.querySelector('input[type=search]'))")
+        self.assertEqual(len(page.value(texts_of(".tile"))), 2)
+        page.value("(e => { e.value = 'warning'; e.dispatchEvent(new Event('change')); })"
+                   "(document.querySelector('.tools select'))")
+        self.assertEqual(page.value(texts_of(".tile h3")), ["acc-2"])
+
+    def test_bench_shows_sources_signal_spectrum_and_fit(self):
+        page = self.open("bench/acc-1")
+        page.wait_for("document.querySelectorAll('.band li').length === 51")
+        self.assertEqual(page.value("document.querySelectorAll('.band [data-state=done]').length"),
+                         24)
+        self.assertEqual(page.value(text_of('[data-source="dau"] [data-field="received"]')),
+                         "1\u202f234\u202f567")
+        # Beyond 2^53, where a number of JavaScript has lost its last digit.
+        self.assertEqual(page.value(text_of('[data-source="acs"] [data-field="received"]')),
+                         "9\u202f007\u202f199\u202f254\u202f740\u202f993")
+        self.assertEqual(page.value(text_of('[data-source="dau"] [data-field="lost_in_transit"]')),
+                         "▲ 12")
+        level, _ = page.wait_for("(t => t?.includes('peak') ? t : null)"
+                                 f"({text_of('[data-field=level]')})")
+        self.assertIn("✓ in range: peak 9.3 m/s² (23.7 % of the range)", level)
+        spectrum, _ = page.wait_for(text_of("[data-field=spectrum]"))
+        self.assertIn("Fundamental 16.0003 Hz", spectrum)
+        self.assertIn("THD 0.35 %", spectrum)
+        fit, _ = page.wait_for(text_of("[data-field=fit_reference]"))
+        self.assertIn("16.000310 Hz (u 0.000022 Hz)", fit)
+        page.wait_for(f"{drawn_pixels(0)} > 500 && {drawn_pixels(1)} > 500")
+        self.assertIn("value in m/s²", page.value(texts_of(".y-label")))
+
+    def test_freezing_keeps_the_signal(self):
+        page = self.open("bench/acc-1")
+        page.wait_for("document.querySelector('[data-field=signal]').textContent !== ''")
+        page.value("[...document.querySelectorAll('button')].find(b => b.textContent === 'Freeze')"
+                   ".click()")
+        before = page.value(text_of("[data-field=level]"))
+        self.laboratory.signal_changes = {"level_peak": 39.1}
+        page.value("new Promise(done => setTimeout(done, 700))")
+        self.assertEqual(page.value(text_of("[data-field=level]")), before)
+        page.value("document.querySelector('[aria-pressed=true]').click()")
+        page.wait_for(f"{text_of('[data-field=level]')}.includes('overload')")
+
+    def test_another_channel_is_asked_for(self):
+        page = self.open("bench/acc-1")
+        page.wait_for(f"{text_of('[data-field=level]')}.includes('9.3 m/s²')")
+        page.value("(e => { e.value = 'dau/sync'; e.dispatchEvent(new Event('change')); })"
+                   "([...document.querySelectorAll('select')].find(s => s.value === "
+                   "'dau/x_acceleration'))")
+        page.wait_for(f"{text_of('[data-field=level]')}.includes('0.6 m/s²')")
+        self.assertTrue(any("signal=dau%2Fsync" in path for path in self.server.asked))
+
+    def test_run_shows_every_number_with_its_digits(self):
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('[data-step]').length === 51")
+        rows = page.value("[...document.querySelectorAll('[data-step]')].map(r => "
+                          "[...r.cells].map(c => [c.textContent, c.title]))")
+        points = {p["step"]: p for p in self.laboratory.points["acc-2"]}
+        for row in rows:
+            point = points[int(row[0][0])]
+            for column, key in ((5, "magnitude"), (6, "u_magnitude"), (7, "phase_rad"),
+                                (8, "u_phase_rad")):
+                text, title = row[column]
+                self.assertEqual(float(title.split()[0]), point[key])
+                self.assertLessEqual(abs(float(text) - point[key]), digit(text), (key, text))
+        means = page.value("[...document.querySelectorAll('[data-frequency]')].map(r => "
+                           "[...r.cells].map(c => c.title))")
+        expected = played_state.transfer(self.laboratory.points["acc-2"])["points"]
+        self.assertEqual(len(means), len(expected))
+        for row, mean in zip(means, expected):
+            self.assertEqual([float(row[i].split()[0]) for i in (2, 3, 4, 5)],
+                             [mean[k] for k in ("magnitude", "U_magnitude", "phase_rad",
+                                                "U_phase_rad")])
+        self.assertEqual(page.value(text_of("[data-field=group_delay]")),
+                         "Group delay 1.7003 ms (u 0.0012 ms)")
+        self.assertIn("check its network", page.value(text_of("[data-panel=flags]")))
+        self.assertEqual(page.value(texts_of("[data-panel=files] li a")),
+                         ["result.json", "transfer_function.svg"])
+        self.assertIn("612\u202f345 intervals", page.value(text_of("[data-field=clock_report]")))
+        for i in range(6):
+            self.assertGreater(page.value(drawn_pixels(i)), 200, f"chart {i} is empty")
+
+    def test_run_grows_point_by_point_and_shows_what_failed(self):
+        self.laboratory.measure("acc-1", 24, played_state.invalid_point(24))
+        page = self.open("run/acc-1")
+        page.wait_for("document.querySelectorAll('[data-step]').length === 24")
+        self.assertIn("no samples of dau/x_acceleration",
+                      page.value(text_of("[data-panel=flags] .problems")))
+        self.laboratory.measure("acc-1", 25)
+        self.laboratory.changed()
+        page.wait_for("document.querySelectorAll('[data-step]').length === 25", 3)
+        again = {**played_state.point(24), "attempt": 2}
+        self.laboratory.measure("acc-1", 24, again)
+        self.laboratory.changed()
+        page.wait_for("[...document.querySelectorAll('[data-step=\"24\"]')].map(r => "
+                      "r.dataset.valid).join() === 'true'", 3)
+        self.assertIn("24 (attempt 2)", page.value(texts_of("[data-step] th")))
+
+    def test_budget_of_a_clicked_point(self):
+        page = self.open("run/acc-2")
+        page.wait_for(f"{drawn_pixels(0)} > 500")
+        page.wait_for("document.querySelectorAll('[data-step]').length === 51")
+        place = page.value(
+            "(() => { const c = document.querySelector('.canvas'); const b = "
+            "c.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()")
+        points = self.laboratory.points["acc-2"]
+        highest = max(points, key=lambda p: p["frequency_hz"])
+        self.assertEqual(highest["frequency_hz"], 400)
+        for y in range(4, 40, 6):  # 400 Hz is the highest point, close to the right edge
+            page.click(place[0] + place[2] * 0.96, place[1] + y)
+        page.wait_for("document.querySelector('[data-field=budget_of]').textContent")
+        self.assertRegex(page.value(text_of("[data-field=budget_of]")), "400 Hz")
+        rows = page.value(texts_of("[data-panel=budget] tbody th"))
+        self.assertEqual(rows[0], "reference")
+        self.assertEqual(len(rows), 5)
+        page.value("document.querySelector('[data-step=\"9\"] button').click()")
+        page.wait_for("document.querySelector('[data-field=budget_of]').textContent"
+                      ".includes('step 9, repetition 1, 63 Hz')")
+
+    def test_history_shows_runs_and_normalised_errors(self):
+        page = self.open("history")
+        page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 51")
+        history = played_state.history("MPU-9250 0xbccb0100")
+        titles = page.value("[...document.querySelectorAll('[data-panel=en] tbody tr')].map(r => "
+                            "[r.cells[3].title, r.cells[4].title].map(Number))")
+        expected = [[e["en_magnitude"], e["en_phase"]] for e in history["en"]]
+        self.assertEqual(sorted(titles), sorted(expected))
+        self.assertEqual(titles[0], max(expected, key=lambda e: max(map(abs, e))))
+        page.value("document.querySelector('.runs input').click()")
+        page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 17")
+
+    def test_numbers_are_rounded_as_on_the_terminal(self):
+        page = self.open()
+        # The cases of services/report/rounding.hpp and its test.
+        cases = [[0.9771834, 0.000934], [-3.14159, 0.00087], [8.1234e-6, 1.5e-8], [2e-7, 0.014],
+                 [9814.26, 230], [1, 0.0996], [9.96e-6, 1e-6], [-0.0004, 0.014], [5, 0]]
+        given = page.value("import('/page/number_text.js').then(m => "
+                           f"{json.dumps(cases)}.map(([v, u]) => m.rounded_by_uncertainty(v, u))"
+                           ".map(({value, u}) => [value, u]))")
+        self.assertEqual(given, [["0.97718", "0.00093"], ["-3.14159", "0.00087"],
+                                 ["8.123e-06", "1.5e-08"], ["0.000", "0.014"], ["9810", "230"],
+                                 ["1.00", "0.10"], ["1.00e-05", "1.0e-06"], ["0.000", "0.014"],
+                                 ["5", "0"]])
+
+
+def digit(text):
+    """Half of the last digit of a decimal text, and a little for its binary form."""
+    mantissa, _, exponent = text.partition("e")
+    places = len(mantissa.partition(".")[2])
+    return (0.5 + 1e-6) * 10 ** (int(exponent or 0) - places)
+
+
+def drawn_pixels(chart):
+    return (f"(c => c ? (d => {{ let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0; "
+            "return n; })(c.getContext('2d').getImageData(0, 0, c.width, c.height).data) : 0)"
+            f"(document.querySelectorAll('.canvas')[{chart}]?.querySelector('canvas'))")
+
+
+if __name__ == "__main__":
+    run()
