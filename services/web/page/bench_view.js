@@ -141,7 +141,7 @@ export class BenchView {
   }
 
   async ask_fit() {
-    if (this.name === null || document.hidden) {
+    if (!this.bench?.plan || document.hidden) {
       return;
     }
     try {

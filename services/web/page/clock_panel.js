@@ -37,6 +37,7 @@ export class ClockPanel {
 
   show() {
     const report = this.reports.find(({ source }) => source === this.source.value);
+    set_shown(this.source.root, this.reports.length > 1);
     set_shown(this.none, !report);
     set_shown(this.text, Boolean(report));
     set_shown(this.pair, Boolean(report));

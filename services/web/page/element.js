@@ -102,16 +102,17 @@ export class Choice {
     return this.select.value || null;
   }
 
-  /** choices: [{value, text}]; keeps the chosen one while it is there. */
+  /** choices: [{value, text}]; what is chosen stays while it is there; at first it is `preferred`. */
   offer(choices, preferred = null) {
     const as_text = JSON.stringify(choices);
+    const before = this.value;
     if (as_text !== this.shown) {
       this.shown = as_text;
       this.select.replaceChildren(
         ...choices.map(({ value, text }) => element("option", { value }, shortened(text, 48))),
       );
     }
-    const want = this.wanted ?? preferred;
+    const want = this.wanted ?? before ?? preferred;
     if (want !== null && this.select.value !== want && choices.some((c) => c.value === want)) {
       this.select.value = want;
     }

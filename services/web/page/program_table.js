@@ -46,10 +46,10 @@ class ProgramRow {
     this.offset = element("td", { class: "number" });
     this.heard = element("td", { class: "nowrap" });
     this.root = element("tr", {},
-                        element("th", { scope: "row" }, cell("name")),
+                        element("th", { scope: "row", class: "nowrap" }, cell("name")),
                         element("td", {}, cell("bench")), element("td", {}, this.health.root),
                         ["host", "process_id", "vendor", "version"].map((key) =>
-                          element("td", {}, cell(key))),
+                          element("td", { class: "nowrap" }, cell(key))),
                         this.offset, element("td", { class: "wide" }, cell("message")), this.heard);
   }
 

@@ -90,7 +90,7 @@ class MeanRow {
     set_text(level, significant(p.level_m_s2));
     show_pair([magnitude, u_magnitude], p.magnitude, half_bar(p, "magnitude", "U"), p.unit);
     show_pair([phase, u_phase], p.phase_rad, half_bar(p, "phase", "U"), "rad");
-    set_text(k, significant(p.k_magnitude, 3));
+    set_text(k, is_number(p.k_magnitude) ? significant(p.k_magnitude, 3) : "2, assumed");
     k.title = `|H|: ${full(p.k_magnitude)}, arg H: ${full(p.k_phase)}`;
     set_text(n, count_text(p.repetitions));
     show_flags(this.flags, p.flags);

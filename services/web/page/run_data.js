@@ -16,19 +16,21 @@ export const BARS = [
   { value: "none", text: "none" },
 ];
 
-/** Channels with results, those that respond first. */
+/** Channels with results, by name; and the one with the best known values, to be shown first. */
 export function channels_of(run) {
   const transfer = (run.transfer ?? []).map((one) => one.channel);
   const points = (run.points ?? []).map((one) => one.channel);
-  const names = [...new Set([...transfer, ...points])];
-  return names.sort((a, b) => Number(responds(run, b)) - Number(responds(run, a)));
+  const names = [...new Set([...transfer, ...points])].sort();
+  const clearness = new Map(names.map((name) => [name, clearness_of(run, name)]));
+  const best = [...names].sort((a, b) => clearness.get(b) - clearness.get(a))[0] ?? null;
+  return { names, best };
 }
 
-// More than half of the values are above three times their u.
-function responds(run, channel) {
-  const values = valid_points(run, channel);
-  const above = values.filter((p) => p.magnitude > 3 * (p.u_magnitude ?? 0)).length;
-  return 2 * above > values.length;
+// Median of |H| / u.
+function clearness_of(run, channel) {
+  const ratios = valid_points(run, channel).map((p) => p.magnitude / p.u_magnitude)
+    .filter(is_number).sort((a, b) => a - b);
+  return ratios[Math.floor(ratios.length / 2)] ?? 0;
 }
 
 export function points_of(run, channel) {
@@ -153,7 +155,8 @@ function mean_name(means, bars) {
   if (!means.is_final) {
     return "mean so far";
   }
-  return bars === "none" ? "mean" : `mean ± ${bars}`;
+  const has_k = means.points.some((p) => is_number(p.U_magnitude) || is_number(p.U_phase_rad));
+  return bars === "none" ? "mean" : `mean ± ${bars === "U" && !has_k ? "2 u" : bars}`;
 }
 
 /** quantity: "magnitude" or "phase". */

@@ -157,8 +157,8 @@ export class RunView {
     }));
     this.runs.offer([{ value: CURRENT, text: "current run" }, ...earlier],
                     this.asked_run ?? CURRENT);
-    const channels = channels_of(run);
-    this.channel.offer(channels.map((value) => ({ value, text: value })));
+    const { names, best } = channels_of(run);
+    this.channel.offer(names.map((value) => ({ value, text: value })), best);
     set_name(this.note, run.message ?? "", 300);
     this.show_progress();
     this.show();

@@ -74,6 +74,7 @@ export class SignalPanel {
 
   change(on_change) {
     this.set_frozen(false);
+    this.signal = null;
     this.trace.show([], "");
     this.spectrum.show([], "");
     on_change();
@@ -110,7 +111,8 @@ export class SignalPanel {
 
   async ask_spectrum() {
     const signal = this.channel.value;
-    if (signal === null || this.is_frozen || document.hidden) {
+    const has_samples = this.signal?.columns?.length > 0;
+    if (signal === null || !has_samples || this.is_frozen || document.hidden) {
       return;
     }
     const [source, channel] = split_channel(signal);

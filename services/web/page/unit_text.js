@@ -29,7 +29,12 @@ const ONE = ["\\one", "1"];
 /** The short form; empty for the unit one and for one that is not known. */
 export function unit_text(unit) {
   const text = String(unit ?? "");
-  return ONE.includes(text) ? "" : (SHORT_FORMS.get(text) ?? text);
+  return ONE.includes(text) ? "" : (SHORT_FORMS.get(text) ?? with_signs(text));
+}
+
+// Units of what has no name of its own: "(uT)/(m/s^2)" is (µT)/(m/s²).
+function with_signs(text) {
+  return text.replace(/\^2(?!\d)/g, "²").replace(/\buT\b/g, "µT").replace(/\bdegC\b/g, "°C");
 }
 
 /** For an axis, as the figures of files have it: "magnitude in V", "magnitude". */

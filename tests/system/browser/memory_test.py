@@ -2,7 +2,7 @@
 """A day of a laboratory does not make the page grow: JavaScript's heap and the number of elements
 at a third of the day and at its end.
 
-The day is played fast, every 600th of its 86400 seconds; DYNCAL_BROWSER_DAY=1 plays all of them.
+The day is played fast, every 900th of its 86400 seconds; DYNCAL_BROWSER_DAY=1 plays all of them.
 """
 
 import os
@@ -14,8 +14,10 @@ from page_case import PageCase, run
 SECONDS = 86400
 STEPS = 51
 RUN_S = 3600
-EVERY_S = int(os.environ.get("DYNCAL_BROWSER_DAY", "600"))
+EVERY_S = int(os.environ.get("DYNCAL_BROWSER_DAY", "900"))
 MAX_GROWTH = 1.10
+# Compiled code comes and goes by itself; keeping every answer would take more than twice this.
+SLACK_BYTES = 600e3
 
 
 class Memory(PageCase):
@@ -61,7 +63,7 @@ class Memory(PageCase):
         print(f"\n{view or 'laboratory'}: {SECONDS // EVERY_S} states in "
               f"{time.monotonic() - began:.0f} s; heap {third[0] / 1e6:.2f} MB at a third, "
               f"{end[0] / 1e6:.2f} MB at the end; {third[1]} and {end[1]} elements")
-        self.assertLess(end[0], MAX_GROWTH * third[0] + 200e3)
+        self.assertLess(end[0], MAX_GROWTH * third[0] + SLACK_BYTES)
         # Elements differ by what the hour has: a run just begun, or done.
         self.assertLess(end[1], MAX_GROWTH * third[1] + 4 * 200)
 
@@ -101,7 +103,7 @@ class Memory(PageCase):
         print(f"\n{rounds} rounds through the views: heap {third / 1e6:.2f} MB after a third, "
               f"{end / 1e6:.2f} MB at the end")
         # Four views each time: one that stays would be 8 times its own few hundred kB.
-        self.assertLess(end, MAX_GROWTH * third + 500e3)
+        self.assertLess(end, MAX_GROWTH * third + SLACK_BYTES)
 
 
 if __name__ == "__main__":

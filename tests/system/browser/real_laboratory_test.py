@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""The page with everything real: three demonstrations at once, dyncal-web, Chromium.
+
+    real_laboratory_test.py DYNCAL DYNCAL_WEB
+"""
+
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import chromium
+import page_case
+from page_case import connection_is, text_of
+
+PRESETS = ["bma280", "mpu9250-paper", "mpu9250-ptb"]
+DOMAIN = 140 + os.getpid() % 60
+RUN_S = 240  # that a demonstration may take on a busy machine
+MAX_NOTICED_S = 3 + 2  # three seconds of silence, and the second hand of the page
+MAX_BACK_S = 3 + 7  # of which its programs take some to start
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Program:
+    """A program and its children, ended together."""
+
+    def __init__(self, arguments, log):
+        with open(log, "ab") as output:
+            self.process = subprocess.Popen(arguments, stdout=output, stderr=output,
+                                            stdin=subprocess.DEVNULL, start_new_session=True)
+        self.log = log
+
+    def end(self, how=signal.SIGTERM):
+        try:
+            os.killpg(self.process.pid, how)
+        except ProcessLookupError:
+            pass
+        self.process.wait()
+
+
+class RealLaboratory(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="dyncal-page-")
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.port = free_port()
+        cls.address = f"http://127.0.0.1:{cls.port}/"
+        cls.programs = []
+        cls.browser = chromium.Chromium()
+        cls.web = cls.start_web()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        for program in cls.programs:
+            program.end(signal.SIGKILL)
+        cls.temporary.cleanup()
+
+    @classmethod
+    def start(cls, arguments, name):
+        program = Program(arguments, cls.folder / f"{name}.log")
+        cls.programs.append(program)
+        return program
+
+    @classmethod
+    def start_web(cls):
+        return cls.start([DYNCAL_WEB, "--listen", f"127.0.0.1:{cls.port}", "--domain", str(DOMAIN),
+                          "--runs", str(cls.folder / "runs")], "web")
+
+    def start_demo(self, preset, name, speed="4"):
+        output = self.folder / name
+        return self.start([DYNCAL, "demo", "--preset", preset, "--speed", speed, "--repetitions",
+                           "1", "--domain", str(DOMAIN), "--output", str(output), "--folder",
+                           str(self.folder / "runs")], name)
+
+    def open(self, view=""):
+        deadline = time.monotonic() + chromium.PATIENCE_S
+        while True:  # the daemon may still be starting
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1).close()
+                break
+            except OSError:
+                self.assertLess(time.monotonic(), deadline, self.log_of("web"))
+                threading.Event().wait(0.05)
+        page = self.browser.page(f"{self.address}#/{view}")
+        page.wait_for(connection_is("live"))
+        return page
+
+    def log_of(self, name):
+        return (self.folder / f"{name}.log").read_text()[-3000:]
+
+    def assert_quiet(self, page, allowed=()):
+        problems = [p for p in page.problems if not any(part in p for part in allowed)]
+        self.assertEqual(problems, [])
+        self.assertEqual([r for r in page.requests
+                          if not r.startswith((self.address, "data:", "blob:"))], [])
+        self.assertGreater(len(page.requests), 10)
+
+    def test_1_numbers_are_those_of_the_result_files(self):
+        page = self.open()
+        demos = {preset: self.start_demo(preset, preset) for preset in PRESETS}
+        page.wait_for("document.querySelectorAll('.tile').length === 3", RUN_S)
+        for preset, demo in demos.items():
+            self.assertEqual(demo.process.wait(RUN_S), 0, self.log_of(preset))
+        compared = 0
+        for preset in PRESETS:
+            result = json.loads((self.folder / preset / "result.json").read_text())
+            compared += self.compare(result)
+        print(f"\n{compared} numbers of 3 benches are equal on the page and in the result files")
+        self.assertGreater(compared, 300)
+        self.assert_quiet(page)
+        page.close()
+
+    def compare(self, result):
+        """Each channel of a run, number by number."""
+        page = self.open(f"run/{result['bench']}")
+        channels, compared = sorted({p["channel"] for p in result["points"]}), 0
+        page.wait_for(f"[...document.querySelectorAll('option')].map(o => o.value)"
+                      f".includes({channels[-1]!r})")
+        for channel in channels:
+            page.value("(s => { s.value = " + repr(channel) + "; s.dispatchEvent(new Event("
+                       "'change')); })([...document.querySelectorAll('select')].find(s => "
+                       "[...s.options].some(o => o.value === " + repr(channel) + ")))")
+            points = {p["step"]: p for p in result["points"] if p["channel"] == channel}
+            rows, _ = page.wait_for(
+                f"(rows => rows.length === {len(points)} ? rows : null)([...document."
+                "querySelectorAll('[data-step]')].map(r => [Number(r.dataset.step), "
+                "...[5, 6, 7, 8].map(i => Number(r.cells[i].title.split(' ')[0]))]))")
+            for step, *numbers in rows:
+                point = points[step]
+                self.assertEqual(numbers, [point[key] for key in (
+                    "magnitude", "u_magnitude", "phase_rad", "u_phase_rad")], (channel, step))
+                compared += len(numbers)
+        self.assert_quiet(page)
+        page.close()
+        return compared
+
+    def test_2_killed_bench_shows_and_its_successor_too(self):
+        page = self.open()
+        page.wait_for(f"{text_of('[data-field=counts]')} !== ''")
+        before = page.value("document.querySelectorAll('.tile').length")
+        demo = self.start_demo("mpu9250-ptb", "killed", "1")
+        page.wait_for(f"document.querySelectorAll('.tile').length === {before + 1}", RUN_S)
+        name, _ = page.wait_for("[...document.querySelectorAll('.tile')].find(t => "
+                                "t.textContent.includes('running'))?.dataset.bench", RUN_S)
+        demo.end(signal.SIGKILL)
+        killed = time.monotonic()
+        page.wait_for(f"(t => t.classList.contains('is-stale') && /silent|gone/.test("
+                      f"t.querySelector('.age').textContent))(document.querySelector("
+                      f"'[data-bench=\"{name}\"]'))")
+        noticed_s = time.monotonic() - killed
+        again = self.start_demo("mpu9250-ptb", "again", "1")
+        began = time.monotonic()
+        page.wait_for(f"document.querySelectorAll('.tile').length === {before + 2}", RUN_S)
+        back_s = time.monotonic() - began
+        print(f"\nkilled bench greyed after {noticed_s:.1f} s; its successor there {back_s:.1f} s "
+              "after the start of its programs")
+        self.assertLess(noticed_s, MAX_NOTICED_S)
+        self.assertLess(back_s, MAX_BACK_S)
+        again.end(signal.SIGKILL)
+        self.assert_quiet(page)
+        page.close()
+
+    def test_3_page_reconnects_after_the_daemon_restarts(self):
+        page = self.open()
+        RealLaboratory.web.end()
+        page.wait_for(connection_is("lost"))
+        RealLaboratory.web = self.start_web()
+        _, took = page.wait_for(connection_is("live"))
+        page.wait_for(f"{text_of('[data-field=counts]')} !== ''")
+        print(f"\nreconnected {took:.1f} s after the start of the daemon")
+        self.assert_quiet(page, ["ERR_"])
+        page.close()
+
+
+if __name__ == "__main__":
+    reason = page_case.missing()
+    if reason:
+        print(f"skipped: {reason}")
+        sys.exit(page_case.SKIPPED)
+    DYNCAL, DYNCAL_WEB = sys.argv[1:3]
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
