@@ -26,6 +26,7 @@ optional_build_packages=(
   prometheus-cpp-dev # --metrics of the daemons
   libzstd-dev        # smaller recordings
   libpqxx-dev        # results of runs in PostgreSQL
+  libhdf5-dev        # recordings as HDF5, files of the SmartUp receiver
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
   cmark-gfm python3          # the guide as HTML
   libcpp-httplib-dev # dyncal-web
@@ -34,7 +35,7 @@ run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
   libssl3 libsndfile1 liblxi1 libtirpc3
   libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
-  libsqlite3-0 libpqxx-6.4
+  libsqlite3-0 libpqxx-6.4 libhdf5-103-1
   libxml2 libxmlsec1 libxmlsec1-openssl
   libcpp-httplib0.11 libjs-dygraphs # dyncal-web, and the charts of its page
 )
@@ -48,6 +49,7 @@ test_packages=(
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
   python3-jsonschema                           # results against their schema
+  python3-h5py                                 # exports, read by others
   postgresql-15                                # a server of the test's own, on a socket
   libxml2-utils openssl                        # certificates: independent validator, keys
   weasyprint poppler-utils                     # reports as PDF, and their text

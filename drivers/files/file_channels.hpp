@@ -9,9 +9,9 @@
 
 namespace dyncal::drivers::files {
 
-// `names` are those of the file. Fails (not_found) when the settings name a channel that the file
-// has not.
+// `texts` are names as the file has them, with the unit in brackets behind a blank or without.
+// Fails (not_found) when the settings name a channel that the file has not.
 [[nodiscard]] Expected<SourceDescription>
-describe_file_channels(const FileSettings& settings, const std::vector<std::string>& names);
+describe_file_channels(const FileSettings& settings, const std::vector<std::string>& texts);
 
 } // namespace dyncal::drivers::files

@@ -4,9 +4,14 @@
 #include <cctype>
 
 #include "drivers/files/csv_reader.hpp"
+#include "drivers/files/dump_reader.hpp"
 #include "drivers/files/npy_reader.hpp"
 #include "drivers/files/wav_reader.hpp"
 #include "drivers/utc_clock.hpp"
+
+#ifdef DYNCAL_HAVE_HDF5
+#include "drivers/files/hdf5_reader.hpp"
+#endif
 
 namespace dyncal::drivers::files {
 namespace {
@@ -33,6 +38,17 @@ Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".wav") {
     return open_as<WavReader>(settings);
+  }
+  if (extension == ".dump") {
+    return open_as<DumpReader>(settings);
+  }
+  if (extension == ".h5" || extension == ".hdf5") {
+#ifdef DYNCAL_HAVE_HDF5
+    return open_as<Hdf5Reader>(settings);
+#else
+    return fail(ErrorCode::not_found,
+                settings.path.string() + ": this build cannot read HDF5 (Debian: libhdf5-dev)");
+#endif
   }
   return extension == ".npy" ? open_as<NpyReader>(settings) : open_as<CsvReader>(settings);
 }

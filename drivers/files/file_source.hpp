@@ -1,5 +1,6 @@
-// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy) or WAV, of
-// any kind of instrument. README.md has the formats.
+// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy), WAV, or a
+// file of the public SmartUp receiver (.dump, .h5), of any kind of instrument. README.md has the
+// formats.
 //
 // The file is read as it is played, never as a whole. Where the stamps of a block are exactly
 // equidistant the block carries a RegularClock, otherwise one stamp a sample; either way the stamps
@@ -30,6 +31,7 @@ struct FileSettings {
   std::map<std::string, std::string> channels; // name in the file -> name of the channel
   std::map<std::string, std::string> units;    // name of the channel -> D-SI
   TimeBase time_base = TimeBase::utc;
+  std::string group{}; // the sensor's in an HDF5 file with several; "": the only one
 };
 
 // Reads one format; FileSource does the pacing.

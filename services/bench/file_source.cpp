@@ -32,6 +32,7 @@ FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files) {
   if (file.sample_rate_hz && *file.sample_rate_hz <= 0.0) {
     table.refuse("sample_rate_hz", "must be positive, in Hz");
   }
+  file.group = table.text("group", "");
   return file;
 }
 

@@ -30,6 +30,7 @@ struct FileSourceSettings {               // driver = "file"
   std::filesystem::path path;             // absolute
   double play_speed = 0.0;                // times real time; 0: at once
   std::optional<double> sample_rate_hz{}; // of a file without a time column
+  std::string group{};                    // the sensor's in an HDF5 file with several
 };
 
 // Where the time of a sample on CAN comes from; drivers/can/stream_settings.hpp explains them.

@@ -240,5 +240,19 @@ TEST_F(LargeCsv, FlagsAStampThatFallsBetweenStretches) {
   EXPECT_EQ(flagged, 1U);
 }
 
+TEST(CsvReader, TakesUnitsFromBracketsBehindTheNames) {
+  const TemporaryFile file("units.csv", "t_ns,x [\\metre],y [],z\n1,2,3,4\n2,3,4,5\n");
+  FileSettings settings = settings_for(file);
+  settings.channels = {{"x", "first"}};
+  settings.units = {{"z", "\\volt"}};
+  FileSource source(settings);
+  const auto described = source.describe();
+  ASSERT_TRUE(described) << described.error().message;
+  EXPECT_EQ(described->channels[0].name, "first");
+  EXPECT_EQ(described->channels[0].unit, "\\metre");
+  EXPECT_EQ(described->channels[1].name, "y");
+  EXPECT_EQ(described->channels[2].unit, "\\volt");
+}
+
 } // namespace
 } // namespace dyncal::drivers::files

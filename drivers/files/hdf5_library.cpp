@@ -1,0 +1,207 @@
+#include "drivers/files/hdf5_library.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <fcntl.h>
+#include <mutex>
+#include <string_view>
+#include <unistd.h>
+
+#include <zlib.h>
+
+#include "drivers/files/mapped_file.hpp"
+#include "drivers/link/file_descriptor.hpp"
+
+namespace dyncal::drivers::files {
+namespace {
+
+constexpr std::string_view seal_begin = "dyncal HDF5 export\n";
+constexpr std::string_view seal_sum = "\ncrc32 = ";
+constexpr std::size_t sum_digits = 8;
+constexpr std::size_t step_bytes = std::size_t{1} << 20U;
+
+std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::string sum_text(std::uint32_t sum) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text(sum_digits, '0');
+  for (std::size_t i = 0; i < sum_digits; ++i) {
+    text[sum_digits - 1 - i] = digits[(sum >> (4 * i)) & 0xFU];
+  }
+  return text;
+}
+
+std::uint32_t sum_of(std::string_view bytes) {
+  std::uint32_t sum = 0;
+  while (!bytes.empty()) {
+    const std::string_view some = bytes.substr(0, step_bytes);
+    sum = static_cast<std::uint32_t>(
+        ::crc32(sum, reinterpret_cast<const Bytef*>(some.data()), static_cast<uInt>(some.size())));
+    bytes.remove_prefix(some.size());
+  }
+  return sum;
+}
+
+// Of the whole block but its sum, then of what follows it.
+std::uint32_t sum_of_sealed(std::string_view head, std::string_view rest) {
+  return static_cast<std::uint32_t>(
+      ::crc32_combine(sum_of(head), sum_of(rest), static_cast<z_off_t>(rest.size())));
+}
+
+tl::unexpected<Error> malformed(const std::filesystem::path& path, const std::string& problem) {
+  return fail(ErrorCode::malformed, path.string() + ": " + problem);
+}
+
+Expected<void> check_seal(const std::filesystem::path& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) {
+    return fail(file.error());
+  }
+  const std::string_view text = file->text();
+  if (!text.starts_with(seal_begin)) {
+    return {};
+  }
+  const std::string_view block = text.substr(0, hdf5_user_block_bytes);
+  const std::size_t place = block.find(seal_sum);
+  const std::size_t end = place + seal_sum.size();
+  if (place == std::string_view::npos || end + sum_digits > block.size() ||
+      text.size() <= hdf5_user_block_bytes) {
+    return malformed(path, "its first 512 bytes, which dyncal wrote, were changed");
+  }
+  std::string head(block);
+  head.replace(end, sum_digits, sum_digits, '0');
+  if (sum_text(sum_of_sealed(head, text.substr(hdf5_user_block_bytes))) !=
+      block.substr(end, sum_digits)) {
+    return malformed(path, "was changed or damaged since dyncal wrote it (the CRC-32 in its first "
+                           "512 bytes does not fit the " +
+                               std::to_string(text.size()) + " bytes there are): export it again");
+  }
+  return {};
+}
+
+bool write_block(int descriptor, const std::string& block) {
+  return ::pwrite(descriptor, block.data(), block.size(), 0) == static_cast<ssize_t>(block.size());
+}
+
+} // namespace
+
+Hdf5Lock::Hdf5Lock() {
+  library_mutex().lock();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Hdf5Lock::~Hdf5Lock() {
+  library_mutex().unlock();
+}
+
+Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept {
+  close();
+  id_ = std::exchange(other.id_, H5I_INVALID_HID);
+  close_ = other.close_;
+  return *this;
+}
+
+bool Hdf5Handle::close() {
+  return !is_open() || close_(std::exchange(id_, H5I_INVALID_HID)) >= 0;
+}
+
+bool seal_hdf5(int descriptor, const std::string& software) {
+  std::uint32_t rest = 0;
+  std::uint64_t offset = hdf5_user_block_bytes;
+  std::string bytes(step_bytes, '\0');
+  for (;;) {
+    const ssize_t count =
+        ::pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) {
+      continue;
+    }
+    if (count < 0) {
+      return false;
+    }
+    if (count == 0) {
+      break;
+    }
+    rest = static_cast<std::uint32_t>(
+        ::crc32(rest, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(count)));
+    offset += static_cast<std::uint64_t>(count);
+  }
+  std::string block(seal_begin);
+  block += "software = " + software.substr(0, 200);
+  block += seal_sum;
+  const std::size_t place = block.size();
+  block += std::string(sum_digits, '0') + "\n";
+  block.resize(hdf5_user_block_bytes, '\0');
+  const auto sum = static_cast<std::uint32_t>(
+      ::crc32_combine(sum_of(block), rest, static_cast<z_off_t>(offset - hdf5_user_block_bytes)));
+  block.replace(place, sum_digits, sum_text(sum));
+  return write_block(descriptor, block);
+}
+
+Expected<Hdf5Handle> open_hdf5(const std::filesystem::path& path) {
+  if (const auto sealed = check_seal(path); !sealed) {
+    return fail(sealed.error());
+  }
+  Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.is_open()) {
+    return malformed(path, "is not an HDF5 file, or is damaged");
+  }
+  return file;
+}
+
+std::vector<std::string> hdf5_members(hid_t place, const std::string& group) {
+  std::vector<std::string> names;
+  const bool is_itself = group == "."; // which is not a link
+  if (!is_itself && H5Lexists(place, group.c_str(), H5P_DEFAULT) <= 0) {
+    return names;
+  }
+  const Hdf5Handle opened(H5Gopen2(place, group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!opened.is_open()) {
+    return names;
+  }
+  const auto add = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
+                      void* all) -> herr_t {
+    static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(opened.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
+  return names;
+}
+
+std::string hdf5_text(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) {
+    return {};
+  }
+  const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle type(attribute.is_open() ? H5Aget_type(attribute.id()) : H5I_INVALID_HID,
+                        H5Tclose);
+  const Hdf5Handle space(attribute.is_open() ? H5Aget_space(attribute.id()) : H5I_INVALID_HID,
+                         H5Sclose);
+  if (!type.is_open() || H5Tget_class(type.id()) != H5T_STRING ||
+      H5Sget_simple_extent_npoints(space.id()) != 1) {
+    return {};
+  }
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* text = nullptr;
+    if (H5Aread(attribute.id(), type.id(), &text) < 0 || text == nullptr) {
+      return {};
+    }
+    std::string copy(text);
+    H5free_memory(text);
+    return copy;
+  }
+  constexpr std::size_t max_text = 65536;
+  const std::size_t size = H5Tget_size(type.id());
+  std::string text(std::min(size, max_text), '\0');
+  if (size > max_text || H5Aread(attribute.id(), type.id(), text.data()) < 0) {
+    return {};
+  }
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
+}
+
+} // namespace dyncal::drivers::files
