@@ -9,6 +9,7 @@
 #include "services/command/analyse_recording.hpp"
 #include "services/command/run_command.hpp"
 #include "services/evaluation/run_evaluator.hpp"
+#include "services/exchange/opened_recording.hpp"
 #include "services/replay/file_input.hpp"
 #include "services/replay/sample_memory.hpp"
 #include "services/replay/shot_files.hpp"
@@ -155,18 +156,12 @@ Expected<BenchFile> read_bench_or_folder(const std::filesystem::path& path) {
 }
 
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
-  const std::filesystem::path of_folder = command.bench_file / recording_file_name;
   if (is_recording(command.bench_file)) {
     return analyse_recording(command, stop);
   }
-  if (std::filesystem::exists(of_folder)) {
-    AnalyseCommand of_recording = command;
-    of_recording.bench_file = of_folder;
-    return analyse_recording(of_recording, stop);
-  }
   if (command.recipe || !command.run.empty()) {
     return fail(ErrorCode::bad_argument,
-                fmt::format("{}: --run and --recipe are for recordings (.mcap)",
+                fmt::format("{}: --run and --recipe are for recordings (.mcap, .h5)",
                             command.bench_file.string()));
   }
   const auto bench = read_bench_or_folder(command.bench_file);

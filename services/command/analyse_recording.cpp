@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/command/run_command.hpp"
+#include "services/exchange/opened_recording.hpp"
 #include "services/replay/recorded_run.hpp"
 #include "services/run/run_plan.hpp"
 
@@ -31,12 +32,8 @@ Expected<OtherRecipe> read_recipe(const std::filesystem::path& file) {
 
 } // namespace
 
-bool is_recording(const std::filesystem::path& file) {
-  return file.extension() == ".mcap";
-}
-
 Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std::stop_token& stop) {
-  RecordedRunWish wish{.recording = command.bench_file, .run = command.run, .recipe = {}};
+  RecordedRunWish wish{.run = command.run, .recipe = {}};
   std::optional<AdcFile> adc_file;
   if (command.recipe) {
     auto other = read_recipe(*command.recipe);
@@ -46,7 +43,14 @@ Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std:
     wish.recipe = std::move(other->recipe);
     adc_file = std::move(other->adc_file);
   }
-  auto evaluated = evaluate_recording(wish, stop);
+  auto opened = open_recording(command.bench_file);
+  if (!opened) {
+    return fail(opened.error());
+  }
+  for (const std::string& warning : opened->warnings) {
+    spdlog::warn("{}", warning);
+  }
+  auto evaluated = evaluate_recording(opened->reader, wish, stop);
   if (!evaluated) {
     return fail(evaluated.error());
   }

@@ -1,8 +1,7 @@
-// `dyncal analyse RECORDING`: the results of the live run from its recording
-// (services/replay/recorded_run.hpp), or by another bench file. Belongs to one thread.
+// `dyncal analyse RECORDING`: the results of the live run from its recording, or from an export of
+// it (services/exchange/opened_recording.hpp), or by another bench file. Belongs to one thread.
 #pragma once
 
-#include <filesystem>
 #include <stop_token>
 
 #include "services/command/analyse_command.hpp"
@@ -10,9 +9,6 @@
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {
-
-// By its name: .mcap
-[[nodiscard]] bool is_recording(const std::filesystem::path& file);
 
 // Prints what is damaged or missing on standard error.
 [[nodiscard]] Expected<RunOutcome> analyse_recording(const AnalyseCommand& command,

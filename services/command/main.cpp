@@ -127,8 +127,8 @@ void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
       "analyse", "evaluate the file sources of a bench file, or a recording, without the network");
   command
       ->add_option("BENCH.toml", analyse.bench_file,
-                   "bench file, the folder of a run, or a recording (.mcap), which gives the "
-                   "results of the live run")
+                   "bench file, the folder of a run, or a recording (.mcap, or .h5 of 'dyncal "
+                   "export'), which gives the results of the live run")
       ->required();
   command->add_option("--run", analyse.run, "run of the recording (default: the only one)");
   command->add_option("--recipe", analyse.recipe,
@@ -329,6 +329,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   const std::stop_token stop = stop_on_signals();
   if (app.got_subcommand("replay")) {
     return run_replay(commands.recordings.replay, stop);
+  }
+  if (app.got_subcommand("export")) {
+    return run_export(commands.recordings.exported, stop);
   }
   if (app.got_subcommand("calibrate")) {
     return run_calibrate(app, commands.calibrate, stop);

@@ -34,11 +34,31 @@ void add_replay(CLI::App& app, ReplayCommand& replay) {
   add_network_options(*command, replay.network);
 }
 
+void add_export(CLI::App& app, ExportCommand& exported) {
+  CLI::App* command = app.add_subcommand(
+      "export", "a recording for other programs: HDF5, NumPy, CSV, or MCAP with one message a "
+                "sample");
+  command
+      ->add_option("SOURCE", exported.recording,
+                   "folder of a run, recording (.mcap), or HDF5 export (.h5)")
+      ->required();
+  command
+      ->add_option("--to", exported.to, "file to write, a folder for csv; nothing is overwritten")
+      ->required();
+  command->add_option("--format", exported.format,
+                      "hdf5 (complete: 'dyncal analyse' reads it), npz, csv or mcap-rows (for "
+                      "PlotJuggler, Foxglove, Lichtblick); default: by the name (.h5, .npz, .mcap, "
+                      "else csv)");
+  command->add_option("--channel", exported.channels,
+                      "only this one, SOURCE/CHANNEL or SOURCE (repeatable; not for hdf5)");
+}
+
 } // namespace
 
 void add_recordings(CLI::App& app, RecordingCommands& commands) {
   add_recording(app, commands.recording);
   add_replay(app, commands.replay);
+  add_export(app, commands.exported);
 }
 
 std::optional<int> run_recording(const CLI::App& app, const RecordingCommands& commands) {

@@ -1,9 +1,11 @@
-// The commands about recordings (.mcap) and their options: `recording check|repair|info`, `replay`.
+// The commands about recordings and their options: `recording check|repair|info`, `replay`,
+// `export`.
 // Belongs to one thread.
 #pragma once
 
 #include <optional>
 
+#include "services/command/export_command.hpp"
 #include "services/command/recording_command.hpp"
 #include "services/command/replay_command.hpp"
 
@@ -16,6 +18,7 @@ namespace dyncal::services {
 struct RecordingCommands {
   RecordingCommand recording;
   ReplayCommand replay;
+  ExportCommand exported;
 };
 
 // The options are kept in `commands`, which must outlive the parsing.

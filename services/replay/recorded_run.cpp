@@ -17,6 +17,7 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/recording/recorded_topics.hpp"
+#include "services/replay/recorded_messages.hpp"
 #include "services/replay/recording_index.hpp"
 
 namespace dyncal::services {
@@ -29,33 +30,6 @@ constexpr std::size_t max_evaluations = 4;
 constexpr std::size_t max_damages_named = 20;
 // A source that has restarted is waited with for so long (services/analysis/source_streams.hpp).
 constexpr std::uint64_t session_limit_ns = 5'000'000'000;
-
-// Messages at other places of the file than where the walk is, by their chunks.
-class OtherPlaces {
-public:
-  explicit OtherPlaces(const recording::RecordingReader& reader) : reader_(reader) {}
-
-  // Its data last until the next call.
-  [[nodiscard]] Expected<recording::Message> at(const RecordedPlace& place) {
-    if (!records_ || chunk_ != place.chunk) {
-      auto records = reader_.chunk_records(place.chunk);
-      if (!records) {
-        return fail(records.error());
-      }
-      records_ = std::move(*records);
-      chunk_ = place.chunk;
-    }
-    const std::string_view records = *records_;
-    const std::uint64_t length = recording::number_at(records, place.position + 1, 8);
-    return *recording::parse_message(
-        records.substr(place.position + recording::head_bytes, length));
-  }
-
-private:
-  const recording::RecordingReader& reader_;
-  std::optional<std::string> records_;
-  std::uint64_t chunk_ = 0;
-};
 
 void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome) {
   for (auto* results : {&output.results, &output.settled}) {
@@ -250,7 +224,7 @@ private:
 
   RunEvaluator& evaluator_;
   RunOutcome& outcome_;
-  OtherPlaces others_;
+  RecordedMessages others_;
   std::string bench_;
   std::string run_;
   std::map<std::string, Source> sources_;
@@ -311,13 +285,10 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
 
 } // namespace
 
-Expected<RecordedRunOutcome> evaluate_recording(const RecordedRunWish& wish,
+Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
+                                                const RecordedRunWish& wish,
                                                 const std::stop_token& stop) {
-  auto reader = recording::RecordingReader::open(wish.recording);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  const auto index = index_recording(*reader, wish.run);
+  const auto index = index_recording(reader, wish.run);
   if (!index) {
     return fail(index.error());
   }
@@ -331,22 +302,22 @@ Expected<RecordedRunOutcome> evaluate_recording(const RecordedRunWish& wish,
   result.live_results = index->live_results;
   result.outcome = outcome_of(*recipe);
   result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
-  result.warnings = warnings_of(*index, *recipe, wish.recording);
+  result.warnings = warnings_of(*index, *recipe, reader.path());
   add_setup(*index, result.outcome);
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
                           .clock_to_the_end = index->clock_end.has_value(),
                           .clock_end = index->clock_end});
-  Evaluating evaluating(*reader, *index, evaluator, result.outcome);
-  const auto walked = reader->scan({.message =
-                                        [&](const recording::MessageInFile& message) {
-                                          if (!stop.stop_requested()) {
-                                            evaluating.take(message);
-                                          }
-                                        },
-                                    .attachment = {},
-                                    .metadata = {}});
+  Evaluating evaluating(reader, *index, evaluator, result.outcome);
+  const auto walked = reader.scan({.message =
+                                       [&](const recording::MessageInFile& message) {
+                                         if (!stop.stop_requested()) {
+                                           evaluating.take(message);
+                                         }
+                                       },
+                                   .attachment = {},
+                                   .metadata = {}});
   if (!walked) {
     return fail(walked.error());
   }

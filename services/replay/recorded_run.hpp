@@ -12,7 +12,6 @@
 // own.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -20,11 +19,11 @@
 
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/recording/recording_reader.hpp"
 
 namespace dyncal::services {
 
 struct RecordedRunWish {
-  std::filesystem::path recording;
   std::string run;              // empty: the one that is there
   std::optional<Recipe> recipe; // another one than the recorded
 };
@@ -35,7 +34,8 @@ struct RecordedRunOutcome {
   std::vector<std::string> warnings;
 };
 
-[[nodiscard]] Expected<RecordedRunOutcome> evaluate_recording(const RecordedRunWish& wish,
+[[nodiscard]] Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
+                                                              const RecordedRunWish& wish,
                                                               const std::stop_token& stop);
 
 } // namespace dyncal::services

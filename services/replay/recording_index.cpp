@@ -30,30 +30,13 @@ public:
     });
   }
 
-  [[nodiscard]] Expected<RecordedRunIndex> index(const std::filesystem::path& path,
-                                                 const std::string& wanted) {
-    if (runs_.empty()) {
-      return fail(ErrorCode::bad_file,
-                  fmt::format("{}: holds no run (no Measurement)", path.string()));
+  [[nodiscard]] RecordingContents contents() {
+    RecordingContents contents;
+    contents.runs = std::move(runs_);
+    for (const auto& [key, source] : sources_) {
+      contents.sources.emplace(key, ordered(source));
     }
-    std::vector<std::string> names;
-    for (const auto& [name, run] : runs_) {
-      names.push_back(name);
-    }
-    if (wanted.empty() && names.size() > 1) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("{}: holds several runs ({}): name one with --run", path.string(),
-                              fmt::join(names, ", ")));
-    }
-    const auto run = runs_.find(wanted.empty() ? names.front() : wanted);
-    if (run == runs_.end()) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("{}: holds no run '{}', but: {}", path.string(), wanted,
-                              fmt::join(names, ", ")));
-    }
-    RecordedRunIndex index = std::move(run->second);
-    index.sources = ordered(index.plan.bench().to_string());
-    return index;
+    return contents;
   }
   [[nodiscard]] std::uint64_t undecodable() const { return undecodable_; }
 
@@ -73,6 +56,7 @@ private:
     std::optional<wire::SourceDescription> newest;
     std::map<std::uint64_t, Session> sessions;
     std::set<std::string> answered;
+    bool triggered = false;
   };
   using SourceKey = std::pair<std::string, std::string>; // bench and source
 
@@ -118,6 +102,7 @@ private:
   template <class T>
   void take(const T& message, const recording::MessageInFile& in_file) {
     Source& source = sources_[{message.bench().to_string(), message.source().to_string()}];
+    source.triggered = std::is_same_v<T, wire::TriggeredRecord>;
     if (!message.acknowledged_run().empty()) {
       source.answered.insert(message.acknowledged_run());
     }
@@ -132,31 +117,24 @@ private:
     session.messages.try_emplace(number, RecordedPlace{in_file.chunk, in_file.position});
   }
 
-  [[nodiscard]] std::map<std::string, RecordedSource> ordered(const std::string& bench) const {
-    std::map<std::string, RecordedSource> all;
-    for (const auto& of_source : sources_) {
-      const SourceKey& key = of_source.first;
-      const Source& source = of_source.second;
-      if (key.first != bench) {
-        continue;
-      }
-      RecordedSource& one = all[key.second];
-      one.descriptions = source.descriptions;
-      one.newest = source.newest;
-      one.answered = source.answered;
-      for (const auto& [session, messages] : source.sessions) {
-        one.sessions.push_back(session);
-      }
-      std::stable_sort(one.sessions.begin(), one.sessions.end(), [&](auto a, auto b) {
-        return source.sessions.at(a).began_utc_ns < source.sessions.at(b).began_utc_ns;
-      });
-      for (std::size_t i = 0; i < one.sessions.size(); ++i) {
-        for (const auto& [number, place] : source.sessions.at(one.sessions[i]).messages) {
-          one.messages.emplace(RecordedPosition{i, number}, place);
-        }
+  [[nodiscard]] static RecordedSource ordered(const Source& source) {
+    RecordedSource one;
+    one.descriptions = source.descriptions;
+    one.newest = source.newest;
+    one.answered = source.answered;
+    one.triggered = source.triggered;
+    for (const auto& [session, messages] : source.sessions) {
+      one.sessions.push_back(session);
+    }
+    std::stable_sort(one.sessions.begin(), one.sessions.end(), [&](auto a, auto b) {
+      return source.sessions.at(a).began_utc_ns < source.sessions.at(b).began_utc_ns;
+    });
+    for (std::size_t i = 0; i < one.sessions.size(); ++i) {
+      for (const auto& [number, place] : source.sessions.at(one.sessions[i]).messages) {
+        one.messages.emplace(RecordedPosition{i, number}, place);
       }
     }
-    return all;
+    return one;
   }
 
   std::map<std::string, RecordedRunIndex> runs_;
@@ -171,8 +149,7 @@ RecordedPosition RecordedSource::position(std::uint64_t session, std::uint64_t n
   return {static_cast<std::size_t>(found - sessions.begin()), number};
 }
 
-Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
-                                           const std::string& run) {
+Expected<RecordingContents> index_contents(recording::RecordingReader& reader) {
   Gathering gathering;
   auto report = reader.scan(
       {.message = [&](const recording::MessageInFile& message) { gathering.take(message); },
@@ -187,10 +164,43 @@ Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
                             "the version that wrote it ({})",
                             reader.path().string(), gathering.undecodable(), report->library));
   }
-  auto index = gathering.index(reader.path(), run);
-  if (index) {
-    index->report = std::move(*report);
+  RecordingContents contents = gathering.contents();
+  contents.report = std::move(*report);
+  return contents;
+}
+
+Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
+                                           const std::string& run) {
+  auto contents = index_contents(reader);
+  if (!contents) {
+    return fail(contents.error());
   }
+  const std::string path = reader.path().string();
+  if (contents->runs.empty()) {
+    return fail(ErrorCode::bad_file, fmt::format("{}: holds no run (no Measurement)", path));
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, one] : contents->runs) {
+    names.push_back(name);
+  }
+  if (run.empty() && names.size() > 1) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: holds several runs ({}): name one with --run", path,
+                            fmt::join(names, ", ")));
+  }
+  const auto found = contents->runs.find(run.empty() ? names.front() : run);
+  if (found == contents->runs.end()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: holds no run '{}', but: {}", path, run, fmt::join(names, ", ")));
+  }
+  RecordedRunIndex index = std::move(found->second);
+  const std::string bench = index.plan.bench().to_string();
+  for (auto& [key, source] : contents->sources) {
+    if (key.first == bench) {
+      index.sources.emplace(key.second, std::move(source));
+    }
+  }
+  index.report = std::move(contents->report);
   return index;
 }
 

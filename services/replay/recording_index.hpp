@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "idl/dyncal.h"
@@ -41,6 +42,7 @@ struct RecordedSource {
   std::vector<std::uint64_t> sessions; // in the order in which they began
   std::map<RecordedPosition, RecordedPlace> messages;
   std::set<std::string> answered; // runs
+  bool triggered = false;         // TriggeredRecords, else SampleBlocks
 
   // REQUIRES: a session of its messages.
   [[nodiscard]] RecordedPosition position(std::uint64_t session, std::uint64_t number) const;
@@ -57,6 +59,15 @@ struct RecordedRunIndex {
   std::uint64_t live_results = 0;
   recording::ScanReport report; // of the file
 };
+
+// Everything of a recording, whether it holds a run or not.
+struct RecordingContents {
+  std::map<std::string, RecordedRunIndex> runs; // by name, without sources and report
+  std::map<std::pair<std::string, std::string>, RecordedSource> sources; // by bench and name
+  recording::ScanReport report;
+};
+
+[[nodiscard]] Expected<RecordingContents> index_contents(recording::RecordingReader& reader);
 
 // `run`: empty where the recording holds one.
 [[nodiscard]] Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,

@@ -27,6 +27,31 @@ def messages_of(records):
     return count
 
 
+def messages(path):
+    """Topic and data of each message of a file whose chunks are not compressed."""
+    with open(path, "rb") as stream:
+        data = stream.read()
+    topics = {}
+    at = 8
+    while at < len(data) - 8:
+        opcode, length = struct.unpack_from("<BQ", data, at)
+        content = at + 9
+        at = content + length
+        if opcode == 4:
+            number, _, name_bytes = struct.unpack_from("<HHI", data, content)
+            topics[number] = data[content + 8 : content + 8 + name_bytes].decode()
+        elif opcode == 6:
+            inner = content + 40
+            while inner < at:
+                kind, size = struct.unpack_from("<BQ", data, inner)
+                if kind == 5:
+                    (number,) = struct.unpack_from("<H", data, inner + 9)
+                    yield topics[number], data[inner + 9 + 22 : inner + 9 + size]
+                inner += 9 + size
+        elif opcode == 15:
+            return
+
+
 def walk(path):
     """How many messages the file holds. Raises Wrong unless all of it is sound."""
     with open(path, "rb") as stream:

@@ -51,6 +51,7 @@ FLOORS = {
         ["certificate", "document"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
         ["doctor", "replay", "web"],
+        ["exchange"],
         ["command"],
     ],
 }

@@ -1,0 +1,52 @@
+#include "services/command/export_command.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "services/command/share_line.hpp"
+#include "services/exchange/export_recording.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+namespace {
+
+void print(const ExportedFigures& figures, const std::filesystem::path& to) {
+  for (const std::string& warning : figures.warnings) {
+    spdlog::warn("{}", warning);
+  }
+  for (const ExportedFigures::Source& source : figures.sources) {
+    fmt::print("{}: {} channels, {} samples, {} lost, {} session{}\n", source.name, source.channels,
+               source.samples, source.lost, source.sessions, source.sessions == 1 ? "" : "s");
+    if (source.left_out > 0) {
+      spdlog::warn("source '{}': {} blocks were left out, their sizes contradict each other",
+                   source.name, source.left_out);
+    }
+  }
+  fmt::print("wrote {}\n", to.string());
+}
+
+} // namespace
+
+int run_export(const ExportCommand& command, const std::stop_token& stop) {
+  const auto format = parse_export_format(command.format, command.to);
+  if (!format) {
+    return report_error(format.error());
+  }
+  ShareLine line(stderr);
+  const auto figures = export_recording({.recording = command.recording,
+                                         .to = command.to,
+                                         .format = *format,
+                                         .channels = command.channels},
+                                        [&](double share) {
+                                          line.show(share);
+                                          return !stop.stop_requested();
+                                        });
+  line.end();
+  if (!figures) {
+    return report_error(figures.error());
+  }
+  print(*figures, command.to);
+  return 0;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,100 @@
+#include "services/exchange/export_recording.hpp"
+
+#include <fmt/format.h>
+
+#include "services/exchange/exported_runs.hpp"
+#include "services/exchange/hdf5_export.hpp"
+#include "services/exchange/hdf5_import.hpp"
+#include "services/exchange/opened_recording.hpp"
+#include "services/exchange/row_formats.hpp"
+#include "services/output/output_stream.hpp"
+
+namespace dyncal::services {
+namespace {
+
+Expected<void> write(const ExportWish& wish, const ExportedRecording& recording,
+                     const ExportedRuns& runs, const ExportProgress& progress) {
+  if (wish.format == ExportFormat::hdf5) {
+    return export_hdf5(recording, runs, wish.to, progress);
+  }
+  const auto tables = row_tables(recording, wish.channels);
+  if (!tables) {
+    return fail(tables.error());
+  }
+  const RowExport rows{*tables, contents_json(recording, runs), wish.to, progress};
+  switch (wish.format) {
+  case ExportFormat::npz:
+    return export_npz(rows);
+  case ExportFormat::csv:
+    return export_csv(rows);
+  default:
+    return export_mcap_rows(rows);
+  }
+}
+
+ExportedFigures figures_of(const ExportedRecording& recording, std::vector<std::string> warnings) {
+  ExportedFigures figures;
+  for (const ExportedSource& source : recording.sources()) {
+    figures.sources.push_back({source.name, source.channels.size(), source.sessions.size(),
+                               source.samples, source.lost, source.left_out});
+  }
+  figures.warnings = std::move(warnings);
+  for (const recording::Damage& damage : recording.contents().report.damages) {
+    figures.warnings.push_back(to_string(damage, recording.reader().path()));
+  }
+  return figures;
+}
+
+} // namespace
+
+Expected<ExportFormat> parse_export_format(const std::string& name,
+                                           const std::filesystem::path& to) {
+  const std::string suffix = to.extension().string();
+  if (name == "hdf5" || (name.empty() && is_hdf5(to))) {
+    return ExportFormat::hdf5;
+  }
+  if (name == "npz" || (name.empty() && suffix == ".npz")) {
+    return ExportFormat::npz;
+  }
+  if (name == "mcap-rows" || (name.empty() && suffix == ".mcap")) {
+    return ExportFormat::mcap_rows;
+  }
+  if (name == "csv" || (name.empty() && (suffix.empty() || suffix == ".csv"))) {
+    return ExportFormat::csv;
+  }
+  return fail(ErrorCode::bad_argument,
+              name.empty()
+                  ? fmt::format("{}: its name tells no format (.h5, .npz, .mcap, or a "
+                                "folder for csv): name one with --format",
+                                to.string())
+                  : fmt::format("unknown format '{}'; there are: hdf5, npz, csv, mcap-rows", name));
+}
+
+Expected<ExportedFigures> export_recording(const ExportWish& wish, const ExportProgress& progress) {
+  if (wish.format == ExportFormat::hdf5 && !wish.channels.empty()) {
+    return fail(ErrorCode::bad_argument,
+                "--channel is for csv, npz and mcap-rows: an HDF5 file holds the whole recording, "
+                "so that it can be evaluated");
+  }
+  const bool is_folder = wish.format == ExportFormat::csv;
+  if (auto is_new = is_folder ? Expected<void>{} : check_new_output(wish.to); !is_new) {
+    return fail(is_new.error());
+  }
+  auto opened = open_recording(wish.recording);
+  if (!opened) {
+    return fail(opened.error());
+  }
+  const auto recording = ExportedRecording::open(opened->reader, progress);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  const auto runs = read_runs(opened->reader);
+  if (!runs) {
+    return fail(runs.error());
+  }
+  return write(wish, *recording, *runs, progress).map([&] {
+    return figures_of(*recording, std::move(opened->warnings));
+  });
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,26 @@
+// A recording to read, in whichever form it is there: a file (.mcap), an HDF5 export of one (.h5,
+// .hdf5), or the folder of a run, with all the recordings of a run that was resumed as one.
+//
+// Fails (bad_file) with the file and what is wrong with it. One thread.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "services/error.hpp"
+#include "services/recording/recording_reader.hpp"
+
+namespace dyncal::services {
+
+struct OpenedRecording {
+  recording::RecordingReader reader;
+  std::vector<std::string> warnings; // of what it was made from
+};
+
+// By its name, or, of a folder, by what is in it.
+[[nodiscard]] bool is_recording(const std::filesystem::path& path);
+
+[[nodiscard]] Expected<OpenedRecording> open_recording(const std::filesystem::path& path);
+
+} // namespace dyncal::services
