@@ -253,6 +253,7 @@ AnalysisFigures AnalysisService::figures() const {
   }
   figures.evaluation_s = evaluation_s_;
   figures.malformed_messages = participant_.malformed_messages();
+  figures.refused_packets = participant_.refused_packets()->count();
   return figures;
 }
 

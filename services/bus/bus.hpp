@@ -33,6 +33,7 @@
 
 #include "services/bus/discovery.hpp"
 #include "services/bus/names.hpp"
+#include "services/bus/refused_packets.hpp"
 #include "services/bus/type_support.hpp"
 #include "services/bus/wake_up.hpp"
 #include "services/contract/topics.hpp"
@@ -50,6 +51,8 @@ struct ParticipantOptions {
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
   bool watch_discovery = false;   // for discovered()
+  // False, for Fast DDS: packets reach it as they come. To measure what its screen costs, only.
+  bool screened = true;
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.
   std::function<void(const std::string&)> warn;
@@ -83,6 +86,9 @@ public:
   reader(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
   [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
+  [[nodiscard]] virtual std::shared_ptr<const RefusedPackets> refused_packets() const {
+    return std::make_shared<RefusedPackets>(nullptr); // none, where there are no packets
+  }
   // Nobody, where there is no discovery.
   [[nodiscard]] virtual Discovery discovered() const { return {}; }
 };
@@ -151,9 +157,10 @@ public:
   template <class T>
   [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile,
                                                      const std::string& partition,
-                                                     std::shared_ptr<WakeUp> wake_up) {
-    return untyped_->reader(type_support<T>(), topic, profile, partition, std::move(wake_up))
-        .map([](auto r) { return Reader<T>(std::move(r)); });
+                                                     const std::shared_ptr<WakeUp>& wake_up) {
+    return untyped_->reader(type_support<T>(), topic, profile, partition, wake_up).map([](auto r) {
+      return Reader<T>(std::move(r));
+    });
   }
 
   // With the profile of the topic.
@@ -163,14 +170,19 @@ public:
     return writer<T>(topic.name, topic.profile, partition);
   }
   template <class T>
-  [[nodiscard]] services::Expected<Reader<T>>
-  reader(const Topic<T>& topic, const std::string& partition, std::shared_ptr<WakeUp> wake_up) {
-    return reader<T>(topic.name, topic.profile, partition, std::move(wake_up));
+  [[nodiscard]] services::Expected<Reader<T>> reader(const Topic<T>& topic,
+                                                     const std::string& partition,
+                                                     const std::shared_ptr<WakeUp>& wake_up) {
+    return reader<T>(topic.name, topic.profile, partition, wake_up);
   }
 
   // Messages dropped because they do not match the contract (idl/README.md). Not 0 if there was
   // one; Fast DDS counts some of them twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
+  // Counts on, also when the participant is gone.
+  [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const {
+    return untyped_->refused_packets();
+  }
   // The others of the domain and what they have, as far as it is known by now; nobody without
   // `watch_discovery`. Any thread.
   [[nodiscard]] Discovery discovered() const { return untyped_->discovered(); }

@@ -11,9 +11,19 @@ namespace {
 constexpr int base_port = 7400;
 constexpr int ports_per_domain = 250;
 
-std::string ports_of(int domain) {
+struct Ports {
+  int first;
+  int last;
+};
+
+Ports port_range(int domain) {
   const int first = base_port + ports_per_domain * domain;
-  return fmt::format("UDP {} to {}", first, first + 11 + 2 * (bus::participants_per_host - 1));
+  return {first, first + 11 + 2 * (bus::participants_per_host - 1)};
+}
+
+std::string ports_of(int domain) {
+  const Ports ports = port_range(domain);
+  return fmt::format("UDP {} to {}", ports.first, ports.last);
 }
 
 std::string name_of(const bus::DiscoveredParticipant& participant) {
@@ -72,6 +82,34 @@ Findings check_unicast(const LaboratoryView& view) {
   return findings;
 }
 
+std::string sender_of_packets(const HeardProgram& program, int domain) {
+  if (!program.packets_refused_from.empty()) {
+    return "the last one came from " + program.packets_refused_from;
+  }
+  const Ports ports = port_range(domain);
+  return fmt::format("`tcpdump -n udp portrange {}-{}` there shows who sends", ports.first,
+                     ports.last);
+}
+
+// Malformed packets that programs have refused.
+Findings check_packets(const LaboratoryView& view) {
+  Findings findings;
+  for (const HeardProgram& program : view.programs) {
+    if (program.packets_refused == 0) {
+      continue;
+    }
+    findings.push_back(
+        {Severity::warning, "packets",
+         fmt::format("{}:{} on {} has refused {} malformed packets since its start, {} of them in "
+                     "these {:.0f} s; {}; no program of a laboratory sends such packets: end what "
+                     "does, or let a firewall pass only your own hosts to {}",
+                     program.identity.program, program.identity.process_id, program.identity.host,
+                     program.packets_refused, program.packets_refused_now, view.seconds,
+                     sender_of_packets(program, view.domain), ports_of(view.domain))});
+  }
+  return findings;
+}
+
 } // namespace
 
 Findings check_network(const LaboratoryView& view) {
@@ -83,6 +121,8 @@ Findings check_network(const LaboratoryView& view) {
                         fmt::format("messages of {} programs get through; DDS domain {} uses {}",
                                     view.programs.size(), view.domain, ports_of(view.domain))});
   }
+  const Findings packets = check_packets(view);
+  findings.insert(findings.end(), packets.begin(), packets.end());
   if (view.malformed_messages > 0) {
     findings.push_back({Severity::warning, "network",
                         fmt::format("{} messages do not match the contract and were dropped; which "

@@ -34,7 +34,9 @@ ordered_json programs_json(const LaboratoryView& view) {
                         {"process_id", program.identity.process_id},
                         {"software", program.identity.software},
                         {"dds", program.identity.dds},
-                        {"contract_version", program.contract_version}});
+                        {"contract_version", program.contract_version},
+                        {"packets_refused", program.packets_refused},
+                        {"packets_refused_from", program.packets_refused_from}});
   }
   return programs;
 }

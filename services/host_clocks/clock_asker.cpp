@@ -11,6 +11,15 @@ constexpr std::size_t open_requests = 8; // an answer to an older one is too lat
 // By how much our clock may have moved against the time that passed: slewing, not setting.
 constexpr std::chrono::milliseconds max_slew{1};
 
+void take_refused_packets(const wire::ClockAnswer& answer, HeardProgram& program) {
+  const std::uint64_t count = answer.packets_refused();
+  if (program.answers > 0 && count > program.packets_refused) {
+    program.packets_refused_now += count - program.packets_refused;
+  }
+  program.packets_refused = count;
+  program.packets_refused_from = answer.packets_refused_from();
+}
+
 } // namespace
 
 Expected<ClockAsker> ClockAsker::open(bus::Participant& participant,
@@ -66,6 +75,7 @@ void ClockAsker::take(const wire::ClockAnswer& answer) {
   Heard& heard = heard_[service];
   heard.program.identity = identity_of(answer);
   heard.program.contract_version = answer.contract_version();
+  take_refused_packets(answer, heard.program);
   ++heard.program.answers;
   heard.last_answer = now;
   const auto slew =
@@ -81,6 +91,7 @@ void ClockAsker::take(const wire::ClockAnswer& answer) {
 
 std::vector<HeardProgram> ClockAsker::programs() const {
   std::vector<HeardProgram> programs;
+  programs.reserve(heard_.size());
   for (const auto& [name, heard] : heard_) {
     programs.push_back(heard.program);
     programs.back().clock = heard.offsets.offset(clock_->now());
@@ -100,6 +111,7 @@ std::vector<HostClock> ClockAsker::other_hosts() const {
     }
   }
   std::vector<HostClock> hosts;
+  hosts.reserve(best.size());
   for (const auto& [host, clock] : best) {
     hosts.push_back({host, clock});
   }

@@ -36,6 +36,9 @@ struct HeardProgram {
   std::uint32_t contract_version = 0;
   std::optional<ClockOffset> clock;
   std::uint64_t answers = 0;
+  std::uint64_t packets_refused = 0;     // since its start
+  std::uint64_t packets_refused_now = 0; // of these, since its first answer
+  std::string packets_refused_from = {}; // the last of them; empty if that is not known
 };
 
 struct HostClock {

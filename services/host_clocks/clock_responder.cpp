@@ -17,8 +17,9 @@ ClockResponder::open(bus::Participant& participant, ProgramIdentity identity, bu
   if (const auto error = first_error(answers, requests)) {
     return fail(*error);
   }
-  return std::unique_ptr<ClockResponder>(new ClockResponder(
-      std::move(identity), clock, std::move(wake_up), std::move(*requests), std::move(*answers)));
+  return std::unique_ptr<ClockResponder>(
+      new ClockResponder(std::move(identity), clock, std::move(wake_up), std::move(*requests),
+                         std::move(*answers), participant.refused_packets()));
 }
 
 Expected<std::unique_ptr<ClockResponder>> ClockResponder::start(bus::Participant& participant,
@@ -71,6 +72,8 @@ void ClockResponder::answer(const wire::ClockRequest& request, std::int64_t rece
   answer.software(identity_.software);
   answer.dds(identity_.dds);
   answer.contract_version(wire::CONTRACT_VERSION);
+  answer.packets_refused(refused_->count());
+  answer.packets_refused_from(refused_->last_sender());
   answer.answer_sent_utc_ns(clock_->utc_now_ns());
   // One that does not get through is given up: whoever still wants to know asks again.
   static_cast<void>(answers_.write(answer, std::chrono::nanoseconds(0)));

@@ -34,10 +34,11 @@ public:
 
 private:
   ClockResponder(ProgramIdentity identity, bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
-                 bus::Reader<wire::ClockRequest> requests, bus::Writer<wire::ClockAnswer> answers)
+                 bus::Reader<wire::ClockRequest> requests, bus::Writer<wire::ClockAnswer> answers,
+                 std::shared_ptr<const bus::RefusedPackets> refused)
       : identity_(std::move(identity)), name_(service_name(identity_)), clock_(&clock),
-        wake_up_(std::move(wake_up)), requests_(std::move(requests)), answers_(std::move(answers)) {
-  }
+        wake_up_(std::move(wake_up)), requests_(std::move(requests)), answers_(std::move(answers)),
+        refused_(std::move(refused)) {}
   void run(const std::stop_token& stop);
   void answer(const wire::ClockRequest& request, std::int64_t received_utc_ns);
   [[nodiscard]] bool may_answer();
@@ -48,6 +49,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   bus::Reader<wire::ClockRequest> requests_;
   bus::Writer<wire::ClockAnswer> answers_;
+  std::shared_ptr<const bus::RefusedPackets> refused_;
   bus::Clock::Instant second_began_;
   int answers_in_second_ = 0;
   std::jthread thread_; // the last: ended first

@@ -78,6 +78,7 @@ Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
       (*supervisor)->report(figures);
     }
     (*supervisor)->report_malformed_messages(participant->malformed_messages());
+    (*supervisor)->report_refused_packets(participant->refused_packets()->count());
     (*supervisor)->turned();
   }
   return (*recordings)->stop();

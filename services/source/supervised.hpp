@@ -14,7 +14,8 @@ namespace dyncal::services {
                                                      const bus::Participant& participant) {
   SourceServiceOptions options;
   options.software = supervisor.identity().software;
-  options.turned = [&supervisor, &participant] {
+  options.turned = [&supervisor, &participant, refused = participant.refused_packets()] {
+    supervisor.report_refused_packets(refused->count());
     supervisor.report_malformed_messages(participant.malformed_messages());
     supervisor.turned();
   };

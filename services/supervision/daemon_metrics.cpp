@@ -14,6 +14,8 @@ constexpr MetricFamily build_info{"dyncal_build_info", "1, with program, version
 constexpr MetricFamily malformed{"dyncal_malformed_messages_total",
                                  "Messages dropped because they do not match the contract.",
                                  counter};
+constexpr MetricFamily refused{"dyncal_refused_packets_total",
+                               "Malformed packets that never became a message.", counter};
 
 constexpr MetricFamily received{"dyncal_source_samples_received_total",
                                 "Samples that arrived and went into blocks.", counter};
@@ -107,6 +109,10 @@ void report_malformed_messages(std::uint64_t count, MetricStore& store) {
   store.set(malformed, {}, number(count));
 }
 
+void report_refused_packets(std::uint64_t count, MetricStore& store) {
+  store.set(refused, {}, number(count));
+}
+
 void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store) {
   const MetricLabels labels{{"bench", status.bench().to_string()},
                             {"source", status.source().to_string()}};
@@ -146,6 +152,7 @@ void report(const AnalysisFigures& figures, MetricStore& store) {
   store.set(runs, {{"state", "finished"}}, number(figures.runs_finished));
   store.set(evaluation, {}, figures.evaluation_s);
   report_malformed_messages(figures.malformed_messages, store);
+  report_refused_packets(figures.refused_packets, store);
 }
 
 } // namespace dyncal::services

@@ -24,6 +24,7 @@ struct AnalysisFigures {
   std::uint64_t runs_finished = 0;
   double evaluation_s = 0.0; // that its loop has spent with runs
   std::uint64_t malformed_messages = 0;
+  std::uint64_t refused_packets = 0;
 };
 
 // What a recorder has of one bench, since it was started.
@@ -53,5 +54,6 @@ void report(const AnalysisFigures& figures, MetricStore& store);
 void report(const RecorderFigures& figures, MetricStore& store);
 void report(const WebFigures& figures, MetricStore& store);
 void report_malformed_messages(std::uint64_t count, MetricStore& store);
+void report_refused_packets(std::uint64_t count, MetricStore& store);
 
 } // namespace dyncal::services

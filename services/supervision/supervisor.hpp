@@ -43,6 +43,9 @@ public:
   void report_malformed_messages(std::uint64_t count) {
     services::report_malformed_messages(count, store_);
   }
+  void report_refused_packets(std::uint64_t count) {
+    services::report_refused_packets(count, store_);
+  }
 
 private:
   explicit Supervisor(ProgramIdentity identity) : identity_(std::move(identity)) {}

@@ -6,6 +6,7 @@
 #include "services/bus/adapters.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_log.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -58,7 +59,9 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
       dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
   if (handle < 0) {
     return fail(cyclone_error("Cyclone DDS cannot open domain " + std::to_string(number) +
-                                  " (see its messages above; CYCLONEDDS_URI may be the cause)",
+                                  " (see its messages above; a machine holds " +
+                                  std::to_string(participants_per_host - 1) +
+                                  " programs of a domain, and CYCLONEDDS_URI may be the cause)",
                               handle));
   }
   auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
@@ -72,6 +75,7 @@ struct CycloneParticipantHandle {
   std::shared_ptr<Domain> domain;
   Entity entity;
   std::shared_ptr<MalformedMessages> malformed;
+  std::shared_ptr<const RefusedPackets> refused;
 };
 
 struct QosDeleter {
@@ -241,6 +245,10 @@ public:
     return participant_->malformed->count();
   }
 
+  [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const override {
+    return participant_->refused;
+  }
+
   [[nodiscard]] Discovery discovered() const override {
     return discovered_by_cyclone_dds(participant_->entity.get());
   }
@@ -273,6 +281,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
     options.warn(warning);
   }
 
+  auto refused = packets_refused_by_cyclone_dds(options.warn);
   auto domain = open_domain(options.domain, *config);
   if (!domain) {
     return fail(domain.error());
@@ -287,7 +296,8 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   }
   return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
       new CycloneParticipantHandle{std::move(*domain), Entity(participant),
-                                   std::make_shared<MalformedMessages>(options.warn)}));
+                                   std::make_shared<MalformedMessages>(options.warn),
+                                   std::move(refused)}));
 }
 
 } // namespace dyncal::bus

@@ -113,9 +113,10 @@ public:
   FastDdsParticipantHandle(std::unique_ptr<ParticipantNumber> number,
                            std::unique_ptr<FastDdsDiscovery> discovery,
                            dds::DomainParticipant* participant,
-                           std::shared_ptr<MalformedMessages> malformed)
+                           std::shared_ptr<MalformedMessages> malformed,
+                           std::shared_ptr<const RefusedPackets> refused)
       : number_(std::move(number)), discovery_(std::move(discovery)), participant_(participant),
-        malformed_(std::move(malformed)) {}
+        malformed_(std::move(malformed)), refused_(std::move(refused)) {}
   FastDdsParticipantHandle(const FastDdsParticipantHandle&) = delete;
   FastDdsParticipantHandle& operator=(const FastDdsParticipantHandle&) = delete;
   ~FastDdsParticipantHandle() {
@@ -125,6 +126,7 @@ public:
 
   [[nodiscard]] dds::DomainParticipant* get() const { return participant_; }
   [[nodiscard]] std::uint64_t malformed_messages() const { return malformed_->count(); }
+  [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const { return refused_; }
   [[nodiscard]] Discovery discovered() const { return discovery_->discovered(); }
 
   // Topics are made once and live as long as the participant.
@@ -146,6 +148,7 @@ private:
   std::unique_ptr<FastDdsDiscovery> discovery_; // outlives the participant, which calls it
   dds::DomainParticipant* participant_;
   std::shared_ptr<MalformedMessages> malformed_;
+  std::shared_ptr<const RefusedPackets> refused_;
   std::mutex mutex_;
   std::map<std::string, dds::Topic*> topics_;
 };
@@ -306,6 +309,10 @@ public:
     return participant_->malformed_messages();
   }
 
+  [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const override {
+    return participant_->refused_packets();
+  }
+
   [[nodiscard]] Discovery discovered() const override { return participant_->discovered(); }
 
 private:
@@ -316,7 +323,8 @@ private:
 
 services::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options) {
-  auto qos = fast_dds_participant_qos(options);
+  auto refused = std::make_shared<RefusedPackets>(options.warn);
+  auto qos = fast_dds_participant_qos(options, refused);
   if (!qos) {
     return fail(qos.error());
   }
@@ -334,7 +342,7 @@ create_fast_dds_participant(const ParticipantOptions& options) {
   }
   return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
       std::move(number), std::move(discovery), participant,
-      std::make_shared<MalformedMessages>(options.warn)));
+      std::make_shared<MalformedMessages>(options.warn), std::move(refused)));
 }
 
 } // namespace dyncal::bus

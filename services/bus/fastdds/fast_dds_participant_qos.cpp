@@ -56,7 +56,8 @@ void deliver_through_sockets_only() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
+void set_transport(const std::string& address, const std::shared_ptr<RefusedPackets>& refused,
+                   dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = wanted_receive_buffer_bytes;
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
@@ -70,7 +71,11 @@ void set_transport(const std::string& address, dds::DomainParticipantQos& qos) {
   }
   qos.transport().use_builtin_transports =
       false; // no shared memory: it throttles blocks and leaves files behind
-  qos.transport().user_transports.push_back(screened(udp));
+  if (refused) {
+    qos.transport().user_transports.push_back(screened(udp, refused));
+  } else {
+    qos.transport().user_transports.push_back(udp);
+  }
 }
 
 // Where it listens. Left alone, Fast DDS listens on every interface, multicast included, and
@@ -115,7 +120,8 @@ void set_discovery(int domain, bool multicast, const std::string& own_address,
 } // namespace
 
 services::Expected<dds::DomainParticipantQos>
-fast_dds_participant_qos(const ParticipantOptions& options) {
+fast_dds_participant_qos(const ParticipantOptions& options,
+                         const std::shared_ptr<RefusedPackets>& refused) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   log_to_standard_error();
   factory->load_profiles();
@@ -130,7 +136,7 @@ fast_dds_participant_qos(const ParticipantOptions& options) {
                    "multicast and interface are taken from there");
     }
     for (auto& transport : qos.transport().user_transports) {
-      transport = screened(transport);
+      transport = screened(transport, refused);
     }
     return qos;
   }
@@ -148,7 +154,7 @@ fast_dds_participant_qos(const ParticipantOptions& options) {
     return fail(peers.error());
   }
 
-  set_transport(address, qos);
+  set_transport(address, options.screened ? refused : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
   set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, *peers, qos);

@@ -14,8 +14,10 @@
 
 namespace dyncal::bus {
 
-// Fails (network) on an interface or peer that does not exist.
+// `refused` counts the packets that its transports refuse. Fails (network) on an interface or peer
+// that does not exist.
 [[nodiscard]] services::Expected<eprosima::fastdds::dds::DomainParticipantQos>
-fast_dds_participant_qos(const ParticipantOptions& options);
+fast_dds_participant_qos(const ParticipantOptions& options,
+                         const std::shared_ptr<RefusedPackets>& refused);
 
 } // namespace dyncal::bus

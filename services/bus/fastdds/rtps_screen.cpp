@@ -153,6 +153,7 @@ bool is_passed_unread(unsigned char id) {
 } // namespace
 
 Bytes RtpsScreen::pass(Bytes datagram) {
+  refused_ = true;
   if (datagram.size() < header_bytes || std::memcmp(datagram.data(), "RTPS", 4) != 0 ||
       datagram[4] != protocol_major) {
     return {};
@@ -172,6 +173,7 @@ Bytes RtpsScreen::pass(Bytes datagram) {
     }
     at += (length + 3U) & ~std::size_t{3};
   }
+  refused_ = false;
   return used_ > header_bytes ? Bytes(buffer_.data(), used_) : Bytes();
 }
 

@@ -37,6 +37,10 @@ public:
   // sample in the length that the first one said.
   [[nodiscard]] std::span<const unsigned char> pass(std::span<const unsigned char> datagram);
 
+  // Whether the datagram of the last call was dropped for what is in it, and not only because
+  // nobody needs it.
+  [[nodiscard]] bool refused() const { return refused_; }
+
   static constexpr std::size_t readable_bytes_behind = 1U << 16;
 
 private:
@@ -53,6 +57,7 @@ private:
 
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;
+  bool refused_ = false;
   AcknackCounts acknack_counts_;
 };
 

@@ -14,7 +14,9 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 class ScreenedTransport : public vendor::ChainingTransport {
 public:
-  using vendor::ChainingTransport::ChainingTransport;
+  ScreenedTransport(const vendor::ChainingTransportDescriptor& descriptor,
+                    std::shared_ptr<RefusedPackets> refused)
+      : vendor::ChainingTransport(descriptor), refused_(std::move(refused)) {}
 
   vendor::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
@@ -36,23 +38,35 @@ public:
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
+    } else if (screen.refused()) {
+      const rtps::octet* ipv4 = remote.address + 12;
+      refused_->add(std::uint32_t{ipv4[0]} << 24U | std::uint32_t{ipv4[1]} << 16U |
+                    std::uint32_t{ipv4[2]} << 8U | std::uint32_t{ipv4[3]});
     }
   }
+
+private:
+  std::shared_ptr<RefusedPackets> refused_;
 };
 
 struct ScreenedTransportDescriptor : vendor::ChainingTransportDescriptor {
-  using vendor::ChainingTransportDescriptor::ChainingTransportDescriptor;
+  ScreenedTransportDescriptor(std::shared_ptr<vendor::TransportDescriptorInterface> below,
+                              std::shared_ptr<RefusedPackets> counter)
+      : vendor::ChainingTransportDescriptor(std::move(below)), refused(std::move(counter)) {}
 
   [[nodiscard]] vendor::TransportInterface* create_transport() const override {
-    return new ScreenedTransport(*this);
+    return new ScreenedTransport(*this, refused);
   }
+
+  std::shared_ptr<RefusedPackets> refused;
 };
 
 } // namespace
 
 std::shared_ptr<vendor::TransportDescriptorInterface>
-screened(std::shared_ptr<vendor::TransportDescriptorInterface> transport) {
-  return std::make_shared<ScreenedTransportDescriptor>(std::move(transport));
+screened(std::shared_ptr<vendor::TransportDescriptorInterface> transport,
+         std::shared_ptr<RefusedPackets> refused) {
+  return std::make_shared<ScreenedTransportDescriptor>(std::move(transport), std::move(refused));
 }
 
 } // namespace dyncal::bus

@@ -4,10 +4,13 @@
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <memory>
 
+#include "services/bus/refused_packets.hpp"
+
 namespace dyncal::bus {
 
-// Around `transport`, e.g. UDP.
+// Around `transport`, e.g. UDP. What is dropped as malformed is counted in `refused`.
 [[nodiscard]] std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>
-screened(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport);
+screened(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
+         std::shared_ptr<RefusedPackets> refused);
 
 } // namespace dyncal::bus

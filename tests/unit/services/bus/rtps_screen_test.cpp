@@ -133,6 +133,19 @@ TEST(RtpsScreen, ReadsBigEndian) {
   EXPECT_EQ(passed(message + body), header() + gap(10, 12, 0, {}) + gap(14, 15, 0, {}));
 }
 
+TEST(RtpsScreen, TellsWhatIsMalformedFromWhatNobodyNeeds) {
+  RtpsScreen screen;
+  const auto refuses = [&screen](const Bytes& datagram) {
+    static_cast<void>(screen.pass(datagram));
+    return screen.refused();
+  };
+  EXPECT_FALSE(refuses(header() + heartbeat()));
+  EXPECT_FALSE(refuses(header() + submessage(0x80, 0x01, Bytes(48, 1))));
+  EXPECT_TRUE(refuses(header() + submessage(0x07, 0x01, Bytes(4, 1))));
+  EXPECT_TRUE(refuses(Bytes(40, 1)));
+  EXPECT_FALSE(refuses(header() + heartbeat()));
+}
+
 TEST(RtpsScreen, LeavesOutWhatNobodyNeeds) {
   const Bytes statistics = submessage(0x80, 0x01, Bytes(48, 1));
   const Bytes pad = submessage(0x01, 0x01, {});

@@ -7,6 +7,7 @@
 namespace dyncal::services::doctor {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -53,6 +54,20 @@ TEST_F(CheckNetwork, NamesPortsWhereUnicastDoesNotGetThrough) {
 TEST_F(CheckNetwork, NamesPortsWhereMessagesDoNotGetThrough) {
   view_.programs.clear();
   EXPECT_THAT(problems(check_network(view_)), ElementsAre(HasSubstr("UDP 7650 to 7723")));
+}
+
+TEST_F(CheckNetwork, TellsWhoGetsMalformedPacketsFromWhom) {
+  view_.seconds = 5.0;
+  view_.programs[0].packets_refused = 1200;
+  view_.programs[0].packets_refused_now = 1000;
+  EXPECT_THAT(warnings(check_network(view_)),
+              ElementsAre(AllOf(HasSubstr("dyncal-acs:3 on lab-2 has refused 1200 malformed "
+                                          "packets since its start, 1000 of them in these 5 s"),
+                                HasSubstr("tcpdump -n udp portrange 7650-7723"),
+                                HasSubstr("your own hosts to UDP 7650 to 7723"))));
+  view_.programs[0].packets_refused_from = "192.0.2.7";
+  EXPECT_THAT(warnings(check_network(view_)),
+              ElementsAre(HasSubstr("the last one came from 192.0.2.7")));
 }
 
 TEST_F(CheckNetwork, CountsMessagesThatDoNotMatchTheContract) {

@@ -82,6 +82,31 @@ TEST_F(ClockExchangeTest, FindsTheOffsetWithinHalfTheRoundTrip) {
   EXPECT_GT(std::abs(hosts[0].clock.offset_s - 3900.0), 0.010) << "the delays do differ";
 }
 
+TEST_F(ClockExchangeTest, TellsHowManyPacketsAProgramHasRefusedAndHowManyMeanwhile) {
+  auto asking = asker({.quick_requests = 3, .quick_interval = 100ms});
+  auto answers = *there_.writer(bus::topics::clock_answer, all_benches_partition);
+  const auto answer = [&](std::uint64_t number, std::uint64_t refused) {
+    asking.work();
+    wire::ClockAnswer message;
+    message.bench(all_benches_partition);
+    message.asker(service_name(identity("dyncal-doctor", "here")));
+    message.service("dyncal-acs:4711@there");
+    message.number(number);
+    message.packets_refused(refused);
+    message.packets_refused_from("192.0.2.7");
+    EXPECT_EQ(answers.write(message), bus::WriteOutcome::written);
+    pass(100ms, asking, {});
+  };
+  answer(1, 40);
+  answer(2, 42);
+  answer(3, 49);
+  const auto programs = asking.programs();
+  ASSERT_EQ(programs.size(), 1U);
+  EXPECT_EQ(programs[0].packets_refused, 49U);
+  EXPECT_EQ(programs[0].packets_refused_now, 9U);
+  EXPECT_EQ(programs[0].packets_refused_from, "192.0.2.7");
+}
+
 TEST_F(ClockExchangeTest, TellsWhoAnswers) {
   auto asking = asker();
   const auto answering = responder();

@@ -86,7 +86,8 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
                          .runs_refused = 3,
                          .runs_finished = 4,
                          .evaluation_s = 1.5,
-                         .malformed_messages = 6},
+                         .malformed_messages = 6,
+                         .refused_packets = 7},
          store_);
   const auto values = scrape();
   EXPECT_EQ(values.at(R"(dyncal_analysis_runs{state="waiting"})"), 1);
@@ -95,6 +96,7 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
   EXPECT_EQ(values.at(R"(dyncal_analysis_runs{state="finished"})"), 4);
   EXPECT_EQ(values.at("dyncal_analysis_evaluation_seconds_total"), 1.5);
   EXPECT_EQ(values.at("dyncal_malformed_messages_total"), 6);
+  EXPECT_EQ(values.at("dyncal_refused_packets_total"), 7);
 }
 
 TEST_F(MetricsTest, ServesWhatEveryProcessHas) {

@@ -1,0 +1,32 @@
+// Counts packets that never became a message, because they are not RTPS or not as they should be,
+// and tells the user of the first one.
+//
+// No program of a laboratory sends such packets: they come from port scanners, from other programs
+// at the ports of DDS, from broken hardware, or from someone who means harm. Any thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace dyncal::bus {
+
+class RefusedPackets {
+public:
+  // `warn` may be empty; it is called from the vendor's threads.
+  explicit RefusedPackets(std::function<void(const std::string&)> warn) : warn_(std::move(warn)) {}
+
+  // `sender` is an IPv4 address, the first byte uppermost; 0 if it is not known.
+  void add(std::uint32_t sender);
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  // "10.0.0.7"; empty if it is not known.
+  [[nodiscard]] std::string last_sender() const;
+
+private:
+  std::function<void(const std::string&)> warn_;
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<std::uint32_t> last_sender_{0};
+};
+
+} // namespace dyncal::bus
