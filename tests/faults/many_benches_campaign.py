@@ -97,10 +97,11 @@ def round_of(benches, services):
         f"{max(arming_s):.2f} s; {repeated} values of repeated steps"
     )
     for name, now in after.items():
-        core = (now.cpu_s - before[name].cpu_s) / took_s
+        used_s = now.cpu_s - before[name].cpu_s
+        core = used_s / took_s
         print(
-            f"        {name:16} {100 * core:5.1f} % of a core, {100 * core / len(benches):.2f} % a "
-            f"bench; {now.resident_mb:.0f} MB, at most {now.peak_mb:.0f} MB",
+            f"        {name:16} {100 * core:5.1f} % of a core, {used_s / len(benches):.3f} s a "
+            f"run; {now.resident_mb:.0f} MB, at most {now.peak_mb:.0f} MB",
             flush=True,
         )
         share = max(1.0, len(benches) / BENCHES_OF_THOSE)
