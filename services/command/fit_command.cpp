@@ -81,7 +81,11 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
   }
   const auto start = analysis::estimate_frequency(series.stamps_ns, columns);
   if (!start) {
-    return fail(start.error());
+    const bool no_sine = start.error().code == analysis::ErrorCode::no_excitation;
+    return fail(start.error().code,
+                start.error().message + (no_sine ? "; if you know its frequency, give --frequency, "
+                                                   "and --column for the columns that have it"
+                                                 : ""));
   }
   const double duration_s =
       static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
