@@ -52,6 +52,7 @@ test_packages=(
   python3-h5py                                 # exports, read by others
   postgresql-15                                # a server of the test's own, on a socket
   libxml2-utils openssl                        # certificates: independent validator, keys
+  man-db groff-base zsh fish                   # manual pages, completion of the command line
   weasyprint poppler-utils                     # reports as PDF, and their text
   chromium libjs-dygraphs                      # the page in a browser
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none

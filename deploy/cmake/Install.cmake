@@ -1,7 +1,7 @@
 # What `cmake --install` brings to a machine:
 #
 #   programs     the programs, the units that start them, the limits that the host should have, the
-#                guide and the files of the example laboratory
+#                guide and the files of the example laboratory, manual pages, completion for shells
 #   development  headers, static libraries, CMake package and pkg-config files, the contract (IDL)
 #
 # `cmake --install build --prefix DIR [--component development]`: paths inside installed files are
@@ -43,6 +43,7 @@ install(CODE "
   set(bindir \"${CMAKE_INSTALL_BINDIR}\")"
   COMPONENT programs)
 install(SCRIPT deploy/cmake/InstallUnits.cmake COMPONENT programs)
+include(InstallDescriptions)
 
 # Libraries: one export set for each component of find_package(dyncal).
 set(exported analysis bus)

@@ -7,6 +7,7 @@
 #include "services/analysis/analysis_service.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 #include "services/host_clocks/clock_responder.hpp"
+#include "services/program/command_line.hpp"
 #include "services/program/program.hpp"
 #include "services/supervision/supervisor.hpp"
 #include "services/version.hpp"
@@ -14,13 +15,16 @@
 int main(int argc, char** argv) {
   using namespace dyncal;
   CLI::App app{"Computes the complex transfer function of digital sensors from samples on DDS and "
-               "publishes it."};
+               "publishes it.",
+               "dyncal-analysis"};
   app.set_version_flag("--version", services::build_description());
   services::NetworkOptions network;
   services::add_network_options(app, network);
   std::string metrics;
   services::add_metrics_option(app, metrics);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = services::read_command_line(app, argc, argv)) {
+    return *status;
+  }
 
   services::set_up_log("dyncal-analysis");
   const std::stop_token stop = services::stop_on_signals();

@@ -20,6 +20,7 @@
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
 #include "services/command/watch_command.hpp"
+#include "services/program/command_line.hpp"
 #include "services/run/output_guard.hpp"
 #include "services/version.hpp"
 
@@ -119,6 +120,8 @@ void add_doctor(CLI::App& app, DoctorCommand& doctor) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--json", doctor.json, "print JSON");
+  command->footer(
+      "Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line.");
   add_network_options(*command, doctor.network);
 }
 
@@ -355,7 +358,9 @@ int execute(const CLI::App& app, const Commands& commands) {
 } // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS."};
+  CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS.",
+               "dyncal"};
+  app.footer("Exit status: 0 success, 1 failure, 2 wrong command line, 130 interrupted.");
   app.set_version_flag("--version", build_description());
   app.require_subcommand(1);
   Commands commands;
@@ -374,7 +379,9 @@ int main(int argc, char** argv) {
   add_intervals(app, commands.intervals);
   add_calibrate(app, commands.calibrate);
   add_guard_output(app, commands.guarded_generator);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = read_command_line(app, argc, argv)) {
+    return *status;
+  }
   set_up_log("dyncal");
   return execute(app, commands);
 }

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/host_clocks/clock_messages.hpp"
+#include "services/program/command_line.hpp"
 #include "services/program/log.hpp"
 #include "services/version.hpp"
 
@@ -45,10 +46,12 @@ int run_bench_program(int argc, char** argv, const BenchProgram& program) {
   std::vector<std::string> paths;
   NetworkOptions network;
   std::string metrics;
-  app.add_option("BENCH", paths, "bench files (TOML)")->required();
+  app.add_option("BENCH.toml", paths, "bench files")->required();
   add_network_options(app, network);
   add_metrics_option(app, metrics);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = read_command_line(app, argc, argv)) {
+    return *status;
+  }
 
   set_up_log(program.name, LogWriting::by_thread);
   const auto supervisor =

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/host_clocks/clock_responder.hpp"
+#include "services/program/command_line.hpp"
 #include "services/program/program.hpp"
 #include "services/recorder/bench_recordings.hpp"
 #include "services/supervision/supervisor.hpp"
@@ -90,11 +91,14 @@ Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
 int main(int argc, char** argv) {
   using namespace dyncal;
   CLI::App app{"Records every message of the benches of a laboratory in MCAP files, which 'dyncal "
-               "analyse' evaluates again and many viewers open."};
+               "analyse' evaluates again and many viewers open.",
+               "dyncal-recorder"};
   app.set_version_flag("--version", services::build_description());
   services::RecorderProgram program;
   services::add_options(app, program);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = services::read_command_line(app, argc, argv)) {
+    return *status;
+  }
   services::set_up_log("dyncal-recorder");
   const std::stop_token stop = services::stop_on_signals();
   const auto served = services::serve(program, stop);

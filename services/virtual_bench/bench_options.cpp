@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <map>
 
+#include "services/program/command_line.hpp"
 #include "services/version.hpp"
 #include "services/virtual_bench/fault_option.hpp"
 
@@ -340,19 +341,18 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
 Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) {
   CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration "
                "system and SmartUp Unit, reached through "
-               "their real protocols."};
+               "their real protocols.",
+               "dyncal-virtual-bench"};
   app.set_version_flag("--version", build_description());
   Words words;
   BenchOptions options;
   add_options(app, words, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      app.exit(error);
-      return std::nullopt;
-    }
-    return refuse(error.what());
+  const auto parsed = services::parse_command_line(app, argc, argv);
+  if (!parsed) {
+    return fail(parsed.error());
+  }
+  if (!*parsed) {
+    return std::nullopt;
   }
   if (auto read = read_words(words, options); !read) {
     return fail(read.error());

@@ -13,6 +13,7 @@
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/truth.hpp"
 #include "services/output/output_file.hpp"
+#include "services/program/command_line.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 
 namespace {
@@ -169,7 +170,7 @@ int main(int argc, char** argv) {
   const Expected<void> done = options ? run(**options) : fail(options.error());
   if (!done) {
     fmt::print(stderr, "dyncal-virtual-bench: {}\n", done.error().message);
-    return EXIT_FAILURE;
+    return options ? EXIT_FAILURE : dyncal::services::wrong_command_line;
   }
   return EXIT_SUCCESS;
 }

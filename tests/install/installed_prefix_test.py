@@ -85,6 +85,11 @@ def check_files(options, prefix):
         "share/dyncal/idl/dyncal.idl",
         "share/doc/dyncal/LICENSE",
         "share/doc/dyncal/example-lab/documents/laboratory.toml",
+        "share/man/man1/dyncal-run.1",
+        "share/bash-completion/completions/dyncal",
+        "share/zsh/site-functions/_dyncal",
+        "share/fish/vendor_completions.d/dyncal.fish",
+        *(f"share/man/man1/{name}.1" for name in PROGRAMS),
     ]:
         expect((prefix / name).is_file(), f"{name} is missing")
 

@@ -1,0 +1,65 @@
+"""What the tests of the command line have in common: the programs, and how to run them."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+PROGRAMS = [
+    "dyncal",
+    "dyncal-acs",
+    "dyncal-analysis",
+    "dyncal-can",
+    "dyncal-dau",
+    "dyncal-dso",
+    "dyncal-guard",
+    "dyncal-recorder",
+    "dyncal-virtual-bench",
+]
+FOLDER = pathlib.Path(sys.argv[1])
+SOURCE = pathlib.Path(sys.argv[2])
+
+
+def expect(condition, sentence):
+    if not condition:
+        sys.exit(sentence)
+
+
+def run(program, *arguments, **more):
+    """The finished process of a program of the build, with its outputs as text."""
+    return subprocess.run(
+        [FOLDER / program, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        **more,
+    )
+
+
+def output_of(program, *arguments):
+    done = run(program, *arguments)
+    expect(done.returncode == 0, f"{program} {arguments}: {done.stderr}")
+    return done.stdout
+
+
+def commands_of(program):
+    """The commands of a program, each as a list of words, from its own manual page."""
+    found = []
+
+    def add(words):
+        page = output_of(program, "--print-man", *words)
+        listed = page.split(".SH COMMANDS\n")
+        if len(listed) < 2:
+            return
+        for entry in listed[1].split(".SH ")[0].split(".TP\n")[1:]:
+            name = entry.split("\n")[0].replace("\\fB", "").replace("\\fR", "").replace("\\-", "-")
+            found.append([*words, name])
+            add([*words, name])
+
+    add([])
+    return found
+
+
+def environment(**more):
+    kept = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    return {**kept, "LC_ALL": "C.UTF-8", "PATH": f"{FOLDER}:{kept['PATH']}", **more}
