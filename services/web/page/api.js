@@ -31,11 +31,14 @@ async function answer_of(path, options) {
   } catch {
     // Said below, by the status.
   }
+  if (typeof body?.answer === "string") {
+    return body; // of a command: accepted or refused, with the reason
+  }
   if (!response.ok) {
     throw new ApiError(body?.error?.message ?? `HTTP status ${response.status}`, response.status);
   }
   if (body === null || typeof body !== "object") {
-    throw new ApiError("the daemon's answer is not JSON", response.status);
+    throw new ApiError("the daemon's answer broke off", response.status);
   }
   return body;
 }

@@ -141,14 +141,16 @@ export class BenchView {
   }
 
   async ask_fit() {
-    if (!this.bench?.plan || document.hidden) {
+    if (!this.bench?.plan || this.is_asking || document.hidden) {
       return;
     }
+    this.is_asking = true;
     try {
       this.step.show_fit(await get(bench_path(this.name, "/fit")));
     } catch (problem) {
       this.step.show_problem(problem.message);
     }
+    this.is_asking = false;
   }
 
   tick() {

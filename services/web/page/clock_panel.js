@@ -47,8 +47,9 @@ export class ClockPanel {
     const mean = rounded_by_uncertainty(1e6 * report.mean_interval_s,
                                         1e6 * (report.u_mean_interval_s ?? 0));
     set_name(this.text, `${report.source}: mean interval ${mean.value} µs (u ${mean.u} µs), ` +
-      `rate ${with_unit(report.mean_rate_hz, "Hz", 7)} of ${with_unit(report.nominal_rate_hz, "Hz")} ` +
-      `nominal, sd ${short_time(report.sd_interval_s)}, tick ${short_time(report.tick_s)}, ` +
+      `rate ${with_unit(report.mean_rate_hz, "Hz", 7)}` +
+      `${report.nominal_rate_hz > 0 ? ` of ${with_unit(report.nominal_rate_hz, "Hz")} nominal` : ""}` +
+      `, sd ${short_time(report.sd_interval_s)}, tick ${short_time(report.tick_s)}, ` +
       `${count_text(report.interval_count)} intervals, ${count_text(report.event_count)} events, ` +
       `${count_text(report.lost)} samples lost`, 400);
     this.text.title = `mean interval ${full(report.mean_interval_s, "s")}, u ` +

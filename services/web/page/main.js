@@ -126,7 +126,7 @@ class Page {
     set_text(this.foot,
              `${software ?? "dyncal"} on ${daemon.host ?? "this machine"}; all times UTC; ` +
              `${daemon.visitors ?? "?"} visitors; ` +
-             (daemon.samples_missed ? `${daemon.samples_missed} samples not seen by this page; ` : "") +
+             (Number(daemon.samples_missed ?? 0) > 0 ? `${daemon.samples_missed} samples not seen by this page; ` : "") +
              `state of ${utc_text(now_utc_ms)}`);
   }
 

@@ -188,9 +188,9 @@ export class RunView {
     this.magnitude.show(of(response_series, "magnitude"), quantity_in("magnitude", unit),
                         summary_of(means, "magnitude"));
     this.phase.show(of(response_series, "phase"), "phase (lead) in rad", summary_of(means, "phase"));
-    this.magnitude_deviation.show(of(deviation_series, "magnitude"), "deviation in %",
+    this.magnitude_deviation.show(of(deviation_series, "magnitude"), "magnitude in %",
                                   summary_of(means, "deviation"));
-    this.phase_deviation.show(of(deviation_series, "phase"), "deviation in °",
+    this.phase_deviation.show(of(deviation_series, "phase"), "phase in degrees",
                               summary_of(means, "deviation"));
   }
 

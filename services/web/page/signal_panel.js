@@ -23,6 +23,7 @@ export class SignalPanel {
     this.page = page;
     this.bench_of = bench_of;
     this.is_frozen = false;
+    this.is_asking = false; // for a spectrum
     this.signal = null;
     this.channel = new Choice("Channel", () => this.change(on_change));
     this.seconds = new Choice("Window", () => this.change(on_change));
@@ -96,6 +97,12 @@ export class SignalPanel {
       return;
     }
     this.signal = signal;
+    // A browser that cannot keep up draws the newest and leaves out those before.
+    cancelAnimationFrame(this.frame);
+    this.frame = requestAnimationFrame(() => this.show(signal));
+  }
+
+  show(signal) {
     this.meter.update(signal);
     const columns = signal.columns ?? [];
     const gaps = signal.gaps ?? [];
@@ -106,15 +113,18 @@ export class SignalPanel {
     const lost = gaps.length === 0 ? "no gaps" : `▲ ${gaps.length} ${gaps.length === 1 ? "gap" : "gaps"}, not bridged`;
     set_text(this.note, `${significant(signal.rate_hz, 6)} samples a second; ${lost}; ` +
       `from ${utc_text(signal.begin_utc_ms)} UTC`);
-    set_attribute(this.root, "data-number", signal.number);
+    const newest_s = columns.at(-1)?.[0] ?? null;
+    set_attribute(this.root, "data-newest-utc-ms",
+                  newest_s === null ? null : signal.begin_utc_ms + 1000 * newest_s);
   }
 
   async ask_spectrum() {
     const signal = this.channel.value;
     const has_samples = this.signal?.columns?.length > 0;
-    if (signal === null || !has_samples || this.is_frozen || document.hidden) {
+    if (signal === null || !has_samples || this.is_frozen || this.is_asking || document.hidden) {
       return;
     }
+    this.is_asking = true;
     const [source, channel] = split_channel(signal);
     try {
       const answer = await get(bench_path(this.bench_of(), "/spectrum"),
@@ -125,6 +135,7 @@ export class SignalPanel {
     } catch (problem) {
       set_text(this.spectrum_note, `No spectrum: ${problem.message}`);
     }
+    this.is_asking = false;
   }
 
   show_spectrum({ unit, lines, fundamental_hz, amplitude, thd, noise_floor, window,
@@ -157,6 +168,7 @@ export class SignalPanel {
 
   leave() {
     clearInterval(this.timer);
+    cancelAnimationFrame(this.frame);
     this.trace.destroy();
     this.spectrum.destroy();
   }

@@ -116,9 +116,9 @@ function rate_fact({ rate_hz, nominal_rate_hz }) {
   const off = is_number(rate_hz) && nominal_rate_hz > 0 ? rate_hz / nominal_rate_hz - 1 : null;
   const is_off = off !== null && Math.abs(off) > 0.02;
   const of_nominal = off === null ? "" : ` (${off >= 0 ? "+" : "−"}${significant(Math.abs(100 * off), 2)} %)`;
-  return ["rate", `${is_off ? "▲ " : ""}${with_unit(rate_hz, "Hz", 5)} of ` +
-    `${with_unit(nominal_rate_hz, "Hz", 5)}${of_nominal}`, is_off ? "warning" : null,
-          full(rate_hz, "Hz")];
+  const nominal = nominal_rate_hz > 0 ? ` of ${with_unit(nominal_rate_hz, "Hz", 5)}` : "";
+  return ["rate", `${is_off ? "▲ " : ""}${with_unit(rate_hz, "Hz", 5)}${nominal}${of_nominal}`,
+          is_off ? "warning" : null, full(rate_hz, "Hz")];
 }
 
 class ChannelRow {

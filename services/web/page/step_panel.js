@@ -42,7 +42,7 @@ export class StepPanel {
 
   show_fit(fit) {
     const { reference, sync, dau_phase } = fit;
-    const is_fit = Boolean(dau_phase?.fit);
+    const is_fit = Boolean(dau_phase?.fit || dau_phase?.problem);
     set_text(this.problem, fit.step ? `Fits of step ${fit.step}, ${fit.frequency_text_hz ?? "?"} Hz` +
       `${fit.attempt > 1 ? `, attempt ${fit.attempt}` : ""}.` : "");
     this.reference.show(reference);
@@ -78,13 +78,18 @@ class FitBlock {
                                   height: 180 });
     this.residual = new TraceChart({ title: `${title}: residuals of the fit`, x_label: "time in s",
                                      height: 150 });
+    this.figures = element("div", {}, this.trace.root, this.residual.root);
     this.root = element("div", {}, element("h3", {}, title, " ", this.channel), this.text,
-                        this.trace.root, this.residual.root);
+                        this.figures);
   }
 
   show(shown) {
-    set_shown(this.root, Boolean(shown?.fit));
+    const why = shown?.problem ?? "";
+    set_shown(this.root, Boolean(shown?.fit || why));
+    set_shown(this.figures, Boolean(shown?.fit));
     if (!shown?.fit) {
+      set_name(this.channel, shown?.channel ?? "", 48);
+      set_text(this.text, why);
       this.trace.show([], "");
       this.residual.show([], "");
       return;
