@@ -14,8 +14,8 @@ constexpr MetricFamily build_info{"dyncal_build_info", "1, with program, version
 constexpr MetricFamily malformed{"dyncal_malformed_messages_total",
                                  "Messages dropped because they do not match the contract.",
                                  counter};
-constexpr MetricFamily refused{"dyncal_refused_packets_total",
-                               "Malformed packets that never became a message.", counter};
+constexpr MetricFamily refused_packets{"dyncal_refused_packets_total",
+                                       "Malformed packets that never became a message.", counter};
 
 constexpr MetricFamily received{"dyncal_source_samples_received_total",
                                 "Samples that arrived and went into blocks.", counter};
@@ -110,7 +110,7 @@ void report_malformed_messages(std::uint64_t count, MetricStore& store) {
 }
 
 void report_refused_packets(std::uint64_t count, MetricStore& store) {
-  store.set(refused, {}, number(count));
+  store.set(refused_packets, {}, number(count));
 }
 
 void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store) {
