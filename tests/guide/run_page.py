@@ -28,7 +28,7 @@ import pages
 import readers
 import toml_text
 
-SECONDS_PER_BLOCK = 120
+SECONDS_PER_BLOCK = 200
 ADDRESS = re.compile(r"127\.0\.0\.1:(\d{4,5})\b")
 SKIPPED = 77
 
