@@ -1,7 +1,11 @@
 // dyncal-web: serves a page that shows what the benches of a laboratory do.
+#include <filesystem>
+#include <string>
+
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/program/child_process.hpp"
 #include "services/program/program.hpp"
 #include "services/version.hpp"
 #include "services/web/web_service.hpp"
@@ -14,6 +18,12 @@ struct WebProgram {
   std::string listen = "127.0.0.1:8080";
   web::WebOptions web;
 };
+
+// Where the guide is installed beside the program; empty if it is not.
+std::string installed_guide() {
+  const auto folder = program_folder().parent_path() / "share" / "doc" / "dyncal" / "guide";
+  return std::filesystem::exists(folder / "index.html") ? folder.string() : "";
+}
 
 void add_options(CLI::App& app, WebProgram& program) {
   app.add_option("--listen", program.listen,
@@ -32,7 +42,8 @@ void add_options(CLI::App& app, WebProgram& program) {
                  "file with the secret that actions need; without one there are no actions");
   app.add_option("--benches", program.web.benches_folder,
                  "folder of bench files that a run may be started with (needs --token-file)");
-  app.add_option("--guide", program.web.guide_folder, "folder of the guide's pages");
+  app.add_option("--guide", program.web.guide_folder,
+                 "folder of the guide's pages (default: as it is installed with this program)");
   app.add_option("--javascript", program.web.javascript_folder,
                  "folder of the JavaScript libraries of this computer")
       ->capture_default_str();
@@ -47,6 +58,9 @@ Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
                 "--listen " + program.listen + " is not ADDRESS:PORT, such as 127.0.0.1:8080");
   }
   program.web.listen = *listen;
+  if (program.web.guide_folder.empty()) {
+    program.web.guide_folder = installed_guide();
+  }
   auto service = web::WebService::create(program.network, program.web);
   if (!service) {
     return fail(service.error());

@@ -71,7 +71,7 @@ def main():
     port, held_port = run_page.free_port()
     with held_domain, held_port:
         running = subprocess.Popen(
-            [program, "--listen", f"127.0.0.1:{port}", "--store", "none", "--guide", options.guide],
+            [program, "--listen", f"127.0.0.1:{port}", "--store", "none"],
             env={**os.environ, "DYNCAL_DOMAIN": str(domain)},
         )
         try:
