@@ -9,7 +9,9 @@ namespace dyncal::bus {
 namespace {
 
 void write_or_count(void* refused, const dds_log_data_t* data) {
-  if (std::string_view(data->message, data->size).starts_with("malformed packet received")) {
+  // Not always at its beginning: some lines are not ended before.
+  const std::string_view message(data->message, data->size);
+  if (message.find("malformed packet received") != std::string_view::npos) {
     static_cast<RefusedPackets*>(refused)->add(0); // it does not tell from whom
     return;
   }
