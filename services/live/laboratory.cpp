@@ -323,7 +323,7 @@ void Laboratory::work() {
   }
 }
 
-void Laboratory::note(Bench& bench, Severity severity, std::string text) {
+void Laboratory::note(Bench& bench, Severity severity, const std::string& text) {
   bench.events.push_back({clock_.utc_now_ns(), bench.name, severity, bounded(text)});
   if (bench.events.size() > limits_.events) {
     bench.events.pop_front();
@@ -331,9 +331,9 @@ void Laboratory::note(Bench& bench, Severity severity, std::string text) {
   changed(bench);
 }
 
-void Laboratory::note(Bench& bench, std::vector<Condition> changes) {
-  for (Condition& change : changes) {
-    note(bench, change.severity, std::move(change.what));
+void Laboratory::note(Bench& bench, const std::vector<Condition>& changes) {
+  for (const Condition& change : changes) {
+    note(bench, change.severity, change.what);
   }
 }
 

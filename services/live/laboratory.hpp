@@ -69,8 +69,8 @@ private:
   bool make_room_for_result(const Run& run);
   bool drop_results_of_oldest(const Run& run);
   void take_service(Bench& bench, const wire::ServiceStatus& message);
-  void note(Bench& bench, Severity severity, std::string text);
-  void note(Bench& bench, std::vector<Condition> changes);
+  void note(Bench& bench, Severity severity, const std::string& text);
+  void note(Bench& bench, const std::vector<Condition>& changes);
   void changed(Bench& bench) { bench.number = ++number_; }
   [[nodiscard]] std::size_t results() const;
 

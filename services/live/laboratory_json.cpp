@@ -16,7 +16,7 @@ using Instant = bus::Clock::Instant;
 
 // Null: not known.
 Json milliseconds(std::int64_t utc_ns) {
-  return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns / 1000) / 1000.0);
+  return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns) / 1e6);
 }
 
 Json not_zero(double value) {

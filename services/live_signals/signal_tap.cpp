@@ -83,16 +83,18 @@ void SignalTap::choose_readers() {
     if (readers_.contains(topic)) {
       continue;
     }
-    const std::string name = sample_topic(topic.second);
+    const char* name = sample_topic(topic.second);
     Readers& readers = readers_[topic];
     if (is_triggered(topic.second)) {
-      if (auto reader = participant_.reader<wire::TriggeredRecord>(name, bus::Profile::live_records,
-                                                                   topic.first, wake_up_)) {
+      const bus::Topic<wire::TriggeredRecord> records{name, bus::Profile::live_records};
+      if (auto reader = participant_.reader(records, topic.first, wake_up_)) {
         readers.records.emplace(std::move(*reader));
       }
-    } else if (auto reader = participant_.reader<wire::SampleBlock>(
-                   name, bus::Profile::live_samples, topic.first, wake_up_)) {
-      readers.blocks.emplace(std::move(*reader));
+    } else {
+      const bus::Topic<wire::SampleBlock> blocks{name, bus::Profile::live_samples};
+      if (auto reader = participant_.reader(blocks, topic.first, wake_up_)) {
+        readers.blocks.emplace(std::move(*reader));
+      }
     }
   }
   reader_count_ = readers_.size();

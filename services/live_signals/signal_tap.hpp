@@ -31,6 +31,7 @@ struct TappedChannel {
   SourceKind kind = SourceKind::dau;
   std::size_t column = 0; // of the channel in the source's blocks
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): the check takes the comparison for a pointer
   auto operator<=>(const TappedChannel&) const = default;
 };
 

@@ -42,6 +42,8 @@ Expected<SineView> view_sine(std::span<const Sample> samples, const analysis::Fr
   }
   std::vector<std::int64_t> stamps_ns;
   std::vector<double> values;
+  stamps_ns.reserve(fitted.size());
+  values.reserve(fitted.size());
   for (const Sample& sample : fitted) {
     stamps_ns.push_back(sample.stamp_ns);
     values.push_back(sample.value);
@@ -54,6 +56,7 @@ Expected<SineView> view_sine(std::span<const Sample> samples, const analysis::Fr
   }
   SineView view{.fit = fits->front(), .phase_origin_ns = origin_ns, .columns = {}, .residuals = {}};
   std::vector<Sample> residuals;
+  residuals.reserve(fitted.size());
   for (const Sample& sample : fitted) {
     residuals.push_back({sample.stamp_ns, sample.value - value_of(view.fit, frequency,
                                                                   sample.stamp_ns - origin_ns)});

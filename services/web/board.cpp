@@ -19,7 +19,7 @@ const live::Run* find_run(const live::Bench& bench, const std::string& run) {
 }
 
 Json milliseconds(std::int64_t utc_ns) {
-  return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns / 1000) / 1000.0);
+  return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns) / 1e6);
 }
 
 Json runs_json(const live::Bench& bench) {

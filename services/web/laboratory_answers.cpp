@@ -17,6 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t file_part_bytes = std::size_t{64} * 1024;
 constexpr std::array<std::string_view, 6> parts{"run",      "budget", "signal",
                                                 "spectrum", "fit",    "command"};
 
@@ -52,7 +53,7 @@ void send_file(const RunFile& file, httplib::Response& response) {
   response.set_content_provider(
       file.bytes, media_type(name),
       [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-        std::vector<char> bytes(std::min<std::size_t>(length, 64 * 1024));
+        std::vector<char> bytes(std::min(length, file_part_bytes));
         stream->seekg(static_cast<std::streamoff>(offset));
         stream->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         const auto count = static_cast<std::size_t>(stream->gcount());

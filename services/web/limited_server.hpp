@@ -21,7 +21,7 @@ public:
   static constexpr std::chrono::seconds idle_limit{1};
   static constexpr int max_requests = 100;
   static constexpr std::size_t max_threads = 64;
-  static constexpr std::size_t max_body_bytes = 64 * 1024;
+  static constexpr std::size_t max_body_bytes = std::size_t{64} * 1024;
 
   // `refusals` outlives the object.
   explicit LimitedServer(Refusals& refusals);

@@ -71,7 +71,7 @@ Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
 } // namespace
 } // namespace dyncal::services
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the program
   using namespace dyncal;
   CLI::App app{"Serves a page that shows what the benches of a laboratory do: state, signals, "
                "results, history."};

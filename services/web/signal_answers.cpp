@@ -50,7 +50,7 @@ Json trace_json(const Trace& trace) {
   return {{"rate_hz", json_number(trace.rate_hz)},
           {"begin_utc_ms", trace.begin_utc_ns == 0
                                ? Json(nullptr)
-                               : Json(static_cast<double>(trace.begin_utc_ns / 1000) / 1000.0)},
+                               : Json(static_cast<double>(trace.begin_utc_ns) / 1e6)},
           {"columns", columns_json(trace.columns)},
           {"level_rms", shown(trace.level_rms)},
           {"level_peak", shown(trace.level_peak)},
@@ -170,6 +170,7 @@ Text SignalAnswers::spectrum_text(const Question& question, std::string& problem
     return nullptr;
   }
   std::vector<double> values;
+  values.reserve(samples.size());
   for (const Sample& sample : samples) {
     values.push_back(sample.value);
   }
