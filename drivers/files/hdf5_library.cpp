@@ -92,6 +92,9 @@ bool write_block(int descriptor, const std::string& block) {
 
 Hdf5Lock::Hdf5Lock() {
   library_mutex().lock();
+  // At the end of the program it would try once more to write what found no room, and crash.
+  // Everything of ours is closed by then.
+  [[maybe_unused]] static const herr_t left_alone = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

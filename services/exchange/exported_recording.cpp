@@ -15,6 +15,7 @@ namespace {
 
 std::vector<std::string> names_of(const std::vector<drivers::ChannelDescription>& channels) {
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const auto& channel : channels) {
     names.push_back(channel.name);
   }

@@ -11,8 +11,6 @@
 namespace dyncal::services {
 namespace {
 
-namespace topics = bus::topics;
-
 // Everything that the first walk gathers, of all runs.
 class Gathering {
 public:

@@ -109,6 +109,18 @@ TEST_F(SmallDisk, HasWhatWasPromisedWhenItFillsUpInTheRun) {
   EXPECT_TRUE(again.wait(patience) == 0 || again.errors().find("step") != std::string::npos)
       << again.errors();
   EXPECT_GE(read_json(again_json)["points"].size(), 6U) << again.errors();
+
+  const fs::path tiny = folder_ / "tiny";
+  fs::create_directories(tiny);
+  ASSERT_EQ(mount("tmpfs", tiny.c_str(), "tmpfs", 0, "size=128k"), 0);
+  for (const char* target : {"run.h5", "run.npz", "run", "run.mcap"}) {
+    ProgramRun exported("dyncal", {"export", folders[0], "--to", tiny / target}, folder_);
+    EXPECT_THAT(exported.wait(patience).value_or(-1), testing::AnyOf(1, 2)) << target;
+    EXPECT_THAT(exported.errors(), testing::AnyOf(HasSubstr("No space left on device"),
+                                                  HasSubstr("this build has no HDF5")));
+    EXPECT_TRUE(fs::is_empty(tiny)) << target;
+  }
+  umount2(tiny.c_str(), MNT_DETACH);
 }
 
 } // namespace
