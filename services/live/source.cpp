@@ -45,13 +45,13 @@ const char* to_string(SourceState state) {
   return "unknown";
 }
 
-void Source::take(const wire::SourceDescription& message_, const Limits& limits) {
-  session = message_.session();
-  kind = from_wire(message_.kind());
-  description = from_message(message_);
-  software = bounded(message_.software());
-  host = bounded(message_.host());
-  process_id = message_.process_id();
+void Source::take(const wire::SourceDescription& described, const Limits& limits) {
+  session = described.session();
+  kind = from_wire(described.kind());
+  description = from_message(described);
+  software = bounded(described.software());
+  host = bounded(described.host());
+  process_id = described.process_id();
   auto& channels = description->channels;
   channels.resize(std::min(channels.size(), limits.channels));
   for (drivers::ChannelDescription& channel : channels) {
