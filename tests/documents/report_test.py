@@ -119,7 +119,8 @@ class Report(unittest.TestCase):
         self.assertNotIn("script", fetches.tags)
         self.assertIn("svg", fetches.tags)
         self.assertIn("default-src 'none'", page)
-        self.assertEqual(page.count("<svg "), len(stored_run.CHANNELS))
+        # Response and deviations.
+        self.assertEqual(page.count("<svg "), 2 * len(stored_run.CHANNELS))
         ids = re.findall(r'\bid="([^"]*)"', page)
         self.assertEqual(len(ids), len(set(ids)))
         self.assertFalse((self.run_folder / "report.pdf").exists())

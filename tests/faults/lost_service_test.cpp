@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/laboratory.hpp"
+#include "tests/system/test_folder.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -26,7 +27,7 @@ std::string loss_name(const testing::TestParamInfo<Loss>& loss) {
 class LostService : public testing::TestWithParam<Loss> {};
 
 TEST_P(LostService, IsNamedAndWaitedForAndWhatWasMeasuredIsKept) {
-  const auto folder = fresh_folder("lost-" + GetParam().program);
+  const auto folder = fresh_folder_of_this_test();
   ProgramRun demo("dyncal", {"demo", "--output", folder / "files"}, folder);
   ASSERT_TRUE(demo.wait_for_error_text("step 6 of 51", patience)) << demo.errors();
   ASSERT_TRUE(demo.send_to_child(GetParam().program, GetParam().signal));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/live_bench.hpp"
+#include "tests/system/test_folder.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -64,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Recorded files are played: the results are those of an undisturbed run to the last bit.
 class LostAnalysis : public testing::TestWithParam<std::string> {
 protected:
-  std::filesystem::path folder_ = fresh_folder("lost-analysis-" + GetParam());
+  std::filesystem::path folder_ = fresh_folder_of_this_test();
   std::filesystem::path bench_ = played_at_twice_the_speed(recorded_bench(folder_, "files", "3"));
   Laboratory laboratory_{folder_};
 

@@ -99,7 +99,7 @@ def check_files(options, prefix):
         expect(installed.is_file(), f"{installed.relative_to(prefix)} is missing")
 
     units = files_below(prefix / "lib/systemd/system")
-    expect(len(units) == 7, f"7 units expected, {len(units)} found")
+    expect(len(units) == 8, f"8 units expected, {len(units)} found")
     for unit in units:
         started = re.search(r"^ExecStart=(\S+)", unit.read_text(), re.M)
         expect(started, f"{unit} starts nothing")

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/laboratory.hpp"
+#include "tests/system/test_folder.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -43,7 +44,7 @@ protected:
     return texts;
   }
 
-  std::filesystem::path folder_ = fresh_folder("doctor");
+  std::filesystem::path folder_ = fresh_folder_of_this_test();
 };
 
 TEST_F(DoctorTest, SaysThatNothingIsThere) {

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/live_bench.hpp"
+#include "tests/system/test_folder.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -41,7 +42,7 @@ protected:
       GTEST_SKIP() << "SKIPPED: no right to mount a small disk (" << std::strerror(errno)
                    << "): run it as root";
     }
-    folder_ = fresh_folder("small-disk");
+    folder_ = fresh_folder_of_this_test();
     disk_ = folder_ / "disk";
     fs::create_directories(disk_);
   }

@@ -12,6 +12,7 @@
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
+#include "tests/system/test_folder.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/udp_port.hpp"
 #include "tests/unit/services/supervision/notify_socket.hpp"
@@ -76,7 +77,7 @@ dut = ["acs/dut"]
   }
 
   TemporaryFolder folder_;
-  std::filesystem::path output_ = fresh_folder("supervision");
+  std::filesystem::path output_ = fresh_folder_of_this_test();
   NotifySocket socket_{folder_.path().string(), watchdog};
 };
 
