@@ -43,7 +43,8 @@ def check(guide, port, program):
         allowed = [part for part in policy.split(";") if part.strip().startswith(directive)]
         if not allowed or "'self'" not in allowed[0]:
             sys.exit(f"the guide's pages need {directive} 'self': {policy}")
-    types = {".html": "text/html", ".css": "text/css", ".svg": "image/svg+xml", ".toml": ""}
+    types = {".html": "text/html", ".css": "text/css", ".svg": "image/svg+xml",
+             ".png": "image/png", ".toml": ""}
     served = 0
     for path in guide.rglob("*"):
         if path.is_file():
