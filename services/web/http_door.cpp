@@ -92,13 +92,7 @@ void HttpDoor::set_up() {
 
 Expected<void> HttpDoor::start() {
   const drivers::Address& at = options_.listen;
-  port_ = at.port;
-  errno = 0;
-  if (at.port == 0) {
-    port_ = server_.bind_to_any_port(at.host);
-  } else if (!server_.bind_to_port(at.host, at.port)) {
-    port_ = -1;
-  }
+  port_ = server_.bind(at.host, at.port);
   if (port_ < 0) {
     const char* reason = errno == 0 ? "no such address" : std::strerror(errno);
     return fail(ErrorCode::network, fmt::format("cannot listen at {} ({}); choose another address "

@@ -3,11 +3,15 @@
 // refused is counted.
 //
 // `max_threads` connections are served at a time, each by a thread; others wait in the kernel's
-// queue and the pool's. Threads: as httplib::Server.
+// queue and the pool's. The library's own kernel queue holds five: whoever came sixth in the same
+// instant waited for seconds until his computer asked again. It also shares its port with any other
+// server that wants it, so that visitors would reach one or the other by chance; this one does not.
+// Threads: as httplib::Server.
 #pragma once
 
 #include <atomic>
 #include <chrono>
+#include <string>
 
 #include <httplib.h>
 
@@ -21,12 +25,18 @@ public:
   static constexpr std::chrono::seconds idle_limit{1};
   static constexpr int max_requests = 100;
   static constexpr std::size_t max_threads = 64;
+  static constexpr int max_waiting = 256; // connections in the kernel's queue
   static constexpr std::size_t max_body_bytes = std::size_t{64} * 1024;
 
   // `refusals` outlives the object.
   explicit LimitedServer(Refusals& refusals);
+  ~LimitedServer() override;
+  LimitedServer(const LimitedServer&) = delete;
+  LimitedServer& operator=(const LimitedServer&) = delete;
 
-  // Ends every connection and the listening thread.
+  // Binds to this port, 0: to any free one, and returns it; negative: it cannot be had (errno).
+  [[nodiscard]] int bind(const std::string& host, int port);
+  // Ends every connection and the listening, or keeps it from beginning.
   void end();
   [[nodiscard]] bool is_ending() const { return ending_; }
   [[nodiscard]] std::uint64_t requests() const { return requests_; }
@@ -36,6 +46,7 @@ private:
   void serve(socket_t socket);
 
   Refusals& refusals_;
+  int listening_ = -1; // a second descriptor of the listening socket, which nobody else closes
   std::atomic<bool> ending_ = false;
   std::atomic<std::uint64_t> requests_ = 0;
 };

@@ -119,6 +119,32 @@ TEST_F(HttpDoorTest, AnswersWithHostileNamesAsText) {
   EXPECT_EQ(Json::parse(answer->body)["bench"], "<b>acc-1</b>");
 }
 
+TEST_F(HttpDoorTest, SharesItsPortWithNobody) {
+  HttpDoor second{{.listen = {"127.0.0.1", static_cast<std::uint16_t>(door_.port())},
+                   .own_names = {},
+                   .javascript_folder = folder_.path(),
+                   .guide_folder = ""},
+                  clock_};
+  const auto started = second.start();
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().code, ErrorCode::network);
+  EXPECT_NE(started.error().message.find("Address already in use"), std::string::npos)
+      << started.error().message;
+}
+
+TEST_F(HttpDoorTest, ClosesAsSoonAsItHasOpened) {
+  for (int i = 0; i < 200; ++i) {
+    HttpDoor other{{.listen = {"127.0.0.1", 0},
+                    .own_names = {},
+                    .javascript_folder = folder_.path(),
+                    .guide_folder = ""},
+                   clock_};
+    ASSERT_TRUE(other.start());
+    ASSERT_GT(other.port(), 0);
+    other.stop();
+  }
+}
+
 TEST_F(HttpDoorTest, LeadsOutOfNoFolder) {
   std::ofstream(folder_.path() / "library.js") << "1";
   EXPECT_EQ(visitor().Get("/javascript/library.js")->status, 200);
@@ -212,6 +238,7 @@ TEST_F(HttpDoorTest, LetsAsManyListenAsItHasRoomFor) {
   EXPECT_EQ(refused(Refusal::too_many_listeners),
             static_cast<std::uint64_t>(count - EventStream::max_listeners));
   EXPECT_EQ(visitor().Get("/")->status, 200);
+  EXPECT_LT(Clock::now(), end) << "some had to knock again and again";
 }
 
 } // namespace
