@@ -3,41 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "services/nearest_name.hpp"
+
 namespace dyncal::services {
 namespace {
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0U : 1U)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
-std::string nearest(const std::string& word, const std::set<std::string>& known) {
-  std::string best;
-  std::size_t least = word.size() / 2 + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 std::string unit_phrase(const std::string& unit) {
   return unit.empty() ? "a number" : fmt::format("a number in {}", unit);
@@ -317,7 +290,7 @@ void TomlTable::finish() {
   for (const auto& entry : table_) {
     const std::string key(entry.first.str());
     if (!known_.contains(key)) {
-      const std::string hint = nearest(key, known_);
+      const std::string hint = nearest_name(key, known_);
       refuse(key,
              hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
     }

@@ -101,6 +101,16 @@ const Service* Bench::recorder() const {
   return newest;
 }
 
+bool Bench::is_silent(const Service& service, Instant now) const {
+  const auto served = runs.find(service.run);
+  const Run* run = service.is_recorder()  ? current_run()
+                   : served == runs.end() ? nullptr
+                                          : &served->second;
+  const bool is_conducted =
+      run != nullptr && run->conductor_heard && !run->is_over() && !run->is_left_alone(now);
+  return is_conducted && now - service.heard > silence_limit;
+}
+
 std::uint64_t Bench::lost() const {
   std::uint64_t sum = 0;
   for (const auto& [name_of_source, source] : sources) {
@@ -153,6 +163,12 @@ Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
   }
   if (const Service* recorder = bench.recorder()) {
     worsen_by_recorder(*recorder, now, condition);
+  }
+  for (const auto& [name, service] : bench.services) {
+    if (bench.is_silent(service, now)) {
+      condition.worsen(Severity::stale, fmt::format("{} has not been heard for {} s", name,
+                                                    seconds_since(service.heard, now)));
+    }
   }
   return condition;
 }

@@ -54,6 +54,8 @@ struct Bench {
   // The one that is conducted, else the newest; null: none was heard of.
   [[nodiscard]] const Run* current_run() const;
   [[nodiscard]] const Service* recorder() const;
+  // It should be heard, as the run that it serves is being conducted, and is not.
+  [[nodiscard]] bool is_silent(const Service& service, Instant now) const;
   [[nodiscard]] std::uint64_t lost() const;
 };
 

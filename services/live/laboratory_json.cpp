@@ -61,7 +61,6 @@ Json recording_json(const Bench& bench, Instant now) {
   const bool is_heard = now - recorder->heard <= silence_limit;
   return {{"state", is_heard ? "recording" : "silent"},
           {"file", recorder->recording},
-          {"bytes", nullptr},
           {"messages_stored", std::to_string(recorder->messages_stored)},
           {"messages_not_stored", std::to_string(recorder->messages_not_stored)},
           {"message", recorder->message}};
@@ -247,7 +246,7 @@ ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program
           const bool has_failed = service.health == Health::failed;
           condition.worsen(has_failed ? Severity::error : Severity::note, service.message);
         }
-        add_news(name, condition, true, service.heard_utc_ns, news);
+        add_news(name, condition, !bench.is_silent(service, now), service.heard_utc_ns, news);
       }
     }
   }

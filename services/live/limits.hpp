@@ -9,8 +9,9 @@
 
 namespace dyncal::services::live {
 
-// Nothing was heard of a bench or a source for longer: it is silent.
-inline constexpr std::chrono::seconds silence_limit{3};
+// Nothing was heard of a bench or a source for longer: it is silent. Sources and services report
+// every second; a page that asks in turn still shows it within 3 s.
+inline constexpr std::chrono::milliseconds silence_limit{2500};
 // A conductor repeats its Measurement every 2 s.
 inline constexpr std::chrono::seconds conductor_limit{5};
 inline constexpr std::chrono::seconds gone_limit{60};

@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/report/flag_legend.hpp"
 #include "services/report/json_number.hpp"
+#include "services/report/step_json.hpp"
 
 namespace dyncal::services::live {
 namespace {
@@ -28,32 +30,43 @@ Json fit_json(const analysis::ChannelFit& channel_fit) {
           {"sample_count", fit.samples}};
 }
 
-Json signals_json(const StepResult& result) {
-  Json signals = Json::array();
-  for (const ChannelSignal& signal : result.signals) {
-    signals.push_back({{"channel", signal.channel},
-                       {"thd", json_number(signal.thd)},
-                       {"u_thd", json_number(signal.u_thd)},
-                       {"residual_rel", json_number(signal.residual)},
-                       {"residual_over_noise", json_number(signal.over_noise)}});
+// Those of the channel and of the valid results that the mean was made of, each once.
+std::vector<Flag> flags_of(const Run& run, const TransferFunction& function,
+                           const FrequencyPoint& point) {
+  std::vector<Flag> flags;
+  for (const auto& [key, result] : run.results) {
+    if (result.valid && result.channel == function.channel &&
+        result.frequency_hz == point.frequency_hz && result.level_m_s2 == point.level_m_s2) {
+      flags.insert(flags.end(), result.flags.begin(), result.flags.end());
+    }
   }
-  return signals;
+  flags.insert(flags.end(), function.flags.begin(), function.flags.end());
+  return flags_once(flags);
 }
 
-Json transfer_json(const TransferFunction& function) {
+Json mean_json(const FrequencyPoint& point) {
+  const ExpandedUncertainty magnitude = magnitude_uncertainty(point.mean);
+  const ExpandedUncertainty phase = phase_uncertainty(point.mean);
+  Json json{{"frequency_text_hz", point.frequency_text_hz},
+            {"frequency_hz", json_number(point.frequency_hz)},
+            {"level_m_s2", json_number(point.level_m_s2)},
+            {"magnitude", json_number(point.mean.magnitude)},
+            {"u_magnitude", json_number(magnitude.u)},
+            {"phase_rad", json_number(point.mean.phase_rad)},
+            {"u_phase_rad", json_number(phase.u)},
+            {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
+            {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
+            {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
+            {"repetitions", point.mean.repetitions}};
+  add_expanded(magnitude, phase, json);
+  return json;
+}
+
+Json transfer_json(const Run& run, const TransferFunction& function) {
   Json points = Json::array();
   for (const FrequencyPoint& point : function.points) {
-    points.push_back({{"frequency_text_hz", point.frequency_text_hz},
-                      {"frequency_hz", json_number(point.frequency_hz)},
-                      {"level_m_s2", json_number(point.level_m_s2)},
-                      {"magnitude", json_number(point.mean.magnitude)},
-                      {"u_magnitude", json_number(point.mean.u_magnitude)},
-                      {"phase_rad", json_number(point.mean.phase_rad)},
-                      {"u_phase_rad", json_number(point.mean.u_phase_rad)},
-                      {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
-                      {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
-                      {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
-                      {"repetitions", point.mean.repetitions}});
+    points.push_back(mean_json(point));
+    points.back()["flags"] = flags_json(flags_of(run, function, point));
   }
   Json json{{"channel", function.channel},
             {"unit", function.unit},
@@ -162,6 +175,9 @@ Json point_json(const StepResult& result) {
   if (result.temperature_degc) {
     json["temperature_degc"] = json_number(*result.temperature_degc);
   }
+  if (result.valid) {
+    add_expanded(magnitude_uncertainty(result), phase_uncertainty(result), json);
+  }
   if (result.series) {
     json["sample_rate_hz"] = json_number(result.series->sample_rate_hz);
     json["u_sample_rate_hz"] = json_number(result.series->u_sample_rate_hz);
@@ -194,7 +210,7 @@ Json run_json(const Run& run) {
     json["points"].push_back(point_json(result));
   }
   for (const auto& [channel, function] : run.transfer_functions) {
-    json["transfer"].push_back(transfer_json(function));
+    json["transfer"].push_back(transfer_json(run, function));
   }
   for (const auto& [source, report] : run.clock_reports) {
     json["clock"].push_back(clock_json(report));

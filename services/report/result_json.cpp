@@ -3,12 +3,10 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/uncertainty/coverage.hpp"
 #include "services/output/output_file.hpp"
 #include "services/report/clock_json.hpp"
 #include "services/report/expanded_uncertainty.hpp"
@@ -16,18 +14,13 @@
 #include "services/report/json_number.hpp"
 #include "services/report/result_table.hpp"
 #include "services/report/run_setup_json.hpp"
+#include "services/report/step_json.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-
-Json degrees(double radians) {
-  return json_number(radians * degrees_per_radian);
-}
 
 // "2026-03-01T12:00:00.123456789Z"
 Json utc_text(std::int64_t utc_ns) {
@@ -88,35 +81,9 @@ Json samples_json(const StepResult& result) {
   return samples;
 }
 
-Json signals_json(const StepResult& result) {
-  Json signals = Json::array();
-  for (const ChannelSignal& signal : result.signals) {
-    signals.push_back({{"channel", signal.channel},
-                       {"thd", json_number(signal.thd)},
-                       {"u_thd", json_number(signal.u_thd)},
-                       {"residual_rel", json_number(signal.residual)},
-                       {"residual_over_noise", json_number(signal.over_noise)}});
-  }
-  return signals;
-}
-
 void add_flags(const std::vector<Flag>& flags, Json& json) {
   json["flags"] = sentences_of(flags);
   json["flag_names"] = names_of(flags);
-}
-
-// Beside u_magnitude and u_phase_rad.
-void add_expanded(const ExpandedUncertainty& magnitude, const ExpandedUncertainty& phase,
-                  Json& json) {
-  json["u_phase_deg"] = degrees(phase.u);
-  json["k_magnitude"] = json_number(magnitude.k);
-  json["nu_eff_magnitude"] = json_number(magnitude.nu_eff); // null: infinite
-  json["U_magnitude"] = json_number(magnitude.expanded);
-  json["k_phase"] = json_number(phase.k);
-  json["nu_eff_phase"] = json_number(phase.nu_eff);
-  json["U_phase_rad"] = json_number(phase.expanded);
-  json["U_phase_deg"] = degrees(phase.expanded);
-  json["coverage_probability"] = analysis::two_sigma_probability;
 }
 
 void add_measured_excitation(const RunOutcome& outcome, const StepResult& result, Json& point) {

@@ -11,14 +11,14 @@ constexpr const char* conductor = "conductor";
 
 } // namespace
 
-Expected<RunCommands> RunCommands::open(bus::Participant& participant, const std::string& bench,
-                                        std::string run,
+Expected<RunCommands> RunCommands::open(bus::Participant& participant, bus::Clock& clock,
+                                        const std::string& bench, std::string run,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
   auto reader = participant.reader(bus::topics::command, bench, wake_up);
   if (!reader) {
     return fail(reader.error());
   }
-  return RunCommands(std::move(run), std::move(*reader));
+  return RunCommands(clock, std::move(run), std::move(*reader));
 }
 
 void RunCommands::take() {
@@ -42,10 +42,18 @@ void RunCommands::obey(const wire::Command& command) {
     aborted_by_ = sender;
     break;
   case wire::COMMAND_REPEAT:
-    repeats_.insert(command.step());
+    ask_for(command.step(), sender);
     break;
   default: // of a later contract
     break;
+  }
+}
+
+void RunCommands::ask_for(std::uint32_t step, const std::string& sender) {
+  const auto now = clock_->now();
+  std::erase_if(asked_, [&](const auto& asked) { return now - asked.second > repetition_limit; });
+  if (asked_.insert_or_assign({sender, step}, now).second) {
+    repeats_.insert(step);
   }
 }
 

@@ -19,7 +19,7 @@ Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant
   const std::string bench = measurement.bench().to_string();
   const std::string run = measurement.run().to_string();
   auto messages = RunMessages::open(participant, clock, bench, run, wake_up);
-  auto commands = RunCommands::open(participant, bench, run, wake_up);
+  auto commands = RunCommands::open(participant, clock, bench, run, wake_up);
   if (auto error = first_error(messages, commands)) {
     return fail(*error);
   }

@@ -69,6 +69,54 @@ std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::
   return arguments;
 }
 
+// The one that is commanded; null: it is not the bench's run now.
+const live::Run* run_of(const live::Laboratory& laboratory, const wire::Command& command) {
+  const live::Bench* bench = laboratory.bench(command.bench().to_string());
+  const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  return run != nullptr && run->name == command.run() ? run : nullptr;
+}
+
+// Nothing: the plan has no such step.
+std::optional<std::uint32_t> attempt_of(const live::Run& run, std::uint32_t number) {
+  if (run.plan) {
+    for (const live::Step& step : run.plan->steps) {
+      if (step.step == number) {
+        return step.attempt;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+struct ConductedRun {
+  std::string conductor;
+  std::optional<std::uint32_t> attempt; // of the commanded step; nothing: the plan does not have it
+};
+
+std::optional<ConductedRun> conducted_run(const live::Laboratory& laboratory,
+                                          const wire::Command& command, bus::Clock::Instant now) {
+  const live::Run* run = run_of(laboratory, command);
+  if (run == nullptr || run->is_over() || !run->conductor_heard || run->is_left_alone(now)) {
+    return std::nullopt;
+  }
+  return ConductedRun{.conductor = run->plan ? run->plan->conductor : "",
+                      .attempt = attempt_of(*run, command.step())};
+}
+
+// What the command asked for can be seen.
+bool shows(const live::Run& run, const wire::Command& command, std::uint32_t attempt_before) {
+  switch (command.kind()) {
+  case wire::COMMAND_ABORT:
+    return run.is_over();
+  case wire::COMMAND_PAUSE:
+    return run.is_paused();
+  case wire::COMMAND_CONTINUE:
+    return !run.is_paused();
+  default:
+    return attempt_of(run, command.step()).value_or(0) > std::max(attempt_before, 1U);
+  }
+}
+
 } // namespace
 
 Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
@@ -161,67 +209,67 @@ void Actions::command(const std::string& bench, const httplib::Request& request,
   send(message, word, response);
 }
 
-bool Actions::shows_effect(const wire::Command& command) const {
-  return board_.look([&](const live::Laboratory& laboratory) {
-    const live::Bench* bench = laboratory.bench(command.bench().to_string());
-    const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
-    if (run == nullptr || run->name != command.run()) {
-      return false;
-    }
-    switch (command.kind()) {
-    case wire::COMMAND_ABORT:
-      return run->is_over();
-    case wire::COMMAND_PAUSE:
-      return run->is_paused();
-    case wire::COMMAND_CONTINUE:
-      return !run->is_paused();
-    default:
-      return false; // a step is repeated when the planned ones are done
-    }
+void Actions::send(const wire::Command& command, const std::string& word,
+                   httplib::Response& response) {
+  const auto run = board_.look([&](const live::Laboratory& laboratory) {
+    return conducted_run(laboratory, command, clock_.now());
   });
-}
-
-void Actions::send(wire::Command command, const std::string& word, httplib::Response& response) {
-  const std::string bench_name = command.bench().to_string();
-  const auto conductor =
-      board_.look([&](const live::Laboratory& laboratory) -> std::optional<std::string> {
-        const live::Bench* bench = laboratory.bench(bench_name);
-        const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
-        const bool is_conducted = run != nullptr && run->name == command.run() && !run->is_over() &&
-                                  run->conductor_heard && !run->is_left_alone(clock_.now());
-        return is_conducted ? std::optional(run->plan ? run->plan->conductor : "") : std::nullopt;
-      });
-  if (!conductor) {
+  if (!run) {
     answer_action(false, "", "nobody conducts this run of the bench now", response);
     return;
   }
-  const std::lock_guard lock(mutex_);
-  auto writer = participant_.writer(bus::topics::command, bench_name);
-  if (!writer) {
-    answer_action(false, "", writer.error().message, response);
+  const bool is_repeat = command.kind() == wire::COMMAND_REPEAT;
+  if (is_repeat && !run->attempt) {
+    answer_action(false, run->conductor,
+                  fmt::format("the run's plan has no step {}", command.step()), response);
     return;
+  }
+  switch (repeat_until_effect(command, run->attempt.value_or(0))) {
+  case Effect::shown:
+    answer_action(true, run->conductor, word + ": done", response);
+    return;
+  case Effect::heard:
+    if (is_repeat) {
+      answer_action(true, run->conductor,
+                    fmt::format("the conductor was asked to excite step {} once more; it does so "
+                                "after the planned steps",
+                                command.step()),
+                    response);
+      return;
+    }
+    break;
+  case Effect::none:
+    break;
+  }
+  answer_action(false, run->conductor,
+                fmt::format("{} had no effect within {} s", word, effect_limit.count()), response);
+}
+
+Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
+                                             std::uint32_t attempt_before) {
+  const std::lock_guard lock(mutex_);
+  auto writer = participant_.writer(bus::topics::command, command.bench().to_string());
+  if (!writer) {
+    spdlog::error("{}", writer.error().message);
+    return Effect::none;
   }
   const auto end = clock_.now() + effect_limit;
   bool was_heard = false;
   while (clock_.now() < end) {
-    was_heard = was_heard || writer->matched_readers() > 0;
-    writer->write(command, std::chrono::milliseconds(100));
-    if (!door_.wait_until(clock_.now() + command_interval) || shows_effect(command)) {
+    const auto outcome = writer->write(command, std::chrono::milliseconds(100));
+    was_heard = outcome == bus::WriteOutcome::written && writer->matched_readers() > 0;
+    if (!door_.wait_until(clock_.now() + command_interval)) {
       break;
     }
+    const bool is_shown = board_.look([&](const live::Laboratory& laboratory) {
+      const live::Run* run = run_of(laboratory, command);
+      return run != nullptr && shows(*run, command, attempt_before);
+    });
+    if (is_shown) {
+      return Effect::shown;
+    }
   }
-  if (command.kind() == wire::COMMAND_REPEAT && was_heard) {
-    answer_action(
-        true, *conductor,
-        fmt::format("step {} is excited once more after the planned steps", command.step()),
-        response);
-  } else if (shows_effect(command)) {
-    answer_action(true, *conductor, word + ": done", response);
-  } else {
-    answer_action(false, *conductor,
-                  fmt::format("{} had no effect within {} s", word, effect_limit.count()),
-                  response);
-  }
+  return was_heard ? Effect::heard : Effect::none;
 }
 
 void Actions::list_bench_files(httplib::Response& response) const {
@@ -254,7 +302,8 @@ void Actions::start_run(const httplib::Request& request, httplib::Response& resp
   }
   std::error_code unknown;
   const fs::path logs =
-      (options_.runs_folder.empty() ? fs::temp_directory_path(unknown) : options_.runs_folder);
+      options_.runs_folder.empty() ? fs::temp_directory_path(unknown) : options_.runs_folder;
+  fs::create_directories(logs, unknown); // the first run of all; if it fails, the log file tells
   const fs::path log =
       logs / fmt::format("{}-{}.log", name, time_name(bus::system_clock().utc_now_ns()));
   auto child = ChildProcess::start(

@@ -1,9 +1,11 @@
 // What visitors with the token may do: command the conductor of a run, and start a run.
 //
 // A command is repeated until its effect shows, for `effect_limit` at most; the answer says what
-// came of it. A run is a `dyncal run` of a bench file of one folder, one at a time of a file; what
-// it prints is in a file beside the runs. It is asked to end when the daemon ends. Every request is
-// logged with its outcome. Any thread; one command at a time.
+// came of it. A step that is to be excited once more may have to wait for the planned ones, longer
+// than any visitor: the answer says that the conductor has been asked. A run is a `dyncal run` of a
+// bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
+// It is asked to end when the daemon ends. Every request is logged with its outcome. Any thread;
+// one command at a time.
 #pragma once
 
 #include <filesystem>
@@ -51,8 +53,11 @@ private:
   [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response);
   void command(const std::string& bench, const httplib::Request& request,
                httplib::Response& response);
-  void send(wire::Command command, const std::string& word, httplib::Response& response);
-  [[nodiscard]] bool shows_effect(const wire::Command& command) const;
+  enum class Effect { none, heard, shown };
+
+  void send(const wire::Command& command, const std::string& word, httplib::Response& response);
+  [[nodiscard]] Effect repeat_until_effect(const wire::Command& command,
+                                           std::uint32_t attempt_before);
   void start_run(const httplib::Request& request, httplib::Response& response);
   void list_bench_files(httplib::Response& response) const;
 

@@ -26,6 +26,8 @@ constexpr std::array<std::pair<std::string_view, const char*>, 11> media_types{
      {".pdf", "application/pdf"},
      {".xml", "application/xml"}}};
 
+constexpr std::string_view unfinished_ending = ".part"; // of what is still being written
+
 void add_files(const fs::path& folder, const std::string& prefix, int depth,
                std::vector<RunFile>& files) {
   std::error_code unknown;
@@ -34,6 +36,9 @@ void add_files(const fs::path& folder, const std::string& prefix, int depth,
     const fs::file_status status = entry.symlink_status(unknown);
     if (files.size() >= RunFiles::max_files) {
       return;
+    }
+    if (name.ends_with(unfinished_ending)) {
+      continue;
     }
     if (fs::is_regular_file(status)) {
       files.push_back({name, entry.file_size(unknown), entry.path()});

@@ -58,6 +58,7 @@ struct WebService::Parts {
                       {"samples_missed", std::to_string(tap.missed())},
                       {"visitors", events.listeners()}};
     json["may_act"] = actions.may_act();
+    json["has_guide"] = !options.guide_folder.empty();
   }
   static std::string store_of(const WebOptions& web) {
     return web.store.empty() && web.runs_folder.empty() ? ""

@@ -2,13 +2,11 @@
 // and a program that has died shows.
 #include <csignal>
 #include <fstream>
-#include <functional>
 
 #include <gtest/gtest.h>
-#include <httplib.h>
 
-#include "services/bus/wake_up.hpp"
 #include "tests/system/laboratory.hpp"
+#include "tests/system/web_visitor.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -16,33 +14,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 using namespace std::chrono_literals;
-
-// "page at http://127.0.0.1:PORT/"
-int port_of(const ProgramRun& web) {
-  const std::string log = web.errors();
-  const std::string begin = "page at http://127.0.0.1:";
-  return std::stoi(log.substr(log.find(begin) + begin.size()));
-}
-
-json ask(int port, const std::string& address) {
-  httplib::Client client("127.0.0.1", port);
-  client.set_read_timeout(20s);
-  const auto answer = client.Get(address);
-  return answer ? json::parse(answer->body, nullptr, false) : json();
-}
-
-// The first answer for which it holds, or the last one.
-json ask_until(int port, const std::string& address,
-               const std::function<bool(const json&)>& holds) {
-  const auto end = Clock::now() + patience;
-  bus::WakeUp pacing;
-  json answer = ask(port, address);
-  while (!holds(answer) && Clock::now() < end) {
-    pacing.wait_until(Clock::now() + 50ms);
-    answer = ask(port, address);
-  }
-  return answer;
-}
 
 // The bench file with its files played at four times their speed.
 std::filesystem::path played(const std::filesystem::path& file) {
@@ -55,18 +26,54 @@ std::filesystem::path played(const std::filesystem::path& file) {
   return path;
 }
 
+// These members, the expanded uncertainty, and the flags.
+void expect_equal(const json& expected, const json& shown, std::vector<std::string> keys) {
+  keys.insert(keys.end(),
+              {"k_magnitude", "nu_eff_magnitude", "U_magnitude", "k_phase", "nu_eff_phase",
+               "U_phase_rad", "U_phase_deg", "u_phase_deg", "coverage_probability"});
+  for (const std::string& key : keys) {
+    ASSERT_TRUE(shown.contains(key)) << key;
+    EXPECT_EQ(shown[key], expected[key]) << shown["channel"] << " " << key;
+  }
+  ASSERT_EQ(shown["flags"].size(), expected["flag_names"].size());
+  for (std::size_t i = 0; i < shown["flags"].size(); ++i) {
+    EXPECT_EQ(shown["flags"][i]["name"], expected["flag_names"][i]);
+    EXPECT_EQ(shown["flags"][i]["text"], expected["flags"][i]);
+  }
+}
+
 void expect_points_of(const json& result, const json& run) {
   ASSERT_GT(result["points"].size(), 6U);
   ASSERT_EQ(run["points"].size(), result["points"].size());
   for (std::size_t i = 0; i < result["points"].size(); ++i) {
     const json& point = result["points"][i];
-    for (const char* key :
-         {"channel", "step", "repetition", "frequency_text_hz", "frequency_hz", "level_m_s2",
-          "valid", "magnitude", "u_magnitude", "phase_rad", "u_phase_rad", "unit", "lost"}) {
-      EXPECT_EQ(run["points"][i][key], point[key]) << i << " " << key;
-    }
-    EXPECT_EQ(run["points"][i]["flags"].size(), point["flags"].size());
+    expect_equal(point, run["points"][i],
+                 {"channel", "step", "repetition", "frequency_text_hz", "frequency_hz",
+                  "level_m_s2", "valid", "magnitude", "u_magnitude", "phase_rad", "u_phase_rad",
+                  "unit", "lost"});
   }
+}
+
+void expect_means_of(const json& result, const json& run) {
+  std::size_t count = 0;
+  for (const json& function : run["transfer"]) {
+    for (const json& mean : function["points"]) {
+      ASSERT_LT(count, result["transfer_function"].size());
+      const json& expected = result["transfer_function"][count++];
+      EXPECT_EQ(function["channel"], expected["channel"]);
+      expect_equal(expected, mean,
+                   {"frequency_text_hz", "frequency_hz", "level_m_s2", "magnitude", "u_magnitude",
+                    "phase_rad", "u_phase_rad", "unwrapped_phase_rad", "scatter_magnitude",
+                    "scatter_phase_rad", "repetitions"});
+    }
+  }
+  EXPECT_EQ(count, 9U);
+  EXPECT_EQ(count, result["transfer_function"].size());
+}
+
+void expect_run_of(const json& result, const json& run) {
+  expect_points_of(result, run);
+  expect_means_of(result, run);
 }
 
 TEST(WebPage, TellsOfARunWhatItsResultFileDoesAndOfADeadSourceThatItIsGone) {
@@ -79,30 +86,28 @@ TEST(WebPage, TellsOfARunWhatItsResultFileDoesAndOfADeadSourceThatItIsGone) {
   ProgramRun& early = laboratory.start("dyncal-web", {"--listen", "127.0.0.1:0"}, "cyclonedds");
   ProgramRun& run = laboratory.start(
       "dyncal", {"run", bench, "--run", "R1", "--json", folder / "result.json"}, "fastdds");
-  const json running = ask_until(port_of(early), address, [](const json& answer) {
-    return answer.is_object() && answer.value("state", "") == "running";
-  });
+  const json running = WebVisitor(early).ask_until(
+      address, [](const json& answer) { return answer.value("state", "") == "running"; });
   EXPECT_EQ(running["state"], "running") << running;
   EXPECT_EQ(running["step_count"], 6);
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const json result = read_json(folder / "result.json");
   const auto has_all = [&](const json& answer) {
-    return answer.is_object() && answer.contains("transfer") && !answer["transfer"].empty() &&
+    return answer.contains("transfer") && !answer["transfer"].empty() &&
            answer["points"].size() == result["points"].size();
   };
-  expect_points_of(result, ask_until(port_of(early), address + "/run", has_all));
+  expect_run_of(result, WebVisitor(early).ask_until(address + "/run", has_all));
 
   ProgramRun& late = laboratory.start("dyncal-web", {"--listen", "127.0.0.1:0"}, "fastdds");
-  expect_points_of(result, ask_until(port_of(late), address + "/run", has_all));
-  const json all = ask_until(port_of(late), address,
-                             [](const json& answer) { return answer["sources"].size() == 2; });
+  expect_run_of(result, WebVisitor(late).ask_until(address + "/run", has_all));
+  const json all = WebVisitor(late).ask_until(
+      address, [](const json& answer) { return answer["sources"].size() == 2; });
   EXPECT_EQ(all["sources"].size(), 2U) << all;
 
   sources.send(SIGKILL);
   const auto killed = Clock::now();
-  const json gone = ask_until(port_of(early), address, [](const json& answer) {
-    return answer["worst"]["severity"] == "stale";
-  });
+  const json gone = WebVisitor(early).ask_until(
+      address, [](const json& answer) { return answer["worst"]["severity"] == "stale"; });
   EXPECT_LT(Clock::now() - killed, 3s + 2s) << "a status comes every 500 ms, here on a busy host";
   EXPECT_EQ(gone["worst"]["severity"], "stale") << gone;
 }

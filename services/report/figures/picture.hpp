@@ -1,5 +1,5 @@
-// A picture: what files, reports and the page in the browser draw of one figure. Panels in rows
-// below a title and a legend, with text below them.
+// A picture: what files and reports draw of one figure. Panels in rows below a title and a legend,
+// with text below them.
 //
 // It holds plain numbers, labels with units, and looks; nobody who draws it adds a label, a colour
 // or a unit. Panels of one column stand above each other over one x axis where only the last shows

@@ -5,7 +5,7 @@
 
 import { element, name_element, set_attribute, set_name, set_shown, set_text } from "./element.js";
 import {
-  bytes_text, count_text, duration_text, full, is_number, rounded_by_uncertainty, short_time,
+  count_text, duration_text, full, is_number, rounded_by_uncertainty, short_time,
   with_unit,
 } from "./number_text.js";
 import { href_of } from "./route.js";
@@ -148,6 +148,9 @@ function recording_text(recording) {
   if (!recording) {
     return "off";
   }
-  const size = bytes_text(recording.bytes);
-  return `${recording.state ?? "on"}, ${size}${recording.message ? `: ${recording.message}` : ""}`;
+  const { state, messages_stored, messages_not_stored, message } = recording;
+  const lost = messages_not_stored && messages_not_stored !== "0"
+    ? `, ${count_text(messages_not_stored)} not stored` : "";
+  return `${state ?? "on"}, ${count_text(messages_stored)} messages${lost}` +
+    (message ? `: ${message}` : "");
 }

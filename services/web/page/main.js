@@ -6,7 +6,7 @@
 import { Actions } from "./actions.js";
 import { BenchView } from "./bench_view.js";
 import { Connection } from "./connection.js";
-import { element, set_attribute, set_text } from "./element.js";
+import { element, set_attribute, set_shown, set_text } from "./element.js";
 import { HistoryView } from "./history_view.js";
 import { LaboratoryView } from "./laboratory_view.js";
 import { duration_text, utc_text } from "./number_text.js";
@@ -59,6 +59,9 @@ class Page {
       this.links.set(view, link);
       list.append(element("li", {}, link));
     }
+    this.guide = element("li", {}, element("a", { href: "/guide/" }, "Guide"));
+    set_shown(this.guide, false); // until the daemon says that it has one
+    list.append(this.guide);
     document.getElementById("views").append(list);
   }
 
@@ -97,6 +100,7 @@ class Page {
     if (name === "laboratory") {
       this.laboratory = data;
       this.actions.set_allowed(data.may_act === true);
+      set_shown(this.guide, data.has_guide === true);
       this.show_foot();
     }
     this.view.receive(name, data);

@@ -8,7 +8,6 @@ import { KeyedList } from "./keyed_list.js";
 import {
   count_text, full, is_number, rounded_by_uncertainty, significant, UNKNOWN,
 } from "./number_text.js";
-import { half_bar } from "./run_data.js";
 import { unit_text } from "./unit_text.js";
 
 const number = (text, title = null) => ({ text, title, number: true });
@@ -88,9 +87,9 @@ class MeanRow {
     const [level, magnitude, u_magnitude, phase, u_phase, k, n] = this.cells;
     set_text(this.frequency, p.frequency_text_hz);
     set_text(level, significant(p.level_m_s2));
-    show_pair([magnitude, u_magnitude], p.magnitude, half_bar(p, "magnitude", "U"), p.unit);
-    show_pair([phase, u_phase], p.phase_rad, half_bar(p, "phase", "U"), "rad");
-    set_text(k, is_number(p.k_magnitude) ? significant(p.k_magnitude, 3) : "2, assumed");
+    show_pair([magnitude, u_magnitude], p.magnitude, p.U_magnitude, p.unit);
+    show_pair([phase, u_phase], p.phase_rad, p.U_phase_rad, "rad");
+    set_text(k, significant(p.k_magnitude, 3));
     k.title = `|H|: ${full(p.k_magnitude)}, arg H: ${full(p.k_phase)}`;
     set_text(n, count_text(p.repetitions));
     show_flags(this.flags, p.flags);
@@ -140,12 +139,13 @@ function valid_text({ valid, problem, provisional }) {
 /** The whole table as CSV, every digit. */
 export function table_csv(points, unit) {
   const keys = ["channel", "step", "attempt", "repetition", "frequency_text_hz", "level_m_s2",
-                "valid", "magnitude", "u_magnitude", "phase_rad", "u_phase_rad", "lost"];
+                "valid", "magnitude", "u_magnitude", "U_magnitude", "phase_rad", "u_phase_rad",
+                "U_phase_rad", "lost"];
   const cell = (value) => (is_number(value) || typeof value === "boolean" ? String(value)
     : `"${String(value ?? "").replace(/"/g, '""')}"`);
   const lines = points.map((p) => [...keys.map((key) => cell(p[key])),
                                    cell((p.flags ?? []).map(({ name }) => name).join(" "))]);
   return `# magnitude in ${String(unit || "a unit that is not known").replace(/\s/g, " ")}; phase: ` +
-    "lead, rad; u: standard uncertainty\n" +
+    "lead, rad; u: standard uncertainty; U: expanded, 95.45 %\n" +
     [[...keys, "flags"], ...lines].map((line) => line.join(",")).join("\n") + "\n";
 }

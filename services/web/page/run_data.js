@@ -49,14 +49,12 @@ function by_frequency(a, b) {
   return a.frequency_hz - b.frequency_hz || a.level_m_s2 - b.level_m_s2;
 }
 
-/** Half the length of an error bar; U without a k of its own is 2 u. */
+/** Half the length of an error bar. */
 export function half_bar(point, quantity, bars) {
   const u = point[quantity === "magnitude" ? "u_magnitude" : "u_phase_rad"];
   const expanded = point[quantity === "magnitude" ? "U_magnitude" : "U_phase_rad"];
-  if (bars === "none" || !is_number(u)) {
-    return 0;
-  }
-  return bars === "u" ? u : (is_number(expanded) ? expanded : 2 * u);
+  const half = bars === "u" ? u : expanded;
+  return bars !== "none" && is_number(half) ? half : 0;
 }
 
 /** The run's means, or while it lasts plain means of what there is; is_final tells which. */
@@ -155,8 +153,7 @@ function mean_name(means, bars) {
   if (!means.is_final) {
     return "mean so far";
   }
-  const has_k = means.points.some((p) => is_number(p.U_magnitude) || is_number(p.U_phase_rad));
-  return bars === "none" ? "mean" : `mean ± ${bars === "U" && !has_k ? "2 u" : bars}`;
+  return bars === "none" ? "mean" : `mean ± ${bars}`;
 }
 
 /** quantity: "magnitude" or "phase". */

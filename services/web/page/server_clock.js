@@ -5,7 +5,7 @@
 
 import { duration_text, is_number } from "./number_text.js";
 
-export const SILENT_AFTER_MS = 3000;
+export const SILENT_AFTER_MS = 2500;
 
 export class ServerClock {
   constructor() {

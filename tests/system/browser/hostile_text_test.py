@@ -47,7 +47,9 @@ class HostileText(PageCase):
             self.laboratory.events.append({"utc_ms": now, "bench": text, "severity": text,
                                            "text": text})
         bench = self.laboratory.benches[IMAGE]
-        bench["recording"] = {"state": IMAGE, "file": IMAGE, "bytes": 1, "message": IMAGE}
+        bench["recording"] = {"state": IMAGE, "file": IMAGE,
+                              "messages_stored": IMAGE, "messages_not_stored": IMAGE,
+                              "message": IMAGE}
         result = {**played_state.point(1), "channel": f"dau/{IMAGE}", "unit": IMAGE,
                   "frequency_text_hz": IMAGE,
                   "flags": [{"name": t, "text": t, "meaning": t} for t in HOSTILE]}
@@ -63,7 +65,7 @@ class HostileText(PageCase):
                                     "[...e.attributes].some(a => a.name.startsWith('on')))"
                                     ".map(e => e.outerHTML)"), [])
         hrefs = page.value("[...document.querySelectorAll('a')].map(a => a.getAttribute('href'))")
-        self.assertEqual([h for h in hrefs if not h.startswith(("#/", "/files/"))], [])
+        self.assertEqual([h for h in hrefs if not h.startswith(("#/", "/files/", "/guide/"))], [])
         self.assertNotRegex(page.value("document.body.textContent"), "[\u202a-\u202e\u2066-\u2069]")
         self.assertLessEqual(page.value("document.documentElement.scrollWidth"),
                              page.value("window.innerWidth"))

@@ -103,7 +103,8 @@ class Laboratory:
             "software": "dyncal played", "daemon": {"host": "here", "vendor": "fastdds",
                                                     "version": "1", "samples_missed": 0,
                                                     "visitors": self.listeners},
-            "may_act": self.may_act, "benches": [self.tile(name) for name in self.benches],
+            "may_act": self.may_act, "has_guide": True,
+            "benches": [self.tile(name) for name in self.benches],
             "programs": [{"last_message_utc_ms": now, **one} for one in self.programs],
             "events": self.events})
 
@@ -363,7 +364,8 @@ def example():
         lab.measure("gyro", step)
     lab.last_message_ms["gyro"] = time.time() * 1000 - 93000
     lab.benches["acc-1"]["recording"] = {"state": "recording", "file": "acc-1.mcap",
-                                         "bytes": 81234567, "message": ""}
+                                         "messages_stored": "81234",
+                                         "messages_not_stored": "0", "message": ""}
     for bench, host in (("acc-1", "lab-1"), ("acc-2", "lab-2")):
         for kind in ("dau", "acs", "analysis"):
             lab.programs.append({

@@ -31,7 +31,7 @@ class Views(PageCase):
         self.assertEqual(self.field(page, "acc-1", "excitation"), "40 Hz, 10 m/s², steady")
         self.assertEqual(self.field(page, "acc-1", "time_left"), "5 min 24 s")
         self.assertEqual(self.field(page, "acc-1", "results"), "24, 0 invalid, 1 flagged")
-        self.assertEqual(self.field(page, "acc-1", "recording"), "recording, 81.2 MB")
+        self.assertEqual(self.field(page, "acc-1", "recording"), "recording, 81\u202f234 messages")
         self.assertEqual(self.field(page, "acc-2", "worst"), "dau: 12 samples lost")
         self.assertRegex(self.field(page, "gyro", "age"), "silent for 1 min 3\\d s")
         result = self.laboratory.benches["acc-1"]["last_result"]

@@ -57,6 +57,30 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
   EXPECT_EQ(programs[0]["clock_offset_s"], 0.25);
 }
 
+TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
+  bus::SteppedClock clock;
+  Laboratory laboratory(clock);
+  HeardProgram program;
+  program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
+  laboratory.set_programs({program}, {});
+  const auto hear = [&](wire::MeasurementState state) {
+    laboratory.take(measurement_of("acc-1", "r1", state));
+  };
+  hear(wire::MEASUREMENT_RUNNING);
+  laboratory.take(analysis_of("acc-1", "r1", wire::ARM_ARMED));
+  const auto health = [&] { return laboratory_json(laboratory)["programs"][0]["health"]; };
+  clock.advance(silence_limit);
+  hear(wire::MEASUREMENT_RUNNING);
+  EXPECT_EQ(health(), "ok");
+  clock.advance(std::chrono::milliseconds(1));
+  EXPECT_EQ(health(), "silent");
+  const Json worst = laboratory_json(laboratory)["benches"][0]["worst"];
+  EXPECT_EQ(worst["severity"], "stale");
+  EXPECT_EQ(worst["what"], "dyncal-analysis:1@lab-1 has not been heard for 2 s");
+  hear(wire::MEASUREMENT_DONE);
+  EXPECT_EQ(health(), "ok") << "it reports while it serves a run";
+}
+
 TEST(LaboratoryJson, LeavesHostileTextsTextAndReplacesWhatIsNotUtf8) {
   bus::SteppedClock clock;
   Laboratory laboratory(clock);

@@ -18,6 +18,7 @@ protected:
     fs::create_directories(run / "figures");
     std::ofstream(run / "result.json") << "{}";
     std::ofstream(run / "figures" / "magnitude.svg") << "<svg/>";
+    std::ofstream(run / "report.pdf.part") << "half of";
     std::ofstream(folder_.path() / "secret") << "secret";
     fs::create_symlink(folder_.path() / "secret", run / "link.txt");
     fs::create_directory_symlink(folder_.path(), run / "outside");
@@ -26,7 +27,7 @@ protected:
   RunFiles files_{folder_.path() / "runs"};
 };
 
-TEST_F(RunFilesTest, ListsTheFilesOfARunAndNoLinks) {
+TEST_F(RunFilesTest, ListsTheFilesOfARunButNoLinksAndNoneThatIsStillWritten) {
   const auto files = files_.files_of("acc-1", "r1");
   ASSERT_EQ(files.size(), 2U);
   EXPECT_EQ(files[0].name, "figures/magnitude.svg");

@@ -1,0 +1,156 @@
+// What a visitor with the token does to a real bench: starts a run, has a step excited once more,
+// pauses, goes on and aborts; then reads the run's files and the history of its sensor.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/live_bench.hpp"
+#include "tests/system/test_folder.hpp"
+#include "tests/system/web_visitor.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* token = "a secret of the laboratory";
+const std::string address = "/api/bench/live";
+
+LiveBenchSettings short_run() {
+  LiveBenchSettings settings;
+  settings.excitation = R"(frequencies_hz = ["20", "40", "80"]
+level = 10.0
+repetitions = 2
+settling_s = 0.5
+duration_s = 1.0
+)";
+  return settings;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class WebActions : public testing::Test {
+protected:
+  WebActions() {
+    std::ofstream(folder_ / "token") << token << '\n';
+    fs::permissions(folder_ / "token", fs::perms::owner_read);
+    web_ = &services_.start("dyncal-web",
+                            {"--listen", "127.0.0.1:0", "--token-file", folder_ / "token",
+                             "--benches", folder_, "--runs", folder_ / "runs"},
+                            "fastdds");
+    visitor_.emplace(*web_, token);
+  }
+  json command(const std::string& word, const std::string& run, int step = 0) {
+    json body{{"command", word}, {"run", run}};
+    if (step > 0) {
+      body["step"] = step;
+    }
+    return visitor_->post(address + "/command", body);
+  }
+  json bench_until(const WebVisitor::Holds& holds) { return visitor_->ask_until(address, holds); }
+  // Its name, once `steps` steps of it are done.
+  std::string started_run(int steps) {
+    const json started = visitor_->post("/api/run", {{"file", "bench.toml"}});
+    if (started["status"] != 200) {
+      ADD_FAILURE() << started;
+      return "";
+    }
+    const json running = bench_until([&](const json& bench) {
+      return bench["state"] == "running" && bench["steps_done"].is_number() &&
+             bench["steps_done"] >= steps;
+    });
+    EXPECT_EQ(running["state"], "running") << running;
+    return running["run"].is_string() ? running["run"].get<std::string>() : "";
+  }
+
+  fs::path folder_ = fresh_folder_of_this_test();
+  LiveBench bench_{folder_, short_run()};
+  Laboratory services_{folder_};
+  ProgramRun* web_ = nullptr;
+  std::optional<WebVisitor> visitor_;
+};
+
+TEST_F(WebActions, ConductARun) {
+  const std::string run = started_run(1);
+  ASSERT_NE(run, "");
+  const json second = visitor_->post("/api/run", {{"file", "bench.toml"}});
+  EXPECT_EQ(second["status"], 409);
+  EXPECT_THAT(second["message"], HasSubstr("under way"));
+
+  const json asked = command("repeat", run, 1);
+  EXPECT_EQ(asked["status"], 200) << asked;
+  EXPECT_THAT(asked["message"], HasSubstr("asked to excite step 1 once more"));
+  const json unknown = command("repeat", run, 99);
+  EXPECT_EQ(unknown["status"], 409);
+  EXPECT_THAT(unknown["message"], HasSubstr("no step 99"));
+  EXPECT_EQ(command("pause", "another run")["status"], 409);
+
+  EXPECT_EQ(command("pause", run)["message"], "pause: done");
+  const json paused = visitor_->ask(address);
+  EXPECT_EQ(paused["state"], "paused") << paused;
+  EXPECT_THAT(paused["message"], HasSubstr("dyncal-web"));
+  EXPECT_EQ(command("continue", run)["message"], "continue: done");
+
+  const json done = bench_until([](const json& bench) { return bench["state"] == "done"; });
+  ASSERT_EQ(done["state"], "done") << done;
+  const json all = visitor_->ask_until(address + "/run", [](const json& answer) {
+    return answer.contains("transfer") && !answer["transfer"].empty();
+  });
+  std::size_t of_first_step = 0;
+  for (const json& point : all["points"]) {
+    if (point["step"] == 1) {
+      ++of_first_step;
+      EXPECT_EQ(point["attempt"], 2) << "asked for once, excited once more";
+    }
+  }
+  EXPECT_GE(of_first_step, 3U);
+
+  const fs::path kept = folder_ / "runs" / "live" / run;
+  std::size_t compared = 0;
+  const json listed = visitor_->ask_until(address + "/run", [](const json& answer) {
+    return std::any_of(answer["files"].begin(), answer["files"].end(),
+                       [](const json& file) { return file["name"] == "result.json"; });
+  });
+  for (const json& file : listed["files"]) {
+    const auto name = file["name"].get<std::string>();
+    EXPECT_FALSE(name.ends_with(".part")) << name;
+    if (name == "result.json" || name == "bench.toml") {
+      EXPECT_EQ(visitor_->text(file["href"]), text_of(kept / name)) << name;
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 2U) << listed["files"];
+
+  const json sensors = visitor_->ask_until(
+      "/api/history?sensor=", [](const json& history) { return history["sensors"].size() >= 1; });
+  ASSERT_GE(sensors["sensors"].size(), 1U) << sensors;
+  const json history = visitor_->ask("/api/history?sensor=" +
+                                     httplib::detail::encode_query_param(sensors["sensors"][0]));
+  ASSERT_EQ(history["runs"].size(), 3U) << "one for every channel with a result: " << history;
+  for (const json& calibration : history["runs"]) {
+    EXPECT_EQ(calibration["run"], run);
+    EXPECT_EQ(calibration["points"].size(), 3U);
+  }
+}
+
+TEST_F(WebActions, AbortARunWhichSwitchesTheOutputOff) {
+  const std::string run = started_run(0);
+  ASSERT_NE(run, "");
+  EXPECT_TRUE(bench_.wait_for_output("ON"));
+  const json aborted = command("abort", run);
+  EXPECT_EQ(aborted["message"], "abort: done") << aborted;
+  EXPECT_TRUE(bench_.wait_for_output("OFF"));
+  EXPECT_EQ(visitor_->ask(address)["state"], "aborted");
+  EXPECT_EQ(command("abort", run)["status"], 409) << "nobody conducts it any more";
+  EXPECT_THAT(web_->errors(), HasSubstr("/api/bench/live/command of 127.0.0.1: 200"));
+  EXPECT_THAT(web_->errors(), HasSubstr("/api/bench/live/command of 127.0.0.1: 409"));
+}
+
+} // namespace
+} // namespace dyncal::tests
