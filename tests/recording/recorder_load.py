@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Four benches publish 100 MB/s in blocks of 64 kB over DDS, the recorder keeps them, and an analysis
-evaluates a demo beside it: is every block in the recordings?
+"""Four benches publish 100 MB/s in blocks of 64 kB over DDS, the recorder keeps them, and an
+analysis evaluates a demo beside it: is every block in the recordings?
 
 recorder_load.py PROGRAMS PUBLISHER FOLDER [--mb-per-s 100] [--seconds 20] [--dds NAME]
                  [--demo-speed 1]
 
-By hand: it needs two quiet cores, and a disk that takes so much. Prints rates, the processor time of
-each, and what was not stored or is missing; status 1 if that is not nothing.
+By hand: it needs two quiet cores, and a disk that takes so much. Prints rates, the processor time
+of each, and what was not stored or is missing; status 1 if that is not nothing.
 """
 
 import argparse
