@@ -1,6 +1,6 @@
 #include "services/bench/adc_file_writer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/output/output_file.hpp"

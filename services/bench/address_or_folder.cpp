@@ -1,6 +1,6 @@
 #include "services/bench/address_or_folder.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/bench_name.hpp"
 #include "services/bench/corrections_table.hpp"
@@ -14,6 +14,7 @@
 #include "services/bench/method_table.hpp"
 #include "services/bench/source_table.hpp"
 #include "services/bench/toml_table.hpp"
+#include "services/bench/toml_text.hpp"
 #include "services/contract/digest.hpp"
 
 namespace dyncal::services {
@@ -124,13 +125,11 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
                                      NamedFiles::Place place) {
   std::string problem;
   BenchFile file;
-  try {
-    const toml::table parsed = toml::parse(text, path.string());
-    file = read_tables(parsed, path, place, problem);
-  } catch (const toml::parse_error& error) {
-    problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
-                          error.description());
+  const auto parsed = parse_toml(text, path);
+  if (!parsed) {
+    return fail(parsed.error());
   }
+  file = read_tables(*parsed, path, place, problem);
   if (!problem.empty()) {
     return fail(ErrorCode::bad_file, problem);
   }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/file_source.hpp"
 

@@ -1,6 +1,6 @@
 #include "services/bench/corrections_table.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/dso_delay_file.hpp"
 #include "services/bench/reference_file.hpp"

@@ -1,6 +1,6 @@
 #include "services/bench/file_source.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 

@@ -1,6 +1,6 @@
 #include "services/bench/source_table.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/bench_name.hpp"
 #include "services/bench/can_source.hpp"

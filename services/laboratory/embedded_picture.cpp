@@ -5,7 +5,7 @@
 #include <cctype>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openssl/evp.h>
 
 #include "services/report/stored_result.hpp"

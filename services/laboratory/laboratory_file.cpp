@@ -1,8 +1,8 @@
 #include "services/laboratory/laboratory_file.hpp"
 
-#include <fmt/format.h>
-#include <toml++/toml.h>
+#include <fmt/core.h>
 
+#include "services/bench/toml_text.hpp"
 #include "services/report/stored_result.hpp"
 
 namespace dyncal::services {
@@ -94,15 +94,12 @@ ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& p
 
 Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
                                                const std::filesystem::path& path) {
-  std::string problem;
-  ReadTables read;
-  try {
-    const toml::table parsed = toml::parse(text, path.string());
-    read = read_tables(parsed, path, problem);
-  } catch (const toml::parse_error& error) {
-    problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
-                          error.description());
+  const auto parsed = parse_toml(text, path);
+  if (!parsed) {
+    return fail(parsed.error());
   }
+  std::string problem;
+  ReadTables read = read_tables(*parsed, path, problem);
   if (!problem.empty()) {
     return fail(ErrorCode::bad_file, problem);
   }

@@ -1,8 +1,8 @@
 #include "services/laboratory/sensor_file.hpp"
 
-#include <fmt/format.h>
-#include <toml++/toml.h>
+#include <fmt/core.h>
 
+#include "services/bench/toml_text.hpp"
 #include "services/report/stored_result.hpp"
 
 namespace dyncal::services {
@@ -52,15 +52,12 @@ SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& p
 } // namespace
 
 Expected<SensorFile> parse_sensor_file(std::string_view text, const std::filesystem::path& path) {
-  std::string problem;
-  SensorFile file;
-  try {
-    const toml::table parsed = toml::parse(text, path.string());
-    file = read_tables(parsed, path, problem);
-  } catch (const toml::parse_error& error) {
-    problem = fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
-                          error.description());
+  const auto parsed = parse_toml(text, path);
+  if (!parsed) {
+    return fail(parsed.error());
   }
+  std::string problem;
+  SensorFile file = read_tables(*parsed, path, problem);
   if (!problem.empty()) {
     return fail(ErrorCode::bad_file, problem);
   }
