@@ -1,7 +1,7 @@
 // dyncal-analysis: computes transfer functions from the samples that sources publish, and publishes
 // the results.
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "services/analysis/analysis_service.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/session_number.hpp"

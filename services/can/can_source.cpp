@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "drivers/can/bus/log_source.hpp"
 #include "drivers/can/bus/socketcan_source.hpp"

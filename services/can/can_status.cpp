@@ -1,6 +1,6 @@
 #include "services/can/can_status.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services::can {
 

@@ -1,6 +1,6 @@
 #include "services/certificate/certificate_file.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/certificate/dcc.hpp"
 #include "services/certificate/schema.hpp"

@@ -1,6 +1,6 @@
 #include "services/certificate/dcc.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 

@@ -1,6 +1,6 @@
 #include "services/certificate/schema.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <libxml/parser.h>
 #include <libxml/xmlschemas.h>
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <libxml/tree.h>
 #include <openssl/err.h>
 #include <openssl/x509v3.h>

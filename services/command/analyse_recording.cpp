@@ -1,6 +1,6 @@
 #include "services/command/analyse_recording.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "services/command/run_command.hpp"

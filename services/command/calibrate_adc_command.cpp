@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "analysis/instrument/adc_comparison.hpp"
 #include "drivers/utc_clock.hpp"

@@ -1,6 +1,6 @@
 #include "services/command/certify_command.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/certificate/certificate_file.hpp"
 #include "services/program/program.hpp"

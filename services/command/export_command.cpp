@@ -1,6 +1,6 @@
 #include "services/command/export_command.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "services/command/share_line.hpp"

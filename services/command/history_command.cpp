@@ -4,7 +4,7 @@
 #include <ctime>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/contract/unit.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
 #include "services/command/run_command.hpp"

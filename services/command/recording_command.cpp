@@ -4,7 +4,7 @@
 #include <map>
 
 #include <fmt/chrono.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/program/program.hpp"
 #include "services/recording/recording_reader.hpp"

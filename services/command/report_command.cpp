@@ -1,6 +1,6 @@
 #include "services/command/report_command.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/document/pdf.hpp"
 #include "services/document/report_document.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <unistd.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 namespace {

@@ -1,6 +1,6 @@
 #include "services/command/store_command.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/program/program.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "idl/dyncal.h"
 #include "services/contract/topics.hpp"

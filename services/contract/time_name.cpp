@@ -5,7 +5,7 @@
 #include <ctime>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace dyncal::services {

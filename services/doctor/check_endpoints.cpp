@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/topics.hpp"
 #include "services/doctor/checks.hpp"

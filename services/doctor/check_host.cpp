@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bus/qos_profiles.hpp"
 #include "services/doctor/checks.hpp"

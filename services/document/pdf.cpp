@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/output/output_file.hpp"
 #include "services/program/child_process.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/unit.hpp"
 #include "services/evaluation/record/channel_level.hpp"

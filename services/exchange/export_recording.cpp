@@ -1,6 +1,6 @@
 #include "services/exchange/export_recording.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/exchange/exported_runs.hpp"
 #include "services/exchange/hdf5_export.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <tuple>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/exchange/hdf5_samples.hpp"
 #include "services/exchange/message_digest.hpp"

@@ -7,7 +7,7 @@
 
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/exchange/hdf5_columns.hpp"
 #include "services/exchange/hdf5_reading.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/exchange/row_formats.hpp"
 #include "services/output/output_stream.hpp"

@@ -2,7 +2,7 @@
 #include <bit>
 #include <cstring>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/exchange/row_formats.hpp"
 #include "services/exchange/zip_file.hpp"

@@ -1,6 +1,6 @@
 #include "services/exchange/opened_recording.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
 #include "services/exchange/hdf5_import.hpp"

@@ -6,7 +6,7 @@
 #include <fcntl.h>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 namespace {

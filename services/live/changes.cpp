@@ -1,6 +1,6 @@
 #include "services/live/changes.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services::live {
 

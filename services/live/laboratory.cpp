@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bus/names.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"

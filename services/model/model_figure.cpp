@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/report/figures/model_residuals.hpp"
 #include "services/report/rounding.hpp"

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <fstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <mutex>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/dist_sink.h>
 #include <spdlog/spdlog.h>

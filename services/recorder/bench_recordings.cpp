@@ -1,6 +1,6 @@
 #include "services/recorder/bench_recordings.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "services/contract/time_name.hpp"

@@ -1,6 +1,6 @@
 #include "services/recording/chunk_codec.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #ifdef DYNCAL_HAVE_ZSTD
 #include <zstd.h>

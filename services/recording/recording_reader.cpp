@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/recording/chunk_codec.hpp"
 #include "services/recording/scan.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/recording/chunk_codec.hpp"
 #include "services/recording/text_crc.hpp"

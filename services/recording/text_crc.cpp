@@ -1,6 +1,6 @@
 #include "services/recording/text_crc.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::recording {
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <thread>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "drivers/tss/series.hpp"
 #include "services/dso/series_channels.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/output/output_file.hpp"

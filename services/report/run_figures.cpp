@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/unit.hpp"
 #include "services/report/expanded_uncertainty.hpp"

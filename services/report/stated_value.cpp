@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/evaluation_method.hpp"
 #include "services/report/rounding.hpp"

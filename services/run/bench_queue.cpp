@@ -1,6 +1,6 @@
 #include "services/run/bench_queue.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/topics.hpp"
 

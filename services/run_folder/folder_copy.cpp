@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "drivers/link/file_descriptor.hpp"
 #include "services/bench/named_files.hpp"

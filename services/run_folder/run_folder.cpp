@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
 #include "services/report/run_figures.hpp"

@@ -1,6 +1,6 @@
 #include "services/store/migrations.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services {
 namespace {

@@ -1,6 +1,6 @@
 #include "services/store/database.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #ifdef DYNCAL_HAVE_PQXX
 #include <array>

@@ -4,7 +4,7 @@
 #include <array>
 #include <ctime>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/store/migrations.hpp"
 

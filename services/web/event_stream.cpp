@@ -1,6 +1,6 @@
 #include "services/web/event_stream.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace dyncal::services::web {
 namespace {

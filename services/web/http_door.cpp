@@ -4,7 +4,7 @@
 #include <cstring>
 #include <exception>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/bus/bus.hpp"
 #include "tests/dds_domain.hpp"

@@ -4,7 +4,7 @@
 // the kernel's stamps with and without correction of the frame's duration ("stamp", "raw").
 #include <fstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 // with and without correction of the frame's duration.
 #include <thread>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

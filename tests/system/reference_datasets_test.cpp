@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "tests/system/laboratory.hpp"

@@ -1,6 +1,6 @@
 #include "services/evaluation/method/selected_channels.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/digest.hpp"
 #include "services/contract/unit.hpp"

@@ -6,7 +6,7 @@
 #include <complex>
 #include <map>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "analysis/method/series_stamping.hpp"
 #include "analysis/uncertainty/found_resolution.hpp"

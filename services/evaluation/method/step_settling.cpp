@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/step/settling.hpp"

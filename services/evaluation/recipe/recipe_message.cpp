@@ -1,6 +1,6 @@
 #include "services/evaluation/recipe/recipe_message.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "services/contract/evaluation_method_message.hpp"
 

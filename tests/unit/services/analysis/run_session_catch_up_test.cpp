@@ -1,6 +1,6 @@
 // What a run at the analysis service makes of samples that had to be asked for. No real time
 // passes.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include "tests/unit/services/analysis/played_session.hpp"
