@@ -248,6 +248,7 @@ void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {
   }
   outcome.began_utc_ns = static_cast<std::int64_t>(index.began);
   outcome.ended_utc_ns = static_cast<std::int64_t>(index.ended);
+  outcome.pauses = index.pauses;
   if (index.newest.state() == wire::MEASUREMENT_ABORTED) {
     outcome.interrupted = index.newest.message() == interrupted_by_user;
     outcome.problem = outcome.interrupted ? "" : index.newest.message();

@@ -69,8 +69,20 @@ private:
     if (state == wire::MEASUREMENT_RUNNING && run.began == 0) {
       run.began = message.message.log_time;
     }
+    take_pause(measurement, static_cast<std::int64_t>(message.message.log_time), run);
     if ((state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED) && run.ended == 0) {
       run.ended = message.message.log_time;
+    }
+  }
+  static void take_pause(const wire::Measurement& measurement, std::int64_t time_utc_ns,
+                         RecordedRunIndex& run) {
+    const bool pauses =
+        measurement.state() == wire::MEASUREMENT_RUNNING && !measurement.message().empty();
+    const bool paused_before = !run.pauses.empty() && run.pauses.back().ended_utc_ns == 0;
+    if (pauses && !paused_before) {
+      run.pauses.push_back({time_utc_ns, 0, measurement.message()});
+    } else if (!pauses && paused_before) {
+      run.pauses.back().ended_utc_ns = time_utc_ns;
     }
   }
   void take(const wire::SourceDescription& description,

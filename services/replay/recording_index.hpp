@@ -19,6 +19,7 @@
 #include "idl/dyncal.h"
 #include "services/error.hpp"
 #include "services/evaluation/result/clock_report.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
 #include "services/recording/recording_reader.hpp"
 
 namespace dyncal::services {
@@ -57,6 +58,7 @@ struct RecordedRunIndex {
   std::optional<wire::ServiceStatus> analysis;   // of the live run, the newest
   std::optional<BlockPosition> clock_end;        // of its clock report
   std::uint64_t live_results = 0;
+  std::vector<RunPause> pauses; // while it ran, the conductor gave a reason why it waited
   recording::ScanReport report; // of the file
 };
 

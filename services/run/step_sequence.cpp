@@ -178,8 +178,8 @@ Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
     return {};
   }
   excitation_->end();
-  begin_pause(now.reason.message);
-  bool waits = false; // for something that is away, since then
+  begin_pause(waiting_phase(now)); // as others are told, so that a recording holds it
+  bool waits = false;              // for something that is away, since then
   Instant since;
   while (now.kind != Kind::well && now.kind != Kind::over && !stop.stop_requested()) {
     if (now.kind == Kind::waits && !waits) {

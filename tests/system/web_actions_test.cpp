@@ -76,6 +76,21 @@ protected:
   std::optional<WebVisitor> visitor_;
 };
 
+// From the recording, with the pause and the step that was excited twice.
+void expect_same_again(const fs::path& run_folder) {
+  const fs::path again = run_folder.parent_path() / "again.json";
+  ProgramRun analyse("dyncal", {"analyse", run_folder, "--json", again}, run_folder.parent_path());
+  ASSERT_EQ(analyse.wait(patience), 0) << analyse.errors();
+  const json live = read_json(run_folder / "result.json");
+  const json repeated = read_json(again);
+  EXPECT_EQ(repeated["points"], live["points"]);
+  EXPECT_EQ(repeated["transfer_function"], live["transfer_function"]);
+  ASSERT_EQ(live["pauses"].size(), 1U);
+  ASSERT_EQ(repeated["pauses"].size(), 1U);
+  EXPECT_EQ(repeated["pauses"][0]["reason"], live["pauses"][0]["reason"]);
+  EXPECT_NE(repeated["pauses"][0]["ended_utc"], nullptr);
+}
+
 TEST_F(WebActions, ConductARun) {
   const std::string run = started_run(1);
   ASSERT_NE(run, "");
@@ -126,6 +141,8 @@ TEST_F(WebActions, ConductARun) {
     }
   }
   EXPECT_EQ(compared, 2U) << listed["files"];
+
+  expect_same_again(kept);
 
   const json sensors = visitor_->ask_until(
       "/api/history?sensor=", [](const json& history) { return history["sensors"].size() >= 1; });
