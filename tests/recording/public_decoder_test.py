@@ -1,7 +1,9 @@
-"""A public decoder reads every topic of a recorded demo: values equal to the last bit.
+"""Public decoders read every topic of a recorded demo: values equal to the last bit.
 
-public_decoder_test.py PROGRAMS PUBLISHER FOLDER; needs node and, from npm or in DYNCAL_NPM_FOLDER,
-@mcap/core, @foxglove/omgidl-parser and @foxglove/omgidl-serialization; else it is skipped.
+public_decoder_test.py PROGRAMS PUBLISHER FOLDER. One needs node and, from npm or in
+DYNCAL_NPM_FOLDER, @mcap/core, @foxglove/omgidl-parser and @foxglove/omgidl-serialization; the other
+mcap and rosbags from PyPI, or in the interpreter of DYNCAL_MCAP_PYTHON. One that cannot be had is
+named; the test is skipped where there is none.
 """
 
 import json
@@ -14,12 +16,14 @@ import sys
 import time
 import unittest
 
+import public_reader
+
 PATIENCE_S = 300
 PACKAGES = ["@mcap/core", "@foxglove/omgidl-parser", "@foxglove/omgidl-serialization"]
-DECODER = pathlib.Path(__file__).resolve().with_name("public_decoder.js")
+HERE = pathlib.Path(__file__).resolve().parent
 
 
-def library(folder):
+def npm_library(folder):
     """A folder with the packages; None where they cannot be had."""
     given = pathlib.Path(os.environ.get("DYNCAL_NPM_FOLDER", folder / "npm"))
     if shutil.which("node") is None:
@@ -40,44 +44,59 @@ def library(folder):
     return given if (given / "node_modules" / PACKAGES[0]).is_dir() else None
 
 
+def decoders(folder):
+    """Command and working folder of each decoder that can be had."""
+    found = []
+    npm = npm_library(folder)
+    if npm is not None:
+        found.append((["node", str(HERE / "public_decoder.js")], npm))
+    else:
+        print("SKIPPED: no node, or @mcap/core and @foxglove/omgidl-* cannot be had")
+    python = public_reader.interpreter(folder, ("mcap", "rosbags"))
+    if python is not None:
+        found.append(([python, str(HERE / "public_decoder.py")], folder))
+    else:
+        print("SKIPPED: mcap and rosbags of PyPI cannot be had")
+    return found
+
+
 class PublicDecoder(unittest.TestCase):
-    def decode(self, recording, npm):
-        """Messages of each topic, and how many of them are the same when encoded again."""
-        decoded = subprocess.run(
-            ["node", str(DECODER), str(recording)],
-            cwd=npm,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        self.assertEqual(decoded.returncode, 0, decoded.stderr)
-        topics = json.loads(decoded.stdout)
-        print(topics)
-        for topic, found in topics.items():
-            self.assertEqual(found["same"], found["messages"], topic)
-        return topics
+    def setUp(self):
+        self.programs, self.publisher, self.folder = map(pathlib.Path, ARGUMENTS)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.decoders = decoders(self.folder.parent)
+        if not self.decoders:
+            self.skipTest("SKIPPED: no public decoder can be had")
+
+    def decode(self, recording):
+        """How many messages each topic has. All are the same when a decoder encodes them again."""
+        counts = []
+        for command, place in self.decoders:
+            decoded = subprocess.run(
+                [*command, str(recording)], cwd=place, capture_output=True, text=True, check=False
+            )
+            self.assertEqual(decoded.returncode, 0, decoded.stderr)
+            topics = json.loads(decoded.stdout)
+            for topic, found in topics.items():
+                self.assertEqual(found["same"], found["messages"], (command, topic))
+            counts.append({topic: found["messages"] for topic, found in topics.items()})
+            print(command[-1], counts[-1])
+            self.assertEqual(counts[-1], counts[0])
+        return counts[0]
 
     def test_reads_topics_that_no_demo_has(self):
-        _, publisher, folder = map(pathlib.Path, ARGUMENTS)
-        folder.mkdir(parents=True, exist_ok=True)
-        npm = library(folder.parent)
-        if npm is None:
-            self.skipTest("SKIPPED: no node, or @mcap/core and @foxglove/omgidl-* cannot be had")
-        recording = folder / "every-topic.mcap"
+        recording = self.folder / "every-topic.mcap"
         recording.unlink(missing_ok=True)
-        subprocess.run([publisher.with_name("every_topic"), recording], check=True)
-        topics = self.decode(recording, npm)
+        subprocess.run([self.publisher.with_name("every_topic"), recording], check=True)
+        topics = self.decode(recording)
         self.assertEqual(len(topics), 15)
         for topic in ("CanSamples", "DsoRecord", "TssRecord", "CatchUpRequest", "Command"):
-            self.assertEqual(topics[topic]["messages"], 50)
+            self.assertEqual(topics[topic], 50)
 
     def test_reads_every_topic_of_a_demo_to_the_last_bit(self):
-        programs, _, folder = map(pathlib.Path, ARGUMENTS)
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        npm = library(folder.parent)
-        if npm is None:
-            self.skipTest("SKIPPED: no node, or @mcap/core and @foxglove/omgidl-* cannot be had")
+        programs, folder = self.programs, self.folder
+        shutil.rmtree(folder)
+        folder.mkdir()
         domain = str(100 + os.getpid() % 100)
         with open(folder / "recorder.log", "w", encoding="utf-8") as log:
             recorder = subprocess.Popen(
@@ -98,7 +117,7 @@ class PublicDecoder(unittest.TestCase):
             recorder.wait(PATIENCE_S)
         recordings = sorted((folder / "recordings").glob("*/*.mcap"))
         self.assertEqual(len(recordings), 1, (folder / "recorder.log").read_text("utf-8"))
-        topics = self.decode(recordings[0], npm)
+        topics = self.decode(recordings[0])
         for topic in ("DauSamples", "AcsSamples", "Measurement", "Excitation", "SourceDescription"):
             self.assertIn(topic, topics)
         self.assertIn("CalibrationResult", topics)

@@ -22,24 +22,25 @@ for path in sys.argv[1:]:
 """
 
 
-def has_library(python):
-    probe = [python, "-c", "import mcap.reader"]
+def has_libraries(python, libraries):
+    probe = [python, "-c", "; ".join(f"import {library}" for library in libraries)]
     try:
         return subprocess.run(probe, capture_output=True, check=False).returncode == 0
     except OSError:
         return False
 
 
-def interpreter(folder):
-    """A Python that has the library; None where it cannot be had. `folder` may take it."""
-    installed = pathlib.Path(folder) / "mcap-library"
+def interpreter(folder, libraries=("mcap",)):
+    """A Python that has the libraries; None where they cannot be had. `folder` may take them."""
+    installed = pathlib.Path(folder) / f"{'-'.join(libraries)}-library"
     candidates = [os.environ.get("DYNCAL_MCAP_PYTHON"), sys.executable, installed / "bin/python3"]
     for python in candidates:
-        if python and has_library(str(python)):
+        if python and has_libraries(str(python), libraries):
             return str(python)
     steps = (
         [sys.executable, "-m", "venv", str(installed)],
-        [str(installed / "bin/pip"), "install", "-q", "--timeout", "10", "--retries", "0", "mcap"],
+        [str(installed / "bin/pip"), "install", "-q", "--timeout", "10", "--retries", "0"]
+        + list(libraries),
     )
     for step in steps:
         try:
@@ -48,7 +49,8 @@ def interpreter(folder):
             return None
         if done.returncode != 0:
             return None
-    return str(installed / "bin/python3") if has_library(installed / "bin/python3") else None
+    python = installed / "bin/python3"
+    return str(python) if has_libraries(python, libraries) else None
 
 
 def count_messages(python, paths):
