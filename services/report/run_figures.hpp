@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "services/error.hpp"
@@ -21,6 +22,12 @@ struct FigureFiles {
 
 [[nodiscard]] std::vector<figures::Figure> run_figures(const RunOutcome& outcome,
                                                        figures::ErrorBars error_bars);
+// Those of one channel, whether it responds or not.
+[[nodiscard]] std::vector<figures::Figure>
+channel_figures(const figures::TransferFunctionData& data, const std::string& channel);
+// Those of one source; none of a source whose samples have no stamps.
+[[nodiscard]] std::vector<figures::Figure> clock_figures(const RunOutcome& outcome,
+                                                         const ClockReport& report);
 
 // Fails (bad_file) when a file cannot be written.
 [[nodiscard]] Expected<std::vector<std::filesystem::path>>

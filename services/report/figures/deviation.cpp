@@ -22,13 +22,23 @@ struct Deviation {
   double u_magnitude_rel = 0.0;
   double phase_rad = 0.0;
   double u_phase_rad = 0.0;
+  double half_magnitude_bar_rel = 0.0;
+  double half_phase_bar_rad = 0.0;
   double residual_rel = 0.0;
   std::string flags{};
+  std::uint32_t step = 0;
 };
 
+// Of the repetitions.
+ErrorBars bars_of(const TransferFunctionData& data) {
+  const bool have_band = !data.means_are_plain && data.error_bars != ErrorBars::none;
+  return have_band ? ErrorBars::standard : data.error_bars;
+}
+
 std::vector<Deviation> deviations_of(const TransferFunctionData& data) {
+  const ErrorBars bars = bars_of(data);
   std::vector<Deviation> deviations;
-  for (const auto& [repetition, point, residual_rel] : data.repetitions) {
+  for (const auto& [repetition, point, residual_rel, step] : data.repetitions) {
     const ValueOverFrequency* mean = mean_of(point, data);
     if (mean == nullptr) {
       continue;
@@ -38,7 +48,8 @@ std::vector<Deviation> deviations_of(const TransferFunctionData& data) {
         {repetition, point.frequency_hz, point.value.magnitude / magnitude - 1.0,
          point.value.u_magnitude / magnitude,
          std::remainder(point.value.phase_rad - mean->value.phase_rad, 2 * std::numbers::pi),
-         point.value.u_phase_rad, residual_rel, point.flags});
+         point.value.u_phase_rad, half_magnitude_bar(point, bars) / magnitude,
+         half_phase_bar(point, bars), residual_rel, point.flags, step});
   }
   return deviations;
 }
@@ -47,16 +58,18 @@ using Quantity = Point (*)(const Deviation&);
 
 Point magnitude(const Deviation& deviation) {
   return {deviation.frequency_hz, percent * deviation.magnitude_rel,
-          percent * deviation.u_magnitude_rel};
+          percent * deviation.half_magnitude_bar_rel, deviation.step};
 }
 Point phase(const Deviation& deviation) {
-  return {deviation.frequency_hz, degrees * deviation.phase_rad, degrees * deviation.u_phase_rad};
+  return {deviation.frequency_hz, degrees * deviation.phase_rad,
+          degrees * deviation.half_phase_bar_rad, deviation.step};
 }
 Point residual(const Deviation& deviation) {
-  return {deviation.frequency_hz, percent * deviation.residual_rel};
+  return {deviation.frequency_hz, percent * deviation.residual_rel, 0.0, deviation.step};
 }
 
-Panel panel_of(const std::vector<Deviation>& deviations, Quantity quantity, std::string y_label) {
+Panel panel_of(const std::vector<Deviation>& deviations, ErrorBars bars, Quantity quantity,
+               std::string y_label) {
   std::map<std::uint32_t, std::vector<Point>> by_repetition;
   for (const Deviation& deviation : deviations) {
     by_repetition[deviation.repetition].push_back(quantity(deviation));
@@ -69,7 +82,7 @@ Panel panel_of(const std::vector<Deviation>& deviations, Quantity quantity, std:
   panel.colour = "#cccccc";
   for (auto& [repetition, points] : by_repetition) {
     const std::size_t index = panel.series.size();
-    panel.series.push_back({.label = fmt::format("#{} ± u", repetition),
+    panel.series.push_back({.label = repetition_label(repetition, bars),
                             .points = std::move(points),
                             .colour = series_colour(index),
                             .marker = series_marker(index),
@@ -81,6 +94,9 @@ Panel panel_of(const std::vector<Deviation>& deviations, Quantity quantity, std:
 // The mean itself: zero, with its bar on both sides.
 void add_mean(Panel& panel, const TransferFunctionData& data,
               double (*half_width)(const ValueOverFrequency&, ErrorBars)) {
+  if (data.means_are_plain || data.error_bars == ErrorBars::none) {
+    return;
+  }
   panel.band_label = fmt::format("± {} of the mean", symbol_of(data.error_bars));
   for (const ValueOverFrequency& mean : data.mean) {
     const double half = half_width(mean, data.error_bars);
@@ -121,15 +137,16 @@ std::string csv_of(const TransferFunctionData& data, const std::vector<Deviation
 
 Figure deviation_figure(const TransferFunctionData& data, const std::string& name) {
   const std::vector<Deviation> deviations = deviations_of(data);
+  const ErrorBars bars = bars_of(data);
   Picture picture{.title = {data.title + ": repetitions less their mean", data.subtitle},
                   .panel_height = 190};
-  picture.panels = {panel_of(deviations, magnitude, "magnitude in %"),
-                    panel_of(deviations, phase, "phase in degrees")};
+  picture.panels = {panel_of(deviations, bars, magnitude, "magnitude in %"),
+                    panel_of(deviations, bars, phase, "phase in degrees")};
   add_mean(picture.panels[0], data, magnitude_half_width);
   add_mean(picture.panels[1], data, phase_half_width);
   if (std::any_of(deviations.begin(), deviations.end(),
                   [](const Deviation& one) { return std::isfinite(one.residual_rel); })) {
-    Panel residuals = panel_of(deviations, residual, "residual of the fit in %");
+    Panel residuals = panel_of(deviations, ErrorBars::none, residual, "residual of the fit in %");
     for (Series& series : residuals.series) {
       series.label.clear(); // those of the other panels, without the bars
     }

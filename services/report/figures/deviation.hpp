@@ -1,10 +1,11 @@
 // How far the repetitions of a run are from their mean, as a picture: magnitude in per cent above,
-// phase in degrees below it, with the uncertainty of the mean as a band; and lowest, where it is
-// known, what the fitted sine leaves of the channel, in per cent of its amplitude.
+// phase in degrees below it, with bars of u and the uncertainty of the mean as a band; and lowest,
+// where it is known, what the fitted sine leaves of the channel, in per cent of its amplitude.
 //
 //   deviation = |H| / |mean H| - 1,   phase - phase of the mean (lead, the turn next to it)
 //
-// A repetition whose frequency and level have no mean is left out.
+// A repetition whose frequency and level have no mean is left out. Means that are plain have no
+// band; the bars are then those of the data. Without error bars there is neither bar nor band.
 #pragma once
 
 #include <string>

@@ -4,6 +4,7 @@
 // panel without any point shows "no data".
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ namespace dyncal::services::figures {
 struct Point {
   double x;
   double y;
-  double half_bar = 0; // of an error bar; 0: none
+  double half_bar = 0;    // of an error bar; 0: none
+  std::uint32_t step = 0; // that it is the result of; 0: none
 };
 
 struct Series {

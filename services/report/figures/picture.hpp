@@ -1,10 +1,10 @@
-// A picture: what files and reports draw of one figure. Panels in rows below a title and a legend,
-// with text below them.
+// A picture: what files, reports and the page in the browser draw of one figure. Panels in rows
+// below a title and a legend, with text below them.
 //
 // It holds plain numbers, labels with units, and looks; nobody who draws it adds a label, a colour
 // or a unit. Panels of one column stand above each other over one x axis where only the last shows
 // its tick labels. svg_of() draws it; the same picture gives the same bytes, whatever the locale.
-// Plain functions, any thread.
+// The page gets it as JSON (report/picture_json.hpp). Plain functions, any thread.
 #pragma once
 
 #include <cstddef>

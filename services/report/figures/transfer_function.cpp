@@ -14,7 +14,7 @@ namespace {
 
 constexpr double panel_height = 270;
 
-// With the error bar of a mean.
+// With its error bar.
 using Quantity = Point (*)(const ValueOverFrequency&, ErrorBars);
 
 Point magnitude(const ValueOverFrequency& point, ErrorBars bars) {
@@ -22,11 +22,6 @@ Point magnitude(const ValueOverFrequency& point, ErrorBars bars) {
 }
 Point phase(const ValueOverFrequency& point, ErrorBars bars) {
   return {point.frequency_hz, point.value.phase_rad, half_phase_bar(point, bars)};
-}
-
-Point without_bar(Point point) {
-  point.half_bar = 0;
-  return point;
 }
 
 // The phase plus as many whole turns as bring it next to the mean of the same frequency.
@@ -42,16 +37,18 @@ ValueOverFrequency in_turn_of_mean(ValueOverFrequency point, const TransferFunct
 }
 
 std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity quantity) {
+  const ErrorBars bars = data.means_are_plain ? data.error_bars : ErrorBars::none;
   std::map<std::uint32_t, std::vector<Point>> by_repetition;
   for (const RepetitionPoint& one : data.repetitions) {
-    by_repetition[one.repetition].push_back(
-        without_bar(quantity(in_turn_of_mean(one.point, data), data.error_bars)));
+    Point point = quantity(in_turn_of_mean(one.point, data), bars);
+    point.step = one.step;
+    by_repetition[one.repetition].push_back(point);
   }
   std::vector<Series> series;
   for (auto& [repetition, points] : by_repetition) {
     const auto index = series.size();
     // Markers of different size, because repetitions of a good sensor lie on top of each other.
-    series.push_back({.label = fmt::format("#{}", repetition),
+    series.push_back({.label = repetition_label(repetition, bars),
                       .points = std::move(points),
                       .colour = series_colour(index),
                       .marker = series_marker(index),
@@ -60,13 +57,19 @@ std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity
   return series;
 }
 
+std::string mean_label(const TransferFunctionData& data) {
+  if (data.means_are_plain) {
+    return "mean so far";
+  }
+  return data.error_bars == ErrorBars::none ? "mean"
+                                            : fmt::format("mean ± {}", symbol_of(data.error_bars));
+}
+
 Series mean_series(const TransferFunctionData& data, Quantity quantity) {
-  Series series{.label = fmt::format("mean ± {}", symbol_of(data.error_bars)),
-                .colour = "#222222",
-                .joined = true,
-                .line_width = 1.1};
+  const ErrorBars bars = data.means_are_plain ? ErrorBars::none : data.error_bars;
+  Series series{.label = mean_label(data), .colour = "#222222", .joined = true, .line_width = 1.1};
   for (const auto& point : data.mean) {
-    series.points.push_back(quantity(point, data.error_bars));
+    series.points.push_back(quantity(point, bars));
   }
   std::sort(series.points.begin(), series.points.end(),
             [](const auto& a, const auto& b) { return a.x < b.x; });
@@ -79,7 +82,7 @@ Series flagged_series(const TransferFunctionData& data, Quantity quantity) {
       .label = "flagged, see below", .colour = "#CC0000", .marker = Marker::circle, .radius = 9};
   for (const auto& point : data.mean) {
     if (!point.flags.empty()) {
-      series.points.push_back(without_bar(quantity(point, data.error_bars)));
+      series.points.push_back(quantity(point, ErrorBars::none));
     }
   }
   return series;
@@ -163,15 +166,44 @@ std::string csv_of(const TransferFunctionData& data) {
 } // namespace
 
 const char* symbol_of(ErrorBars bars) {
-  return bars == ErrorBars::expanded ? "U" : "u";
+  switch (bars) {
+  case ErrorBars::standard:
+    return "u";
+  case ErrorBars::expanded:
+    return "U";
+  case ErrorBars::none:
+    break;
+  }
+  return "";
 }
 
-double half_magnitude_bar(const ValueOverFrequency& mean, ErrorBars bars) {
-  return bars == ErrorBars::expanded ? mean.expanded_magnitude : mean.value.u_magnitude;
+double half_magnitude_bar(const ValueOverFrequency& value, ErrorBars bars) {
+  switch (bars) {
+  case ErrorBars::standard:
+    return value.value.u_magnitude;
+  case ErrorBars::expanded:
+    return value.expanded_magnitude;
+  case ErrorBars::none:
+    break;
+  }
+  return 0.0;
 }
 
-double half_phase_bar(const ValueOverFrequency& mean, ErrorBars bars) {
-  return bars == ErrorBars::expanded ? mean.expanded_phase_rad : mean.value.u_phase_rad;
+double half_phase_bar(const ValueOverFrequency& value, ErrorBars bars) {
+  switch (bars) {
+  case ErrorBars::standard:
+    return value.value.u_phase_rad;
+  case ErrorBars::expanded:
+    return value.expanded_phase_rad;
+  case ErrorBars::none:
+    break;
+  }
+  return 0.0;
+}
+
+std::string repetition_label(std::uint32_t repetition, ErrorBars bars) {
+  return bars == ErrorBars::none ? fmt::format("#{}", repetition)
+                                 : fmt::format("#{} ± {}", repetition, symbol_of(bars));
 }
 
 const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,

@@ -99,5 +99,26 @@ TEST(DeviationCsv, NamesColumnsAndHasEveryRepetition) {
   EXPECT_THAT(csv, Not(HasSubstr("inf")));
 }
 
+TEST(DeviationFigure, HasNeitherBarsNorBandWithoutErrorBars) {
+  TransferFunctionData data = two_repetitions();
+  data.error_bars = ErrorBars::none;
+  const Panel panel = deviation_figure(data, "deviation").picture.panels[0];
+  EXPECT_TRUE(panel.band.empty());
+  EXPECT_EQ(panel.series[0].label, "#1");
+  EXPECT_EQ(panel.series[0].points[0].half_bar, 0.0);
+}
+
+TEST(DeviationFigure, GivesTheBarsOfTheDataToRepetitionsWhileMeansArePlain) {
+  TransferFunctionData data = two_repetitions();
+  data.error_bars = ErrorBars::expanded;
+  data.means_are_plain = true;
+  data.repetitions[0].step = 5;
+  const Panel panel = deviation_figure(data, "deviation").picture.panels[0];
+  EXPECT_TRUE(panel.band.empty());
+  EXPECT_EQ(panel.series[0].label, "#1 ± U");
+  EXPECT_NEAR(panel.series[0].points[0].half_bar, 1.0, 1e-12); // 0.02 of 2
+  EXPECT_EQ(panel.series[0].points[0].step, 5U);
+}
+
 } // namespace
 } // namespace dyncal::services::figures

@@ -166,5 +166,37 @@ TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,\n3,"));
 }
 
+TEST(TransferFunctionFigure, HasBarsByChoice) {
+  auto data = low_pass(4);
+  data.mean[1].expanded_magnitude = 2.3e-3;
+  const auto mean = [&](ErrorBars bars) {
+    data.error_bars = bars;
+    return transfer_function_figure(data, "tf").picture.panels.at(0).series.at(0);
+  };
+  EXPECT_EQ(mean(ErrorBars::standard).label, "mean ± u");
+  EXPECT_EQ(mean(ErrorBars::standard).points.at(1).half_bar, 1e-3);
+  EXPECT_EQ(mean(ErrorBars::expanded).label, "mean ± U");
+  EXPECT_EQ(mean(ErrorBars::expanded).points.at(1).half_bar, 2.3e-3);
+  EXPECT_EQ(mean(ErrorBars::none).label, "mean");
+  EXPECT_EQ(mean(ErrorBars::none).points.at(1).half_bar, 0.0);
+}
+
+TEST(TransferFunctionFigure, GivesBarsToRepetitionsWhileMeansArePlain) {
+  auto data = low_pass(4);
+  data.repetitions[0].step = 7;
+  const auto series = [&] {
+    return transfer_function_figure(data, "tf").picture.panels.at(0).series;
+  };
+  EXPECT_EQ(series().at(1).label, "#1");
+  EXPECT_EQ(series().at(1).points.at(0).half_bar, 0.0);
+  EXPECT_EQ(series().at(1).points.at(0).step, 7U);
+  EXPECT_EQ(series().at(0).points.at(0).step, 0U);
+  data.means_are_plain = true;
+  EXPECT_EQ(series().at(0).label, "mean so far");
+  EXPECT_EQ(series().at(0).points.at(0).half_bar, 0.0);
+  EXPECT_EQ(series().at(1).label, "#1 ± u");
+  EXPECT_EQ(series().at(1).points.at(0).half_bar, 1e-3);
+}
+
 } // namespace
 } // namespace dyncal::services::figures
