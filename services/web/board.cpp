@@ -1,9 +1,12 @@
 #include "services/web/board.hpp"
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/live/laboratory_json.hpp"
+#include "services/live/run_figures.hpp"
 #include "services/live/run_json.hpp"
+#include "services/report/picture_json.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -16,6 +19,10 @@ const live::Run* find_run(const live::Bench& bench, const std::string& run) {
   }
   const auto found = bench.runs.find(run);
   return found == bench.runs.end() ? nullptr : &found->second;
+}
+
+std::string bars_name(services::figures::ErrorBars bars) {
+  return bars == services::figures::ErrorBars::none ? "none" : symbol_of(bars);
 }
 
 Json milliseconds(std::int64_t utc_ns) {
@@ -42,10 +49,14 @@ Text Board::young(const std::string& key) {
 }
 
 Text Board::keep(const std::string& key, const Json& json, std::uint64_t number) {
-  if (texts_.size() >= max_texts) {
+  Text text = std::make_shared<const std::string>(live::json_text(json));
+  std::size_t bytes = text->size();
+  for (const auto& [other, made] : texts_) {
+    bytes += made.text->size();
+  }
+  if (texts_.size() >= max_texts || bytes > max_bytes) {
     texts_.clear();
   }
-  Text text = std::make_shared<const std::string>(live::json_text(json));
   texts_[key] = Made{text, laboratory_.clock().now(), number};
   return text;
 }
@@ -96,6 +107,39 @@ Text Board::results(const std::string& name, const std::string& run_name,
   json["runs"] = runs_json(*bench);
   add_files(run->name, json);
   return keep(key, json, number);
+}
+
+Text Board::figures(const std::string& name, const std::string& run_name,
+                    const std::string& channel, services::figures::ErrorBars error_bars) {
+  const std::lock_guard lock(mutex_);
+  const live::Bench* bench = laboratory_.bench(name);
+  const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  if (run == nullptr) {
+    return nullptr;
+  }
+  const std::string bars = bars_name(error_bars);
+  const std::string key = fmt::format("figures {}\n{}\n{}\n{}", bars, name, run->name, channel);
+  const std::uint64_t number = run->results_number;
+  const auto made = texts_.find(key);
+  if (made != texts_.end() && made->second.number == number) {
+    return made->second.text;
+  }
+  Json pictures = Json::array();
+  for (const services::figures::Figure& figure :
+       live::run_figures(name, *run, channel, error_bars)) {
+    pictures.push_back(picture_json(figure));
+  }
+  if (pictures.empty()) {
+    return nullptr;
+  }
+  return keep(key,
+              Json{{"number", number},
+                   {"bench", name},
+                   {"run", run->name},
+                   {"channel", channel},
+                   {"bars", bars},
+                   {"pictures", std::move(pictures)}},
+              number);
 }
 
 std::uint64_t Board::number() const {

@@ -1,11 +1,13 @@
 // The newest state of the laboratory between the thread that feeds it and those that show it.
 //
 // Texts of JSON are made when somebody asks, at most once in `text_age`, and shared by all who ask
-// meanwhile: visitors cost writing, not counting. Results are made anew only when they change.
+// meanwhile: visitors cost writing, not counting. Results and figures are made anew only when they
+// change.
 // Policy: the newest wins, nothing queues. Any thread.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <memory>
@@ -16,6 +18,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/live/laboratory.hpp"
+#include "services/report/figures/transfer_function.hpp"
 
 namespace dyncal::services::web {
 
@@ -25,6 +28,7 @@ class Board {
 public:
   static constexpr std::chrono::milliseconds text_age{200};
   static constexpr std::size_t max_texts = 256;
+  static constexpr std::size_t max_bytes = std::size_t{32} * 1024 * 1024; // of all of them
   // Adds what the daemon knows of itself to the laboratory.
   using AddDaemon = std::function<void(nlohmann::ordered_json&)>;
 
@@ -50,6 +54,9 @@ public:
   using AddFiles = std::function<void(const std::string& run, nlohmann::ordered_json&)>;
   [[nodiscard]] Text results(const std::string& bench, const std::string& run,
                              const AddFiles& add_files);
+  // The pictures of one channel of that run; null also: it has no result of this channel.
+  [[nodiscard]] Text figures(const std::string& bench, const std::string& run,
+                             const std::string& channel, services::figures::ErrorBars error_bars);
   // Of the laboratory, or of the results of the current run of a bench.
   [[nodiscard]] std::uint64_t number() const;
   [[nodiscard]] std::uint64_t results_number(const std::string& bench) const;

@@ -18,8 +18,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t file_part_bytes = std::size_t{64} * 1024;
-constexpr std::array<std::string_view, 6> parts{"run",      "budget", "signal",
-                                                "spectrum", "fit",    "command"};
+constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget", "signal",
+                                                "spectrum", "fit",     "command"};
 
 // 0: it is no number.
 std::uint32_t number_of(const std::string& text) {
@@ -27,6 +27,16 @@ std::uint32_t number_of(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, number);
   return parsed.ec == std::errc() && parsed.ptr == end ? number : 0;
+}
+
+std::optional<figures::ErrorBars> bars_of(const std::string& name) {
+  if (name == "U") {
+    return figures::ErrorBars::expanded;
+  }
+  if (name == "u") {
+    return figures::ErrorBars::standard;
+  }
+  return name == "none" ? std::optional(figures::ErrorBars::none) : std::nullopt;
 }
 
 void answer_text(const Text& text, const char* otherwise, httplib::Response& response) {
@@ -110,12 +120,26 @@ bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Respons
   } else if (address->part == "run") {
     answer_text(results(address->bench, request.get_param_value("run")),
                 "no such run of this bench was heard of", response);
+  } else if (address->part == "figures") {
+    answer_figures(address->bench, request, response);
   } else if (address->part == "budget") {
     answer_budget(address->bench, request, response);
   } else {
     return false;
   }
   return true;
+}
+
+void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::Request& request,
+                                       httplib::Response& response) const {
+  const auto bars = bars_of(request.has_param("bars") ? request.get_param_value("bars") : "U");
+  if (!bars) {
+    answer_error(400, "malformed", "bars must be U, u or none", response);
+    return;
+  }
+  answer_text(board_.figures(bench, request.get_param_value("run"),
+                             request.get_param_value("channel"), *bars),
+              "no such run with results of this channel was heard of", response);
 }
 
 void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,

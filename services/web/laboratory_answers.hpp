@@ -32,6 +32,8 @@ public:
   [[nodiscard]] Text results(const std::string& bench, const std::string& run) const;
 
 private:
+  void answer_figures(const std::string& bench, const httplib::Request& request,
+                      httplib::Response& response) const;
   void answer_budget(const std::string& bench, const httplib::Request& request,
                      httplib::Response& response) const;
   [[nodiscard]] bool answer_file(const httplib::Request& request,

@@ -59,6 +59,42 @@ TEST_F(BoardTest, MakesResultsAnewWhenTheyChange) {
   EXPECT_EQ(results("r2"), nullptr);
 }
 
+TEST_F(BoardTest, MakesFiguresOnceForEachChannelAndChange) {
+  using services::figures::ErrorBars;
+  const auto figures = [this](ErrorBars bars, const std::string& channel = "dau/acceleration_z") {
+    return board_.figures("acc-1", "", channel, bars);
+  };
+  EXPECT_EQ(figures(ErrorBars::expanded), nullptr);
+  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  EXPECT_EQ(figures(ErrorBars::expanded), nullptr);
+  take(live::result_of("acc-1", "r1", 1, 0.3));
+  const Text first = figures(ErrorBars::expanded);
+  ASSERT_NE(first, nullptr);
+  clock_.advance(10s);
+  EXPECT_EQ(figures(ErrorBars::expanded), first);
+  EXPECT_NE(*figures(ErrorBars::standard), *first);
+  EXPECT_EQ(figures(ErrorBars::expanded, "dau/other"), nullptr);
+  EXPECT_EQ(board_.figures("acc-1", "r2", "dau/acceleration_z", ErrorBars::none), nullptr);
+
+  const Json json = Json::parse(*first);
+  EXPECT_EQ(json["run"], "r1");
+  EXPECT_EQ(json["channel"], "dau/acceleration_z");
+  EXPECT_EQ(json["bars"], "U");
+  EXPECT_EQ(json["number"], Json::parse(*results())["number"]);
+  ASSERT_EQ(json["pictures"].size(), 2U);
+  const Json& points = json["pictures"][0]["panels"][0]["series"][1]["points"];
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_EQ(points[0][0], 16.0);
+  EXPECT_EQ(points[0][1], 0.3);
+  EXPECT_GT(points[0][2], 1e-4); // U, not u
+  EXPECT_EQ(points[0][3], 1);    // step
+
+  take(live::result_of("acc-1", "r1", 2, 0.4));
+  const Text second = figures(ErrorBars::expanded);
+  EXPECT_NE(second, first);
+  EXPECT_GT(Json::parse(*second)["number"], json["number"]);
+}
+
 TEST_F(BoardTest, HasNoTextOfABenchThatIsNotKnown) {
   EXPECT_EQ(board_.bench("acc-1"), nullptr);
   take(live::status_of("acc-1", "dau"));
