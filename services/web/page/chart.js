@@ -5,18 +5,19 @@
  * A chart without data says so. Zoom: drag; back: double click or the button.
  */
 
-import { element, set_attribute, set_shown, set_text } from "./element.js";
-import { draw_marker, ground_colour, on_ground_change } from "./palette.js";
+import { element, set_attribute, set_name, set_shown, set_text } from "./element.js";
+import { colour_on_ground, draw_marker, ground_colour, on_ground_change } from "./palette.js";
 
 const NO_LIBRARY =
   "Charts need dygraphs on the daemon's machine (Debian package libjs-dygraphs); the numbers are " +
   "in the tables.";
 const MAX_ROWS = 5000;
+const MAX_LABEL = 120;
 
 export class Chart {
   /**
-   * @param {{title: string, x_label: string, height?: number, options?: object}} description
-   *        options: what dygraphs is given besides
+   * @param {{title: string|null, x_label: string, height?: number, options?: object}} description
+   *        title null: that of what it is part of; options: what dygraphs is given besides
    */
   constructor({ title, x_label, height = 260, options = {} }) {
     this.title = title;
@@ -26,7 +27,7 @@ export class Chart {
     this.is_zoomed = false;
     this.is_left = false;
     this.y_label = element("p", { class: "y-label" });
-    this.canvas = element("div", { class: "canvas", role: "img", "aria-label": title });
+    this.canvas = element("div", { class: "canvas", role: "img" });
     this.canvas.style.height = `${height}px`;
     this.message = element("p", { class: "no-data" }, "no data yet");
     this.reading = element("output", { class: "reading" });
@@ -36,7 +37,7 @@ export class Chart {
     this.back.hidden = true;
     this.x_label = element("p", { class: "x-label" }, x_label);
     this.root = element("figure", { class: "chart" },
-                        element("figcaption", {}, title),
+                        title === null ? null : element("figcaption", {}, title),
                         element("div", { class: "chart-head" }, this.y_label, this.reading, this.back),
                         element("div", { class: "plot" }, this.canvas, this.message),
                         this.x_label, this.legend);
@@ -52,11 +53,12 @@ export class Chart {
    */
   show(data) {
     this.data = { ...data, rows: data.rows.slice(-MAX_ROWS) };
-    set_text(this.y_label, data.y_label);
+    set_name(this.y_label, data.y_label, MAX_LABEL);
     if (data.x_label) {
-      set_text(this.x_label, data.x_label);
+      set_name(this.x_label, data.x_label, MAX_LABEL);
     }
-    set_attribute(this.canvas, "aria-label", `${this.title}: ${data.summary ?? ""}`);
+    set_attribute(this.canvas, "aria-label",
+                  `${this.title ?? data.y_label}: ${data.summary ?? ""}`);
     this.show_legend(data.legend ?? []);
     const is_empty = this.data.rows.length === 0;
     const can_draw = typeof window.Dygraph === "function";
@@ -104,6 +106,7 @@ export class Chart {
       ...others,
       labels,
     });
+    this.canvas.graph = this.graph; // for whoever wants to read what is drawn
   }
 
   fixed_options() {
@@ -156,7 +159,7 @@ export class Chart {
     this.graph?.updateOptions({ dateWindow: null, valueRange: null, ...(this.data.home ?? {}) });
   }
 
-  /** entries: [{text, colour, marker}]; made anew only when they differ. */
+  /** entries: [{text, colour, marker, joined, dashes}]; made anew only when they differ. */
   show_legend(entries, anew = false) {
     const as_text = JSON.stringify(entries);
     if (as_text === this.shown_legend && !anew) {
@@ -164,8 +167,11 @@ export class Chart {
     }
     this.shown_legend = as_text;
     this.legend.replaceChildren(
-      ...entries.map(({ text, colour, marker }) =>
-        element("li", {}, legend_sample(colour ?? ground_colour("text"), marker), " ", text)),
+      ...entries.map((entry) => {
+        const text = element("span");
+        set_name(text, entry.text, MAX_LABEL);
+        return element("li", {}, legend_sample(entry), " ", text);
+      }),
     );
     set_shown(this.legend, entries.length > 0);
   }
@@ -173,6 +179,7 @@ export class Chart {
   clear() {
     this.graph?.destroy();
     this.graph = null;
+    this.canvas.graph = null;
     this.is_zoomed = false;
     set_shown(this.back, false);
   }
@@ -198,17 +205,35 @@ export function place_y(graph, y) {
   return top + graph.toPercentYCoord(y) * height;
 }
 
-function legend_sample(colour, marker) {
+function legend_sample({ colour, marker, joined = false, dashes = "" }) {
   const canvas = element("canvas", { width: 44, height: 28, "aria-hidden": "true" });
   const context = canvas.getContext("2d");
   context.scale(2, 2);
-  if (marker === "line" || marker === "bar") {
-    context.fillStyle = colour;
-    context.fillRect(2, marker === "bar" ? 3 : 6, 18, marker === "bar" ? 8 : 2);
-  } else {
-    draw_marker(context, marker, 11, 7, 4.5, colour);
+  const shown = colour_on_ground(colour);
+  context.fillStyle = shown;
+  context.strokeStyle = shown;
+  if (marker === "bar" || marker === "band") {
+    context.globalAlpha = marker === "band" ? 0.5 : 1;
+    context.fillRect(2, 3, 18, 8);
+    return canvas;
+  }
+  if (marker === "line" || joined) {
+    context.lineWidth = 2;
+    context.setLineDash(dash_lengths(dashes));
+    context.beginPath();
+    context.moveTo(2, 7);
+    context.lineTo(20, 7);
+    context.stroke();
+  }
+  if (marker && marker !== "line" && marker !== "none") {
+    draw_marker(context, marker, 11, 7, marker === "dot" ? 2 : 4.5, shown);
   }
   return canvas;
+}
+
+/** "6 4" as the canvas takes it. */
+export function dash_lengths(dashes) {
+  return String(dashes ?? "").split(" ").map(Number).filter((length) => length > 0);
 }
 
 // A finger scrolls the page, it does not zoom the chart.

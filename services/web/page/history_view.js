@@ -7,9 +7,8 @@ import { get } from "./api.js";
 import { Choice, element, name_element, set_shown, set_text, table_in_scroll } from "./element.js";
 import { full, is_number, significant, utc_text } from "./number_text.js";
 import { series_colour, series_marker } from "./palette.js";
-import { ResponseChart } from "./response_chart.js";
+import { PanelChart } from "./panel_chart.js";
 import { href_of } from "./route.js";
-import { half_bar } from "./run_data.js";
 import { quantity_in } from "./unit_text.js";
 
 const MAX_OVERLAID = 12;
@@ -31,8 +30,8 @@ export class HistoryView {
     this.channel = new Choice("Channel", () => this.show());
     this.message = element("p", { class: "message", role: "status", "data-field": "message" });
     this.runs = element("ul", { class: "runs" });
-    this.magnitude = new ResponseChart({ title: "Magnitude of earlier runs" });
-    this.phase = new ResponseChart({ title: "Phase of earlier runs" });
+    this.magnitude = new PanelChart({ title: "Magnitude of earlier runs" });
+    this.phase = new PanelChart({ title: "Phase of earlier runs" });
     this.worst = element("p", { "data-field": "en_worst" });
     const { root, body } = table_in_scroll("Normalised errors", EN_HEADINGS);
     this.en_table = root;
@@ -121,21 +120,22 @@ export class HistoryView {
     }));
   }
 
+  // In the form in which the daemon describes the figures of a run.
   show_chart(chart, shown, quantity, y_label) {
     const series = shown.map(({ run, index }) => ({
-      text: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}`,
+      label: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}`,
       colour: series_colour(index),
       marker: series_marker(index),
       radius: 6 - 1.2 * (index % 3),
       joined: true,
-      points: (run.points ?? []).map((p) => ({
-        x: p.frequency_hz,
-        y: quantity === "magnitude" ? p.magnitude : (p.unwrapped_phase_rad ?? p.phase_rad),
-        half_bar: half_bar(p, quantity, "U"),
-        flagged: false,
-      })).sort((a, b) => a.x - b.x),
+      line_width: 1.3,
+      points: (run.points ?? []).map((p) => (quantity === "magnitude"
+        ? [p.frequency_hz, p.magnitude, p.U_magnitude ?? 0]
+        : [p.frequency_hz, p.unwrapped_phase_rad ?? p.phase_rad, p.U_phase_rad ?? 0]))
+        .sort((a, b) => a[0] - b[0]),
     }));
-    chart.show(series, `${y_label}, bars: U`, `${shown.length} runs`);
+    chart.show({ x_label: "frequency in Hz", y_label: `${y_label}, bars: U`,
+                 x_scale: "logarithmic", y_scale: "linear", y_range: null, series });
   }
 
   show_en(names) {

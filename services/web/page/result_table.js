@@ -45,13 +45,13 @@ export class ResultTable {
                                 element("summary", {}, "Every repetition"), points.root));
   }
 
-  update(points, means, unit) {
+  /** transfer: with the means; null while the run lasts. */
+  update(points, transfer, unit) {
     const short = unit_text(unit);
     set_text(this.unit, unit ? `|H| in ${short || "one (dimensionless)"}` : "unit not known");
-    const is_final = means.is_final;
-    set_shown(this.no_means, !is_final);
-    set_shown(this.means_root, is_final);
-    this.means.update((is_final ? means.points : []).map((p) => ({ ...p, unit: short })));
+    set_shown(this.no_means, transfer === null);
+    set_shown(this.means_root, transfer !== null);
+    this.means.update((transfer?.points ?? []).map((p) => ({ ...p, unit: short })));
     this.points.update(points.slice(-MAX_ROWS).map((p) => ({ ...p, unit: short })));
   }
 }

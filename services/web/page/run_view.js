@@ -9,12 +9,10 @@ import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
 import { FlagPanel } from "./flag_panel.js";
 import { duration_text, rounded_by_uncertainty, utc_text } from "./number_text.js";
-import { ResponseChart } from "./response_chart.js";
 import { ResultTable, table_csv } from "./result_table.js";
 import { href_of } from "./route.js";
-import {
-  BARS, channels_of, deviation_series, flags_of, means_of, points_of, response_series, summary_of,
-} from "./run_data.js";
+import { BARS, channels_of, clock_of, flags_of, points_of, transfer_of } from "./run_data.js";
+import { RunFigures } from "./run_figures.js";
 import { StateBadge } from "./state_badge.js";
 import { quantity_in } from "./unit_text.js";
 
@@ -36,19 +34,13 @@ export class RunView {
     this.benches = new Choice("Bench", (bench) => this.go(bench, null));
     this.runs = new Choice("Run", (run) => this.go(this.bench, run === CURRENT ? null : run));
     this.channel = new Choice("Channel", () => this.show());
-    this.bars = new Choice("Bars", () => this.show());
+    this.bars = new Choice("Bars", () => this.show_figures());
     this.bars.offer(BARS);
-    const on_pick = (point) => this.show_budget(point);
-    this.magnitude = new ResponseChart({ title: "Magnitude", on_pick });
-    this.phase = new ResponseChart({ title: "Phase", on_pick });
-    this.magnitude_deviation = new ResponseChart({ title: "Deviation of the magnitude from the mean",
-                                                   height: 190, on_pick });
-    this.phase_deviation = new ResponseChart({ title: "Deviation of the phase from the mean",
-                                               height: 190, on_pick });
+    this.figures = new RunFigures((step) => this.show_budget_of_step(step));
     this.budget = new BudgetPanel();
     this.flags = new FlagPanel();
-    this.clock_panel = new ClockPanel();
-    this.table = new ResultTable(on_pick);
+    this.clock_panel = new ClockPanel(this.figures.clock.root);
+    this.table = new ResultTable((point) => this.show_budget(point));
     this.files = new DownloadPanel();
     this.csv = element("button", { type: "button", class: "small", onclick: () => this.save_csv() },
                        "This table as CSV");
@@ -67,11 +59,8 @@ export class RunView {
       element("div", { class: "tools no-print" }, this.benches.root, this.runs.root,
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
-      element("section", { class: "panel", "aria-label": "Transfer function" },
-              element("h2", {}, "Transfer function"),
-              element("div", { class: "pair" }, this.magnitude.root, this.phase.root,
-                      this.magnitude_deviation.root, this.phase_deviation.root)),
-      this.budget.root, this.flags.root, this.table.root, this.clock_panel.root, this.files.root,
+      this.figures.root, this.budget.root, this.flags.root, this.table.root,
+      this.clock_panel.root, this.files.root,
     );
   }
 
@@ -170,28 +159,23 @@ export class RunView {
       return;
     }
     const channel = this.channel.value ?? "";
-    const means = means_of(run, channel);
+    const transfer = transfer_of(run, channel);
     const points = points_of(run, channel);
-    const unit = means.transfer?.unit ?? points.find(({ valid }) => valid)?.unit ?? "";
-    cancelAnimationFrame(this.frame);
-    this.frame = requestAnimationFrame(() => this.show_charts(run, channel, means, unit));
-    this.show_delay(means.transfer);
-    this.table.update(points, means, unit);
+    const unit = transfer?.unit ?? points.find(({ valid }) => valid)?.unit ?? "";
+    this.show_figures();
+    this.show_delay(transfer);
+    this.table.update(points, transfer, unit);
     this.flags.update(flags_of(run, channel), points);
-    this.clock_panel.update(run.clock ?? []);
+    this.clock_panel.update(clock_of(run, channel));
     this.files.update(run.files, this.csv);
   }
 
-  show_charts(run, channel, means, unit) {
-    const bars = this.bars.value;
-    const of = (make, quantity) => make(run, channel, means, quantity, bars);
-    this.magnitude.show(of(response_series, "magnitude"), quantity_in("magnitude", unit),
-                        summary_of(means, "magnitude"));
-    this.phase.show(of(response_series, "phase"), "phase (lead) in rad", summary_of(means, "phase"));
-    this.magnitude_deviation.show(of(deviation_series, "magnitude"), "magnitude in %",
-                                  summary_of(means, "deviation"));
-    this.phase_deviation.show(of(deviation_series, "phase"), "phase in degrees",
-                              summary_of(means, "deviation"));
+  show_figures() {
+    if (this.run) {
+      const { run, number } = this.run;
+      this.figures.update({ bench: this.bench, run, number, generation: this.generation,
+                            channel: this.channel.value, bars: this.bars.value });
+    }
   }
 
   show_delay(transfer) {
@@ -205,12 +189,14 @@ export class RunView {
     set_text(this.delay, `Group delay ${value} ms (u ${u} ms)`);
   }
 
-  show_budget({ channel, step, repetition }) {
-    const point = points_of(this.run, channel).find((p) =>
-      p.step === step && p.repetition === repetition);
-    if (!point) {
-      return;
+  show_budget_of_step(step) {
+    const point = points_of(this.run, this.channel.value ?? "").find((p) => p.step === step);
+    if (point) {
+      this.show_budget(point);
     }
+  }
+
+  show_budget(point) {
     this.budget.ask(this.bench, this.run.run, point).then(() => {
       this.budget.root.scrollIntoView({ block: "nearest" });
     });
@@ -234,11 +220,6 @@ export class RunView {
   }
 
   leave() {
-    cancelAnimationFrame(this.frame);
-    for (const chart of [this.magnitude, this.phase, this.magnitude_deviation,
-                         this.phase_deviation]) {
-      chart.destroy();
-    }
-    this.clock_panel.leave();
+    this.figures.leave();
   }
 }

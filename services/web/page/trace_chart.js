@@ -1,6 +1,6 @@
 /**
  * A signal over time as the smallest and largest value of each column, so that a peak of one sample
- * stays; also plain lines (a fitted sine, a spectrum) and bars of a histogram.
+ * stays; also plain lines (a fitted sine, a spectrum).
  */
 
 import { Chart, place_x, place_y } from "./chart.js";
@@ -9,11 +9,10 @@ import { ground_colour, series_colour } from "./palette.js";
 
 export class TraceChart {
   /**
-   * @param {{title: string, x_label: string, height?: number, y_log?: boolean, x_log?: boolean,
-   *          kind?: "trace"|"bars"}} description
+   * @param {{title: string, x_label: string, height?: number, y_log?: boolean,
+   *          x_log?: boolean}} description
    */
-  constructor({ title, x_label, height = 220, y_log = false, x_log = false, kind = "trace" }) {
-    this.kind = kind;
+  constructor({ title, x_label, height = 220, y_log = false, x_log = false }) {
     this.y_log = y_log;
     this.chart = new Chart({
       title,
@@ -46,7 +45,7 @@ export class TraceChart {
       y_label,
       x_label,
       summary,
-      legend: shown.length > 1 ? shown.map((trace, i) => legend_of(trace, i, this.kind)) : [],
+      legend: shown.length > 1 ? shown.map(legend_of) : [],
       read: (x, points) => reading(x, points, shown, y_label),
       options: {
         series: Object.fromEntries(
@@ -58,8 +57,7 @@ export class TraceChart {
 
   style(trace, index) {
     const colour = () => colour_of(trace, index);
-    const draw = this.kind === "bars" ? draw_bars : draw_trace;
-    return { color: colour(), plotter: (event) => draw(event, trace, colour()) };
+    return { color: colour(), plotter: (event) => draw_trace(event, trace, colour()) };
   }
 
   destroy() {
@@ -71,11 +69,11 @@ function colour_of(trace, index) {
   return trace.colour === null ? ground_colour("text") : (trace.colour ?? series_colour(index));
 }
 
-function legend_of(trace, index, kind) {
+function legend_of(trace, index) {
   return {
     text: trace.text,
     colour: colour_of(trace, index),
-    marker: kind === "bars" ? "bar" : "line",
+    marker: "line",
   };
 }
 
@@ -141,21 +139,5 @@ function draw_trace(event, trace, colour) {
     before = x;
   }
   context.stroke();
-  context.restore();
-}
-
-// Each bar as wide as the bins lie apart.
-function draw_bars(event, trace, colour) {
-  const { drawingContext: context, dygraph: graph, plotArea: area } = event;
-  const places = trace.points.map(([x, , high]) => [place_x(graph, x), place_y(graph, high)]);
-  let width = 24;
-  for (let i = 1; i < places.length; i += 1) {
-    width = Math.min(width, places[i][0] - places[i - 1][0]);
-  }
-  context.save();
-  context.fillStyle = colour;
-  for (const [x, y] of places) {
-    context.fillRect(x - width / 2, y, Math.max(width - 1, 1), area.y + area.h - y);
-  }
   context.restore();
 }

@@ -5,6 +5,7 @@ hide or turn what stands beside them. The page's own sources hold nothing that c
 import re
 import time
 
+import played_figures
 import played_state
 from page_case import PageCase, run, texts_of
 from played_laboratory import PAGE
@@ -55,6 +56,14 @@ class HostileText(PageCase):
                   "flags": [{"name": t, "text": t, "meaning": t} for t in HOSTILE]}
         self.laboratory.measure(IMAGE, 1, result)
         self.laboratory.measure(IMAGE, 2, {**result, "step": 2, "valid": False, "problem": IMAGE})
+        figure = {**played_figures.panel(IMAGE, IMAGE), "band_label": IMAGE, "dots_label": IMAGE,
+                  "colour": IMAGE, "band": [[1, 2, 3], [2, 2, 3]], "dots": [[1, 2]]}
+        series = [played_figures.one_series(text, [[10, 1, 0.1, 1]], colour=text, marker=text,
+                                            dashes=text) for text in HOSTILE]
+        self.laboratory.figure_changes = {
+            "title": HOSTILE[5] + IMAGE, "subtitle": IMAGE,
+            "panels": [figure, {**figure, "x_label": HOSTILE[5], "y_label": HOSTILE[5],
+                                "series": series}]}
         self.laboratory.files = {IMAGE: "", "a.svg": "<svg/>"}
         self.laboratory.signal_changes = {"unit": IMAGE, "channel": "x_acceleration"}
 
@@ -94,6 +103,12 @@ class HostileText(PageCase):
         text = page.value("document.querySelector('[data-panel=flags]').textContent")
         self.assertIn(IMAGE, text)
         self.assertEqual(page.value(texts_of(".files a")), [IMAGE, "a.svg"])
+        page.wait_for("document.querySelectorAll('.picture .canvas').length === 4")
+        self.assertEqual(page.value(texts_of(".picture .y-label"))[0], IMAGE)
+        legends = page.value(texts_of(".picture .legend li span"))
+        self.assertIn(HOSTILE[1], legends)
+        self.assertIn("⟨U+202E⟩gnp.exe⟨U+2066⟩", legends)
+        self.assertLess(max(map(len, legends)), 130)
         page.value("document.querySelector('[data-step=\"1\"] button').click()")
         page.wait_for("document.querySelectorAll('[data-panel=budget] tbody tr').length === 5")
         self.assert_harmless(page)

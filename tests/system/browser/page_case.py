@@ -85,3 +85,10 @@ def text_of(selector):
 
 def texts_of(selector):
     return f"[...document.querySelectorAll({selector!r})].map(e => e.textContent)"
+
+
+def rows_of_chart(chart):
+    """What a chart of the page draws: rows of x and [low, y, high] of each layer."""
+    return (f"(g => [...Array(g.numRows()).keys()].map(r => [...Array(g.numColumns()).keys()]"
+            ".map(c => c === 0 ? g.getValue(r, c) : g.getValue(r, c) ?? [null])))"
+            f"(document.querySelectorAll('.canvas')[{chart}].graph)")

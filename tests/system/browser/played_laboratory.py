@@ -12,6 +12,7 @@ import threading
 import time
 import urllib.parse
 
+import played_figures
 import played_state as state
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
@@ -45,6 +46,8 @@ class Laboratory:
         self.signal_changes = {}
         self.stream_gap_s = 0.25
         self.files = {}
+        self.figure_changes = {}  # of every picture
+        self.figures_wait = None  # an event: no figures before it is set
 
     def now_ms(self):
         return time.time() * 1000 if self.origin_ms is None else self.origin_ms
@@ -122,7 +125,7 @@ class Laboratory:
                           "state": "done" if done else
                                    (tile["excitation"] if i + 1 == step_now else "open")})
         return self.stamped({
-            **tile, "sources": self.sources(name, now),
+            **tile, "sources": state.sources(self.last_message_ms.get(name, now)),
             "plan": {"run": tile["run"], "state": tile["state"], "message": "", "method":
                      tile["method"], "reference": "acs/reference", "sync_acs": "acs/sync",
                      "sync_dau": "dau/sync", "sync_dso": "", "dut": [state.CHANNEL],
@@ -130,32 +133,6 @@ class Laboratory:
             "now": {"step": step_now, "state": tile["excitation"], "begin_utc_ms": now - 3000,
                     "end_utc_ms": now + 7000, "time_left_s": 7.0},
             "messages": [e for e in self.events if e["bench"] == name]})
-
-    def sources(self, name, now):
-        def channel(title, quantity, unit, limit, peak=None):
-            return {"name": title, "quantity": quantity, "unit": unit, "minimum": -limit,
-                    "maximum": limit, "resolution": 1e-4, "level_peak": peak, "level_rms": None,
-                    "over_range": 0}
-
-        unit = state.METRE_PER_SECOND_SQUARED
-        common = {"lost_in_device": "0", "lost_in_transit": "0", "duplicates": "0",
-                  "rejected": "0", "stamps_not_trusted": "0", "dropped_in_service": "0",
-                  "causes": [], "buffer_fill": 0.02, "matched_readers": 2, "message": "",
-                  "last_message_utc_ms": self.last_message_ms.get(name, now), "state": "running"}
-        return [
-            {"source": "dau", "kind": "dau", "device": "SmartUp unit", "serial": "0xbccb0100",
-             "driver": "smartup", "host": "lab-1", "rate_hz": 999.97, "nominal_rate_hz": 1000.0,
-             "received": "1234567", "clock_uncertainty_s": 1e-6, "time_base": "utc", **common,
-             "lost_in_transit": "12", "causes": [{"name": "sequence gap", "value": "1"}],
-             "channels": [channel("x_acceleration", "acceleration", unit, 39.2, 9.3),
-                          channel("y_acceleration", "acceleration", unit, 39.2, 0.1),
-                          channel("z_acceleration", "acceleration", unit, 39.2, 38.9),
-                          channel("sync", "voltage", "\\volt", 10, 1.1)]},
-            {"source": "acs", "kind": "acs", "device": "laser vibrometer", "serial": "17",
-             "driver": "socket", "host": "lab-2", "rate_hz": 10000.2, "nominal_rate_hz": 10000.0,
-             "received": "9007199254740993", "clock_uncertainty_s": 5e-7, "time_base": "utc",
-             **common, "channels": [channel("reference", "acceleration", unit, 100, 10),
-                                    channel("sync", "voltage", "\\volt", 5, 0.5)]}]
 
     def run(self, name, run=None):
         is_over = self.is_over[name]
@@ -166,6 +143,19 @@ class Laboratory:
             "clock": [state.clock_report()] if is_over else [], "runs": self.runs[name],
             "files": [{"name": n, "bytes": len(t), "href": f"/files/{name}/run-1/{n}"}
                       for n, t in self.files.items()]})
+
+    def figures(self, name, run=None, channel="", bars="U"):
+        points = [p for p in self.points[name] if p["channel"] == channel]
+        if not points:
+            raise KeyError(channel)
+        is_over = self.is_over[name]
+        line = f"bench {name}, run {run}"
+        pictures = played_figures.of_channel(
+            channel, line, points, state.transfer(points)["points"], is_over, bars)
+        if is_over:
+            pictures += played_figures.of_clock(state.clock_report(), line)
+        return {"number": self.number, "bench": name, "run": run, "channel": channel,
+                "bars": bars, "pictures": [{**one, **self.figure_changes} for one in pictures]}
 
     def signal(self, name, source, channel, seconds, columns):
         amplitude = 9.2 if channel == "x_acceleration" else 0.5
@@ -239,6 +229,11 @@ class Handler(http.server.BaseHTTPRequestHandler):
             self.give(lab.bench(name))
         elif rest == ["run"]:
             self.give(lab.run(name, asked.get("run")))
+        elif rest == ["figures"]:
+            answer = lab.figures(name, **asked)
+            if lab.figures_wait is not None:
+                lab.figures_wait.wait()
+            self.give(answer)
         elif rest == ["budget"]:
             self.give(state.budget(asked["channel"], asked["step"], asked["repetition"]))
         elif rest == ["signal"]:

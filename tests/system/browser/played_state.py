@@ -100,6 +100,33 @@ def clock_report():
             "over_time": course}
 
 
+def sources(last_message_ms):
+    def channel(title, quantity, unit, limit, peak=None):
+        return {"name": title, "quantity": quantity, "unit": unit, "minimum": -limit,
+                "maximum": limit, "resolution": 1e-4, "level_peak": peak, "level_rms": None,
+                "over_range": 0}
+
+    unit = METRE_PER_SECOND_SQUARED
+    common = {"lost_in_device": "0", "lost_in_transit": "0", "duplicates": "0",
+              "rejected": "0", "stamps_not_trusted": "0", "dropped_in_service": "0",
+              "causes": [], "buffer_fill": 0.02, "matched_readers": 2, "message": "",
+              "last_message_utc_ms": last_message_ms, "state": "running"}
+    return [
+        {"source": "dau", "kind": "dau", "device": "SmartUp unit", "serial": "0xbccb0100",
+         "driver": "smartup", "host": "lab-1", "rate_hz": 999.97, "nominal_rate_hz": 1000.0,
+         "received": "1234567", "clock_uncertainty_s": 1e-6, "time_base": "utc", **common,
+         "lost_in_transit": "12", "causes": [{"name": "sequence gap", "value": "1"}],
+         "channels": [channel("x_acceleration", "acceleration", unit, 39.2, 9.3),
+                      channel("y_acceleration", "acceleration", unit, 39.2, 0.1),
+                      channel("z_acceleration", "acceleration", unit, 39.2, 38.9),
+                      channel("sync", "voltage", "\\volt", 10, 1.1)]},
+        {"source": "acs", "kind": "acs", "device": "laser vibrometer", "serial": "17",
+         "driver": "socket", "host": "lab-2", "rate_hz": 10000.2, "nominal_rate_hz": 10000.0,
+         "received": "9007199254740993", "clock_uncertainty_s": 5e-7, "time_base": "utc",
+         **common, "channels": [channel("reference", "acceleration", unit, 100, 10),
+                                channel("sync", "voltage", "\\volt", 5, 0.5)]}]
+
+
 def signal(seconds=2.0, columns=500, now_ms=BEGIN_UTC_MS, number=1, amplitude=9.2):
     drawn = random.Random(5)
     rows = []

@@ -15,10 +15,14 @@ import tempfile
 import threading
 import time
 import unittest
+import urllib.parse
+import urllib.request
 
 import chromium
 import page_case
-from page_case import connection_is, text_of
+import played_laboratory
+import played_state
+from page_case import connection_is, rows_of_chart, text_of
 
 PRESETS = ["bma280", "mpu9250-paper", "mpu9250-ptb"]
 DOMAIN = 140 + os.getpid() % 60
@@ -145,9 +149,51 @@ class RealLaboratory(unittest.TestCase):
                 self.assertEqual(numbers, [point[key] for key in (
                     "magnitude", "u_magnitude", "phase_rad", "u_phase_rad")], (channel, step))
                 compared += len(numbers)
+            compared += self.compare_figures(page, result, channel)
+        self.compare_description(result["bench"], channels[0])
         self.assert_quiet(page)
         page.close()
         return compared
+
+    def compare_figures(self, page, result, channel):
+        """What is drawn of magnitude and phase, repetitions and means with their bars."""
+        page.wait_for("(f => f.dataset.channel === " + repr(channel) + " && f.dataset.number === "
+                      "document.querySelector('.view').dataset.number)(document.querySelector("
+                      "'[data-panel=figures]'))")
+        of_channel = [m for m in result["transfer_function"] if m["channel"] == channel]
+        points = [p for p in result["points"] if p["channel"] == channel and p["valid"]]
+        compared = 0
+        for chart, (value, bar) in enumerate((("magnitude", "U_magnitude"),
+                                              ("unwrapped_phase_rad", "U_phase_rad"))):
+            drawn = page.value(rows_of_chart(chart))
+            cells = {(row[0], *cell) for row in drawn for cell in row[1:] if cell[0] is not None}
+            means = {(m["frequency_hz"], m[value] - m[bar], m[value], m[value] + m[bar])
+                     for m in of_channel}
+            self.assertGreater(len(means), 0)
+            self.assertLessEqual(means, cells, (channel, value))
+            compared += 4 * len(means)
+            if value == "magnitude":
+                own = {(p["frequency_hz"], *3 * [p["magnitude"]]) for p in points}
+                self.assertGreater(len(own), 0)
+                self.assertLessEqual(own, cells, channel)
+                compared += len(own)
+        return compared
+
+    def compare_description(self, bench, channel):
+        """The laboratory that is played describes figures with the members of the real one."""
+        asked = urllib.parse.urlencode({"channel": channel})
+        with urllib.request.urlopen(f"{self.address}api/bench/{bench}/figures?{asked}") as answer:
+            real = json.load(answer)
+        played = played_laboratory.example().figures("acc-2", "run-1", played_state.CHANNEL)
+        self.assertEqual(list(real), list(played))
+        names = [picture["name"] for picture in played["pictures"]]
+        self.assertGreaterEqual(len(real["pictures"]), 4)
+        for picture in real["pictures"]:
+            self.assertTrue(picture["name"].startswith(tuple(names)), picture["name"])
+        for level in (lambda a: a["pictures"], lambda a: a["pictures"][0]["panels"],
+                      lambda a: a["pictures"][0]["panels"][0]["series"]):
+            self.assertEqual({frozenset(one) for one in level(real)},
+                             {frozenset(one) for one in level(played)})
 
     def test_2_killed_bench_shows_and_its_successor_too(self):
         page = self.open()

@@ -3,9 +3,10 @@
 uncertainty leaves them, and every digit in the title."""
 
 import json
+import threading
 
 import played_state
-from page_case import PageCase, run, text_of, texts_of
+from page_case import PageCase, rows_of_chart, run, text_of, texts_of
 from played_laboratory import example
 
 
@@ -124,8 +125,71 @@ class Views(PageCase):
         self.assertEqual(page.value(texts_of("[data-panel=files] li a")),
                          ["result.json", "transfer_function.svg"])
         self.assertIn("612\u202f345 intervals", page.value(text_of("[data-field=clock_report]")))
-        for i in range(6):
-            self.assertGreater(page.value(drawn_pixels(i)), 200, f"chart {i} is empty")
+        self.assertEqual(page.value("document.querySelectorAll('.canvas').length"), 8)
+        for i in range(8):
+            page.wait_for(f"{drawn_pixels(i)} > 200")
+
+    def test_figures_are_drawn_as_they_are_described(self):
+        page = self.open("run/acc-2")
+        for bars in ("U", "u", "none"):
+            choose(page, bars)
+            described = self.laboratory.figures("acc-2", "run-1", played_state.CHANNEL,
+                                                bars)["pictures"]
+            panels = [panel for picture in described for panel in picture["panels"]]
+            page.wait_for(f"{texts_of('.legend')}[0]?.includes("
+                          f"{panels[0]['series'][0]['label'] + ' #1'!r})")
+            self.assertEqual(page.value(texts_of(".picture h3")), [p["title"] for p in described])
+            self.assertEqual(page.value(texts_of(".picture .y-label")),
+                             [panel["y_label"] for panel in panels])
+            self.assertEqual(page.value(texts_of(".picture .x-label")),
+                             [panel["x_label"] for panel in panels])
+            compared = 0
+            for chart, panel in enumerate(panels):
+                compared += self.compare_series(page, chart, panel)
+            self.assertGreater(compared, 500)
+
+    def compare_series(self, page, chart, panel):
+        """Every number of the panel's series is in the rows that the chart draws."""
+        rows = page.value(rows_of_chart(chart))
+        drawn = {(column, row[0], *cell) for row in rows for column, cell in enumerate(row[1:])
+                 if cell[0] is not None}
+        first = sum(bool(panel[kind]) for kind in ("band", "bars", "dots"))
+        points = [(first + column, x, y - half, y, y + half)
+                  for column, one in enumerate(panel["series"]) for x, y, half, _ in one["points"]]
+        self.assertLessEqual(set(points), drawn, panel["y_label"])
+        others = sum(len(panel[kind]) for kind in ("band", "bars", "dots"))
+        self.assertEqual(len(drawn), len(set(points)) + others)
+        return len(drawn)
+
+    def test_figures_belong_to_the_table_or_are_not_there(self):
+        page = self.open("run/acc-1")
+        number = "document.querySelector('[data-panel=figures]').dataset.number"
+        page.wait_for(f"{number} && {number} === document.querySelector('.view').dataset.number")
+        self.laboratory.figures_wait = threading.Event()
+        self.laboratory.measure("acc-1", 25)
+        self.laboratory.changed()
+        page.wait_for("document.querySelectorAll('[data-step]').length === 25", 3)
+        page.value("window.figures = document.querySelector('[data-panel=figures]')")
+        page.value("location.hash = '#/run/acc-2'")
+        page.wait_for("document.querySelectorAll('[data-step]').length === 51")
+        self.assertEqual(page.value("document.querySelectorAll('.canvas').length"), 0)
+        self.laboratory.figures_wait.set()
+        page.wait_for(f"{drawn_pixels(0)} > 200")
+        self.assertEqual(page.value("figures.querySelectorAll('.canvas').length"), 0)
+        self.assertIn("bench acc-2", page.value(text_of(".picture .quiet")))
+
+    def test_figures_that_cannot_be_had_leave_the_table(self):
+        self.allowed_problems = ["404"]
+        page = self.open("run/acc-1")
+        page.wait_for("document.querySelectorAll('.picture').length === 2")
+        self.laboratory.figures = lambda *_, **__: {}["figures"]
+        self.laboratory.measure("acc-1", 25)
+        self.laboratory.changed()
+        page.wait_for(f"{text_of('[data-panel=figures]')}.includes('No figures: there is no')")
+        self.assertEqual(page.value("document.querySelectorAll('.picture').length"), 0)
+        self.assertEqual(page.value("document.querySelectorAll('[data-step]').length"), 25)
+        del self.laboratory.figures
+        page.wait_for("document.querySelectorAll('.picture').length === 2")
 
     def test_run_grows_point_by_point_and_shows_what_failed(self):
         self.laboratory.measure("acc-1", 24, played_state.invalid_point(24))
@@ -195,6 +259,13 @@ def digit(text):
     mantissa, _, exponent = text.partition("e")
     places = len(mantissa.partition(".")[2])
     return (0.5 + 1e-6) * 10 ** (int(exponent or 0) - places)
+
+
+def choose(page, value):
+    """An option of the only list that has it."""
+    page.value(f"(s => {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }})"
+               "([...document.querySelectorAll('select')].find(s => [...s.options].some(o => "
+               f"o.value === {value!r})))")
 
 
 def drawn_pixels(chart):
