@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include <fmt/core.h>
 
@@ -19,6 +18,8 @@
 
 namespace dyncal::services {
 namespace {
+
+constexpr std::size_t max_bytes = std::size_t{4} << 20U;
 
 NetworkSettings read_network(TomlTable table) {
   NetworkSettings network;
@@ -76,10 +77,10 @@ std::optional<TomlTable> required_table(TomlTable& root, const std::string& key)
 }
 
 BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& path,
-                      NamedFiles::Place place, std::string& problem) {
+                      NamedFiles::Place place, BenchProblems& problems) {
   BenchFile file;
   NamedFiles files(std::filesystem::absolute(path).parent_path(), place);
-  TomlTable root(parsed, "", path.string(), problem);
+  TomlTable root(parsed, "", path.string(), problems);
   file.bench = root.required_text("bench");
   check_name(root, "bench", file.bench);
   if (auto network = root.table("network")) {
@@ -93,6 +94,9 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   }
   if (auto sources = required_table(root, "sources")) {
     file.sources = read_sources(std::move(*sources), files);
+    if (file.sources.empty()) {
+      root.refuse("sources", "holds no source: a bench needs its instruments as [sources.NAME]");
+    }
   }
   if (auto method = required_table(root, "method")) {
     file.method = read_method(std::move(*method), file.sources);
@@ -112,6 +116,35 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   return file;
 }
 
+// Or why there is none.
+tl::expected<std::string, std::string> read_text(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) {
+    return tl::unexpected<std::string>("is a folder; name the bench file in it");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(stream ? max_bytes + 1 : 0, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  const auto length = static_cast<std::size_t>(stream.gcount());
+  if (length > max_bytes) {
+    return tl::unexpected<std::string>(
+        "has more than 4 MiB, which no bench file needs; is it another file?");
+  }
+  if (!stream.eof()) {
+    return tl::unexpected<std::string>(
+        "cannot read this bench file; does it exist, and may you read it?");
+  }
+  text.resize(length);
+  return text;
+}
+
+Expected<BenchFile> valid(BenchFileReading reading) {
+  if (!reading.problems.empty()) {
+    return fail(ErrorCode::bad_file, reading.problems.front().text());
+  }
+  return std::move(reading.file);
+}
+
 } // namespace
 
 const SourceSettings* BenchFile::source(const std::string& name) const {
@@ -121,17 +154,14 @@ const SourceSettings* BenchFile::source(const std::string& name) const {
   return found == sources.end() ? nullptr : &*found;
 }
 
-Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path,
-                                     NamedFiles::Place place) {
-  std::string problem;
-  BenchFile file;
-  const auto parsed = parse_toml(text, path);
-  if (!parsed) {
-    return fail(parsed.error());
-  }
-  file = read_tables(*parsed, path, place, problem);
-  if (!problem.empty()) {
-    return fail(ErrorCode::bad_file, problem);
+BenchFileReading parse_whole_bench_file(const std::string& text, const std::filesystem::path& path,
+                                        NamedFiles::Place place) {
+  BenchFileReading reading;
+  BenchFile& file = reading.file;
+  if (const auto parsed = parse_toml(text, path)) {
+    file = read_tables(*parsed, path, place, reading.problems);
+  } else {
+    reading.problems.push_back(parsed.error());
   }
   file.path = path;
   file.text = text;
@@ -139,19 +169,27 @@ Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesys
   for (SourceSettings& source : file.sources) {
     source.origin.sha256 = file.sha256;
   }
-  return file;
+  return reading;
+}
+
+BenchFileReading read_whole_bench_file(const std::filesystem::path& path, NamedFiles::Place place) {
+  const auto text = read_text(path);
+  if (text) {
+    return parse_whole_bench_file(*text, path, place);
+  }
+  BenchFileReading reading;
+  reading.file.path = path;
+  reading.problems.push_back({path.string(), BenchProblem::whole_file, "", text.error()});
+  return reading;
+}
+
+Expected<BenchFile> parse_bench_file(const std::string& text, const std::filesystem::path& path,
+                                     NamedFiles::Place place) {
+  return valid(parse_whole_bench_file(text, path, place));
 }
 
 Expected<BenchFile> read_bench_file(const std::filesystem::path& path, NamedFiles::Place place) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: cannot read this bench file; does it exist, and may you read it?",
-                            path.string()));
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_bench_file(text.str(), path, place);
+  return valid(read_whole_bench_file(path, place));
 }
 
 } // namespace dyncal::services

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "analysis/instrument/reference_calibration.hpp"
+#include "services/bench/bench_problem.hpp"
 #include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
@@ -128,5 +129,19 @@ read_bench_file(const std::filesystem::path& path,
 [[nodiscard]] Expected<BenchFile>
 parse_bench_file(const std::string& text, const std::filesystem::path& path,
                  NamedFiles::Place place = NamedFiles::Place::as_named);
+
+// The same two with everything that is not valid, in the order of the tables; where there is a
+// problem, `file` holds what could be read.
+struct BenchFileReading {
+  BenchFile file;
+  BenchProblems problems;
+};
+
+[[nodiscard]] BenchFileReading
+read_whole_bench_file(const std::filesystem::path& path,
+                      NamedFiles::Place place = NamedFiles::Place::as_named);
+[[nodiscard]] BenchFileReading
+parse_whole_bench_file(const std::string& text, const std::filesystem::path& path,
+                       NamedFiles::Place place = NamedFiles::Place::as_named);
 
 } // namespace dyncal::services

@@ -14,15 +14,22 @@ constexpr int max_attempts = 10;
 void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
   const std::size_t frequencies = excitation.frequencies_hz.size();
   if (excitation.levels_m_s2.size() == 1) {
+    if (excitation.levels_m_s2.front() <= 0.0) {
+      table.refuse("level", "must be positive, in m/s^2");
+    }
     excitation.levels_m_s2.resize(frequencies, excitation.levels_m_s2.front());
+  }
+  if (table.refused("frequencies_hz") || table.refused("level")) {
+    return;
   }
   if (excitation.levels_m_s2.size() != frequencies) {
     table.refuse("level", fmt::format("lists {} levels for {} frequencies",
                                       excitation.levels_m_s2.size(), frequencies));
   }
-  if (std::any_of(excitation.levels_m_s2.begin(), excitation.levels_m_s2.end(),
-                  [](double level) { return level <= 0.0; })) {
-    table.refuse("level", "must be positive, in m/s^2");
+  for (std::size_t i = 0; i < excitation.levels_m_s2.size(); ++i) {
+    if (excitation.levels_m_s2[i] <= 0.0) {
+      table.refuse_entry("level", i, "must be positive, in m/s^2");
+    }
   }
 }
 
@@ -54,10 +61,11 @@ ExcitationSettings read_excitation(TomlTable table) {
         "frequencies_hz",
         "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");
   }
-  for (const std::string& text : excitation.frequencies_hz) {
+  for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
+    const std::string& text = excitation.frequencies_hz[i];
     if (const auto frequency = analysis::Frequency::parse(text); !frequency) {
-      table.refuse("frequencies_hz",
-                   fmt::format("holds \"{}\", which is not a positive number in Hz", text));
+      table.refuse_entry("frequencies_hz", i,
+                         fmt::format("holds \"{}\", which is not a positive number in Hz", text));
     }
   }
   excitation.levels_m_s2 = table.numbers("level", "m/s^2");

@@ -15,23 +15,28 @@ using Sources = std::vector<SourceSettings>;
 
 constexpr int max_shots = 1000;
 
+// `entry` of a list; the key itself without it.
 ChannelName parse_role(TomlTable& table, const std::string& key, const Sources& sources,
-                       const std::string& text) {
+                       const std::string& text, std::optional<std::size_t> entry = std::nullopt) {
+  const auto refuse = [&](const std::string& what) {
+    entry ? table.refuse_entry(key, *entry, what) : table.refuse(key, what);
+  };
   const auto name = parse_channel_name(text);
   if (!name) {
-    table.refuse(
-        key, fmt::format("is \"{}\" but must be \"source/channel\", for example \"acs/reference\"",
-                         text));
+    refuse(fmt::format("is \"{}\" but must be \"source/channel\", for example \"acs/reference\"",
+                       text));
     return {};
   }
-  if (std::none_of(sources.begin(), sources.end(),
+  if (!sources.empty() && // else [sources] was refused
+      std::none_of(sources.begin(), sources.end(),
                    [&](const SourceSettings& source) { return source.name == name->source; })) {
     std::vector<std::string> names;
     for (const SourceSettings& source : sources) {
       names.push_back(source.name);
     }
-    table.refuse(key, fmt::format("names source '{}', which [sources] does not have (it has: {})",
-                                  name->source, fmt::join(names, ", ")));
+    refuse(fmt::format("names source '{}', which [sources] does not have (it has: {})",
+                       name->source, fmt::join(names, ", ")));
+    return {}; // what other roles have in common with it cannot be judged
   }
   return *name;
 }
@@ -41,8 +46,9 @@ ChannelName read_role(TomlTable& table, const std::string& key, const Sources& s
 }
 
 void read_dut(TomlTable& table, const Sources& sources, MethodSettings& method) {
-  for (const std::string& text : table.texts("dut")) {
-    method.dut.push_back(parse_role(table, "dut", sources, text));
+  const std::vector<std::string> names = table.texts("dut");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    method.dut.push_back(parse_role(table, "dut", sources, names[i], i));
   }
 }
 
@@ -118,7 +124,7 @@ void check_roles(TomlTable& table, const MethodSettings& method) {
   if (!problem) {
     problem = find_repeated_channel(roles);
   }
-  if (problem) {
+  if (problem && !table.refused(problem->role)) {
     table.refuse(problem->role, problem->sentence);
   }
 }

@@ -87,7 +87,8 @@ struct SourceSettings {
   std::map<std::string, std::string> channels; // device's name -> ours
   std::map<std::string, std::string> units;    // our name -> D-SI
   drivers::TimeBase time_base = drivers::TimeBase::utc;
-  std::string where; // "bench.toml:21", for messages
+  std::optional<double> nominal_rate_hz{}; // of an instrument, as it is set: for checks beforehand
+  std::string where;                       // "bench.toml:21", for messages
   BenchFileOrigin origin;
 
   // The settings of the driver, nullptr when the source has another one.

@@ -1,5 +1,7 @@
 #include "services/bench/source_table.hpp"
 
+#include <set>
+
 #include <fmt/core.h>
 
 #include "services/bench/bench_name.hpp"
@@ -35,13 +37,17 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFil
 }
 
 void read_units(TomlTable& table, SourceSettings& source) {
+  std::size_t entry = 0;
   for (const auto& [channel, unit] : table.text_map("units")) {
+    ++entry;
     if (const auto d_si = to_d_si(unit)) {
       source.units.emplace(channel, *d_si);
     } else {
-      table.refuse("units", fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI "
-                                        "nor a known short form such as \"m/s^2\" or \"V\"",
-                                        channel, unit));
+      table.refuse_entry(
+          "units", entry,
+          fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI nor a known short "
+                      "form such as \"m/s^2\" or \"V\"",
+                      channel, unit));
     }
   }
 }
@@ -57,12 +63,21 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
                      .serial = table.text("serial"),
                      .firmware = table.text("firmware")};
   source.channels = table.text_map("channels");
+  if (driver == "smartup" || driver == "socket") { // others have a rate of their own
+    source.nominal_rate_hz = table.optional_number("nominal_rate_hz", "Hz");
+    if (source.nominal_rate_hz && *source.nominal_rate_hz <= 0.0) {
+      table.refuse("nominal_rate_hz", "must be positive, in Hz");
+    }
+  }
   read_units(table, source);
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
-  source.origin.settings = table.lines_without({"play"}); // how fast changes no sample
+  // What changes no sample is left out: how fast a file is played, and a rate to check against.
+  source.origin.settings = table.lines_without(
+      source.is<CanSourceSettings>() ? std::set<std::string>{"play"}
+                                     : std::set<std::string>{"play", "nominal_rate_hz"});
   table.finish();
   return source;
 }

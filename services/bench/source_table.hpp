@@ -1,5 +1,10 @@
 // The table [sources] of a bench file: one source a table, with the keys that all have (driver,
-// channels, units, time_base) and those of its driver. Any thread.
+// channels, units, time_base) and those of its driver. Instruments (smartup, socket) may have
+//
+//   nominal_rate_hz = 1000.0   as the instrument is set; 'dyncal check' holds the excitation list
+//                              against half of it, and nothing else uses it
+//
+// Any thread.
 #pragma once
 
 #include <filesystem>

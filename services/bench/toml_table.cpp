@@ -12,6 +12,12 @@
 namespace dyncal::services {
 namespace {
 
+constexpr std::size_t whole_key = std::numeric_limits<std::size_t>::max();
+
+std::size_t line_of(const toml::source_region& region) {
+  return std::max(region.begin.line, toml::source_index{1});
+}
+
 std::string unit_phrase(const std::string& unit) {
   return unit.empty() ? "a number" : fmt::format("a number in {}", unit);
 }
@@ -52,8 +58,8 @@ void add_lines(const toml::table& table, const std::string& prefix,
 } // namespace
 
 TomlTable::TomlTable(const toml::table& table, std::string name, std::string file,
-                     std::string& problem)
-    : table_(table), name_(std::move(name)), file_(std::move(file)), problem_(problem) {}
+                     BenchProblems& problems)
+    : table_(table), name_(std::move(name)), file_(std::move(file)), problems_(problems) {}
 
 const toml::node* TomlTable::find(const std::string& key) {
   known_.insert(key);
@@ -81,17 +87,41 @@ bool TomlTable::has(const std::string& key) const {
   return table_.contains(key);
 }
 
-std::string TomlTable::where(const std::string& key) const {
+const toml::source_region& TomlTable::region(const std::string& key) const {
   const toml::node* found = table_.get(key);
-  const toml::source_region& region = found != nullptr ? found->source() : table_.source();
-  return fmt::format("{}:{}", file_, std::max(region.begin.line, toml::source_index{1}));
+  return found != nullptr ? found->source() : table_.source();
+}
+
+std::string TomlTable::where(const std::string& key) const {
+  return fmt::format("{}:{}", file_, line_of(region(key)));
 }
 
 void TomlTable::refuse(const std::string& key, const std::string& what) {
-  std::string& place = table_.contains(key) ? problem_ : about_absent_key_;
-  if (place.empty()) {
-    place = fmt::format("{}: key '{}' {}", where(key), full_name(key), what);
+  if (!refused_.emplace(key, whole_key).second) {
+    return;
   }
+  if (table_.contains(key)) {
+    problems_.push_back({file_, line_of(region(key)), full_name(key), what});
+  } else {
+    about_absent_keys_.emplace(key, what);
+    absent_keys_.push_back(key);
+  }
+}
+
+void TomlTable::refuse_entry(const std::string& key, std::size_t entry, const std::string& what) {
+  if (refused_.contains({key, whole_key}) || !refused_.emplace(key, entry).second) {
+    return;
+  }
+  const toml::node* found = table_.get(key);
+  const toml::array* list = found != nullptr ? found->as_array() : nullptr;
+  const toml::node* one = list != nullptr ? list->get(entry) : nullptr;
+  problems_.push_back(
+      {file_, line_of(one != nullptr ? one->source() : region(key)), full_name(key), what});
+}
+
+bool TomlTable::refused(const std::string& key) const {
+  const auto found = refused_.lower_bound({key, 0});
+  return found != refused_.end() && found->first == key;
 }
 
 std::string TomlTable::required_text(const std::string& key) {
@@ -261,7 +291,7 @@ std::optional<TomlTable> TomlTable::table(const std::string& key) {
     return std::nullopt;
   }
   if (const toml::table* inner = found->as_table()) {
-    return TomlTable(*inner, full_name(key), file_, problem_);
+    return TomlTable(*inner, full_name(key), file_, problems_);
   }
   refuse(key, "must be a table");
   return std::nullopt;
@@ -293,10 +323,13 @@ void TomlTable::finish() {
       const std::string hint = nearest_name(key, known_);
       refuse(key,
              hint.empty() ? "is not known" : fmt::format("is not known; did you mean '{}'?", hint));
+      about_absent_keys_.erase(hint);
     }
   }
-  if (problem_.empty()) {
-    problem_ = about_absent_key_;
+  for (const std::string& key : absent_keys_) {
+    if (const auto about = about_absent_keys_.find(key); about != about_absent_keys_.end()) {
+      problems_.push_back({file_, line_of(region(key)), full_name(key), about->second});
+    }
   }
 }
 

@@ -1,8 +1,8 @@
 // Reads one table of a TOML file and refuses what it does not know.
 //
-// Every getter records that its key is known; `finish` then refuses the keys nobody asked for. The
-// first problem is kept, later ones are ignored, so a reader asks for everything and looks at
-// `problem` once. Belongs to one thread; the toml::table must outlive it.
+// Every getter records that its key is known; `finish` then refuses the keys nobody asked for. All
+// problems are collected, the first of every key or entry of a list: what follows from it tells
+// nothing new. Belongs to one thread; the toml::table must outlive it.
 #pragma once
 
 #include <map>
@@ -14,14 +14,15 @@
 #include <toml++/toml.h>
 
 #include "services/bench/asked_keys.hpp"
+#include "services/bench/bench_problem.hpp"
 
 namespace dyncal::services {
 
 class TomlTable {
 public:
-  // `name` is the dotted name of the table ("" for the file itself), `problem` the place for the
-  // first problem found.
-  TomlTable(const toml::table& table, std::string name, std::string file, std::string& problem);
+  // `name` is the dotted name of the table ("" for the file itself); what is found is added to
+  // `problems`.
+  TomlTable(const toml::table& table, std::string name, std::string file, BenchProblems& problems);
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] std::string required_text(const std::string& key);
@@ -45,12 +46,15 @@ public:
   // Every key but those, one "key = value" a line (services/contract/bench_file_origin.hpp).
   [[nodiscard]] std::string lines_without(const std::set<std::string>& keys) const;
 
-  // Refuses keys that were not asked for; then what was said of keys that are not there, which a
-  // misspelt one may explain.
+  // Refuses keys that were not asked for; then what was said of keys that are not there, unless a
+  // misspelt one explains it.
   void finish();
-  // Records "FILE:LINE: key 'table.key' <what>" unless there is a problem already; at `finish` if
-  // the key is not there.
+  // Records "FILE:LINE: key 'table.key' <what>"; at `finish` if the key is not there.
   void refuse(const std::string& key, const std::string& what);
+  // The same of one entry of a list or table.
+  void refuse_entry(const std::string& key, std::size_t entry, const std::string& what);
+  // Whether the key was refused, so that nothing can be concluded from its value.
+  [[nodiscard]] bool refused(const std::string& key) const;
   [[nodiscard]] std::string where(const std::string& key) const; // "FILE:LINE"
 
 private:
@@ -58,13 +62,16 @@ private:
   [[nodiscard]] std::string full_name(const std::string& key) const;
   // Tells whoever collects what is asked for; `what.name` is filled in here.
   void tell(const std::string& key, AskedKey what) const;
+  [[nodiscard]] const toml::source_region& region(const std::string& key) const;
 
   const toml::table& table_;
   std::string name_;
   std::string file_;
-  std::string& problem_;
+  BenchProblems& problems_;
   std::set<std::string> known_;
-  std::string about_absent_key_; // the first sentence that `finish` is to record
+  std::set<std::pair<std::string, std::size_t>> refused_; // keys and their entries
+  std::map<std::string, std::string> about_absent_keys_;  // what `finish` is to record
+  std::vector<std::string> absent_keys_;                  // in the order of the refusals
 };
 
 } // namespace dyncal::services

@@ -56,10 +56,11 @@ std::optional<std::size_t> line_with_foreign_letter(std::string_view text) {
 
 } // namespace
 
-Expected<toml::table> parse_toml(std::string_view text, const std::filesystem::path& path) {
+tl::expected<toml::table, BenchProblem> parse_toml(std::string_view text,
+                                                   const std::filesystem::path& path) {
   const auto refused = [&](std::size_t line, std::string_view reason) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}:{}: not valid TOML: {}", path.string(), line, reason));
+    return tl::unexpected(
+        BenchProblem{path.string(), line, "", fmt::format("not valid TOML: {}", reason)});
   };
   if (const auto line = line_with_foreign_letter(text)) {
     return refused(*line, "outside of quotation marks and comments only the letters A to Z and a "

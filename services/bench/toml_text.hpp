@@ -1,6 +1,6 @@
 // The text of a TOML file (1.0), parsed: what every file that a person writes goes through.
 //
-// Fails (bad_file) with file, line and reason. Letters other than ASCII are allowed in strings and
+// Fails with file, line and reason. Letters other than ASCII are allowed in strings and
 // comments alone, as TOML has it; they are refused here, before the parser, because that of
 // toml++ 3.3 is not defined for some of them. Any thread.
 #pragma once
@@ -8,13 +8,14 @@
 #include <filesystem>
 #include <string_view>
 
+#include <tl/expected.hpp>
 #include <toml++/toml.h>
 
-#include "services/error.hpp"
+#include "services/bench/bench_problem.hpp"
 
 namespace dyncal::services {
 
-[[nodiscard]] Expected<toml::table> parse_toml(std::string_view text,
-                                               const std::filesystem::path& path);
+[[nodiscard]] tl::expected<toml::table, BenchProblem> parse_toml(std::string_view text,
+                                                                 const std::filesystem::path& path);
 
 } // namespace dyncal::services

@@ -8,6 +8,7 @@
 #include "services/acs/played_source.hpp"
 #include "services/command/analyse_recording.hpp"
 #include "services/command/run_command.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/exchange/opened_recording.hpp"
 #include "services/replay/file_input.hpp"
@@ -156,8 +157,9 @@ Expected<BenchFile> read_bench_or_folder(const std::filesystem::path& path) {
 }
 
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+  const WorkProgress progress("reading");
   if (is_recording(command.bench_file)) {
-    return analyse_recording(command, stop);
+    return analyse_recording(command, stop, progress.count());
   }
   if (command.recipe || !command.run.empty()) {
     return fail(ErrorCode::bad_argument,
@@ -181,7 +183,8 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
-                          .clock_to_the_end = true});
+                          .clock_to_the_end = true,
+                          .count = progress.count()});
   auto inputs = open_inputs(*bench, evaluator, outcome);
   if (!inputs) {
     return fail(inputs.error());

@@ -32,8 +32,9 @@ Expected<OtherRecipe> read_recipe(const std::filesystem::path& file) {
 
 } // namespace
 
-Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std::stop_token& stop) {
-  RecordedRunWish wish{.run = command.run, .recipe = {}};
+Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std::stop_token& stop,
+                                       const SharedWorkCount& count) {
+  RecordedRunWish wish{.run = command.run, .recipe = {}, .count = count};
   std::optional<AdcFile> adc_file;
   if (command.recipe) {
     auto other = read_recipe(*command.recipe);

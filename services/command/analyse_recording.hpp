@@ -7,11 +7,13 @@
 #include "services/command/analyse_command.hpp"
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
-// Prints what is damaged or missing on standard error.
+// Counts steps and results. Prints what is damaged or missing on standard error.
 [[nodiscard]] Expected<RunOutcome> analyse_recording(const AnalyseCommand& command,
-                                                     const std::stop_token& stop);
+                                                     const std::stop_token& stop,
+                                                     const SharedWorkCount& count);
 
 } // namespace dyncal::services

@@ -11,6 +11,7 @@
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/frequency_estimate.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 #include "services/report/rounding.hpp"
@@ -178,12 +179,11 @@ void print_table(const Fit& fit) {
   }
 }
 
-} // namespace
-
-int run_fit(const FitCommand& command) {
+Expected<Fit> fit_file(const FitCommand& command) {
+  const WorkProgress progress("reading and fitting");
   auto series = read_series_file(command.file);
   if (!series) {
-    return report_error(series.error());
+    return fail(series.error());
   }
   Fit fit;
   if (command.nominal_rate_hz) {
@@ -193,20 +193,30 @@ int run_fit(const FitCommand& command) {
   }
   const auto columns = chosen_columns(command, *series, fit.names);
   if (!columns) {
-    return report_error(columns.error());
+    return fail(columns.error());
   }
   if (series->stamps_ns.empty()) {
-    return report_error(
-        {ErrorCode::bad_file, fmt::format("{}: the file has no samples", command.file.string())});
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: the file has no samples", command.file.string()));
   }
   fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
   const auto fitted = find_frequency(command, *series, *columns, fit).and_then([&] {
     return fit_columns(command, *series, *columns, fit);
   });
   if (!fitted) {
-    return report_error(at(command, fitted.error()));
+    return fail(at(command, fitted.error()));
   }
-  command.json ? print_json(fit) : print_table(fit);
+  return fit;
+}
+
+} // namespace
+
+int run_fit(const FitCommand& command) {
+  const auto fit = fit_file(command);
+  if (!fit) {
+    return report_error(fit.error());
+  }
+  command.json ? print_json(*fit) : print_table(*fit);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/clock/sample_clock.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 
@@ -122,7 +123,10 @@ void print_table(const analysis::SampleClockStatistics& clock) {
 } // namespace
 
 int run_intervals(const IntervalsCommand& command) {
-  const auto series = read_series_file(command.file);
+  const auto series = [&] {
+    const WorkProgress progress("reading");
+    return read_series_file(command.file);
+  }();
   if (!series) {
     return report_error(series.error());
   }

@@ -6,20 +6,20 @@
 #include <CLI/CLI.hpp>
 
 #include "services/command/analyse_command.hpp"
+#include "services/command/bench_file_options.hpp"
 #include "services/command/calibrate_options.hpp"
 #include "services/command/compare_command.hpp"
 #include "services/command/demo_command.hpp"
-#include "services/command/doctor_command.hpp"
 #include "services/command/document_options.hpp"
 #include "services/command/figure_options.hpp"
 #include "services/command/fit_command.hpp"
 #include "services/command/intervals_command.hpp"
 #include "services/command/keep_options.hpp"
+#include "services/command/laboratory_options.hpp"
 #include "services/command/model_command.hpp"
 #include "services/command/recording_options.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
-#include "services/command/watch_command.hpp"
 #include "services/program/command_line.hpp"
 #include "services/run/output_guard.hpp"
 #include "services/version.hpp"
@@ -100,29 +100,6 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
                    "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
       ->check(CLI::IsMember({"500k", "1M", "fd-5M"}))
       ->capture_default_str();
-}
-
-void add_watch(CLI::App& app, WatchCommand& watch) {
-  CLI::App* command = app.add_subcommand(
-      "watch", "show benches, sources, rates, losses, results and their flags as they come");
-  command->add_option("--bench", watch.bench, "only this bench (default: all)");
-  command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
-      ->check(CLI::PositiveNumber);
-  add_network_options(*command, watch.network);
-}
-
-void add_doctor(CLI::App& app, DoctorCommand& doctor) {
-  CLI::App* command = app.add_subcommand(
-      "doctor", "look at laboratory, network and this host, and say what is wrong and what to do");
-  command->add_option("BENCH.toml", doctor.bench_file,
-                      "bench file that the services should have read");
-  command->add_option("--seconds", doctor.seconds, "look for this time")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_flag("--json", doctor.json, "print JSON");
-  command->footer(
-      "Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line.");
-  add_network_options(*command, doctor.network);
 }
 
 void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
@@ -285,6 +262,7 @@ void add_guard_output(CLI::App& app, std::string& generator) {
 
 struct Commands {
   AnalyseCommand analyse;
+  BenchFileCommands bench_files;
   CalibrateCommands calibrate;
   CompareCommand compare;
   TriaxialCommand triaxial;
@@ -297,8 +275,7 @@ struct Commands {
   RecordingCommands recordings;
   RunCommand run;
   StoreCommands store;
-  WatchCommand watch;
-  DoctorCommand doctor;
+  LaboratoryCommands laboratory;
 };
 
 int execute(const CLI::App& app, const Commands& commands) {
@@ -313,6 +290,9 @@ int execute(const CLI::App& app, const Commands& commands) {
   }
   if (has_document_command(app)) {
     return run_document_command(app, commands.documents);
+  }
+  if (const auto status = run_bench_file_command(app, commands.bench_files)) {
+    return *status;
   }
   if (app.got_subcommand("fit")) {
     return run_fit(commands.fit);
@@ -345,11 +325,8 @@ int execute(const CLI::App& app, const Commands& commands) {
   if (app.got_subcommand("demo")) {
     return run_demo(commands.demo, stop);
   }
-  if (app.got_subcommand("doctor")) {
-    return run_doctor(commands.doctor, stop);
-  }
-  if (app.got_subcommand("watch")) {
-    return run_watch(commands.watch, stop);
+  if (const auto status = run_laboratory_command(app, commands.laboratory, stop)) {
+    return *status;
   }
   const auto outcome = conduct_run(commands.run, stop);
   return outcome ? conclude(*outcome) : report_error(outcome.error());
@@ -366,8 +343,8 @@ int main(int argc, char** argv) {
   Commands commands;
   add_demo(app, commands.demo);
   add_run(app, commands.run);
-  add_watch(app, commands.watch);
-  add_doctor(app, commands.doctor);
+  add_bench_files(app, commands.bench_files);
+  add_laboratory(app, commands.laboratory);
   add_store(app, commands.store);
   add_analyse(app, commands.analyse);
   add_recordings(app, commands.recordings);

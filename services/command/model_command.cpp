@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/command/work_progress.hpp"
 #include "services/error.hpp"
 #include "services/model/channel_model.hpp"
 #include "services/model/model_figure.hpp"
@@ -47,10 +48,12 @@ Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
   if (auto checked = check_options(command); !checked) {
     return fail(checked.error());
   }
+  const WorkProgress progress("reading");
   auto responses = read_responses(command.results, {command.channels, command.include_flagged});
   if (!responses) {
     return fail(responses.error());
   }
+  progress.count()->begin("fitting", "channels", responses->size());
   std::vector<ChannelModel> models;
   for (MeasuredResponse& response : *responses) {
     auto model = model_channel(std::move(response), request_of(command));
@@ -58,6 +61,7 @@ Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
       return fail(model.error());
     }
     models.push_back(std::move(*model));
+    progress.count()->add_done();
   }
   return models;
 }

@@ -6,6 +6,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "services/recording/repair.hpp"
@@ -55,11 +56,30 @@ struct Contents {
   }
 };
 
+// By the megabytes that are behind.
+Expected<recording::ScanReport> read_all(const RecordingCommand& command,
+                                         recording::ScanEvents events) {
+  const WorkProgress progress("reading");
+  auto reader = recording::RecordingReader::open(command.file);
+  if (!reader) {
+    return fail(reader.error());
+  }
+  std::error_code unknown;
+  const auto size = std::filesystem::file_size(command.file, unknown);
+  progress.count()->begin("reading", "MB", unknown ? 0 : size / 1'000'000);
+  events.message = [&, take = std::move(events.message)](const recording::MessageInFile& message) {
+    progress.count()->set_done(message.chunk / 1'000'000);
+    if (take) {
+      take(message);
+    }
+  };
+  return reader->scan(events);
+}
+
 } // namespace
 
 int run_recording_check(const RecordingCommand& command) {
-  auto reader = recording::RecordingReader::open(command.file);
-  const auto report = reader ? reader->scan({}) : tl::unexpected(reader.error());
+  const auto report = read_all(command, {});
   if (!report) {
     return report_error(report.error());
   }
@@ -78,7 +98,10 @@ int run_recording_repair(const RecordingCommand& command) {
     repaired = command.file;
     repaired.replace_extension(".repaired.mcap");
   }
-  const auto report = recording::repair(command.file, repaired, software_version());
+  const auto report = [&] {
+    const WorkProgress progress("repairing");
+    return recording::repair(command.file, repaired, software_version());
+  }();
   if (!report) {
     return report_error(report.error());
   }
@@ -88,28 +111,26 @@ int run_recording_repair(const RecordingCommand& command) {
 }
 
 int run_recording_info(const RecordingCommand& command) {
-  auto reader = recording::RecordingReader::open(command.file);
-  if (!reader) {
-    return report_error(reader.error());
-  }
   Contents contents;
-  const auto report = reader->scan(
-      {.message = [&](const recording::MessageInFile& message) { contents.add(message); },
-       .attachment =
-           [](const recording::Attachment& attachment) {
-             fmt::print("attachment {} ({} bytes)\n", attachment.name, attachment.data.size());
-           },
-       .metadata =
-           [](const recording::Metadata& metadata) {
-             fmt::print("{}\n", metadata.name);
-             for (const auto& [key, value] : metadata.entries) {
-               fmt::print("  {} = {}\n", key, value);
-             }
-           }});
+  std::string beside; // attachments and metadata
+  const auto report = read_all(
+      command, {.message = [&](const recording::MessageInFile& message) { contents.add(message); },
+                .attachment =
+                    [&](const recording::Attachment& attachment) {
+                      beside += fmt::format("attachment {} ({} bytes)\n", attachment.name,
+                                            attachment.data.size());
+                    },
+                .metadata =
+                    [&](const recording::Metadata& metadata) {
+                      beside += metadata.name + "\n";
+                      for (const auto& [key, value] : metadata.entries) {
+                        beside += fmt::format("  {} = {}\n", key, value);
+                      }
+                    }});
   if (!report) {
     return report_error(report.error());
   }
-  fmt::print("written by {}\n", report->library);
+  fmt::print("{}written by {}\n", beside, report->library);
   if (report->messages > 0) {
     fmt::print("from {} to {}, {:.1f} s\n", time_text(contents.first), time_text(contents.last),
                static_cast<double>(contents.last - contents.first) * 1e-9);

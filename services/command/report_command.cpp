@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "services/command/work_progress.hpp"
 #include "services/document/pdf.hpp"
 #include "services/document/report_document.hpp"
 #include "services/output/output_file.hpp"
@@ -50,7 +51,10 @@ Expected<void> make_report(const ReportCommand& command) {
   if (auto written = write_and_name(html_file, *html); !written || command.no_pdf) {
     return written;
   }
-  const auto pdf = make_pdf(*html);
+  const auto pdf = [&] {
+    const WorkProgress progress("making the PDF");
+    return make_pdf(*html);
+  }();
   return pdf ? write_and_name(pdf_file, *pdf) : fail(pdf.error());
 }
 

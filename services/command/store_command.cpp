@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -78,8 +79,12 @@ int run_store_add(const StoreAddCommand& command) {
     return report_error(store.error());
   }
   int status = 0;
+  WorkProgress progress("adding");
+  progress.count()->begin("adding", "results", command.results.size());
   for (const std::filesystem::path& result : command.results) {
     const auto added = (*store)->add(result);
+    progress.count()->add_done();
+    progress.clear();
     if (added) {
       fmt::print("{}: {}\n", result.string(), addition_text(*added));
     } else {

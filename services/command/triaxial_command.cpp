@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
@@ -307,11 +308,14 @@ void print_table(const TriaxialCommand& command, const Measured& measured,
 } // namespace
 
 int run_triaxial(const TriaxialCommand& command) {
+  WorkProgress progress("reading");
   const auto measured = read(command);
   if (!measured) {
     return report_error(measured.error());
   }
+  progress.count()->begin("evaluating", "", 0);
   const auto points = evaluate(command, *measured);
+  progress.clear();
   if (!points) {
     return report_error(points.error());
   }

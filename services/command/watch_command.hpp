@@ -1,9 +1,10 @@
-// `dyncal watch`: benches, sources with their rates and losses, runs, results with their flags, and
-// how far the clocks of other hosts are from this one, as they come on the network.
+// `dyncal watch`: what the bus shows now (services/live), again and again.
 //
-// On a terminal the screen is redrawn once a second, with an explanation of every flag below;
-// elsewhere every change is a line, and so is the explanation of a flag when it first occurs. It
-// asks every program for its clock, and publishes nothing else. Belongs to one thread.
+// On a terminal a table that is redrawn once a second and stays within the window
+// (laboratory_table.hpp); elsewhere every change is a line (laboratory_lines.hpp), or with --json
+// the whole state is a line of JSON each time that it has changed. Colours are for terminals, and
+// off where NO_COLOR is set. It asks every program for its clock, and publishes nothing else.
+// Belongs to one thread.
 #pragma once
 
 #include <optional>
@@ -17,6 +18,8 @@ namespace dyncal::services {
 struct WatchCommand {
   std::string bench = "*";
   std::optional<double> seconds;
+  bool all = false;
+  bool json = false;
   NetworkOptions network;
 };
 

@@ -27,6 +27,17 @@ Evaluation completed(Evaluation evaluation, std::uint32_t attempt, std::optional
   };
 }
 
+Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
+  if (!count) {
+    return evaluation;
+  }
+  return [evaluation = std::move(evaluation), count] {
+    std::vector<StepResult> results = evaluation();
+    count->add_done();
+    return results;
+  };
+}
+
 } // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
@@ -35,8 +46,12 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
       level_watch_(*recipe_), summary_(*recipe_),
       runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
-      never_waits_(limits.never_waits), evaluations_(limits.evaluations_at_once) {
+      never_waits_(limits.never_waits), count_(limits.count),
+      evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
+  if (count_) {
+    count_->begin("evaluating", "steps", recipe_->steps.size());
+  }
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->temperature);
   }
@@ -215,8 +230,8 @@ bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
     }
     evaluations_.make_room();
     const std::uint32_t attempt = records_.excitation().order().attempt(next_step_);
-    evaluations_.begin(
-        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)));
+    evaluations_.begin(counted(
+        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)), count_));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);
@@ -271,12 +286,18 @@ EvaluationOutput RunEvaluator::take_output() {
 }
 
 Evaluation RunEvaluator::settlement() {
+  if (count_) {
+    count_->begin("settling", "results", provisional_.size());
+  }
   return [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
-          provisional = std::exchange(provisional_, {})] {
+          provisional = std::exchange(provisional_, {}), count = count_] {
     std::vector<StepResult> settled;
     for (const StepResult& one : provisional) {
       settled.push_back(bounds.settled(one));
       redo_monte_carlo_check(trials, settled.back());
+      if (count) {
+        count->add_done();
+      }
     }
     return settled;
   };

@@ -40,6 +40,7 @@
 #include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/record/step_snapshot.hpp"
 #include "services/evaluation/transfer_summary.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -65,7 +66,8 @@ struct EvaluationLimits {
   bool clock_to_the_end = false;
   // With that: it is followed to this block and no further, as a report made before covers it.
   std::optional<BlockPosition> clock_end{};
-  bool ahead = false; // in the caller's thread only: before the end of a step has come
+  SharedWorkCount count{}; // of steps, then of results that the last step settles
+  bool ahead = false;      // in the caller's thread only: before the end of a step has come
   // The run began before: its samples come before what was announced about them (step_search.hpp).
   bool behind = false;
 };
@@ -156,6 +158,7 @@ private:
   std::optional<BlockPosition> clock_end_;
   std::optional<std::uint64_t> lost_at_clock_end_; // once that block has come
   bool never_waits_;
+  SharedWorkCount count_;
   bool settling_ = false;
   bool finished_ = false;
   EvaluationQueue evaluations_; // the last member: it waits for those that look at the others

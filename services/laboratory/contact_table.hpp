@@ -1,8 +1,7 @@
 // Tables that laboratory and sensor file may both have: whom to write to, and the conditions of a
 // calibration. Texts are UTF-8 without control characters but line breaks.
 //
-// Functions record the first problem in the table's `problem` ("FILE:LINE: key 'x' ..."). Any
-// thread.
+// Functions add what is wrong to the problems of the table. Any thread.
 #pragma once
 
 #include <optional>
@@ -67,7 +66,7 @@ struct Equipment {
 // The tables [[key]], each read by `read` and finished.
 template <class Item>
 [[nodiscard]] std::vector<Item> read_tables_of(TomlTable& table, const std::string& key,
-                                               const std::string& file, std::string& problem,
+                                               const std::string& file, BenchProblems& problems,
                                                Item (*read)(TomlTable&)) {
   std::vector<Item> items;
   const toml::node* node = table.node(key);
@@ -80,7 +79,7 @@ template <class Item>
     return items;
   }
   for (const toml::node& one : *list) {
-    TomlTable inner(*one.as_table(), key, file, problem);
+    TomlTable inner(*one.as_table(), key, file, problems);
     items.push_back(read(inner));
     inner.finish();
   }

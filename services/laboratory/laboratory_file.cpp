@@ -77,14 +77,14 @@ void read_optional_tables(TomlTable& root, LaboratoryFile& file) {
 }
 
 ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& path,
-                       std::string& problem) {
+                       BenchProblems& problems) {
   ReadTables read;
   read.file.path = path;
-  TomlTable root(parsed, "", path.string(), problem);
+  TomlTable root(parsed, "", path.string(), problems);
   read_laboratory(root, read);
   read_optional_tables(root, read.file);
-  read.file.persons = read_tables_of(root, "person", path.string(), problem, read_person);
-  read.file.equipment = read_tables_of(root, "equipment", path.string(), problem, read_equipment);
+  read.file.persons = read_tables_of(root, "person", path.string(), problems, read_person);
+  read.file.equipment = read_tables_of(root, "equipment", path.string(), problems, read_equipment);
   read.file.statements = lines_of(root, "statements");
   root.finish();
   return read;
@@ -96,12 +96,12 @@ Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
                                                const std::filesystem::path& path) {
   const auto parsed = parse_toml(text, path);
   if (!parsed) {
-    return fail(parsed.error());
+    return fail(ErrorCode::bad_file, parsed.error().text());
   }
-  std::string problem;
-  ReadTables read = read_tables(*parsed, path, problem);
-  if (!problem.empty()) {
-    return fail(ErrorCode::bad_file, problem);
+  BenchProblems problems;
+  ReadTables read = read_tables(*parsed, path, problems);
+  if (!problems.empty()) {
+    return fail(ErrorCode::bad_file, problems.front().text());
   }
   if (!read.logo.empty()) {
     auto logo = read_picture(path.parent_path() / read.logo);

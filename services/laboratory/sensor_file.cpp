@@ -28,10 +28,10 @@ void read_sensor(TomlTable& root, SensorFile& file) {
 }
 
 SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& path,
-                       std::string& problem) {
+                       BenchProblems& problems) {
   SensorFile file;
   file.path = path;
-  TomlTable root(parsed, "", path.string(), problem);
+  TomlTable root(parsed, "", path.string(), problems);
   read_sensor(root, file);
   if (auto certificate = root.table("certificate")) {
     file.certificate_number = required_line(*certificate, "number");
@@ -54,12 +54,12 @@ SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& p
 Expected<SensorFile> parse_sensor_file(std::string_view text, const std::filesystem::path& path) {
   const auto parsed = parse_toml(text, path);
   if (!parsed) {
-    return fail(parsed.error());
+    return fail(ErrorCode::bad_file, parsed.error().text());
   }
-  std::string problem;
-  SensorFile file = read_tables(*parsed, path, problem);
-  if (!problem.empty()) {
-    return fail(ErrorCode::bad_file, problem);
+  BenchProblems problems;
+  SensorFile file = read_tables(*parsed, path, problems);
+  if (!problems.empty()) {
+    return fail(ErrorCode::bad_file, problems.front().text());
   }
   return file;
 }

@@ -309,7 +309,8 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
                           .clock_to_the_end = index->clock_end.has_value(),
-                          .clock_end = index->clock_end});
+                          .clock_end = index->clock_end,
+                          .count = wish.count});
   Evaluating evaluating(reader, *index, evaluator, result.outcome);
   const auto walked = reader.scan({.message =
                                        [&](const recording::MessageInFile& message) {

@@ -20,12 +20,14 @@
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
 struct RecordedRunWish {
   std::string run;              // empty: the one that is there
   std::optional<Recipe> recipe; // another one than the recorded
+  SharedWorkCount count{};      // of its steps and results
 };
 
 struct RecordedRunOutcome {

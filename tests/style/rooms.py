@@ -47,11 +47,11 @@ FLOORS = {
         ["evaluation"],
         ["run"],
         ["report"],
-        ["laboratory", "live", "model", "run_folder", "store"],
+        ["bench_draft", "laboratory", "live", "model", "run_folder", "store"],
         ["certificate", "document"],
         ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
         ["doctor", "replay", "web"],
-        ["exchange"],
+        ["bench_check", "exchange"],
         ["command"],
     ],
 }

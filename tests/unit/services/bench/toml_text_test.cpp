@@ -10,7 +10,7 @@ namespace {
 // Why the text is refused; empty: it is not.
 std::string refusal(const std::string& text) {
   const auto parsed = parse_toml(text, "bench.toml");
-  return parsed ? "" : parsed.error().message;
+  return parsed ? "" : parsed.error().text();
 }
 
 TEST(TomlText, IsATableOfItsKeys) {
@@ -24,7 +24,8 @@ TEST(TomlText, IsRefusedWithItsLine) {
   EXPECT_EQ(refusal("a = 1\n\nb = = 2\n").rfind("bench.toml:3: not valid TOML: ", 0), 0U);
   const auto failed = parse_toml("a = 1\na = 2\n", "bench.toml");
   ASSERT_FALSE(failed);
-  EXPECT_EQ(failed.error().code, ErrorCode::bad_file);
+  EXPECT_EQ(failed.error().file, "bench.toml");
+  EXPECT_EQ(failed.error().line, 2U);
 }
 
 TEST(TomlText, HasForeignLettersInStringsAndCommentsAlone) {

@@ -342,6 +342,23 @@ TEST(RunEvaluator, GivesTheSameResultsFromThreadsOfTheirOwn) {
 }
 
 // What was recorded after the last step of the recipe belongs to the sample clock alone.
+TEST(RunEvaluator, CountsStepsForWhoeverShowsThemAndGivesTheSameBits) {
+  const tests::SyntheticRun run{.steps = {{"40"}, {"50.1"}, {"80"}}, .sensor_hum = 0.1};
+  const auto count = std::make_shared<WorkCount>("reading");
+  const EvaluationOutput alone = evaluate(run, run.measurement());
+  const EvaluationOutput counted =
+      evaluate(run, run.measurement(), {.evaluations_at_once = 2, .count = count});
+  ASSERT_EQ(counted.results.size(), alone.results.size());
+  ASSERT_FALSE(alone.results.empty());
+  for (std::size_t i = 0; i < alone.results.size(); ++i) {
+    EXPECT_EQ(message_of(counted.results[i]), message_of(alone.results[i]));
+  }
+  ASSERT_FALSE(counted.settled.empty());
+  EXPECT_EQ(count->state().what, "settling");
+  EXPECT_EQ(count->state().total, counted.settled.size());
+  EXPECT_EQ(count->state().done, count->state().total);
+}
+
 TEST(RunEvaluator, FollowsTheSampleClockToTheEndOfARecordWhenAsked) {
   tests::SyntheticRun run;
   const wire::Measurement measurement = run.measurement();

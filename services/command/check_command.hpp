@@ -1,0 +1,18 @@
+// `dyncal check BENCH.toml...`: all that is wrong with bench files, and with them together
+// (services/bench_check); nothing is driven, and no network is used. The exit status is 0 without
+// errors, 1 with some. Belongs to one thread.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace dyncal::services {
+
+struct CheckCommand {
+  std::vector<std::filesystem::path> bench_files;
+  bool json = false;
+};
+
+[[nodiscard]] int run_check(const CheckCommand& command);
+
+} // namespace dyncal::services

@@ -1,0 +1,16 @@
+// What the bus shows now as lines, for pipes and logs: one for each clock, source, program, step
+// and result, by a key that stays the same while the line changes. Whoever prints those that
+// changed has a log. Plain functions, any thread.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "services/live/laboratory.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] std::map<std::string, std::string>
+laboratory_lines(const live::Laboratory& laboratory);
+
+} // namespace dyncal::services

@@ -1,0 +1,28 @@
+// What the bus shows now as a table for people that stays within a terminal: a line a bench, below
+// it a line a source and a line a channel that responds, of current runs only.
+//
+// Where there is no room for all, what is wrong comes first, then channels and sources of benches
+// that run, then the others; the last line says how many lines were left out. No line is longer
+// than the terminal is wide. Plain functions, any thread.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "services/live/laboratory.hpp"
+
+namespace dyncal::services {
+
+struct TableLayout {
+  std::size_t columns = 80;
+  std::size_t rows = 24; // 0: as many as there are
+  bool colour = false;
+  bool all = false; // every channel, also of runs that are over, and benches that are gone
+};
+
+// One text a line, without line ends.
+[[nodiscard]] std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
+                                                        const TableLayout& layout);
+
+} // namespace dyncal::services

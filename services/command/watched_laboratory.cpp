@@ -1,0 +1,33 @@
+#include "services/command/watched_laboratory.hpp"
+
+#include "services/host_clocks/clock_messages.hpp"
+#include "services/version.hpp"
+
+namespace dyncal::services {
+
+Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const NetworkOptions& network,
+                                                                     const std::string& program,
+                                                                     const std::string& bench) {
+  auto participant = join_network(network, program);
+  if (!participant) {
+    return fail(participant.error());
+  }
+  std::unique_ptr<WatchedLaboratory> watched(
+      new WatchedLaboratory(std::move(*participant), std::make_shared<bus::WakeUp>()));
+  auto readers = live::LaboratoryReaders::open(
+      watched->participant_, bench, this_program(program, software_version(), network.dds),
+      bus::system_clock(), watched->wake_up_);
+  if (!readers) {
+    return fail(readers.error());
+  }
+  watched->readers_.emplace(std::move(*readers));
+  return watched;
+}
+
+void WatchedLaboratory::work(std::chrono::steady_clock::time_point until) {
+  wake_up_->wait_until(until);
+  readers_->work(laboratory_);
+  laboratory_.work();
+}
+
+} // namespace dyncal::services

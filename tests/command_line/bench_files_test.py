@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""dyncal check and new-bench: a bench file of every kind that new-bench writes passes check, a file
+that is there stays as it is, and the examples pass."""
+
+import itertools
+import json
+import pathlib
+import tempfile
+
+from programs import SOURCE, expect, run
+
+SENSORS = ["smartup", "file", "can", "series", "analogue"]
+ACS = ["socket", "file"]
+GENERATORS = ["scpi", "by-hand", "none"]
+
+
+def succeed(*arguments, **more):
+    done = run("dyncal", *arguments, **more)
+    expect(done.returncode == 0, f"{arguments}: {done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def refuse(status, part, *arguments, **more):
+    done = run("dyncal", *arguments, **more)
+    expect(done.returncode == status, f"{arguments}: {done.returncode} {done.stdout}{done.stderr}")
+    expect(part in done.stdout + done.stderr, f"{arguments}: {done.stdout}{done.stderr}")
+
+
+def write_records(folder):
+    rows = range(200)
+    (folder / "acs.csv").write_text(
+        "t_ns,reference,sync,sensor\n" + "".join(f"{i * 100000},1,2,3\n" for i in rows)
+    )
+    (folder / "dau.csv").write_text(
+        "t_ns,acceleration_z,sync\n" + "".join(f"{i * 1000000},1,2\n" for i in rows)
+    )
+
+
+def check_combinations(folder):
+    write_records(folder)
+    for sensor, acs, generator in itertools.product(SENSORS, ACS, GENERATORS):
+        name = f"{sensor}-{acs}-{generator}"
+        options = ["--name", name, "--sensor", sensor, "--acs", acs, "--generator", generator]
+        options += ["--sensor-file", "dau.csv"] if sensor == "file" else []
+        options += ["--acs-file", "acs.csv"] if acs == "file" else []
+        succeed("new-bench", *options, cwd=folder)
+        found = json.loads(succeed("check", f"{name}.toml", "--json", cwd=folder))
+        expect(found["status"] == "note", f"{name}: {found}")
+        before = (folder / f"{name}.toml").read_bytes()
+        refuse(1, "there is such a file already", "new-bench", *options, cwd=folder)
+        expect((folder / f"{name}.toml").read_bytes() == before, f"{name}.toml has changed")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        check_combinations(folder)
+        refuse(2, "--name is missing", "new-bench", cwd=folder, input="")
+        refuse(2, "nothing was written", "new-bench", "--name", "a b", cwd=folder)
+        refuse(2, "--acs-file", "new-bench", "--name", "x", "--acs", "file", cwd=folder)
+        left = {path.name for path in folder.iterdir() if path.suffix not in (".toml", ".dbc")}
+        expect(left == {"acs.csv", "dau.csv"}, f"{left} was left")
+
+        (folder / "bad.toml").write_text(
+            (folder / "smartup-socket-scpi.toml").read_text().replace("level =", "levl =")
+        )
+        refuse(1, "did you mean 'level'?", "check", "bad.toml", cwd=folder)
+        refuse(1, "cannot read this bench file", "check", "gone.toml", cwd=folder)
+    examples = sorted((SOURCE / "deploy/example-lab").glob("*.toml"))
+    expect(len(examples) >= 4, f"only {examples}")
+    for example in examples:
+        succeed("check", example)
+    print(succeed("check", *examples).splitlines()[-1])
+
+
+main()
