@@ -1,7 +1,7 @@
 // The keys of [sources.NAME] with driver = "oscilloscope": the oscilloscope that triggers on sync
 // and starts a time series sensor.
 //
-//   address = "192.168.1.20:5555"   or "vxi11:HOST"
+//   address = "192.0.2.20:5555"   or "vxi11:HOST"
 //   path = "shots"                  instead: the folder with files of shots, for dyncal analyse
 //   family                          its SCPI dialect; default: by its identity
 //   sync_input = 1                  input that sees sync

@@ -1,7 +1,7 @@
 // The keys of [sources.NAME] with driver = "socket": the TCP stream of an analogue calibration
 // system (drivers/acs/README.md).
 //
-//   address = "192.168.1.30:5026"
+//   address = "192.0.2.30:5026"
 #pragma once
 
 #include "services/bench/source_settings.hpp"

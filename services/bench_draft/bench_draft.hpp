@@ -40,15 +40,15 @@ struct BenchDraft {
 
   std::string listen = "0.0.0.0:7654"; // smartup
   std::string sensor_id = "0xbccb0100";
-  std::string sensor_file;                          // file
-  std::string interface = "can0";                   // can
-  std::string dbc;                                  // empty: one is made
-  std::vector<std::string> dbc_channels;            // of `dbc`, as channels
-  std::string sensor_address = "192.168.1.43:5027"; // series
-  std::string dso_address = "192.168.1.42:5555";
-  std::string acs_address = "192.168.1.30:5026";
+  std::string sensor_file;                        // file
+  std::string interface = "can0";                 // can
+  std::string dbc;                                // empty: one is made
+  std::vector<std::string> dbc_channels;          // of `dbc`, as channels
+  std::string sensor_address = "192.0.2.43:5027"; // series
+  std::string dso_address = "192.0.2.42:5555";
+  std::string acs_address = "192.0.2.30:5026";
   std::string acs_file;
-  std::string generator_address = "192.168.1.20:5025";
+  std::string generator_address = "192.0.2.20:5025";
   double level_per_volt = 10.0; // m/s^2
   double maximum_voltage_v = 5.0;
 };

@@ -20,7 +20,7 @@ frequencies_hz = ["10"]
 level = 10.0
 [sources.dso]
 driver = "oscilloscope"
-address = "192.168.1.20:5555"
+address = "192.0.2.20:5555"
 sync_input = 3
 [sources.tss]
 driver = "series"
@@ -55,7 +55,7 @@ TEST(SeriesBench, ABenchOfSeriesTimeStampingIsRead) {
   ASSERT_TRUE(file) << file.error().message;
   const auto* oscilloscope = file->source("dso")->as<OscilloscopeSourceSettings>();
   ASSERT_NE(oscilloscope, nullptr);
-  EXPECT_EQ(oscilloscope->address, "192.168.1.20:5555");
+  EXPECT_EQ(oscilloscope->address, "192.0.2.20:5555");
   EXPECT_EQ(oscilloscope->sync_input, 3);
   EXPECT_DOUBLE_EQ(oscilloscope->sync_range_v, 20.0);
   const auto* series = file->source("tss")->as<SeriesSourceSettings>();

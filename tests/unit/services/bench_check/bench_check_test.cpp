@@ -63,7 +63,7 @@ TEST(BenchCheck, FileWithFiveFaultsTellsFive) {
   text = with(text, "\"250\"]", "\"600\"]");
   text = with(text, "reference = \"acs/reference\"", "reference = \"asc/reference\"");
   text = with(text, "sensor = \"0xbccb0100\"", "sensor = \"0xzz\"");
-  text = with(text, "address = \"192.168.1.12:5026\"", "address = \"192.168.1.12\"");
+  text = with(text, "address = \"192.0.2.12:5026\"", "address = \"192.0.2.12\"");
   const auto errors = of(check_text(with(text, "level = 60.0", "level = 15.0")), Severity::error);
   std::vector<std::string> keys;
   for (const Finding& error : errors) {
@@ -180,9 +180,8 @@ TEST(BenchCheck, UncertaintyThatIsMisspelt) {
 }
 
 TEST(BenchCheck, InstrumentsAndPortsThatTwoWant) {
-  expect_one(check_text(with(smartup_bench, "192.168.1.12:5026", "192.168.1.11:5025")),
-             Severity::error, 20, "sources.acs.address",
-             "which the generator of bench 'acc-1' has already");
+  expect_one(check_text(with(smartup_bench, "192.0.2.12:5026", "192.0.2.11:5025")), Severity::error,
+             20, "sources.acs.address", "which the generator of bench 'acc-1' has already");
   expect_one(check_text(with(smartup_bench, "[sources.acs]",
                              "[sources.dau2]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
                              "[sources.acs]")),
@@ -222,8 +221,8 @@ TEST(BenchCheck, TwoBenchesOfOneName) {
 
 TEST(BenchCheck, TwoBenchesAtOnePort) {
   std::string other = with(smartup_bench, "acc-1", "acc-2");
-  other = with(other, "192.168.1.11", "192.168.2.11");
-  other = with(other, "192.168.1.12", "192.168.2.12");
+  other = with(other, "192.0.2.11", "198.51.100.11");
+  other = with(other, "192.0.2.12", "198.51.100.12");
   other = with(other, "0xbccb0100", "0xbccb0200");
   const std::vector<BenchView> views{look_at_bench_text(smartup_bench, "a.toml"),
                                      look_at_bench_text(other, "b.toml")};

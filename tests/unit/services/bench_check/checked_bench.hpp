@@ -20,7 +20,7 @@ repetitions = 2
 duration_s = 3.0
 [generator]
 driver = "scpi"
-address = "192.168.1.11:5025"
+address = "192.0.2.11:5025"
 level_per_volt = 10.0
 maximum_voltage_v = 5.0
 maximum_level_m_s2 = 20.0
@@ -31,7 +31,7 @@ sensor = "0xbccb0100"
 nominal_rate_hz = 1000.0
 [sources.acs]
 driver = "socket"
-address = "192.168.1.12:5026"
+address = "192.0.2.12:5026"
 nominal_rate_hz = 10000.0
 [method]
 kind = "sample-timestamping"

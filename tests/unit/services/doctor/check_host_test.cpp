@@ -17,7 +17,7 @@ using tests::warnings;
 HostView sound_host() {
   return {.receive_buffer_bytes = 8 << 20,
           .interfaces = {{.name = "lo", .address = "127.0.0.1", .mtu = 65536, .loopback = true},
-                         {.name = "eth0", .address = "192.168.20.10", .mtu = 1500}},
+                         {.name = "eth0", .address = "192.0.2.10", .mtu = 1500}},
           .multicast_loops = true,
           .udp_before = UdpCounters{.received = 100, .without_room = 0, .damaged = 0},
           .udp_after = UdpCounters{.received = 200, .without_room = 0, .damaged = 0},
@@ -41,14 +41,14 @@ TEST(CheckHost, NamesASmallMtu) {
   HostView host = sound_host();
   host.interfaces[1].mtu = 1400;
   EXPECT_THAT(warnings(check_host(host, 0)),
-              ElementsAre(HasSubstr("eth0 (192.168.20.10) has an MTU of 1400")));
+              ElementsAre(HasSubstr("eth0 (192.0.2.10) has an MTU of 1400")));
 }
 
 TEST(CheckHost, NamesAHostThatCannotReachItself) {
   HostView host = sound_host();
   host.interfaces[1].reaches_itself = false;
   EXPECT_THAT(problems(check_host(host, 0)),
-              ElementsAre(HasSubstr("our own address 192.168.20.10 (eth0) does not arrive")));
+              ElementsAre(HasSubstr("our own address 192.0.2.10 (eth0) does not arrive")));
 }
 
 TEST(CheckHost, NamesMulticastThatDoesNotComeBack) {
