@@ -50,7 +50,7 @@ Receiver::Endpoint endpoint(tests::Recording& sink, const std::string& listen = 
 }
 
 TEST(ListenAddress, IsAnAddressAndAPort) {
-  const auto listen = parse_listen_address("192.0.2.5:7654");
+  const auto listen = parse_listen_address("192.168.0.5:7654");
   ASSERT_TRUE(listen);
   EXPECT_EQ(listen->address, 0xc0a80005U);
   EXPECT_EQ(listen->port, 7654);

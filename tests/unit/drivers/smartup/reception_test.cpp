@@ -335,7 +335,7 @@ TEST_F(ReceptionTest, UnwantedSensorsAreReportedOnly) {
   EXPECT_TRUE(sink.blocks[other_id].empty());
   EXPECT_EQ(sink.reports.at(other_id).counts.received, 2U);
   EXPECT_FALSE(sink.reports.at(other_id).wanted);
-  EXPECT_EQ(sink.reports.at(other_id).sender, "192.0.2.5:7000");
+  EXPECT_EQ(sink.reports.at(other_id).sender, "192.168.0.5:7000");
   EXPECT_FALSE(sink.reports.contains(sensor_id));
 }
 
