@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 namespace dyncal::services {
 namespace {
@@ -37,18 +39,22 @@ private:
   std::vector<TraceColumn> columns_;
 };
 
+// Of the newest second. In two passes: one with a division a sample costs a tenth of a core for a
+// few fast channels.
 void add_level(const ChannelRing& ring, const ChannelRange& range, Trace& trace) {
   const std::int64_t begin_ns = ring.newest_ns() - static_cast<std::int64_t>(second_ns);
-  double mean = 0.0;
+  const auto newest = ring.samples().rbegin();
+  const auto end = std::find_if(newest, ring.samples().rend(),
+                                [&](const Sample& sample) { return sample.stamp_ns <= begin_ns; });
+  const auto count = static_cast<double>(std::distance(newest, end));
+  const double sum = std::accumulate(
+      newest, end, 0.0, [](double so_far, const Sample& sample) { return so_far + sample.value; });
+  const double mean = sum / count;
   double squares = 0.0;
-  double count = 0.0;
   const bool has_range = range.minimum < range.maximum;
-  for (auto sample = ring.samples().rbegin();
-       sample != ring.samples().rend() && sample->stamp_ns > begin_ns; ++sample) {
-    count += 1.0;
+  for (auto sample = newest; sample != end; ++sample) {
     const double deviation = sample->value - mean;
-    mean += deviation / count;
-    squares += deviation * (sample->value - mean);
+    squares += deviation * deviation;
     const bool is_at_end = sample->value <= range.minimum || sample->value >= range.maximum;
     trace.over_range += has_range && is_at_end ? 1 : 0;
   }
