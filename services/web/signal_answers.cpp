@@ -175,7 +175,7 @@ Text SignalAnswers::signal_text(const Question& question) {
   std::string whole = live::json_text(json);
   whole.pop_back();
   whole += ",\"columns\":" + columns_text(trace.columns) + "}";
-  const auto text = std::make_shared<const std::string>(std::move(whole));
+  Text text = std::make_shared<const std::string>(std::move(whole));
   texts_[key] = Made{text, clock_.now()};
   return text;
 }
