@@ -1,5 +1,6 @@
-// How far a long computation is, with the time left: one line on a terminal, which appears after
-// two seconds and is gone at the end. Elsewhere nothing is shown and nothing is done.
+// How far a long computation is, with the time left where the work is counted: one line on a
+// terminal, which appears after two seconds and is gone at the end. Elsewhere nothing is shown and
+// nothing is done.
 //
 // The work counts what it has done, from any thread; a thread of the progress looks at that four
 // times a second. The object belongs to the thread that made it.

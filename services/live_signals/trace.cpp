@@ -39,8 +39,7 @@ private:
   std::vector<TraceColumn> columns_;
 };
 
-// Of the newest second. In two passes: one with a division a sample costs a tenth of a core for a
-// few fast channels.
+// Of the newest second. In two passes, without a division for every sample.
 void add_level(const ChannelRing& ring, const ChannelRange& range, Trace& trace) {
   const std::int64_t begin_ns = ring.newest_ns() - static_cast<std::int64_t>(second_ns);
   const auto newest = ring.samples().rbegin();

@@ -178,6 +178,9 @@ Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
     return {};
   }
   excitation_->end();
+  if (now.kind == Kind::over) {
+    return fail(now.reason);
+  }
   begin_pause(waiting_phase(now)); // as others are told, so that a recording holds it
   bool waits = false;              // for something that is away, since then
   Instant since;

@@ -46,7 +46,8 @@ Json shown(double value) {
   return Json::parse(text);
 }
 
-// As JSON. By hand: thousands of numbers ten times a second, which as objects cost four times this.
+// As JSON. By hand: thousands of numbers ten times a second, which as objects of the library took
+// 8 % of a core more for ten visitors.
 std::string columns_text(const std::vector<TraceColumn>& columns) {
   std::string text = "[";
   for (const TraceColumn& column : columns) {
