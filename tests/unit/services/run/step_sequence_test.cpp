@@ -453,6 +453,14 @@ TEST_F(StepSequenceTest, AnAbortEndsTheRunWithWhatThereIs) {
   EXPECT_EQ(outcome.results.front().step, 1U);
 }
 
+TEST_F(StepSequenceTest, AnAbortBeforeTheFirstStepIsNoPause) {
+  clock_.at(0s, [this] { command(wire::COMMAND_ABORT); });
+  const RunOutcome outcome = conduct();
+  EXPECT_EQ(outcome.problem, "ended by a command of 'ada@desk'");
+  EXPECT_THAT(excited_, IsEmpty());
+  EXPECT_THAT(outcome.pauses, IsEmpty());
+}
+
 TEST_F(StepSequenceTest, AStepIsRepeatedOnceOnRequestHoweverOftenTheCommandComes) {
   bench_.excitation.attempts = 1;
   for (const auto at : {1s, 2s, 3s, 8s}) {
