@@ -82,6 +82,26 @@ void KeptBlocks::drop_entry(std::size_t index) {
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
+bool KeptBlocks::is_of_newest_run(const Entry& entry, Instant now) const {
+  return wanted_until_ && now <= *wanted_until_ && !answers_.empty() &&
+         entry.place >= answers_.back().place;
+}
+
+void KeptBlocks::drop_old(Instant now) {
+  while (!entries_.empty()) {
+    const bool is_of_run = is_of_newest_run(entries_.front(), now);
+    const auto age = now - entries_.front().time;
+    if (age <= (is_of_run ? std::max(limits_.run_span, limits_.span) : limits_.span)) {
+      return;
+    }
+    drop_oldest();
+    if (is_of_run) {
+      run_short(
+          now, fmt::format("no more than {:.0f} min of a run are kept", minutes(limits_.run_span)));
+    }
+  }
+}
+
 void KeptBlocks::drop_oldest() {
   drop_entry(0);
 }
@@ -89,8 +109,14 @@ void KeptBlocks::drop_oldest() {
 void KeptBlocks::run_short(Instant now, const std::string& reason) {
   short_since_ = now;
   const auto kept = entries_.empty() ? std::chrono::nanoseconds(0) : now - entries_.front().time;
-  problem_ = fmt::format("keeps {:.1f} of {:.1f} min for who catches up: {}", minutes(kept),
-                         minutes(limits_.span), reason);
+  if (kept < limits_.span) {
+    problem_ = fmt::format("keeps {:.1f} of {:.1f} min for who catches up: {}", minutes(kept),
+                           minutes(limits_.span), reason);
+  } else {
+    problem_ = fmt::format("keeps the last {:.1f} min of run '{}', not its beginning, so that no "
+                           "other analysis can take it over: {}",
+                           minutes(kept), answers_.empty() ? "" : answers_.back().run, reason);
+  }
 }
 
 Expected<std::uint64_t> KeptBlocks::append(const std::string& payload) {
@@ -145,9 +171,7 @@ bool KeptBlocks::move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant
 
 void KeptBlocks::tidy(Instant now) {
   std::unique_lock lock(mutex_);
-  while (!entries_.empty() && now - entries_.front().time > limits_.span) {
-    drop_oldest();
-  }
+  drop_old(now);
   while (move_oldest_to_file(lock, now)) {
   }
   if (short_since_ && now - *short_since_ > limits_.span) {

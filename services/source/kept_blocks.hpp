@@ -2,10 +2,11 @@
 // (idl/README.md, "Who was away").
 //
 // The newest few megabytes are in memory at any time. While a run of the bench is under way, and
-// for as long after it as messages are kept, older ones move to a file (ByteLog), so that an idle
-// service writes nothing to the disk. Oldest out first: those older than `span`, and those beyond
-// the bound of the file or of its disk, which problem() then reports with the minutes that are
-// left.
+// for `span` after it, older ones move to a file (ByteLog), so that an idle service writes nothing
+// to the disk. Oldest out first: those older than `span`; of the newest run, from the source's
+// answer to it on, those older than `run_span`, since who takes a run over needs it from its
+// beginning; and those beyond the bound of the file or of its disk, which problem() then reports
+// with the minutes that are left.
 //
 // Threads: keep() and want() may be called from any thread and never wait for the disk; all else
 // belongs to the one thread that answers.
@@ -28,6 +29,7 @@ namespace dyncal::services {
 
 struct KeptLimits {
   std::chrono::nanoseconds span = std::chrono::minutes(10);
+  std::chrono::nanoseconds run_span = std::chrono::hours(4); // of the newest run
   std::size_t memory_bytes = std::size_t{4} << 20U;
   std::size_t max_memory_bytes = std::size_t{32} << 20U; // while the disk is behind
   std::uint64_t file_bytes = std::uint64_t{1} << 30U;
@@ -76,7 +78,8 @@ public:
 
   // Messages that were dropped before their time.
   [[nodiscard]] std::uint64_t not_kept() const;
-  // One sentence while fewer minutes are kept than `span`; else empty.
+  // One sentence while fewer minutes are kept than `span`, or not the newest run from its beginning
+  // on; else empty.
   [[nodiscard]] std::string problem() const;
 
 private:
@@ -98,6 +101,8 @@ private:
     Place place = 0;
   };
 
+  [[nodiscard]] bool is_of_newest_run(const Entry& entry, Instant now) const;
+  void drop_old(Instant now);
   void drop_oldest();
   void drop_entry(std::size_t index);
   void note(const KeptMessage& message);

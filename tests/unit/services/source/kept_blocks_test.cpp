@@ -83,6 +83,52 @@ TEST_F(KeptBlocksTest, DropsWhatIsOlderThanItsSpan) {
   EXPECT_EQ(kept.not_kept(), 0U);
 }
 
+// A run of half an hour can be taken over at its end.
+TEST_F(KeptBlocksTest, KeepsTheNewestRunFromItsBeginningHoweverOldThatIs) {
+  KeptLimits minute = limits();
+  minute.span = 60s;
+  KeptBlocks kept(minute);
+  keep_run(kept, 0, 100);
+  kept.want(now_);
+  keep(kept, 100, "first");
+  keep_run(kept, 101, 300);
+  EXPECT_EQ(numbers(kept), range(100, 300));
+  EXPECT_EQ(kept.problem(), "");
+
+  keep(kept, 300, "second"); // what the first one sent is as old as anything else now
+  keep_run(kept, 301, 500);
+  EXPECT_EQ(numbers(kept), range(300, 500));
+
+  now_ += 61s; // and that run is over
+  kept.tidy(now_);
+  EXPECT_THAT(numbers(kept), IsEmpty());
+  EXPECT_EQ(kept.problem(), "");
+  EXPECT_EQ(kept.not_kept(), 0U);
+}
+
+TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
+  KeptLimits small = limits();
+  small.span = 20s;
+  small.file_bytes = 4 << 20U;
+  KeptBlocks kept(small);
+  keep(kept, 0, "long");
+  keep_run(kept, 1, 200);
+  EXPECT_GT(numbers(kept).front(), 140U);
+  EXPECT_THAT(kept.problem(), HasSubstr("min of run 'long', not its beginning"));
+  EXPECT_THAT(kept.problem(), HasSubstr("4 MiB"));
+}
+
+TEST_F(KeptBlocksTest, SaysThatARunIsLongerThanRunsAreKept) {
+  KeptLimits hour = limits();
+  hour.span = 20s;
+  hour.run_span = 120s;
+  KeptBlocks kept(hour);
+  keep(kept, 0, "long");
+  keep_run(kept, 1, 200);
+  EXPECT_EQ(numbers(kept).size(), 121U);
+  EXPECT_THAT(kept.problem(), HasSubstr("no more than 2 min of a run are kept"));
+}
+
 TEST_F(KeptBlocksTest, KeepsOnlyTheNewestInMemoryWhileNoRunNeedsThem) {
   KeptLimits nowhere = limits();
   nowhere.folder = "/nowhere/at/all"; // would be noticed
