@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include "services/bench/bench_name.hpp"
 #include "services/bench/corrections_table.hpp"

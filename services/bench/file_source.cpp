@@ -1,6 +1,7 @@
 #include "services/bench/file_source.hpp"
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 namespace dyncal::services {
 

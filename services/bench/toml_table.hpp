@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <toml++/toml.h>
+#include <toml++/impl/forward_declarations.h>
 
 #include "services/bench/asked_keys.hpp"
 #include "services/bench/bench_problem.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 namespace dyncal::services {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include <tl/expected.hpp>
-#include <toml++/toml.h>
+#include <toml++/impl/forward_declarations.h>
 
 #include "services/bench/bench_problem.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include "services/bench/toml_text.hpp"
 

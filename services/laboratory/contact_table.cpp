@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 namespace dyncal::services {
 namespace {

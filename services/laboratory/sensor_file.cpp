@@ -1,6 +1,7 @@
 #include "services/laboratory/sensor_file.hpp"
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include "services/bench/toml_text.hpp"
 #include "services/report/stored_result.hpp"

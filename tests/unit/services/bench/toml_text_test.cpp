@@ -3,6 +3,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <toml++/toml.h>
 
 namespace dyncal::services {
 namespace {
