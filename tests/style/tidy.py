@@ -21,6 +21,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from tree import TOP, tracked
 
@@ -29,6 +30,9 @@ CHEAP = (
     "readability-braces-around-statements,misc-definitions-in-headers,modernize-use-override"
 )
 MANY = 40
+# Headers that the compiler of the build has compiled before: no other compiler can read them, and
+# every source is to include what it uses.
+PRECOMPILED = re.compile(r" (?:-Winvalid-pch|-fpch-preprocess|-include \S+cmake_pch\.hxx)(?= )")
 FINDING = re.compile(r"^(.*?):(\d+):\d+: (?:error|warning): (.*) \[(.*?)[,\]]")
 
 
@@ -67,8 +71,8 @@ def changed(sources):
     return sorted(chosen)
 
 
-def findings_of(program, options, checks, source):
-    command = [program, "-p", str(options.build), "--quiet", str(TOP / source)]
+def findings_of(program, commands, checks, source):
+    command = [program, "-p", str(commands), "--quiet", str(TOP / source)]
     if checks:
         command.append(f"--checks={checks}")
     done = subprocess.run(command, cwd=TOP, capture_output=True, text=True)
@@ -101,6 +105,8 @@ def main():
         sys.exit(77)
 
     commands = json.loads((options.build / "compile_commands.json").read_text())
+    for command in commands:
+        command["command"] = PRECOMPILED.sub("", command["command"])
     built = {os.path.relpath(command["file"], TOP) for command in commands}
     sources = [str(path) for path in tracked() if str(path) in built and path.suffix == ".cpp"]
     chosen = options.files
@@ -111,8 +117,11 @@ def main():
     checks = options.checks or (CHEAP if len(chosen) > MANY else None)
 
     findings = set()
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for found in pool.map(lambda s: findings_of(program, options, checks, s), chosen):
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(
+        options.jobs
+    ) as pool:
+        (pathlib.Path(folder) / "compile_commands.json").write_text(json.dumps(commands))
+        for found in pool.map(lambda s: findings_of(program, folder, checks, s), chosen):
             for finding in sorted(found - findings):
                 print(finding, flush=True)
             findings |= found
