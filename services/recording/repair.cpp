@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "services/byte_count.hpp"
 #include "services/recording/recording_writer.hpp"
 
 namespace dyncal::recording {
@@ -95,16 +96,19 @@ Metadata repair_metadata(const std::filesystem::path& path, const ScanReport& re
 } // namespace
 
 Expected<ScanReport> repair(const std::filesystem::path& path,
-                            const std::filesystem::path& repaired, const std::string& library) {
+                            const std::filesystem::path& repaired, const std::string& library,
+                            const services::SharedWorkCount& count) {
   auto reader = RecordingReader::open(path);
   if (!reader) {
     return fail(reader.error());
   }
+  services::ByteCount read(count, "reading", reader->size_bytes());
   Definitions definitions;
   auto report =
       reader->scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
                     .attachment = {},
-                    .metadata = {}});
+                    .metadata = {},
+                    .walked = [&](std::uint64_t bytes) { read.set_done(bytes); }});
   if (!report) {
     return report;
   }
@@ -113,10 +117,12 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
     return fail(writer.error());
   }
   Copy copy(*writer, definitions);
+  services::ByteCount copied_bytes(count, "copying", reader->size_bytes());
   const auto copied =
       reader->scan({.message = [&](const MessageInFile& message) { copy.add(message); },
                     .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
-                    .metadata = [&](const Metadata& metadata) { copy.add(metadata); }});
+                    .metadata = [&](const Metadata& metadata) { copy.add(metadata); },
+                    .walked = [&](std::uint64_t bytes) { copied_bytes.set_done(bytes); }});
   copy.flush();
   if (!copied) {
     return copied;

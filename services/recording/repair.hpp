@@ -9,12 +9,13 @@
 
 #include "services/error.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::recording {
 
-// Returns what was found in the old file.
-[[nodiscard]] services::Expected<ScanReport> repair(const std::filesystem::path& path,
-                                                    const std::filesystem::path& repaired,
-                                                    const std::string& library);
+// Returns what was found in the old file. `count`: of its megabytes, read and then copied.
+[[nodiscard]] services::Expected<ScanReport>
+repair(const std::filesystem::path& path, const std::filesystem::path& repaired,
+       const std::string& library, const services::SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::recording

@@ -40,5 +40,21 @@ TEST(Repair, LeavesAFileThatIsThereAsItIs) {
   EXPECT_EQ(file_text(folder.path() / "b.mcap"), "mine");
 }
 
+TEST(Repair, CountsWhatIsReadAndThenWhatIsCopied) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap", {.chunks = 40, .messages = 1000});
+  const std::string whole = file_text(folder.path() / "a.mcap");
+  const auto damaged = folder.write("cut.mcap", whole.substr(0, whole.size() - 100'000));
+  const std::size_t megabytes = (whole.size() - 100'000) / 1'000'000;
+  ASSERT_GE(megabytes, 2U);
+  const auto count = std::make_shared<services::WorkCount>("opening");
+  ASSERT_TRUE(repair(damaged, folder.path() / "b.mcap", "dyncal test", count));
+  EXPECT_EQ(count->state().what, "copying");
+  EXPECT_EQ(count->state().total, megabytes);
+  EXPECT_EQ(count->state().done, megabytes);
+  ASSERT_TRUE(repair(damaged, folder.path() / "c.mcap", "dyncal test"));
+  EXPECT_EQ(file_text(folder.path() / "b.mcap"), file_text(folder.path() / "c.mcap"));
+}
+
 } // namespace
 } // namespace dyncal::recording
