@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "services/byte_count.hpp"
+#include "services/output/output_stream.hpp"
 #include "services/recording/recording_writer.hpp"
 
 namespace dyncal::recording {
@@ -93,6 +94,32 @@ Metadata repair_metadata(const std::filesystem::path& path, const ScanReport& re
   return metadata;
 }
 
+// NAME.part, until all of it is there; without that nothing is left.
+class Unfinished {
+public:
+  explicit Unfinished(const std::filesystem::path& path)
+      : path_(path), unfinished_(path.string() + ".part") {
+    remove(); // of a repair that was interrupted
+  }
+  ~Unfinished() { remove(); }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return unfinished_; }
+  [[nodiscard]] Expected<void> finish() const {
+    return services::take_output_name(unfinished_, path_);
+  }
+
+private:
+  void remove() const {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished_, ignored);
+  }
+
+  std::filesystem::path path_;
+  std::filesystem::path unfinished_;
+};
+
 } // namespace
 
 Expected<ScanReport> repair(const std::filesystem::path& path,
@@ -101,6 +128,9 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   auto reader = RecordingReader::open(path);
   if (!reader) {
     return fail(reader.error());
+  }
+  if (auto is_new = services::check_new_output(repaired); !is_new) {
+    return fail(is_new.error());
   }
   services::ByteCount read(count, "reading", reader->size_bytes());
   Definitions definitions;
@@ -112,7 +142,8 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   if (!report) {
     return report;
   }
-  auto writer = RecordingWriter::create(repaired, definitions.options(library));
+  const Unfinished file(repaired);
+  auto writer = RecordingWriter::create(file.path(), definitions.options(library));
   if (!writer) {
     return fail(writer.error());
   }
@@ -129,7 +160,8 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   }
   auto written = copy.outcome()
                      .and_then([&] { return writer->add_metadata(repair_metadata(path, *report)); })
-                     .and_then([&] { return writer->close(); });
+                     .and_then([&] { return writer->close(); })
+                     .and_then([&] { return file.finish(); });
   if (!written) {
     return fail(written.error());
   }

@@ -1,5 +1,10 @@
 #include "services/recording/repair.hpp"
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.hpp"
@@ -54,6 +59,42 @@ TEST(Repair, CountsWhatIsReadAndThenWhatIsCopied) {
   EXPECT_EQ(count->state().done, megabytes);
   ASSERT_TRUE(repair(damaged, folder.path() / "c.mcap", "dyncal test"));
   EXPECT_EQ(file_text(folder.path() / "b.mcap"), file_text(folder.path() / "c.mcap"));
+}
+
+// So that a part of it is not taken for the whole: it has another name until the end.
+TEST(Repair, TakesItsNameAtTheEnd) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap", {.chunks = 40, .messages = 1000});
+  folder.write("b.mcap.part", "of a repair that was interrupted");
+  const auto repaired = folder.path() / "b.mcap";
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  bool seen_early = false;
+  std::jthread watcher([&](const std::stop_token& stop) {
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+      // Nothing of that name may be there that did not end in order.
+      if (std::filesystem::exists(repaired)) {
+        auto reader = RecordingReader::open(repaired).value();
+        seen_early = seen_early || !read_example(reader).report.ended_in_order;
+      }
+      ended.wait_for(lock, stop, std::chrono::milliseconds(1), [] { return false; });
+    }
+  });
+  ASSERT_TRUE(repair(folder.path() / "a.mcap", repaired, "dyncal test"));
+  watcher.request_stop();
+  watcher.join();
+  EXPECT_FALSE(seen_early);
+  EXPECT_TRUE(std::filesystem::exists(repaired));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.mcap.part"));
+}
+
+TEST(Repair, LeavesNothingOfARepairThatFailed) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap");
+  std::filesystem::create_directory(folder.path() / "b.mcap");
+  EXPECT_FALSE(repair(folder.path() / "a.mcap", folder.path() / "b.mcap", "dyncal test"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.mcap.part"));
 }
 
 } // namespace
