@@ -157,15 +157,16 @@ std::size_t name_columns(const live::Laboratory& laboratory, Clock::Instant now,
 
 // Of the texts that say it, the one that says most within `columns`.
 std::string flags_text(const ChannelSummary& channel, std::size_t columns) {
-  const std::string count = fmt::format(" flags {}", channel.flagged);
   const std::string name = fmt::format("{}{}", name_of(channel.flags.begin()->first),
                                        channel.flags.size() > 1 ? "+" : "");
-  for (const std::string& text : {count + ": " + name, " " + name}) {
-    if (columns_of(text) <= columns) {
-      return text;
-    }
+  std::string text = fmt::format(" flags {}: {}", channel.flagged, name);
+  if (columns_of(text) > columns) {
+    text = " " + name;
   }
-  return count;
+  if (columns_of(text) > columns) {
+    text = fmt::format(" flags {}", channel.flagged);
+  }
+  return text;
 }
 
 Line channel_line(const std::string& name, const ChannelSummary& channel, BenchState state,
