@@ -147,6 +147,7 @@ void divide_magnitudes(std::vector<RawValue>& raw, MeasuredResponse& response) {
 
 void divide_phases(std::vector<RawValue>& raw, MeasuredResponse& response) {
   std::vector<BudgetAtFrequency> budgets;
+  budgets.reserve(raw.size());
   for (const RawValue& one : raw) {
     budgets.push_back({one.value.point.frequency_hz, one.repetitions.front()->budget});
   }

@@ -156,7 +156,7 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
                     .walked = [&](std::uint64_t bytes) { copied_bytes.set_done(bytes); }});
   copy.flush();
   if (!copied) {
-    return copied;
+    return fail(copied.error());
   }
   auto written = copy.outcome()
                      .and_then([&] { return writer->add_metadata(repair_metadata(path, *report)); })
