@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "analysis/sine/extended_basis.hpp"
+#include "analysis/sine/pass_progress.hpp"
 #include "analysis/sine/sine_pass.hpp"
 #include "analysis/sine/sine_solve.hpp"
 
@@ -33,11 +34,16 @@ struct System {
 // on the sizes of the processor's caches.
 class Fitter {
 public:
-  Fitter(const Record& record, SineBasis basis)
-      : record_(record), basis_(std::move(basis)), design_(basis_.columns() * block_samples),
-        products_(basis_.columns()) {}
+  Fitter(const Record& record, SineBasis basis, const Progress& progress)
+      : record_(record), basis_(std::move(basis)),
+        progress_(progress, {.channels = record.channels().size(),
+                             .samples = record.size(),
+                             .columns = basis_.columns(),
+                             .further_passes = max_refinements}),
+        design_(basis_.columns() * block_samples), products_(basis_.columns()) {}
 
   [[nodiscard]] SineBasis& basis() { return basis_; }
+  void begin_channel(std::size_t channel) { progress_.begin_channel(channel); }
 
   // Sums about `coefficients`; weights may be empty. Residuals are stored when asked for.
   Expected<System> pass(std::span<const double> values, const Eigen::VectorXd& coefficients,
@@ -60,6 +66,7 @@ public:
       }
       add_products(weights.empty() ? design_ : weighted(weights.subspan(i, n)), n, e.data(),
                    with_matrix, system);
+      progress_.add_samples(n, i + n, with_matrix);
     }
     for (Eigen::Index row = 0; row < columns; ++row) {
       for (Eigen::Index column = 0; column < row; ++column) {
@@ -105,6 +112,7 @@ private:
   const SineKernel& kernel_ = best_kernel();
   const Record& record_;
   SineBasis basis_;
+  PassProgress progress_;
   std::vector<double> design_, weighted_;
   std::vector<double> products_;
 };
@@ -309,7 +317,7 @@ ExtendedFit assemble(const SineBasis& basis, const ExtendedBasis& wanted,
 Expected<std::vector<ExtendedFit>>
 fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
                   std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
-                  std::span<const std::span<const double>> channels) {
+                  std::span<const std::span<const double>> channels, const Progress& progress) {
   const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
   if (!record) {
     return fail(record.error());
@@ -323,9 +331,10 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
     return fail(ErrorCode::invalid_argument,
                 "the phase origin is more than 292 years away from the record");
   }
-  Fitter fitter(*record, std::move(*columns));
+  Fitter fitter(*record, std::move(*columns), progress);
   std::vector<ExtendedFit> fits;
   for (const std::span<const double> values : channels) {
+    fitter.begin_channel(fits.size());
     auto solution = least_squares(fitter, frequency, values);
     if (!solution) {
       return fail(solution.error());
@@ -344,6 +353,7 @@ fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weight
     }
     fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
   }
+  fitter.begin_channel(fits.size());
   if (std::none_of(fits.begin(), fits.end(),
                    [](const ExtendedFit& fit) { return is_significant(fit.fundamental); })) {
     return fail(ErrorCode::no_excitation,

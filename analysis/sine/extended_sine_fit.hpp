@@ -27,6 +27,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/progress.hpp"
 #include "analysis/sine/robust_weights.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
@@ -58,9 +59,10 @@ struct ExtendedFit {
   int iterations = 0;         // of the weights
 };
 
+// `progress` counts what least squares takes; weights take more, in as many steps as they need.
 [[nodiscard]] Expected<std::vector<ExtendedFit>>
 fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
                   std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
-                  std::span<const std::span<const double>> channels);
+                  std::span<const std::span<const double>> channels, const Progress& progress = {});
 
 } // namespace dyncal::analysis

@@ -244,7 +244,8 @@ Expected<double> choose_bin(const Spectra& spectra, double bin_hz) {
 } // namespace
 
 Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
-                                       std::span<const std::span<const double>> columns) {
+                                       std::span<const std::span<const double>> columns,
+                                       const Progress& progress) {
   if (stamps_ns.size() < min_samples) {
     return fail(ErrorCode::too_few_samples, "a frequency estimate needs at least eight samples");
   }
@@ -266,6 +267,7 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
                                          places.begin()));
   Spectra spectra;
   Eigen::FFT<double> transform;
+  std::size_t transformed = 0;
   for (const std::span<const double> column : columns) {
     if (column.size() != stamps_ns.size()) {
       return fail(ErrorCode::invalid_argument,
@@ -277,6 +279,10 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
     }
     if (!is_constant(column.first(places.size()))) { // its mean may differ from it by rounding
       add_column(places, column, size, transform, spectra);
+    }
+    ++transformed;
+    if (progress) {
+      progress(static_cast<double>(transformed) / static_cast<double>(columns.size()));
     }
   }
   if (spectra.total.empty()) {

@@ -19,11 +19,12 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/progress.hpp"
 
 namespace dyncal::analysis {
 
 [[nodiscard]] Expected<Frequency>
 estimate_frequency(std::span<const std::int64_t> stamps_ns,
-                   std::span<const std::span<const double>> columns);
+                   std::span<const std::span<const double>> columns, const Progress& progress = {});
 
 } // namespace dyncal::analysis

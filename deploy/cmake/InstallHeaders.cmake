@@ -14,6 +14,7 @@ set(private
   analysis/sine/extended_basis.hpp
   analysis/sine/frequency_search.hpp
   analysis/sine/frequency_series.hpp
+  analysis/sine/pass_progress.hpp
   analysis/sine/sine_pass.hpp
   analysis/sine/sine_solve.hpp
 )

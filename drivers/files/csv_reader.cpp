@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "drivers/files/file_channels.hpp"
 #include "drivers/files/regular_stamps.hpp"
@@ -51,6 +52,7 @@ Expected<void> CsvReader::read_header() {
   const std::size_t line_end = std::min(rest_.find('\n'), rest_.size() - 1);
   const std::string_view line = rest_.substr(0, line_end + 1);
   rest_.remove_prefix(line.size());
+  bytes_behind_ = file_.text().size() - rest_.size();
   auto layout = CsvLayout::of(line.ends_with('\n') ? line.substr(0, line.size() - 1) : line);
   if (!layout) {
     return malformed(1, layout.error());
@@ -74,10 +76,15 @@ void CsvReader::read_ahead() {
   // to be taken.
   const std::size_t stretches = 2 * std::max<std::size_t>(1, std::thread::hardware_concurrency());
   while (ahead_.size() < stretches && !rest_.empty()) {
-    ahead_.push_back(std::async(std::launch::async, [this, lines = next_lines(rest_)] {
-      return read_csv_rows(lines, layout_);
-    }));
+    const std::string_view lines = next_lines(rest_);
+    ahead_.push_back({lines.size(), std::async(std::launch::async, [this, lines] {
+                        return read_csv_rows(lines, layout_);
+                      })});
   }
+}
+
+double CsvReader::share_read() const {
+  return static_cast<double>(bytes_behind_) / static_cast<double>(file_.text().size());
 }
 
 Expected<bool> CsvReader::next_stretch() {
@@ -85,13 +92,15 @@ Expected<bool> CsvReader::next_stretch() {
     if (rows_.problem) {
       return malformed(first_line_ + rows_.problem->line, rows_.problem->sentence);
     }
+    bytes_behind_ += std::exchange(bytes_of_rows_, 0);
     read_ahead();
     if (ahead_.empty()) {
       return false;
     }
     first_line_ += rows_.lines;
     block_ = 0;
-    rows_ = ahead_.front().get();
+    bytes_of_rows_ = ahead_.front().bytes;
+    rows_ = ahead_.front().rows.get();
     ahead_.pop_front();
     read_ahead();
     if (const auto order = check_numbers(); !order) {

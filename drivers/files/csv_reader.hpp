@@ -26,8 +26,14 @@ public:
 
   [[nodiscard]] const SourceDescription& description() const override { return description_; }
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
+  [[nodiscard]] double share_read() const override;
 
 private:
+  struct Stretch {
+    std::size_t bytes = 0;
+    std::future<CsvRows> rows;
+  };
+
   CsvReader(const FileSettings& settings, MappedFile file)
       : settings_(settings), file_(std::move(file)), rest_(file_.text()) {}
   Expected<void> read_header();
@@ -44,12 +50,13 @@ private:
   std::string_view rest_; // not yet given to a thread
   CsvLayout layout_;
   SourceDescription description_;
-  std::deque<std::future<CsvRows>>
-      ahead_; // their threads read file_ and layout_: they end before these go
+  std::deque<Stretch> ahead_; // their threads read file_ and layout_: they end before these go
   CsvRows rows_;
-  std::size_t block_ = 0;      // of rows_: read now
-  std::size_t taken_ = 0;      // rows of that block
-  std::size_t first_line_ = 2; // of rows_ in the file
+  std::size_t bytes_of_rows_ = 0;
+  std::size_t bytes_behind_ = 0; // of stretches before rows_
+  std::size_t block_ = 0;        // of rows_: read now
+  std::size_t taken_ = 0;        // rows of that block
+  std::size_t first_line_ = 2;   // of rows_ in the file
   std::uint64_t next_sample_ = 0;
   StampOrder order_;
   std::optional<std::uint64_t> last_sample_;

@@ -242,6 +242,10 @@ Expected<std::optional<DumpReader::Row>> DumpReader::next_row() {
   return std::optional(std::move(*row));
 }
 
+double DumpReader::share_read() const {
+  return 1.0 - static_cast<double>(rest_.size()) / static_cast<double>(file_.text().size());
+}
+
 Expected<SampleBlock> DumpReader::read(std::size_t samples) {
   std::vector<Row> rows;
   while (rows.size() < samples) {

@@ -26,6 +26,7 @@ public:
 
   [[nodiscard]] const SourceDescription& description() const override { return description_; }
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
+  [[nodiscard]] double share_read() const override;
 
 private:
   struct Row {

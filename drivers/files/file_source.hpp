@@ -41,6 +41,8 @@ public:
   [[nodiscard]] virtual const SourceDescription& description() const = 0;
   // The next samples, at most `samples` of them, not beyond a gap; no samples: the end of the file.
   [[nodiscard]] virtual Expected<SampleBlock> read(std::size_t samples) = 0;
+  // How much of the file has been read: 0 to 1, never falling, 1 when read() has given the end.
+  [[nodiscard]] virtual double share_read() const = 0;
 };
 
 class FileSource : public SampleSource {
@@ -50,6 +52,9 @@ public:
   [[nodiscard]] Expected<SourceDescription> describe() override;
   [[nodiscard]] Expected<void> run(SampleSink& sink) override;
   void stop() override { stop_.raise(); }
+  // As SampleReader::share_read(); 0 before the file is described. In the thread of run() only, so
+  // by its sink.
+  [[nodiscard]] double share_read() const { return reader_ ? reader_->share_read() : 0.0; }
 
 private:
   [[nodiscard]] std::size_t block_samples() const;

@@ -288,6 +288,10 @@ Expected<void> Hdf5Reader::number(SampleBlock& block) {
   return {};
 }
 
+double Hdf5Reader::share_read() const {
+  return static_cast<double>(row_) / static_cast<double>(end_);
+}
+
 Expected<SampleBlock> Hdf5Reader::read(std::size_t samples) {
   SampleBlock block;
   block.samples =

@@ -99,6 +99,10 @@ Expected<void> NpyReader::check_numbers(const std::vector<std::uint64_t>& number
   return {};
 }
 
+double NpyReader::share_read() const {
+  return header_.rows == 0 ? 1.0 : static_cast<double>(row_) / static_cast<double>(header_.rows);
+}
+
 Expected<SampleBlock> NpyReader::read(std::size_t samples) {
   SampleBlock block;
   block.samples = std::min(samples, header_.rows - row_);

@@ -1,5 +1,6 @@
 #include "drivers/files/wav_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sndfile.h>
 
@@ -41,6 +42,7 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
     return fail(ErrorCode::malformed,
                 reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")");
   }
+  reader->all_samples_ = static_cast<std::uint64_t>(std::max<sf_count_t>(info.frames, 0));
   std::vector<std::string> names;
   for (int channel = 1; channel <= info.channels; ++channel) {
     names.push_back("channel_" + std::to_string(channel));
@@ -58,6 +60,13 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
     channel.resolution = resolution_of(info.format);
   }
   return reader;
+}
+
+double WavReader::share_read() const {
+  if (at_end_ || all_samples_ == 0) {
+    return at_end_ ? 1.0 : 0.0;
+  }
+  return std::min(1.0, static_cast<double>(next_sample_) / static_cast<double>(all_samples_));
 }
 
 Expected<SampleBlock> WavReader::read(std::size_t samples) {
@@ -80,6 +89,7 @@ Expected<SampleBlock> WavReader::read(std::size_t samples) {
     }
   }
   next_sample_ += block.samples;
+  at_end_ = block.samples == 0;
   return block;
 }
 

@@ -19,6 +19,7 @@ public:
 
   [[nodiscard]] const SourceDescription& description() const override { return description_; }
   [[nodiscard]] Expected<SampleBlock> read(std::size_t samples) override;
+  [[nodiscard]] double share_read() const override;
 
 private:
   struct Close {
@@ -30,7 +31,9 @@ private:
   std::string path_;
   SampleRate rate_;
   SourceDescription description_;
+  std::uint64_t all_samples_ = 0; // as the header has it
   std::uint64_t next_sample_ = 0;
+  bool at_end_ = false;
   std::vector<double> frames_;
 };
 

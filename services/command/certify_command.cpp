@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/certificate/certificate_file.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -51,7 +52,10 @@ void print_made(const CertificateFileRequest& request, const CertificateContents
 
 int run_certify(const CertifyCommand& command) {
   const CertificateFileRequest request = request_of(command);
-  const auto made = write_certificate(request);
+  const auto made = [&] {
+    const WorkProgress progress("making the certificate");
+    return write_certificate(request);
+  }();
   if (!made) {
     return report_error(made.error());
   }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/comparison.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/error.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
@@ -73,6 +74,22 @@ compare(const CompareCommand& command, const ResultPoints& first, const ResultPo
   return compared;
 }
 
+Expected<std::vector<ComparedPoint>> read_and_compare(const CompareCommand& command) {
+  const WorkProgress progress("reading");
+  ByteCount bytes(progress.count(), "reading",
+                  bytes_of_file(command.first) + bytes_of_file(command.second));
+  const auto first = read_result_file(command.first, bytes);
+  if (!first) {
+    return fail(first.error());
+  }
+  const auto second = read_result_file(command.second, bytes);
+  if (!second) {
+    return fail(second.error());
+  }
+  progress.count()->begin("comparing", "", 0);
+  return compare(command, *first, *second);
+}
+
 double phase_difference_rad(const ComparedPoint& point) {
   return std::remainder(point.first.phase_rad - point.second.phase_rad, 2.0 * std::numbers::pi);
 }
@@ -122,15 +139,7 @@ void print_table(const std::vector<ComparedPoint>& points) {
 } // namespace
 
 int run_compare(const CompareCommand& command) {
-  const auto first = read_result_file(command.first);
-  if (!first) {
-    return report_error(first.error());
-  }
-  const auto second = read_result_file(command.second);
-  if (!second) {
-    return report_error(second.error());
-  }
-  const auto compared = compare(command, *first, *second);
+  const auto compared = read_and_compare(command);
   if (!compared) {
     return report_error(compared.error());
   }

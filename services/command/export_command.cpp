@@ -1,9 +1,12 @@
 #include "services/command/export_command.hpp"
 
+#include <utility>
+
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "services/command/share_line.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/exchange/export_recording.hpp"
 #include "services/program/program.hpp"
 
@@ -25,6 +28,26 @@ void print(const ExportedFigures& figures, const std::filesystem::path& to) {
   fmt::print("wrote {}\n", to.string());
 }
 
+Expected<ExportedFigures> export_with_progress(const ExportCommand& command, ExportFormat format,
+                                               const std::stop_token& stop) {
+  const WorkProgress progress("reading");
+  ShareLine line(stderr);
+  bool exporting = false;
+  return export_recording({.recording = command.recording,
+                           .to = command.to,
+                           .format = format,
+                           .channels = command.channels,
+                           .count = progress.count()},
+                          [&](double share) {
+                            if (!std::exchange(exporting, true)) {
+                              progress.count()->begin_share("exporting");
+                            }
+                            progress.count()->set_share_done(share);
+                            line.show(share);
+                            return !stop.stop_requested();
+                          });
+}
+
 } // namespace
 
 int run_export(const ExportCommand& command, const std::stop_token& stop) {
@@ -32,16 +55,7 @@ int run_export(const ExportCommand& command, const std::stop_token& stop) {
   if (!format) {
     return report_error(format.error());
   }
-  ShareLine line(stderr);
-  const auto figures = export_recording({.recording = command.recording,
-                                         .to = command.to,
-                                         .format = *format,
-                                         .channels = command.channels},
-                                        [&](double share) {
-                                          line.show(share);
-                                          return !stop.stop_requested();
-                                        });
-  line.end();
+  const auto figures = export_with_progress(command, *format, stop);
   if (!figures) {
     return report_error(figures.error());
   }

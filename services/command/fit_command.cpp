@@ -75,12 +75,14 @@ analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) 
 
 analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesFile& series,
                                         const std::vector<std::span<const double>>& columns,
-                                        Fit& fit) {
+                                        WorkCount& count, Fit& fit) {
   if (!command.frequency.empty()) {
     return analysis::Frequency::parse(command.frequency)
         .map([&](const analysis::Frequency& frequency) { fit.frequency = frequency; });
   }
-  const auto start = analysis::estimate_frequency(series.stamps_ns, columns);
+  count.begin("estimating the frequency", "columns", columns.size());
+  const auto start = analysis::estimate_frequency(series.stamps_ns, columns,
+                                                  [&](double /*share*/) { count.add_done(); });
   if (!start) {
     const bool no_sine = start.error().code == analysis::ErrorCode::no_excitation;
     return fail(start.error().code,
@@ -91,6 +93,7 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
   const double duration_s =
       static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
   const double search_rel = std::min(estimate_bins / (start->hz() * duration_s), 0.9);
+  count.begin("fitting the frequency", "", 0);
   return analysis::fit_sine_and_frequency(*start, search_rel, fit.reference_ns, series.stamps_ns,
                                           columns)
       .map([&](analysis::FrequencyFit found) {
@@ -102,7 +105,7 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
 
 analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile& series,
                                      const std::vector<std::span<const double>>& columns,
-                                     Fit& fit) {
+                                     WorkCount& count, Fit& fit) {
   const auto basis = basis_of(command);
   if (!basis) {
     return fail(basis.error());
@@ -111,11 +114,14 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
     if (!fit.fits.empty()) {
       return {};
     }
+    count.begin("fitting", "", 0);
     return analysis::fit_sine(fit.frequency, fit.reference_ns, series.stamps_ns, columns)
         .map([&](auto fits) { fit.fits = std::move(fits); });
   }
+  count.begin_share("fitting");
   return analysis::fit_sine_extended(fit.frequency, *basis, analysis::Weighting::none,
-                                     fit.reference_ns, series.stamps_ns, columns)
+                                     fit.reference_ns, series.stamps_ns, columns,
+                                     [&](double share) { count.set_share_done(share); })
       .map([&](const std::vector<analysis::ExtendedFit>& fits) {
         fit.fits.clear();
         for (const analysis::ExtendedFit& one : fits) {
@@ -180,8 +186,8 @@ void print_table(const Fit& fit) {
 }
 
 Expected<Fit> fit_file(const FitCommand& command) {
-  const WorkProgress progress("reading and fitting");
-  auto series = read_series_file(command.file);
+  const WorkProgress progress("reading");
+  auto series = read_series_file(command.file, progress.count());
   if (!series) {
     return fail(series.error());
   }
@@ -200,8 +206,9 @@ Expected<Fit> fit_file(const FitCommand& command) {
                 fmt::format("{}: the file has no samples", command.file.string()));
   }
   fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
-  const auto fitted = find_frequency(command, *series, *columns, fit).and_then([&] {
-    return fit_columns(command, *series, *columns, fit);
+  WorkCount& count = *progress.count();
+  const auto fitted = find_frequency(command, *series, *columns, count, fit).and_then([&] {
+    return fit_columns(command, *series, *columns, count, fit);
   });
   if (!fitted) {
     return fail(at(command, fitted.error()));

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
@@ -175,19 +176,29 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
   return {};
 }
 
+Expected<History> look_up(const HistoryCommand& command) {
+  const WorkProgress progress("opening the store");
+  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
+  if (!store) {
+    return fail(store.error());
+  }
+  auto calibrations = (*store)->calibrations(command.sensor, progress.count());
+  if (!calibrations) {
+    return fail(calibrations.error());
+  }
+  progress.count()->begin("comparing", "", 0);
+  return history_of(command.sensor, std::move(*calibrations), command.channel,
+                    command.frequency_hz);
+}
+
 } // namespace
 
 int run_history(const HistoryCommand& command) {
-  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
-  if (!store) {
-    return report_error(store.error());
+  const auto looked_up = look_up(command);
+  if (!looked_up) {
+    return report_error(looked_up.error());
   }
-  auto calibrations = (*store)->calibrations(command.sensor);
-  if (!calibrations) {
-    return report_error(calibrations.error());
-  }
-  const History history =
-      history_of(command.sensor, std::move(*calibrations), command.channel, command.frequency_hz);
+  const History& history = *looked_up;
   if (history.lines.empty()) {
     return report_error({ErrorCode::no_result,
                          fmt::format("the store has no calibration of sensor '{}' with a value{}; "

@@ -125,7 +125,7 @@ void print_table(const analysis::SampleClockStatistics& clock) {
 int run_intervals(const IntervalsCommand& command) {
   const auto series = [&] {
     const WorkProgress progress("reading");
-    return read_series_file(command.file);
+    return read_series_file(command.file, progress.count());
   }();
   if (!series) {
     return report_error(series.error());
@@ -145,8 +145,11 @@ int run_intervals(const IntervalsCommand& command) {
   settings.tick_s = command.tick_s;
   settings.nominal_rate_hz = command.nominal_rate_hz;
   analysis::SampleClock clock(settings);
-  push_series(*series, temperature, clock);
-  const auto statistics = clock.statistics();
+  const auto statistics = [&] {
+    const WorkProgress progress("evaluating");
+    push_series(*series, temperature, clock);
+    return clock.statistics();
+  }();
   if (!statistics) {
     return report_error({ErrorCode::bad_file,
                          fmt::format("{}: fewer than three samples: too few to evaluate intervals",

@@ -15,6 +15,8 @@ void add_watch(CLI::App& app, WatchCommand& watch) {
   command->add_flag("--all", watch.all,
                     "also runs that are over, channels that do not respond, and benches that are "
                     "gone");
+  command->add_flag("--flags", watch.flags,
+                    "in the table every flag of a channel, and below what each of them means");
   command->add_flag("--json", watch.json, "print every change as a line of JSON");
   add_network_options(*command, watch.network);
 }

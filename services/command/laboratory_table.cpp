@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -22,7 +24,7 @@ using live::Severity;
 constexpr std::size_t min_columns = 20;
 
 // What stays when there is no room for all; the lowest first.
-enum class Rank { always, wrong, channel_of_run, source_of_run, source, channel };
+enum class Rank { always, wrong, channel_of_run, meaning, source_of_run, source, channel };
 
 struct Line {
   Rank rank = Rank::always;
@@ -98,6 +100,7 @@ struct ChannelSummary {
   std::size_t results = 0;
   std::size_t responding = 0;
   std::size_t flagged = 0;
+  std::map<ResultFlag, std::size_t> flags; // how many results have it
 
   [[nodiscard]] bool responds() const { return 2 * responding > results; }
 };
@@ -108,6 +111,13 @@ std::map<std::string, ChannelSummary> channels_of(const Run& run) {
     ChannelSummary& channel = channels[result.channel];
     ++channel.results;
     channel.flagged += result.flags.empty() ? 0 : 1;
+    std::set<ResultFlag> kinds;
+    for (const Flag& flag : result.flags) {
+      kinds.insert(flag.kind);
+    }
+    for (const ResultFlag kind : kinds) {
+      ++channel.flags[kind];
+    }
     if (result.valid) {
       channel.newest = &result; // by step: the last is the newest of its repetition
       channel.responding += result.magnitude > 3.0 * result.u_magnitude ? 1 : 0;
@@ -116,9 +126,52 @@ std::map<std::string, ChannelSummary> channels_of(const Run& run) {
   return channels;
 }
 
+bool is_shown(const Bench& bench, Clock::Instant now, const TableLayout& layout) {
+  return layout.all || state_of(bench, now) != BenchState::gone;
+}
+
+bool is_shown(const Run& run, const Bench& bench, const TableLayout& layout) {
+  return layout.all || &run == bench.current_run();
+}
+
+bool is_shown(const ChannelSummary& channel, const TableLayout& layout) {
+  return layout.all || channel.responds();
+}
+
+// Of the names of channels: as wide as the widest, as long as there is room for values beside it.
+std::size_t name_columns(const live::Laboratory& laboratory, Clock::Instant now,
+                         const TableLayout& layout) {
+  std::size_t widest = 0;
+  for (const auto& [bench_name, bench] : laboratory.benches()) {
+    for (const auto& [run_name, run] : bench.runs) {
+      if (!is_shown(bench, now, layout) || !is_shown(run, bench, layout)) {
+        continue;
+      }
+      for (const auto& [name, channel] : channels_of(run)) {
+        widest = is_shown(channel, layout) ? std::max(widest, columns_of(harmless(name))) : widest;
+      }
+    }
+  }
+  return std::min(widest, std::clamp<std::size_t>(layout.columns, 80, 98) - 58);
+}
+
+// Of the texts that say it, the one that says most within `columns`.
+std::string flags_text(const ChannelSummary& channel, std::size_t columns) {
+  const std::string name = fmt::format("{}{}", name_of(channel.flags.begin()->first),
+                                       channel.flags.size() > 1 ? "+" : "");
+  std::string text = fmt::format(" flags {}: {}", channel.flagged, name);
+  if (columns_of(text) > columns) {
+    text = " " + name;
+  }
+  if (columns_of(text) > columns) {
+    text = fmt::format(" flags {}", channel.flagged);
+  }
+  return text;
+}
+
 Line channel_line(const std::string& name, const ChannelSummary& channel, BenchState state,
-                  std::size_t name_columns) {
-  std::string text = fmt::format("  {}", in_columns(harmless(name), name_columns));
+                  std::size_t names, std::size_t columns) {
+  std::string text = fmt::format("  {}", in_columns(harmless(name), names));
   if (channel.newest == nullptr) {
     text += fmt::format(" no value in {} results", channel.results);
     return {Rank::wrong, Severity::warning, std::move(text)};
@@ -130,39 +183,91 @@ Line channel_line(const std::string& name, const ChannelSummary& channel, BenchS
   text += fmt::format(" {:>6} Hz |H| {} u {}{} arg {}", harmless(result.frequency_text_hz),
                       magnitude.value, magnitude.u, harmless(unit), phase.value);
   if (channel.flagged > 0) {
-    text += fmt::format(" flags {}", channel.flagged);
+    text += flags_text(channel, columns - std::min(columns_of(text), columns));
   }
   return {is_conducted(state) ? Rank::channel_of_run : Rank::channel,
           channel.flagged > 0 ? Severity::note : Severity::ok, std::move(text)};
 }
 
-// As wide as the terminal allows beside a value, up to the longest names that are usual.
-std::size_t channel_columns(std::size_t columns) {
-  return std::clamp<std::size_t>(columns, 80, 98) - 58;
+// A text over several lines, the first begins at `indent`, the others further in.
+void add_wrapped(const std::string& text, std::size_t indent, Rank rank, std::size_t columns,
+                 std::vector<Line>& lines) {
+  std::string line(indent, ' ');
+  bool begun = false;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, end - from);
+    if (begun && columns_of(line) + 1 + columns_of(word) > columns) {
+      lines.push_back({rank, Severity::note, std::exchange(line, std::string(indent + 2, ' '))});
+      begun = false;
+    }
+    line += (begun ? " " : "") + word;
+    begun = true;
+    from = end + 1;
+  }
+  lines.push_back({rank, Severity::note, std::move(line)});
 }
 
-void add_bench(const Bench& bench, Clock::Instant now, const TableLayout& layout,
-               std::vector<Line>& lines) {
-  const BenchState state = state_of(bench, now);
-  if (state == BenchState::gone && !layout.all) {
+// Each with how many results have it: "samples_lost 3, values_stuck 1".
+std::string all_flags_text(const ChannelSummary& channel) {
+  std::string text;
+  for (const auto& [kind, results] : channel.flags) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name_of(kind), results);
+  }
+  return text;
+}
+
+struct Table {
+  TableLayout layout;
+  Clock::Instant now;
+  std::size_t names = 0; // columns of the names of channels
+  std::vector<Line> lines{};
+  std::set<ResultFlag> flags{}; // that are in it by name
+};
+
+void add_channel(const std::string& name, const ChannelSummary& channel, BenchState state,
+                 Table& table) {
+  const std::size_t columns = table.layout.columns;
+  Line line = channel_line(name, channel, state, table.names, columns);
+  const Rank rank = line.rank;
+  table.lines.push_back(std::move(line));
+  if (table.layout.flags && !channel.flags.empty()) {
+    add_wrapped(all_flags_text(channel), 4, rank, columns, table.lines);
+    for (const auto& [kind, results] : channel.flags) {
+      table.flags.insert(kind);
+    }
+  }
+}
+
+void add_meanings(Table& table) {
+  for (const ResultFlag kind : table.flags) {
+    add_wrapped(fmt::format("{}: {}", name_of(kind), explanation_of(kind)), 0, Rank::meaning,
+                table.layout.columns, table.lines);
+  }
+}
+
+void add_bench(const Bench& bench, Table& table) {
+  const TableLayout& layout = table.layout;
+  const Clock::Instant now = table.now;
+  std::vector<Line>& lines = table.lines;
+  if (!is_shown(bench, now, layout)) {
     return;
   }
+  const BenchState state = state_of(bench, now);
   lines.push_back(bench_line(bench, now));
   for (const auto& [name, source] : bench.sources) {
     lines.push_back(source_line(source, state, now));
   }
   for (const auto& [name, run] : bench.runs) {
-    const bool is_current = &run == bench.current_run();
-    if (!is_current && !layout.all) {
+    if (!is_shown(run, bench, layout)) {
       continue;
     }
-    if (!is_current) {
+    if (&run != bench.current_run()) {
       lines.push_back({Rank::channel, Severity::ok, "  " + run_text(run, now)});
     }
     for (const auto& [channel_name, channel] : channels_of(run)) {
-      if (layout.all || channel.responds()) {
-        lines.push_back(
-            channel_line(channel_name, channel, state, channel_columns(layout.columns)));
+      if (is_shown(channel, layout)) {
+        add_channel(channel_name, channel, state, table);
       }
     }
   }
@@ -230,10 +335,12 @@ std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
   TableLayout layout = wanted;
   layout.columns = std::max(layout.columns, min_columns);
   const Clock::Instant now = laboratory.clock().now();
-  std::vector<Line> lines;
+  Table found{layout, now, name_columns(laboratory, now, layout)};
   for (const auto& [name, bench] : laboratory.benches()) {
-    add_bench(bench, now, layout, lines);
+    add_bench(bench, found);
   }
+  add_meanings(found);
+  std::vector<Line>& lines = found.lines;
   std::vector<std::string> table{shortened(head(laboratory), layout.columns)};
   if (lines.empty()) {
     table.push_back(shortened("nothing on this DDS domain yet", layout.columns));

@@ -3,7 +3,8 @@
 //
 // Where there is no room for all, what is wrong comes first, then channels and sources of benches
 // that run, then the others; the last line says how many lines were left out. No line is longer
-// than the terminal is wide. Plain functions, any thread.
+// than the terminal is wide. A channel with flags says which where there is room for its name, else
+// how many results have some. Plain functions, any thread.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,8 @@ struct TableLayout {
   std::size_t columns = 80;
   std::size_t rows = 24; // 0: as many as there are
   bool colour = false;
-  bool all = false; // every channel, also of runs that are over, and benches that are gone
+  bool all = false;   // every channel, also of runs that are over, and benches that are gone
+  bool flags = false; // every flag of a channel, and what those that are shown mean
 };
 
 // One text a line, without line ends.

@@ -49,7 +49,8 @@ Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
     return fail(checked.error());
   }
   const WorkProgress progress("reading");
-  auto responses = read_responses(command.results, {command.channels, command.include_flagged});
+  auto responses = read_responses(command.results, {command.channels, command.include_flagged},
+                                  progress.count());
   if (!responses) {
     return fail(responses.error());
   }

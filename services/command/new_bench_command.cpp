@@ -13,6 +13,7 @@
 #include "services/bench_draft/bench_text.hpp"
 #include "services/bench_draft/draft_questions.hpp"
 #include "services/bench_draft/new_file.hpp"
+#include "services/command/draft_options.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -32,7 +33,28 @@ BenchDraft draft_of(const NewBenchCommand& command) {
   return draft;
 }
 
-// Of what a draft by options lacks.
+// Channels of one system that two options name; nothing where each has its own.
+std::optional<Error> same_channel(const BenchDraft& draft) {
+  using bench_draft::SensorKind;
+  const auto same = [](const char* one, const char* other, const std::string& channel) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("{} and {} name the same channel '{}': each needs one of its own", one,
+                             other, channel)};
+  };
+  const std::string channel = channel_of(draft);
+  if (draft.sensor == SensorKind::analogue && draft.reference == channel) {
+    return same("--reference", "--channel", channel);
+  }
+  if (draft.sensor != SensorKind::analogue && draft.reference == draft.sync) {
+    return same("--reference", "--sync", draft.sync);
+  }
+  if (draft.sensor == SensorKind::file && draft.sensor_sync == channel) {
+    return same("--sensor-sync", "--channel", channel);
+  }
+  return std::nullopt;
+}
+
+// Of what a draft by options lacks, or has twice.
 Expected<void> check_options(const BenchDraft& draft) {
   if (draft.name.find('/') != std::string::npos) {
     return fail(ErrorCode::bad_argument, "--name must not have a '/'");
@@ -42,6 +64,9 @@ Expected<void> check_options(const BenchDraft& draft) {
   }
   if (draft.acs == bench_draft::AcsKind::file && draft.acs_file.empty()) {
     return fail(ErrorCode::bad_argument, "--acs file needs --acs-file, the reference's record");
+  }
+  if (const auto twice = same_channel(draft)) {
+    return fail(*twice);
   }
   return {};
 }
@@ -53,7 +78,7 @@ Expected<void> read_channels(BenchDraft& draft) {
   }
   const auto dbc = drivers::can::read_dbc_file(draft.dbc);
   if (!dbc) {
-    return fail(ErrorCode::bad_file, dbc.error().message);
+    return fail(ErrorCode::bad_file, "--dbc: " + dbc.error().message);
   }
   for (const auto& message : dbc->messages) {
     for (const auto& signal : message.signals) {
@@ -75,12 +100,13 @@ std::string name_from(const std::filesystem::path& folder, const std::string& fi
   return relative.empty() || *relative.begin() == ".." ? absolute.string() : relative.string();
 }
 
-std::string texts_of(const bench_check::Findings& findings, bench_check::Severity severity) {
+std::string texts_of(const bench_check::Findings& findings, bench_check::Severity severity,
+                     const BenchDraft& draft) {
   std::string texts;
   for (const bench_check::Finding& finding : findings) {
     if (finding.severity == severity) {
       texts +=
-          fmt::format("{}key '{}' {}", texts.empty() ? "" : "; ", finding.key, finding.sentence);
+          (texts.empty() ? "" : "; ") + sentence_with_options(draft, finding.key, finding.sentence);
     }
   }
   return texts;
@@ -106,7 +132,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   const std::string text = bench_draft::bench_text(draft, dbc_name);
   const std::vector<bench_check::BenchView> views{bench_check::look_at_bench_text(text, path)};
   const bench_check::Findings findings = bench_check::check_benches(views);
-  const std::string errors = texts_of(findings, bench_check::Severity::error);
+  const std::string errors = texts_of(findings, bench_check::Severity::error, draft);
   auto written = errors.empty()
                      ? bench_draft::write_new_file(path, text)
                      : fail(ErrorCode::bad_argument,
@@ -115,7 +141,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
     std::error_code ignored;
     std::filesystem::remove(dbc_path, ignored);
   }
-  return written.map([&] { return texts_of(findings, bench_check::Severity::warning); });
+  return written.map([&] { return texts_of(findings, bench_check::Severity::warning, draft); });
 }
 
 Expected<std::string> write_draft(BenchDraft draft, const std::filesystem::path& path) {

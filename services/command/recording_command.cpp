@@ -6,6 +6,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "services/byte_count.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 #include "services/recording/recording_reader.hpp"
@@ -64,15 +65,8 @@ Expected<recording::ScanReport> read_all(const RecordingCommand& command,
   if (!reader) {
     return fail(reader.error());
   }
-  std::error_code unknown;
-  const auto size = std::filesystem::file_size(command.file, unknown);
-  progress.count()->begin("reading", "MB", unknown ? 0 : size / 1'000'000);
-  events.message = [&, take = std::move(events.message)](const recording::MessageInFile& message) {
-    progress.count()->set_done(message.chunk / 1'000'000);
-    if (take) {
-      take(message);
-    }
-  };
+  ByteCount bytes(progress.count(), "reading", bytes_of_file(command.file));
+  events.walked = [&](std::uint64_t walked) { bytes.set_done(walked); };
   return reader->scan(events);
 }
 
@@ -100,7 +94,7 @@ int run_recording_repair(const RecordingCommand& command) {
   }
   const auto report = [&] {
     const WorkProgress progress("repairing");
-    return recording::repair(command.file, repaired, software_version());
+    return recording::repair(command.file, repaired, software_version(), progress.count());
   }();
   if (!report) {
     return report_error(report.error());

@@ -37,14 +37,18 @@ Expected<void> write_and_name(const std::filesystem::path& path, std::string_vie
 Expected<void> make_report(const ReportCommand& command) {
   const std::filesystem::path html_file = with_ending(stem_of(command), ".html");
   const std::filesystem::path pdf_file = with_ending(stem_of(command), ".pdf");
-  const auto contents = gather_report({.run = command.run,
-                                       .laboratory = command.laboratory,
-                                       .sensor = command.sensor,
-                                       .channels = command.channels});
-  if (!contents) {
-    return fail(contents.error());
-  }
-  const auto html = report_html(*contents);
+  const auto html = [&]() -> Expected<std::string> {
+    const WorkProgress progress("reading the run");
+    const auto contents = gather_report({.run = command.run,
+                                         .laboratory = command.laboratory,
+                                         .sensor = command.sensor,
+                                         .channels = command.channels});
+    if (!contents) {
+      return fail(contents.error());
+    }
+    progress.count()->begin("making the report", "", 0);
+    return report_html(*contents);
+  }();
   if (!html) {
     return fail(html.error());
   }

@@ -9,8 +9,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr std::chrono::seconds patience{2};
-constexpr std::chrono::milliseconds on_terminal{200};
-constexpr std::chrono::seconds elsewhere{10};
+constexpr std::chrono::seconds pace{10};
 
 } // namespace
 
@@ -19,23 +18,14 @@ ShareLine::ShareLine(std::FILE* stream)
 
 void ShareLine::show(double share) {
   const Clock::time_point now = Clock::now();
-  if (now < next_ || share <= 0.0) {
+  if (terminal_ || now < next_ || share <= 0.0) {
     return;
   }
-  next_ = now + (terminal_ ? Clock::duration(on_terminal) : Clock::duration(elsewhere));
+  next_ = now + pace;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
-  const std::string text = fmt::format("{:.0f} %, {:.0f} s left", 100.0 * share,
-                                       std::ceil(elapsed_s * (1.0 - share) / share));
-  fmt::print(stream_, "{}{}{}", terminal_ ? "\r\x1b[K" : "", text, terminal_ ? "" : "\n");
+  fmt::print(stream_, "{:.0f} %, {:.0f} s left\n", 100.0 * share,
+             std::ceil(elapsed_s * (1.0 - share) / share));
   std::fflush(stream_);
-  open_ = terminal_;
-}
-
-void ShareLine::end() {
-  if (open_) {
-    fmt::print(stream_, "\n");
-    open_ = false;
-  }
 }
 
 } // namespace dyncal::services

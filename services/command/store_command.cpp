@@ -95,11 +95,11 @@ int run_store_add(const StoreAddCommand& command) {
 }
 
 int run_runs(const RunsCommand& command) {
-  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
-  if (!store) {
-    return report_error(store.error());
-  }
-  const auto runs = (*store)->runs(command.filter);
+  const auto runs = [&]() -> Expected<std::vector<StoredRun>> {
+    const WorkProgress progress("opening the store");
+    auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
+    return store ? (*store)->runs(command.filter, progress.count()) : fail(store.error());
+  }();
   if (!runs) {
     return report_error(runs.error());
   }

@@ -5,6 +5,7 @@
 #include <complex>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -85,7 +86,9 @@ Expected<Names> channels_of(const std::vector<std::string>& named,
   return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
 }
 
-Expected<Measured> read(const TriaxialCommand& command) {
+Expected<Measured> read(const TriaxialCommand& command, const SharedWorkCount& count) {
+  ByteCount bytes(count, "reading",
+                  bytes_of_files(command.results) + bytes_of_files(command.motions));
   Measured measured;
   const bool motion_known = std::any_of(command.motions.begin(), command.motions.end(),
                                         [](const auto& path) { return !path.empty(); });
@@ -97,13 +100,13 @@ Expected<Measured> read(const TriaxialCommand& command) {
     if (command.results[axis].empty()) {
       continue;
     }
-    auto sensor = read_result_file(command.results[axis]);
+    auto sensor = read_result_file(command.results[axis], bytes);
     if (!sensor) {
       return fail(sensor.error());
     }
     measured.directions.push_back({axis, std::move(*sensor), {}});
     if (motion_known) {
-      auto motion = read_result_file(command.motions[axis]);
+      auto motion = read_result_file(command.motions[axis], bytes);
       if (!motion) {
         return fail(motion.error());
       }
@@ -215,9 +218,11 @@ Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel
 }
 
 Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
-                                              const Measured& measured) {
+                                              const Measured& measured, WorkCount& count) {
   std::vector<ResponsePoint> points;
+  count.begin("evaluating", "values", measured.directions.front().sensor.size());
   for (const auto& [place, unused] : measured.directions.front().sensor) {
+    count.add_done();
     if (place.first != measured.channels[0]) {
       continue;
     }
@@ -240,6 +245,21 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
                     measured.channels[0], measured.channels[1], measured.channels[2]));
   }
   return points;
+}
+
+// The progress is gone before anything is printed.
+Expected<std::pair<Measured, std::vector<ResponsePoint>>>
+read_and_evaluate(const TriaxialCommand& command) {
+  const WorkProgress progress("reading");
+  auto measured = read(command, progress.count());
+  if (!measured) {
+    return fail(measured.error());
+  }
+  auto points = evaluate(command, *measured, *progress.count());
+  if (!points) {
+    return fail(points.error());
+  }
+  return std::pair(std::move(*measured), std::move(*points));
 }
 
 void print_json(const Measured& measured, const std::vector<ResponsePoint>& points) {
@@ -308,18 +328,12 @@ void print_table(const TriaxialCommand& command, const Measured& measured,
 } // namespace
 
 int run_triaxial(const TriaxialCommand& command) {
-  WorkProgress progress("reading");
-  const auto measured = read(command);
-  if (!measured) {
-    return report_error(measured.error());
+  const auto evaluated = read_and_evaluate(command);
+  if (!evaluated) {
+    return report_error(evaluated.error());
   }
-  progress.count()->begin("evaluating", "", 0);
-  const auto points = evaluate(command, *measured);
-  progress.clear();
-  if (!points) {
-    return report_error(points.error());
-  }
-  command.json ? print_json(*measured, *points) : print_table(command, *measured, *points);
+  const auto& [measured, points] = *evaluated;
+  command.json ? print_json(measured, points) : print_table(command, measured, points);
   return 0;
 }
 

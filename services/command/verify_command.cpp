@@ -5,15 +5,19 @@
 #include <fmt/core.h>
 
 #include "services/certificate/verification.hpp"
+#include "services/command/work_progress.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
 
 int run_verify(const VerifyCommand& command) {
-  const auto findings = verify({.certificate = command.certificate,
-                                .run = command.run,
-                                .trusted = command.trusted,
-                                .schema = command.schema});
+  const auto findings = [&] {
+    const WorkProgress progress("verifying");
+    return verify({.certificate = command.certificate,
+                   .run = command.run,
+                   .trusted = command.trusted,
+                   .schema = command.schema});
+  }();
   if (!findings) {
     return report_error(findings.error());
   }

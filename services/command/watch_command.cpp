@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TableLayout layout_of_terminal(bool all) {
+TableLayout layout_of_terminal(const WatchCommand& command) {
   TableLayout layout;
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
@@ -31,15 +31,16 @@ TableLayout layout_of_terminal(bool all) {
   const char* terminal = std::getenv("TERM");
   layout.colour = (no_colour == nullptr || *no_colour == '\0') &&
                   (terminal == nullptr || std::string(terminal) != "dumb");
-  layout.all = all;
+  layout.all = command.all;
+  layout.flags = command.flags;
   return layout;
 }
 
 // Over what was there, without a line end after the last line, which would scroll.
-void draw(const live::Laboratory& laboratory, bool all) {
+void draw(const live::Laboratory& laboratory, const WatchCommand& command) {
   std::string screen = "\x1b[H";
   bool first = true;
-  for (const std::string& line : laboratory_table(laboratory, layout_of_terminal(all))) {
+  for (const std::string& line : laboratory_table(laboratory, layout_of_terminal(command))) {
     screen += fmt::format("{}{}\x1b[K", first ? "" : "\r\n", line);
     first = false;
   }
@@ -64,7 +65,7 @@ public:
 
   void show(const live::Laboratory& laboratory) {
     if (terminal_) {
-      draw(laboratory, command_.all);
+      draw(laboratory, command_);
     } else if (shown_number_ != laboratory.number()) {
       shown_number_ = laboratory.number();
       command_.json ? print_json(laboratory) : print_lines(laboratory);

@@ -19,6 +19,7 @@ struct WatchCommand {
   std::string bench = "*";
   std::optional<double> seconds;
   bool all = false;
+  bool flags = false; // each with what it means
   bool json = false;
   NetworkOptions network;
 };

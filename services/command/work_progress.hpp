@@ -4,10 +4,15 @@
 //
 // The work counts what it has done, from any thread; a thread of the progress looks at that four
 // times a second. The object belongs to the thread that made it.
+//
+// A signal that ends the program (Ctrl-C, SIGTERM), where nothing else waits for it
+// (stop_on_signals()), takes the line away first. That is of the object that was made last.
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -38,13 +43,16 @@ public:
 private:
   void run(const std::stop_token& stop);
   void draw();
+  void watch_signals();
+  void leave_signals();
 
   std::FILE* stream_;
   std::chrono::milliseconds patience_;
   SharedWorkCount count_;
   std::mutex mutex_; // of what is on the terminal
   bool shown_ = false;
-  std::jthread thread_; // the last member: it ends before what it uses
+  std::map<int, struct sigaction> before_; // what was done on signals, where it is another now
+  std::jthread thread_;                    // the last member: it ends before what it uses
 };
 
 } // namespace dyncal::services

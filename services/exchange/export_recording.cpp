@@ -80,11 +80,11 @@ Expected<ExportedFigures> export_recording(const ExportWish& wish, const ExportP
   if (auto is_new = is_folder ? Expected<void>{} : check_new_output(wish.to); !is_new) {
     return fail(is_new.error());
   }
-  auto opened = open_recording(wish.recording);
+  auto opened = open_recording(wish.recording, wish.count);
   if (!opened) {
     return fail(opened.error());
   }
-  const auto recording = ExportedRecording::open(opened->reader, progress);
+  const auto recording = ExportedRecording::open(opened->reader, progress, wish.count);
   if (!recording) {
     return fail(recording.error());
   }

@@ -24,6 +24,7 @@ struct ExportWish {
   std::filesystem::path to;
   ExportFormat format = ExportFormat::hdf5;
   std::vector<std::string> channels; // as row_tables() takes them
+  SharedWorkCount count{};           // of what is read before `progress` is told of
 };
 
 struct ExportedFigures {

@@ -259,8 +259,9 @@ Expected<void> ExportedRecording::add_source(const std::pair<std::string, std::s
 }
 
 Expected<ExportedRecording> ExportedRecording::open(recording::RecordingReader& reader,
-                                                    const ExportProgress& progress) {
-  auto contents = index_contents(reader);
+                                                    const ExportProgress& progress,
+                                                    const SharedWorkCount& count) {
+  auto contents = index_contents(reader, count);
   if (!contents) {
     return fail(contents.error());
   }

@@ -54,7 +54,8 @@ class ExportedRecording {
 public:
   // `reader` outlives the object.
   [[nodiscard]] static Expected<ExportedRecording> open(recording::RecordingReader& reader,
-                                                        const ExportProgress& progress);
+                                                        const ExportProgress& progress,
+                                                        const SharedWorkCount& count = nullptr);
 
   [[nodiscard]] const std::vector<ExportedSource>& sources() const { return sources_; }
   [[nodiscard]] const RecordingContents& contents() const { return contents_; }

@@ -24,8 +24,8 @@ constexpr std::uint64_t max_text_bytes = std::uint64_t{256} << 20U;
 // The file that is being read.
 class Hdf5Import {
 public:
-  Hdf5Import(const std::filesystem::path& path, Hdf5Handle file)
-      : path_(path), file_(std::move(file)) {}
+  Hdf5Import(const std::filesystem::path& path, Hdf5Handle file, SharedWorkCount count)
+      : path_(path), file_(std::move(file)), count_(std::move(count)) {}
 
   [[nodiscard]] Expected<ImportedRecording> read() {
     if (auto opened = open(); !opened) {
@@ -104,6 +104,7 @@ private:
     if (!list.is_open() || !bytes.is_open()) {
       return wrong("its list of messages cannot be read");
     }
+    begin_work(count_, "importing", "messages", list.columns());
     MessageDigest digest;
     for (std::uint64_t i = 0; i < list.columns(); ++i) {
       const auto* const one = list.at<Hdf5Message>(i, 1);
@@ -131,6 +132,7 @@ private:
       if (auto added = recording.add(*channel, message); !added) {
         return added;
       }
+      add_done(count_);
     }
     if (digest.hex() != hdf5_text(own_.id(), "Messages_sha256")) {
       return wrong("its samples are not those that were exported (their SHA-256 is another one): "
@@ -168,6 +170,7 @@ private:
 
   std::filesystem::path path_;
   Hdf5Handle file_;
+  SharedWorkCount count_;
   Hdf5Handle own_;
   std::vector<std::string> topics_;
   std::vector<std::string> runs_;
@@ -176,20 +179,22 @@ private:
 
 } // namespace
 
-Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path) {
+Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
+                                        const SharedWorkCount& count) {
   const drivers::files::Hdf5Lock lock;
   auto file = drivers::files::open_hdf5(path);
   if (!file) {
     return fail(ErrorCode::bad_file, file.error().message);
   }
-  return Hdf5Import(path, std::move(*file)).read();
+  return Hdf5Import(path, std::move(*file), count).read();
 }
 
 #else
 
 namespace dyncal::services {
 
-Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path) {
+Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
+                                        const SharedWorkCount& /*count*/) {
   return fail(ErrorCode::bad_file,
               path.string() + ": this build cannot read HDF5 (Debian: libhdf5-dev)");
 }

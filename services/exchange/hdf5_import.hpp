@@ -13,6 +13,7 @@
 
 #include "services/error.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -24,6 +25,8 @@ struct ImportedRecording {
 // By its name: .h5, .hdf5
 [[nodiscard]] bool is_hdf5(const std::filesystem::path& path);
 
-[[nodiscard]] Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path);
+// `count`: of its messages.
+[[nodiscard]] Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
+                                                      const SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::services

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
+#include "services/byte_count.hpp"
 #include "services/exchange/hdf5_import.hpp"
 #include "services/exchange/temporary_recording.hpp"
 #include "services/recording/recorded_topics.hpp"
@@ -22,7 +23,7 @@ std::vector<std::filesystem::path> recordings_in(const std::filesystem::path& fo
 
 // Everything of one file, behind what is there already.
 Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joined,
-                      std::vector<std::string>& warnings) {
+                      std::vector<std::string>& warnings, ByteCount& bytes) {
   auto reader = recording::RecordingReader::open(path);
   if (!reader) {
     return fail(reader.error());
@@ -34,6 +35,7 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
     }
   };
   const auto& channels = recording::recorded_channels();
+  const std::uint64_t before = bytes.done();
   const auto report =
       reader->scan({.message =
                         [&](const recording::MessageInFile& message) {
@@ -46,7 +48,8 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
                           }
                         },
                     .attachment = [&](const recording::Attachment& one) { note(joined.add(one)); },
-                    .metadata = [&](const recording::Metadata& one) { note(joined.add(one)); }});
+                    .metadata = [&](const recording::Metadata& one) { note(joined.add(one)); },
+                    .walked = [&](std::uint64_t walked) { bytes.set_done(before + walked); }});
   if (!report) {
     return fail(report.error());
   }
@@ -57,7 +60,8 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
 }
 
 Expected<OpenedRecording> join(const std::filesystem::path& folder,
-                               const std::vector<std::filesystem::path>& files) {
+                               const std::vector<std::filesystem::path>& files,
+                               const SharedWorkCount& count) {
   recording::WriterOptions options;
   options.library = fmt::format("{} recordings of a run", files.size());
   options.schemas = recording::recorded_schemas();
@@ -67,8 +71,9 @@ Expected<OpenedRecording> join(const std::filesystem::path& folder,
     return fail(joined.error());
   }
   std::vector<std::string> warnings;
+  ByteCount bytes(count, "reading", bytes_of_files(files));
   for (const auto& file : files) {
-    if (auto added = append(file, *joined, warnings); !added) {
+    if (auto added = append(file, *joined, warnings, bytes); !added) {
       return fail(added.error());
     }
   }
@@ -84,15 +89,16 @@ bool is_recording(const std::filesystem::path& path) {
          std::filesystem::exists(path / recording_file_name);
 }
 
-Expected<OpenedRecording> open_recording(const std::filesystem::path& path) {
+Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
+                                         const SharedWorkCount& count) {
   if (is_hdf5(path)) {
-    return import_hdf5(path).map([](ImportedRecording imported) {
+    return import_hdf5(path, count).map([](ImportedRecording imported) {
       return OpenedRecording{std::move(imported.reader), std::move(imported.warnings)};
     });
   }
   const auto files = recordings_in(path);
   if (files.size() > 1) {
-    return join(path, files);
+    return join(path, files, count);
   }
   return recording::RecordingReader::open(files.empty() ? path : files.front())
       .map([](recording::RecordingReader reader) {

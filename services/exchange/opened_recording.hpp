@@ -10,6 +10,7 @@
 
 #include "services/error.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -21,6 +22,8 @@ struct OpenedRecording {
 // By its name, or, of a folder, by what is in it.
 [[nodiscard]] bool is_recording(const std::filesystem::path& path);
 
-[[nodiscard]] Expected<OpenedRecording> open_recording(const std::filesystem::path& path);
+// `count`: of what is read, where it is not used as it is.
+[[nodiscard]] Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
+                                                       const SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::services

@@ -74,6 +74,7 @@ Run* Laboratory::run_of(Bench& bench, const std::string& name) {
     }
     found = bench.runs.try_emplace(name).first;
     found->second.name = name;
+    results_changed(found->second);
   }
   found->second.heard = clock_.now();
   return &found->second;
@@ -132,7 +133,7 @@ bool Laboratory::drop_results_of_oldest(const Run& run) {
   left_out_.results += oldest->results.size();
   oldest->results.clear();
   oldest->newest_result.reset();
-  ++oldest->results_number;
+  results_changed(*oldest);
   return true;
 }
 
@@ -208,7 +209,7 @@ void Laboratory::take(const wire::CalibrationResult& message) {
   }
   run->results.insert_or_assign(key, std::move(result));
   run->newest_result = std::move(key);
-  ++run->results_number;
+  results_changed(*run);
 }
 
 void Laboratory::take(const wire::TransferFunction& message) {
@@ -225,7 +226,7 @@ void Laboratory::take(const wire::TransferFunction& message) {
   }
   bound(function, limits_);
   run->transfer_functions.insert_or_assign(function.channel, std::move(function));
-  ++run->results_number;
+  results_changed(*run);
 }
 
 void Laboratory::take(const wire::SampleClockReport& message) {
@@ -242,7 +243,7 @@ void Laboratory::take(const wire::SampleClockReport& message) {
   }
   bound(report, limits_);
   run->clock_reports.insert_or_assign(report.source, std::move(report));
-  ++run->results_number;
+  results_changed(*run);
 }
 
 void Laboratory::take(const wire::ServiceStatus& message) {

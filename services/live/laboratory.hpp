@@ -72,6 +72,7 @@ private:
   void note(Bench& bench, Severity severity, const std::string& text);
   void note(Bench& bench, const std::vector<Condition>& changes);
   void changed(Bench& bench) { bench.number = ++number_; }
+  void results_changed(Run& run) { run.results_number = ++results_number_; }
   [[nodiscard]] std::size_t results() const;
 
   bus::Clock& clock_;
@@ -81,6 +82,7 @@ private:
   std::vector<HostClock> clocks_;
   LeftOut left_out_;
   std::uint64_t number_ = 0;
+  std::uint64_t results_number_ = 0; // of all runs
 };
 
 } // namespace dyncal::services::live

@@ -98,7 +98,9 @@ struct Run {
   std::map<std::string, ClockReport> clock_reports;           // by source
   Instant heard{};                                            // of anything
   std::optional<Instant> conductor_heard;
-  std::uint64_t results_number = 0; // grows with every change of results, functions and reports
+  // Another one, and a higher, after every change of results, functions and reports. No two runs of
+  // a laboratory ever have the same, nor has one that was dropped and is heard of again.
+  std::uint64_t results_number = 0;
 
   // By the conductor; if that was not heard, by the analysis.
   [[nodiscard]] RunState state() const;

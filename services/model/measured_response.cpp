@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/byte_count.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/model/result_reader.hpp"
 
@@ -146,6 +147,7 @@ void divide_magnitudes(std::vector<RawValue>& raw, MeasuredResponse& response) {
 
 void divide_phases(std::vector<RawValue>& raw, MeasuredResponse& response) {
   std::vector<BudgetAtFrequency> budgets;
+  budgets.reserve(raw.size());
   for (const RawValue& one : raw) {
     budgets.push_back({one.value.point.frequency_hz, one.repetitions.front()->budget});
   }
@@ -302,8 +304,9 @@ bool makes_unusable(const std::string& flag_name) {
 }
 
 Expected<std::vector<MeasuredResponse>>
-read_responses(const std::vector<std::filesystem::path>& files,
-               const ResponseSelection& selection) {
+read_responses(const std::vector<std::filesystem::path>& files, const ResponseSelection& selection,
+               const SharedWorkCount& count) {
+  ByteCount bytes(count, "reading", bytes_of_files(files));
   std::vector<ResultContents> contents;
   std::set<std::filesystem::path> read;
   for (const std::filesystem::path& file : files) {
@@ -313,7 +316,7 @@ read_responses(const std::vector<std::filesystem::path>& files,
           ErrorCode::bad_argument,
           fmt::format("{}: this result is given twice, and would count twice", file.string()));
     }
-    auto one = read_result(file);
+    auto one = read_result(file, bytes);
     if (!one) {
       return fail(one.error());
     }

@@ -21,6 +21,7 @@
 
 #include "analysis/response/response_fit.hpp"
 #include "services/error.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -58,7 +59,8 @@ struct ResponseSelection {
 
 // In the order of the first file, at least one.
 [[nodiscard]] Expected<std::vector<MeasuredResponse>>
-read_responses(const std::vector<std::filesystem::path>& files, const ResponseSelection& selection);
+read_responses(const std::vector<std::filesystem::path>& files, const ResponseSelection& selection,
+               const SharedWorkCount& count = nullptr);
 
 // May the value be wrong beyond its u?
 [[nodiscard]] bool makes_unusable(const std::string& flag_name);

@@ -1,11 +1,11 @@
 #include "services/model/result_reader.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/counted_file.hpp"
 #include "services/report/checked_json.hpp"
 
 namespace dyncal::services {
@@ -116,14 +116,14 @@ ResultContents contents_of(const Node& root) {
 
 } // namespace
 
-Expected<ResultContents> read_result(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) {
+Expected<ResultContents> read_result(const std::filesystem::path& path, ByteCount& bytes) {
+  CountedFile file(path, bytes);
+  if (!file.stream()) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: cannot read this result file; does it exist, and may you read it?",
                             path.string()));
   }
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = Json::parse(file.stream(), nullptr, false);
   if (json.is_discarded()) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: not JSON; give a file that dyncal run or dyncal analyse wrote "

@@ -10,6 +10,7 @@
 
 #include "analysis/method/repetitions.hpp"
 #include "analysis/uncertainty/contribution.hpp"
+#include "services/byte_count.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
@@ -45,6 +46,7 @@ struct ResultContents {
   std::vector<std::pair<std::string, double>> source_rates_hz;
 };
 
-[[nodiscard]] Expected<ResultContents> read_result(const std::filesystem::path& path);
+[[nodiscard]] Expected<ResultContents> read_result(const std::filesystem::path& path,
+                                                   ByteCount& bytes);
 
 } // namespace dyncal::services

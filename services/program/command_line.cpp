@@ -113,6 +113,24 @@ std::string about_conversion(const CLI::App& command, const std::string& what) {
                      number_text(option == nullptr ? "" : option->get_type_name()));
 }
 
+// "--level: Value -1 not in range 0.000000 to 1797693..." and so on for 309 digits.
+std::string about_range(const CLI::App& command, const std::string& what) {
+  constexpr std::string_view value_begins = ": Value ";
+  const std::size_t begin = what.find(value_begins);
+  const std::size_t end = what.find(" not in range ");
+  if (begin == std::string::npos || end == std::string::npos ||
+      what.find("17976931348623157", end) == std::string::npos) {
+    return what;
+  }
+  const std::string name = what.substr(0, begin);
+  const std::size_t value = begin + value_begins.size();
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const bool may_be_zero =
+      option != nullptr && option->get_type_name().find("NONNEGATIVE") != std::string::npos;
+  return fmt::format("invalid {} = {}: must be {}", name, what.substr(value, end - value),
+                     may_be_zero ? "0 or more" : "above 0");
+}
+
 std::string about_missing(const CLI::App& command, const std::string& what) {
   if (what.starts_with("A subcommand")) {
     return fmt::format("a command is missing; '{} --help' lists all", path_of(command));
@@ -139,6 +157,8 @@ std::string sentence_about(const CLI::App& app, const CLI::ParseError& error,
     what = about_missing(command, what);
   } else if (code == CLI::ExitCodes::ConversionError) {
     what = about_conversion(command, what);
+  } else if (code == CLI::ExitCodes::ValidationError) {
+    what = about_range(command, what);
   } else if (code == CLI::ExitCodes::ArgumentMismatch && what.ends_with(" missing")) {
     what = fmt::format("{} needs a value; see '{} --help'", what.substr(0, what.find(':')),
                        path_of(command));

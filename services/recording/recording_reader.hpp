@@ -47,6 +47,8 @@ struct ScanEvents { // any may be empty
   std::function<void(const MessageInFile&)> message;
   std::function<void(const Attachment&)> attachment;
   std::function<void(const Metadata&)> metadata;
+  // So many bytes of the file are behind: never fewer than before, all of them at the end.
+  std::function<void(std::uint64_t)> walked{};
 };
 
 struct ScanReport {
@@ -71,6 +73,7 @@ public:
                                                                 std::filesystem::path name);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::uint64_t size_bytes() const { return size_; }
   [[nodiscard]] services::Expected<ScanReport> scan(const ScanEvents& events);
   // The records of the chunk at this offset, with the CRC checked. Fails (bad_file) with a part of
   // a sentence: what is wrong with it.

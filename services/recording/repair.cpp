@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "services/byte_count.hpp"
+#include "services/output/output_stream.hpp"
 #include "services/recording/recording_writer.hpp"
 
 namespace dyncal::recording {
@@ -92,38 +94,74 @@ Metadata repair_metadata(const std::filesystem::path& path, const ScanReport& re
   return metadata;
 }
 
+// NAME.part, until all of it is there; without that nothing is left.
+class Unfinished {
+public:
+  explicit Unfinished(const std::filesystem::path& path)
+      : path_(path), unfinished_(path.string() + ".part") {
+    remove(); // of a repair that was interrupted
+  }
+  ~Unfinished() { remove(); }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return unfinished_; }
+  [[nodiscard]] Expected<void> finish() const {
+    return services::take_output_name(unfinished_, path_);
+  }
+
+private:
+  void remove() const {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished_, ignored);
+  }
+
+  std::filesystem::path path_;
+  std::filesystem::path unfinished_;
+};
+
 } // namespace
 
 Expected<ScanReport> repair(const std::filesystem::path& path,
-                            const std::filesystem::path& repaired, const std::string& library) {
+                            const std::filesystem::path& repaired, const std::string& library,
+                            const services::SharedWorkCount& count) {
   auto reader = RecordingReader::open(path);
   if (!reader) {
     return fail(reader.error());
   }
+  if (auto is_new = services::check_new_output(repaired); !is_new) {
+    return fail(is_new.error());
+  }
+  services::ByteCount read(count, "reading", reader->size_bytes());
   Definitions definitions;
   auto report =
       reader->scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
                     .attachment = {},
-                    .metadata = {}});
+                    .metadata = {},
+                    .walked = [&](std::uint64_t bytes) { read.set_done(bytes); }});
   if (!report) {
     return report;
   }
-  auto writer = RecordingWriter::create(repaired, definitions.options(library));
+  const Unfinished file(repaired);
+  auto writer = RecordingWriter::create(file.path(), definitions.options(library));
   if (!writer) {
     return fail(writer.error());
   }
   Copy copy(*writer, definitions);
+  services::ByteCount copied_bytes(count, "copying", reader->size_bytes());
   const auto copied =
       reader->scan({.message = [&](const MessageInFile& message) { copy.add(message); },
                     .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
-                    .metadata = [&](const Metadata& metadata) { copy.add(metadata); }});
+                    .metadata = [&](const Metadata& metadata) { copy.add(metadata); },
+                    .walked = [&](std::uint64_t bytes) { copied_bytes.set_done(bytes); }});
   copy.flush();
   if (!copied) {
-    return copied;
+    return fail(copied.error());
   }
   auto written = copy.outcome()
                      .and_then([&] { return writer->add_metadata(repair_metadata(path, *report)); })
-                     .and_then([&] { return writer->close(); });
+                     .and_then([&] { return writer->close(); })
+                     .and_then([&] { return file.finish(); });
   if (!written) {
     return fail(written.error());
   }

@@ -1,20 +1,23 @@
 // Makes a recording that ended in order of one that did not, or that was damaged: every sound
 // message, attachment and metadata goes into a new file; the old one stays as it is.
 //
-// What could not be read stands in the new file, too: as metadata "dyncal.repair". Fails (bad_file)
-// as reader and writer do. Plain function, any thread.
+// What could not be read stands in the new file, too: as metadata "dyncal.repair". The new file is
+// NAME.part until all of it is there, so that nobody takes a part of it for the whole. Fails
+// (bad_file) as reader and writer do, and when a file of the new name is there. Plain function, any
+// thread.
 #pragma once
 
 #include <filesystem>
 
 #include "services/error.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::recording {
 
-// Returns what was found in the old file.
-[[nodiscard]] services::Expected<ScanReport> repair(const std::filesystem::path& path,
-                                                    const std::filesystem::path& repaired,
-                                                    const std::string& library);
+// Returns what was found in the old file. `count`: of its megabytes, read and then copied.
+[[nodiscard]] services::Expected<ScanReport>
+repair(const std::filesystem::path& path, const std::filesystem::path& repaired,
+       const std::string& library, const services::SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::recording

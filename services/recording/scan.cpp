@@ -61,8 +61,10 @@ Expected<ScanReport> Scan::run() {
       return fail(goes_on.error());
     }
     if (!*goes_on) {
+      walked_to(reader_.size_);
       return std::move(report_);
     }
+    walked_to(offset_);
   }
 }
 
@@ -370,6 +372,7 @@ Expected<std::optional<std::uint64_t>> Scan::next_whole_chunk(std::uint64_t from
       }
     }
     from += count;
+    walked_to(from);
   }
   return std::nullopt;
 }

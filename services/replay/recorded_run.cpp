@@ -289,7 +289,7 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
 Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
                                                 const RecordedRunWish& wish,
                                                 const std::stop_token& stop) {
-  const auto index = index_recording(reader, wish.run);
+  const auto index = index_recording(reader, wish.run, wish.count);
   if (!index) {
     return fail(index.error());
   }

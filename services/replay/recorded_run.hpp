@@ -27,7 +27,7 @@ namespace dyncal::services {
 struct RecordedRunWish {
   std::string run;              // empty: the one that is there
   std::optional<Recipe> recipe; // another one than the recorded
-  SharedWorkCount count{};      // of its steps and results
+  SharedWorkCount count{};      // of megabytes read, then of its steps and results
 };
 
 struct RecordedRunOutcome {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/byte_count.hpp"
 #include "services/contract/topics.hpp"
 #include "services/recording/recorded_topics.hpp"
 
@@ -159,12 +160,15 @@ RecordedPosition RecordedSource::position(std::uint64_t session, std::uint64_t n
   return {static_cast<std::size_t>(found - sessions.begin()), number};
 }
 
-Expected<RecordingContents> index_contents(recording::RecordingReader& reader) {
+Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
+                                           const SharedWorkCount& count) {
+  ByteCount bytes(count, "reading", reader.size_bytes());
   Gathering gathering;
   auto report = reader.scan(
       {.message = [&](const recording::MessageInFile& message) { gathering.take(message); },
        .attachment = {},
-       .metadata = {}});
+       .metadata = {},
+       .walked = [&](std::uint64_t walked) { bytes.set_done(walked); }});
   if (!report) {
     return fail(report.error());
   }
@@ -180,8 +184,8 @@ Expected<RecordingContents> index_contents(recording::RecordingReader& reader) {
 }
 
 Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
-                                           const std::string& run) {
-  auto contents = index_contents(reader);
+                                           const std::string& run, const SharedWorkCount& count) {
+  auto contents = index_contents(reader, count);
   if (!contents) {
     return fail(contents.error());
   }

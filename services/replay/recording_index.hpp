@@ -21,6 +21,7 @@
 #include "services/evaluation/result/clock_report.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/recording/recording_reader.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -69,10 +70,13 @@ struct RecordingContents {
   recording::ScanReport report;
 };
 
-[[nodiscard]] Expected<RecordingContents> index_contents(recording::RecordingReader& reader);
+// `count`: of the file's megabytes.
+[[nodiscard]] Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
+                                                         const SharedWorkCount& count = nullptr);
 
 // `run`: empty where the recording holds one.
 [[nodiscard]] Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
-                                                         const std::string& run);
+                                                         const std::string& run,
+                                                         const SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::services

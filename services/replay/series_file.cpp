@@ -3,12 +3,16 @@
 #include <algorithm>
 
 #include "drivers/files/file_source.hpp"
+#include "services/byte_count.hpp"
 
 namespace dyncal::services {
 namespace {
 
 class Collector : public drivers::SampleSink {
 public:
+  Collector(const drivers::files::FileSource& file, ByteCount& bytes)
+      : file_(file), bytes_(bytes) {}
+
   void begin_session() override {}
   void count(const drivers::SampleCounts&) override {}
   void warn(const std::string&) override {}
@@ -32,11 +36,14 @@ public:
       series_.columns[channel].insert(series_.columns[channel].end(), begin,
                                       begin + static_cast<std::ptrdiff_t>(block.samples));
     }
+    bytes_.set_share_done(file_.share_read());
   }
 
   SeriesFile&& series() { return std::move(series_); }
 
 private:
+  const drivers::files::FileSource& file_;
+  ByteCount& bytes_;
   SeriesFile series_;
 };
 
@@ -71,16 +78,19 @@ std::size_t SeriesFile::leave_out_disorder() {
   return left_out;
 }
 
-Expected<SeriesFile> read_series_file(const std::filesystem::path& path) {
+Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
+                                      const SharedWorkCount& count) {
   drivers::files::FileSettings settings;
   settings.path = path;
   drivers::files::FileSource source(std::move(settings));
-  Collector collector;
+  ByteCount bytes(count, "reading", bytes_of_file(path));
+  Collector collector(source, bytes);
   const auto read = source.describe().and_then(
       [&](const drivers::SourceDescription&) { return source.run(collector); });
   if (!read) {
     return fail(ErrorCode::bad_file, read.error().message);
   }
+  bytes.set_share_done(source.share_read());
   return collector.series();
 }
 

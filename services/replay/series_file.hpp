@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/error.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -25,7 +26,8 @@ struct SeriesFile {
   std::size_t leave_out_disorder();
 };
 
-// Fails (bad_file) with file and line.
-[[nodiscard]] Expected<SeriesFile> read_series_file(const std::filesystem::path& path);
+// Fails (bad_file) with file and line. `count`: of its megabytes.
+[[nodiscard]] Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
+                                                    const SharedWorkCount& count = nullptr);
 
 } // namespace dyncal::services

@@ -1,9 +1,9 @@
 #include "services/report/result_file.hpp"
 
-#include <fstream>
-
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+
+#include "services/counted_file.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -18,11 +18,16 @@ double half_of_expanded(const nlohmann::json& point, const char* expanded, const
 } // namespace
 
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) {
+  ByteCount nobody;
+  return read_result_file(path, nobody);
+}
+
+Expected<ResultPoints> read_result_file(const std::filesystem::path& path, ByteCount& bytes) {
+  CountedFile file(path, bytes);
+  if (!file.stream()) {
     return fail(ErrorCode::bad_file, fmt::format("{} cannot be read", path.string()));
   }
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  const auto json = nlohmann::json::parse(file.stream(), nullptr, false);
   ResultPoints points;
   try {
     for (const auto& point : json.at("transfer_function")) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/response/comparison.hpp"
+#include "services/byte_count.hpp"
 #include "services/error.hpp"
 
 namespace dyncal::services {
@@ -24,5 +25,8 @@ struct ResultPoint {
 using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
 
 [[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path);
+// Counts what it reads.
+[[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path,
+                                                      ByteCount& bytes);
 
 } // namespace dyncal::services

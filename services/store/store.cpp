@@ -226,11 +226,13 @@ Expected<void> Store::remove(const std::string& result_sha256) {
   return {};
 }
 
-Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter) {
+Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
+                                             const SharedWorkCount& count) {
   const auto rows = database_->execute(select_runs);
   if (!rows) {
     return fail(rows.error());
   }
+  begin_work(count, "looking through the store", "runs", rows->size());
   std::vector<StoredRun> found;
   for (const DatabaseRow& row : *rows) {
     StoredRun run = run_of(row);
@@ -242,6 +244,7 @@ Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter) {
     if (passes(run, filter)) {
       found.push_back(std::move(run));
     }
+    add_done(count);
   }
   return found;
 }
@@ -293,11 +296,13 @@ Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_
   return points;
 }
 
-Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor) {
-  auto runs_with_sensor = runs({.sensor = sensor});
+Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor,
+                                                       const SharedWorkCount& count) {
+  auto runs_with_sensor = runs({.sensor = sensor}, count);
   if (!runs_with_sensor) {
     return fail(runs_with_sensor.error());
   }
+  begin_work(count, "reading", "calibrations", runs_with_sensor->size());
   std::vector<Calibration> calibrations;
   for (const StoredRun& run : *runs_with_sensor) {
     for (const RecordedSource& source : run.sources) {
@@ -310,6 +315,7 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
         calibrations.push_back({run, source.source, std::move(*points)});
       }
     }
+    add_done(count);
   }
   return calibrations;
 }

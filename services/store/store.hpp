@@ -18,6 +18,7 @@
 #include "services/error.hpp"
 #include "services/store/database.hpp"
 #include "services/store/result_record.hpp"
+#include "services/work_count.hpp"
 
 namespace dyncal::services {
 
@@ -70,9 +71,11 @@ public:
   // A result file or a run folder.
   [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);
   // By time.
-  [[nodiscard]] Expected<std::vector<StoredRun>> runs(const RunFilter& filter);
+  [[nodiscard]] Expected<std::vector<StoredRun>> runs(const RunFilter& filter,
+                                                      const SharedWorkCount& count = nullptr);
   // Of a sensor by serial number, device or name of its source; by time.
-  [[nodiscard]] Expected<std::vector<Calibration>> calibrations(const std::string& sensor);
+  [[nodiscard]] Expected<std::vector<Calibration>>
+  calibrations(const std::string& sensor, const SharedWorkCount& count = nullptr);
 
 private:
   explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}

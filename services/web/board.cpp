@@ -151,8 +151,7 @@ std::uint64_t Board::results_number(const std::string& name) const {
   const std::lock_guard lock(mutex_);
   const live::Bench* bench = laboratory_.bench(name);
   const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
-  // A new run has other results, even if as many.
-  return run == nullptr ? 0 : std::hash<std::string>{}(run->name) + run->results_number;
+  return run == nullptr ? 0 : run->results_number; // a new run has another
 }
 
 } // namespace dyncal::services::web

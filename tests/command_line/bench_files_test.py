@@ -5,6 +5,7 @@ that is there stays as it is, and the examples pass."""
 import itertools
 import json
 import pathlib
+import re
 import tempfile
 
 from programs import SOURCE, expect, run
@@ -51,10 +52,53 @@ def check_combinations(folder):
         expect((folder / f"{name}.toml").read_bytes() == before, f"{name}.toml has changed")
 
 
+# Values that the check refuses, by option; further options that make them count.
+REFUSED = [
+    (["--name", "a b"], []),
+    (["--frequencies", "10,ten"], []),
+    (["--level", "100"], []),
+    (["--listen", "nowhere"], []),
+    (["--sensor-id", "0x"], []),
+    (["--sensor-file", "gone.csv"], ["--sensor", "file"]),
+    (["--channel", "none"], ["--sensor", "file", "--sensor-file", "dau.csv"]),
+    (["--sensor-sync", "none"], ["--sensor", "file", "--sensor-file", "dau.csv"]),
+    (["--sensor-address", "no port"], ["--sensor", "series"]),
+    (["--dso-address", "no port"], ["--sensor", "series"]),
+    (["--interface", ""], ["--sensor", "can"]),
+    (["--dbc", "gone.dbc"], ["--sensor", "can"]),
+    (["--acs-address", "no port"], []),
+    (["--acs-file", "gone.csv"], ["--acs", "file"]),
+    (["--reference", "sync"], ["--acs", "file", "--acs-file", "acs.csv"]),
+    (["--channel", "sync"], ["--sensor", "file", "--sensor-file", "dau.csv"]),
+    (["--channel", "reference"], ["--sensor", "analogue"]),
+    (["--level", "-1"], []),
+    (["--reference", "none"], ["--acs", "file", "--acs-file", "acs.csv"]),
+    (["--sync", "none"], ["--acs", "file", "--acs-file", "acs.csv"]),
+    (["--generator-address", "no port"], []),
+    (["--maximum-voltage", "0.5"], []),
+]
+
+
+def check_refusals(folder):
+    """What is said of an option's value names the option."""
+    before = sorted(folder.iterdir())
+    for given, others in REFUSED:
+        name = [] if given[0] == "--name" else ["--name", "x"]
+        done = run("dyncal", "new-bench", *name, *given, *others, cwd=folder)
+        expect(done.returncode in (1, 2), f"{given}: {done.returncode} {done.stdout}")
+        expect(re.search(rf"{given[0]}[ :)]", done.stderr), f"{given}: {done.stderr}")
+        expect("key '" not in done.stderr and len(done.stderr) < 400, done.stderr)
+    done = run("dyncal", "new-bench", "--name", "short", "--duration", "0.1", cwd=folder)
+    expect("--duration (duration_s) = 0.1 evaluates" in done.stderr, done.stderr)
+    (folder / "short.toml").unlink()
+    expect(sorted(folder.iterdir()) == before, "something was written")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         check_combinations(folder)
+        check_refusals(folder)
         refuse(2, "--name is missing", "new-bench", cwd=folder, input="")
         refuse(2, "nothing was written", "new-bench", "--name", "a b", cwd=folder)
         refuse(2, "--acs-file", "new-bench", "--name", "x", "--acs", "file", cwd=folder)

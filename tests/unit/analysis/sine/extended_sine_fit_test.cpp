@@ -1,5 +1,6 @@
 #include "analysis/sine/extended_sine_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -173,6 +174,31 @@ TEST(SineFitExtended, NamesWhatIsWrongWithTheInput) {
   EXPECT_EQ(code(fit_one({}, Weighting::none, backward, good)), ErrorCode::stamps_not_increasing);
   EXPECT_EQ(code(fit_one({}, Weighting::none, stamps, std::vector<double>(1000, 3.0))),
             ErrorCode::no_excitation);
+}
+
+TEST(SineFitExtended, TellsHowFarItIs) {
+  const auto stamps = uneven_stamps(200'000);
+  const auto first = noisy(values_of(Signal{}, stamps), 0.1, 1);
+  const auto second = noisy(values_of(Signal{}, stamps), 0.2, 2);
+  const std::span<const double> channels[] = {first, second};
+  for (const Weighting weighting : {Weighting::none, Weighting::huber}) {
+    const ExtendedBasis basis{.drift_order = 2, .max_harmonic = 5, .lines = {}};
+    std::vector<double> shares;
+    const auto told = fit_sine_extended(*Frequency::parse("80"), basis, weighting, epoch_ns, stamps,
+                                        channels, [&](double share) { shares.push_back(share); });
+    ASSERT_TRUE(told) << told.error().message;
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.front(), 0.0);
+    EXPECT_EQ(shares.back(), 1.0);
+    EXPECT_GT(shares.size(), 20U);
+    EXPECT_NE(std::find(shares.begin(), shares.end(), 0.5), shares.end()); // of two channels one
+    const auto silent =
+        fit_sine_extended(*Frequency::parse("80"), basis, weighting, epoch_ns, stamps, channels);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ((*told)[i].fundamental.sine, (*silent)[i].fundamental.sine);
+      EXPECT_EQ((*told)[i].fundamental.covariance, (*silent)[i].fundamental.covariance);
+    }
+  }
 }
 
 } // namespace

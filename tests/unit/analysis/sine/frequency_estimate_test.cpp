@@ -116,5 +116,18 @@ TEST(FrequencyEstimate, RefusesWhatHasNoFrequency) {
             ErrorCode::stamps_not_increasing);
 }
 
+TEST(FrequencyEstimate, TellsHowManyColumnsAreBehind) {
+  const auto stamps = uneven_stamps(2000);
+  const auto values = noisy(values_of(Signal{}, stamps), 0.05, 1);
+  const std::vector<double> constant(stamps.size(), 1.0);
+  const std::array<std::span<const double>, 4> columns{values, constant, values, values};
+  std::vector<double> shares;
+  const auto told =
+      estimate_frequency(stamps, columns, [&](double share) { shares.push_back(share); });
+  ASSERT_TRUE(told.has_value());
+  EXPECT_THAT(shares, testing::ElementsAre(0.25, 0.5, 0.75, 1.0));
+  EXPECT_EQ(told->hz(), estimate_frequency(stamps, columns)->hz());
+}
+
 } // namespace
 } // namespace dyncal::analysis

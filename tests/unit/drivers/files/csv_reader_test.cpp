@@ -254,5 +254,22 @@ TEST(CsvReader, TakesUnitsFromBracketsBehindTheNames) {
   EXPECT_EQ(described->channels[2].unit, "\\volt");
 }
 
+TEST_F(LargeCsv, TellsHowMuchIsRead) {
+  const TemporaryFile file("share.csv", text_);
+  const std::vector<double> shares = shares_of(settings_for(file));
+  expect_rising_to_one(shares);
+  EXPECT_LT(shares.front(), 0.01); // no stretch is behind before it is taken
+  const double stretch =
+      static_cast<double>(std::size_t{1} << 21U) / static_cast<double>(text_.size());
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    EXPECT_LT(shares[i] - shares[i - 1], 1.1 * stretch);
+  }
+}
+
+TEST(CsvReader, ASmallFileIsReadAtItsEnd) {
+  const TemporaryFile file("small.csv", "t_ns,x\n1,2\n2,3\n3,4");
+  expect_rising_to_one(shares_of(settings_for(file)));
+}
+
 } // namespace
 } // namespace dyncal::drivers::files

@@ -98,5 +98,16 @@ TEST(DumpReader, NamesTheLineThatIsWrong) {
               HasSubstr(":3: sample number or time is out of range"));
 }
 
+TEST(DumpReader, TellsHowMuchIsRead) {
+  std::string text = description + names;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    text += row(i, "1602502355;" + std::to_string(1000 * i) + ";40", "1.0");
+  }
+  const TemporaryFile file("share.dump", text);
+  const std::vector<double> shares = shares_of(settings_for(file));
+  expect_rising_to_one(shares);
+  EXPECT_NEAR(shares[1], 0.41, 0.02);
+}
+
 } // namespace
 } // namespace dyncal::drivers::files

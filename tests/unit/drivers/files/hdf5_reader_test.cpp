@@ -137,5 +137,18 @@ TEST_F(Hdf5ReaderTest, RefusesWhatIsNotHdf5) {
   EXPECT_THAT(problem_of(settings()), HasSubstr("is not an HDF5 file, or is damaged"));
 }
 
+TEST_F(Hdf5ReaderTest, TellsHowMuchIsRead) {
+  {
+    const Hdf5Lock lock;
+    ReceiverFile file(path_);
+    file.add_sensor("a");
+    file.add_times(four_times, {5, 6, 9, 0});
+    file.add<float>("Voltage", H5T_NATIVE_FLOAT, 1, {1.F, 2.F, 3.F, 0.F});
+  }
+  const std::vector<double> shares = shares_of(settings());
+  expect_rising_to_one(shares); // the zeros at the end are no samples
+  EXPECT_DOUBLE_EQ(shares.front(), 2.0 / 3.0);
+}
+
 } // namespace
 } // namespace dyncal::drivers::files

@@ -124,5 +124,16 @@ TEST(NpyReader, SurvivesHeadersCutAnywhere) {
   }
 }
 
+TEST(NpyReader, TellsHowMuchIsRead) {
+  std::string data;
+  for (int i = 0; i < 10'000; ++i) {
+    data += bytes(std::int64_t{1000} * i) + bytes(0.1 * i);
+  }
+  const TemporaryFile file("share.npy", npy("[('t_ns', '<i8'), ('z', '<f8')]", 10'000, data));
+  const std::vector<double> shares = shares_of(settings_for(file));
+  expect_rising_to_one(shares);
+  EXPECT_DOUBLE_EQ(shares[1], 0.4098);
+}
+
 } // namespace
 } // namespace dyncal::drivers::files

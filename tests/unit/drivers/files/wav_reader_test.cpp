@@ -5,13 +5,10 @@
 #include <gtest/gtest.h>
 #include <sndfile.h>
 
-#include "tests/unit/drivers/collecting_sink.hpp"
-#include "tests/unit/drivers/files/temporary_file.hpp"
+#include "tests/unit/drivers/files/file_playing.hpp"
 
 namespace dyncal::drivers::files {
 namespace {
-
-using tests::CollectingSink;
 
 constexpr int frames = 10'000;
 
@@ -78,6 +75,14 @@ TEST(WavReader, SaysThatAFileIsNotWav) {
   const auto description = source.describe();
   ASSERT_FALSE(description);
   EXPECT_THAT(description.error().message, testing::HasSubstr("cannot be read as WAV"));
+}
+
+TEST(WavReader, TellsHowMuchIsRead) {
+  const TemporaryFile file("share.wav");
+  write_wav(file.path(), SF_FORMAT_PCM_16);
+  const std::vector<double> shares = shares_of(settings_for(file));
+  expect_rising_to_one(shares);
+  EXPECT_DOUBLE_EQ(shares[1], (2.0 + 4096.0) / frames);
 }
 
 } // namespace

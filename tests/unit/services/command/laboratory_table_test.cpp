@@ -46,8 +46,66 @@ TEST_F(LaboratoryTable, OneLineASourceAndAChannelThatResponds) {
   EXPECT_EQ(lines[0], "1 bench, 1 with a run, 0 programs; arg in rad");
   EXPECT_THAT(lines[1], HasSubstr("acc-1        running  step 1 of 2, 16 Hz, steady"));
   EXPECT_THAT(lines[2], HasSubstr("acs        running     1000.5 S/s      0 lost"));
-  EXPECT_THAT(lines[4], HasSubstr("dau/acceleration_z         16 Hz |H| 0.98765 u 0.00010"));
+  EXPECT_THAT(lines[4], HasSubstr("dau/acceleration_z     16 Hz |H| 0.98765 u 0.00010"));
   EXPECT_THAT(table({.all = true}), HasSubstr("angular_velocity_x"));
+}
+
+wire::CalibrationResult flagged(const std::string& bench, const std::string& channel,
+                                const std::vector<std::string>& names) {
+  wire::CalibrationResult result = live::result_of(bench, "r1", 1, 0.98765);
+  result.channel(channel);
+  result.flags(names); // sentences
+  result.flag_names(names);
+  return result;
+}
+
+TEST_F(LaboratoryTable, NamesTheFirstFlagWhereThereIsRoom) {
+  add_bench("acc-1");
+  laboratory.take(flagged("acc-1", "dau/acceleration_z", {"samples_lost"}));
+  EXPECT_THAT(table(), HasSubstr("arg -0.10000 samples_lost\n"));
+  EXPECT_THAT(table({.columns = 100}), HasSubstr("arg -0.10000 flags 1: samples_lost\n"));
+  EXPECT_THAT(table({.columns = 75}), HasSubstr("arg -0.10000 flags 1\n"));
+  laboratory.take(flagged("acc-1", "dau/acceleration_z", {"values_stuck", "samples_lost"}));
+  EXPECT_THAT(table(), HasSubstr("arg -0.10000 samples_lost+\n"));
+  laboratory.take(flagged("acc-1", "dau/acceleration_z", {"reference_uncertainty_not_stated"}));
+  EXPECT_THAT(table(), HasSubstr("arg -0.10000 flags 1\n"));
+}
+
+TEST_F(LaboratoryTable, FlagsAreListedWithTheirMeaning) {
+  add_bench("acc-1");
+  laboratory.take(flagged("acc-1", "dau/acceleration_z", {"values_stuck", "samples_lost"}));
+  laboratory.take(flagged("acc-1", "dau/acceleration_x", {"samples_lost"}));
+  EXPECT_EQ(table().find("check its network"), std::string::npos);
+  const std::string text = table({.flags = true});
+  EXPECT_THAT(text, HasSubstr("\n    samples_lost 1, values_stuck 1\n"));
+  EXPECT_THAT(text, HasSubstr("\nsamples_lost: samples of this source are missing within the step "
+                              "and the fit\n  uses the others; check its network,"));
+  EXPECT_THAT(text, HasSubstr("\nvalues_stuck: "));
+  EXPECT_EQ(text.find("samples_lost: ", text.find("samples_lost: ") + 1), std::string::npos);
+  for (const std::size_t columns : {80U, 40U, 20U, 200U}) {
+    const auto lines = laboratory_table(laboratory, {.columns = columns, .flags = true});
+    EXPECT_LE(lines.size(), 24U);
+    for (const std::string& line : lines) {
+      EXPECT_LE(columns_of(line), columns) << line;
+    }
+  }
+}
+
+// They take room from sources that are well, not from channels.
+TEST_F(LaboratoryTable, MeaningsOfFlagsStayInTheWindow) {
+  for (int i = 1; i <= 8; ++i) {
+    const std::string bench = fmt::format("bench-{}", i);
+    add_bench(bench);
+    laboratory.take(flagged(bench, "dau/acceleration_z", {"samples_lost", "over_range"}));
+  }
+  const auto lines = laboratory_table(laboratory, {.flags = true});
+  EXPECT_EQ(lines.size(), 24U);
+  const std::string text = table({.flags = true});
+  EXPECT_EQ(text.find(" lost  "), std::string::npos);
+  EXPECT_THAT(lines.back(), HasSubstr("more lines"));
+  for (const std::string& line : lines) {
+    EXPECT_LE(columns_of(line), 80U) << line;
+  }
 }
 
 TEST_F(LaboratoryTable, EightBenchesStayInTheWindow) {

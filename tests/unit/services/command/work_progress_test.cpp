@@ -26,6 +26,16 @@ TEST(WorkProgress, SaysTheTimeLeft) {
   EXPECT_EQ(text(53, 51, 24.0), "evaluating: 51 of 51 steps, 0 s left");
 }
 
+TEST(WorkProgress, SaysAShareWhereNothingIsCounted) {
+  WorkCount count("reading");
+  count.begin_share("fitting");
+  EXPECT_EQ(progress_text(count.state(), 1.0), "fitting: 0 %, 1 s");
+  count.set_share_done(0.256);
+  EXPECT_EQ(progress_text(count.state(), 1.0), "fitting: 25 %, 3 s left");
+  count.set_share_done(1.0);
+  EXPECT_EQ(progress_text(count.state(), 4.0), "fitting: 100 %, 0 s left");
+}
+
 TEST(WorkProgress, IsSilentWhereThereIsNoTerminal) {
   std::FILE* file = std::tmpfile();
   {

@@ -123,5 +123,14 @@ TEST_F(Hdf5RoundTrip, RefusesAFileThatIsNotHdf5AndChannelsAlone) {
   EXPECT_EQ(part.error().code, ErrorCode::bad_argument);
 }
 
+TEST_F(Hdf5RoundTrip, CountsTheMessagesThatItImports) {
+  const auto count = std::make_shared<WorkCount>("reading");
+  ASSERT_TRUE(import_hdf5(exported_, count));
+  EXPECT_EQ(count->state().what, "importing");
+  EXPECT_EQ(count->state().unit, "messages");
+  EXPECT_GE(count->state().total, 17U); // and an attachment
+  EXPECT_EQ(count->state().done, count->state().total);
+}
+
 } // namespace
 } // namespace dyncal::services

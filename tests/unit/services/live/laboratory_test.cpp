@@ -176,6 +176,7 @@ TEST_F(LiveLaboratoryTest, TakesStepsBeforeTheFirstThatIsHeardAsDone) {
 
 TEST_F(LiveLaboratoryTest, KeepsTheNewestResultButNoneOfAnEarlierAttempt) {
   laboratory_.take(result_of("acc-1", "r1", 1, 0.9));
+  const std::uint64_t first = bench().runs.at("r1").results_number;
   wire::CalibrationResult again = result_of("acc-1", "r1", 1, 1.1);
   again.attempt(2);
   laboratory_.take(again);
@@ -183,7 +184,7 @@ TEST_F(LiveLaboratoryTest, KeepsTheNewestResultButNoneOfAnEarlierAttempt) {
   const auto& run = bench().runs.at("r1");
   ASSERT_EQ(run.results.size(), 1U);
   EXPECT_EQ(run.results.begin()->second.magnitude, 1.1);
-  EXPECT_EQ(run.results_number, 2U);
+  EXPECT_EQ(run.results_number, first + 1);
 }
 
 TEST_F(LiveLaboratoryTest, WarnsOfAResultWithoutAValueOnce) {

@@ -21,6 +21,8 @@ struct Program {
   int domain = 0;
   unsigned seed = 0;
   std::string json;
+  double level = 0.0;
+  double offset = 0.0;
 
   Program() {
     app.require_subcommand(1);
@@ -29,6 +31,8 @@ struct Program {
     run->add_option("--domain", domain, "DDS domain")->check(CLI::Range(0, 232));
     run->add_option("--seed", seed, "of the noise");
     run->add_option("--json", json, "file's name");
+    run->add_option("--level", level, "amplitude")->check(CLI::PositiveNumber);
+    run->add_option("--offset", offset, "of it")->check(CLI::NonNegativeNumber);
     run->add_option("--filter", filter, "kind of filter")->check(CLI::IsMember({"fir", "iir"}));
     CLI::App* calibrate = app.add_subcommand("calibrate", "an instrument");
     calibrate->require_subcommand(1);
@@ -54,6 +58,15 @@ TEST(CommandLine, GoodOneGoesOn) {
   Program program;
   EXPECT_EQ(program.parse({"run", "a.toml", "--domain", "7"}).value_or(false), true);
   EXPECT_EQ(program.domain, 7);
+}
+
+TEST(CommandLine, ANumberThatIsTooSmallIsNamedWithWhatItMayBe) {
+  EXPECT_EQ(problem({"run", "a.toml", "--level", "-1"}), "invalid --level = -1: must be above 0");
+  EXPECT_EQ(problem({"run", "a.toml", "--level", "0"}), "invalid --level = 0: must be above 0");
+  EXPECT_EQ(problem({"run", "a.toml", "--offset", "-1"}),
+            "invalid --offset = -1: must be 0 or more");
+  EXPECT_EQ(problem({"run", "a.toml", "--domain", "233"}),
+            "--domain: Value 233 not in range 0 to 232");
 }
 
 TEST(CommandLine, UnknownCommand) {

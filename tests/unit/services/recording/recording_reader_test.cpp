@@ -140,5 +140,25 @@ TEST(RecordingReader, RefusesAnotherFile) {
   EXPECT_FALSE(RecordingReader::open(folder.write("empty.mcap", "")));
 }
 
+// Whatever has happened to the file, so that the time left can be told.
+TEST(RecordingReader, TellsHowFarItHasWalked) {
+  const std::string whole = example({.chunks = 6, .messages = 200});
+  std::string damaged = whole;
+  std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(whole.size() / 3), 5000, '\x06');
+  for (const std::string& file :
+       {whole, whole.substr(0, whole.size() / 2), damaged, whole + std::string(3'000'000, 'x'),
+        std::string(magic) + std::string(3'000'000, '\0')}) {
+    RecordingReader reader = reader_of(file);
+    std::vector<std::uint64_t> walked;
+    ASSERT_TRUE(reader.scan(
+        {.message = {}, .attachment = {}, .metadata = {}, .walked = [&](std::uint64_t bytes) {
+           walked.push_back(bytes);
+         }}));
+    ASSERT_FALSE(walked.empty());
+    EXPECT_TRUE(std::is_sorted(walked.begin(), walked.end()));
+    EXPECT_EQ(walked.back(), file.size());
+  }
+}
+
 } // namespace
 } // namespace dyncal::recording

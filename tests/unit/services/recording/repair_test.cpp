@@ -1,5 +1,10 @@
 #include "services/recording/repair.hpp"
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.hpp"
@@ -38,6 +43,58 @@ TEST(Repair, LeavesAFileThatIsThereAsItIs) {
   folder.write("b.mcap", "mine");
   EXPECT_FALSE(repair(folder.path() / "a.mcap", folder.path() / "b.mcap", "dyncal test"));
   EXPECT_EQ(file_text(folder.path() / "b.mcap"), "mine");
+}
+
+TEST(Repair, CountsWhatIsReadAndThenWhatIsCopied) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap", {.chunks = 40, .messages = 1000});
+  const std::string whole = file_text(folder.path() / "a.mcap");
+  const auto damaged = folder.write("cut.mcap", whole.substr(0, whole.size() - 100'000));
+  const std::size_t megabytes = (whole.size() - 100'000) / 1'000'000;
+  ASSERT_GE(megabytes, 2U);
+  const auto count = std::make_shared<services::WorkCount>("opening");
+  ASSERT_TRUE(repair(damaged, folder.path() / "b.mcap", "dyncal test", count));
+  EXPECT_EQ(count->state().what, "copying");
+  EXPECT_EQ(count->state().total, megabytes);
+  EXPECT_EQ(count->state().done, megabytes);
+  ASSERT_TRUE(repair(damaged, folder.path() / "c.mcap", "dyncal test"));
+  EXPECT_EQ(file_text(folder.path() / "b.mcap"), file_text(folder.path() / "c.mcap"));
+}
+
+// So that a part of it is not taken for the whole: it has another name until the end.
+TEST(Repair, TakesItsNameAtTheEnd) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap", {.chunks = 40, .messages = 1000});
+  folder.write("b.mcap.part", "of a repair that was interrupted");
+  const auto repaired = folder.path() / "b.mcap";
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  bool seen_early = false;
+  std::jthread watcher([&](const std::stop_token& stop) {
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+      // Nothing of that name may be there that did not end in order.
+      if (std::filesystem::exists(repaired)) {
+        auto reader = RecordingReader::open(repaired).value();
+        seen_early = seen_early || !read_example(reader).report.ended_in_order;
+      }
+      ended.wait_for(lock, stop, std::chrono::milliseconds(1), [] { return false; });
+    }
+  });
+  ASSERT_TRUE(repair(folder.path() / "a.mcap", repaired, "dyncal test"));
+  watcher.request_stop();
+  watcher.join();
+  EXPECT_FALSE(seen_early);
+  EXPECT_TRUE(std::filesystem::exists(repaired));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.mcap.part"));
+}
+
+TEST(Repair, LeavesNothingOfARepairThatFailed) {
+  const tests::TemporaryFolder folder;
+  write_example(folder.path() / "a.mcap");
+  std::filesystem::create_directory(folder.path() / "b.mcap");
+  EXPECT_FALSE(repair(folder.path() / "a.mcap", folder.path() / "b.mcap", "dyncal test"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.mcap.part"));
 }
 
 } // namespace

@@ -51,5 +51,19 @@ TEST(ResultFile, WhatIsNoResultIsRefusedByItsName) {
               HasSubstr("other.json is not a result of dyncal"));
 }
 
+TEST(ResultFile, CountsTheBytesThatItReads) {
+  const tests::TemporaryFolder folder;
+  const auto path = folder.path() / "result.json";
+  ASSERT_TRUE(write_json(path, result_json(tests::example_outcome())));
+  const auto wrong = folder.write("wrong.json", "{" + std::string(50'000, ' '));
+  ByteCount bytes(nullptr, "reading", bytes_of_file(path) + bytes_of_file(wrong));
+  const auto counted = read_result_file(path, bytes);
+  ASSERT_TRUE(counted) << counted.error().message;
+  EXPECT_EQ(bytes.done(), bytes_of_file(path));
+  EXPECT_EQ(counted->size(), read_result_file(path)->size());
+  EXPECT_FALSE(read_result_file(wrong, bytes));
+  EXPECT_EQ(bytes.done(), bytes.total());
+}
+
 } // namespace
 } // namespace dyncal::services

@@ -151,6 +151,20 @@ TEST_P(StoreTest, GivesTheCalibrationsOfASensorByTime) {
   EXPECT_TRUE(store_->calibrations("42")->empty()); // the reference is calibrated by nobody
 }
 
+TEST_P(StoreTest, CountsTheRunsThatItLooksThrough) {
+  ASSERT_TRUE(add(ExampleResult{}));
+  ASSERT_TRUE(add(ExampleResult{.run = "r2", .days = 30, .serial = "mpu-8"}));
+  ASSERT_TRUE(add(ExampleResult{.run = "r3", .days = 60}));
+  const auto count = std::make_shared<WorkCount>("opening");
+  ASSERT_THAT(*store_->runs({.sensor = "mpu-8"}, count), SizeIs(1));
+  EXPECT_EQ(count->state().total, 3U);
+  EXPECT_EQ(count->state().done, 3U);
+  ASSERT_THAT(*store_->calibrations("mpu-7", count), SizeIs(2));
+  EXPECT_EQ(count->state().what, "reading");
+  EXPECT_EQ(count->state().total, 2U);
+  EXPECT_EQ(count->state().done, 2U);
+}
+
 // Another process adds results and is killed in the middle of it, at a drawn instant after the
 // first.
 TEST_P(StoreTest, HasEveryResultWholeOrNotAtAllWhenAWriterIsKilled) {

@@ -95,6 +95,56 @@ TEST_F(BoardTest, MakesFiguresOnceForEachChannelAndChange) {
   EXPECT_GT(Json::parse(*second)["number"], json["number"]);
 }
 
+// As many results as before do not make them the same: the texts that were kept are of another run.
+TEST_F(BoardTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
+  const auto figures = [this] {
+    return board_.figures("acc-1", "r1", "dau/acceleration_z",
+                          services::figures::ErrorBars::expanded);
+  };
+  const auto drop = [this](const std::string& others) {
+    for (std::size_t i = 0; i < live::Limits{}.runs; ++i) {
+      clock_.advance(1s);
+      take(live::result_of("acc-1", others + std::to_string(i), 1, 0.5));
+    }
+    clock_.advance(1s);
+    ASSERT_EQ(results("r1"), nullptr);
+  };
+  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_DONE));
+  const Json planned = Json::parse(*results("r1"));
+  drop("a");
+  take(live::result_of("acc-1", "r1", 1, 0.3));
+  const Json first = Json::parse(*results("r1"));
+  EXPECT_EQ(first["points"][0]["magnitude"], 0.3);
+  EXPECT_GT(first["number"], planned["number"]);
+  const Text picture = figures();
+  const std::uint64_t number = board_.results_number("acc-1");
+  drop("b");
+  take(live::result_of("acc-1", "r1", 1, 0.9));
+  const Json second = Json::parse(*results("r1"));
+  EXPECT_EQ(second["points"][0]["magnitude"], 0.9);
+  EXPECT_GT(second["number"], first["number"]);
+  ASSERT_NE(figures(), nullptr);
+  EXPECT_NE(*figures(), *picture);
+  EXPECT_EQ(Json::parse(*figures())["pictures"][0]["panels"][0]["series"][1]["points"][0][1], 0.9);
+  EXPECT_NE(board_.results_number("acc-1"), number);
+}
+
+// Nothing has come of either: what is known of them is the plan.
+TEST_F(BoardTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
+  wire::Measurement first = live::measurement_of("acc-1", "r1", wire::MEASUREMENT_ABORTED);
+  first.message("the first");
+  take(first);
+  const Text old = results("r1");
+  for (std::size_t i = 0; i < live::Limits{}.runs; ++i) {
+    clock_.advance(1s);
+    take(live::result_of("acc-1", "other" + std::to_string(i), 1, 0.5));
+  }
+  wire::Measurement second = live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING);
+  second.message("the second");
+  take(second);
+  EXPECT_NE(*results("r1"), *old);
+}
+
 TEST_F(BoardTest, HasNoTextOfABenchThatIsNotKnown) {
   EXPECT_EQ(board_.bench("acc-1"), nullptr);
   take(live::status_of("acc-1", "dau"));
