@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 
 namespace dyncal::services {
@@ -25,7 +26,7 @@ Expected<void> write_adc_file(const std::filesystem::path& path, const AdcFileHe
                     {"u_Phase", point.u_phase_lag_rad}});
   }
   const Json file = {{"MeataData", about}, {"FitResults", {{head.channel, frequencies}}}};
-  return write_output_file(path, file.dump(1) + '\n');
+  return write_output_file(path, json_text(file, 1) + '\n');
 }
 
 } // namespace dyncal::services

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/printable_text.hpp"
+
 namespace dyncal::services::bench_check {
 namespace {
 
@@ -14,20 +16,6 @@ std::size_t count(const Findings& findings, Severity severity) {
 
 std::string counted(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
-}
-
-// Without control characters, which a key may have and a terminal would obey.
-std::string printable(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
-    if (byte < 0x20 || byte == 0x7f) {
-      text[i] = '?';
-    } else if (byte == 0xc2 && next >= 0x80 && next < 0xa0) {
-      text.replace(i, 2, "?"); // UTF-8 of U+0080 to U+009F
-    }
-  }
-  return text;
 }
 
 } // namespace

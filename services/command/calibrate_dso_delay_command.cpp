@@ -14,6 +14,7 @@
 #include "drivers/generator/scpi_generator.hpp"
 #include "drivers/link/stop_signal.hpp"
 #include "services/device_error.hpp"
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 
@@ -163,7 +164,7 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
        {{"first_s", delay.histogram.first_s},
         {"width_s", delay.histogram.width_s},
         {"counts", delay.histogram.counts}}}};
-  return write_output_file(command.output, json.dump(1) + '\n');
+  return write_output_file(command.output, json_text(json, 1) + '\n');
 }
 
 } // namespace

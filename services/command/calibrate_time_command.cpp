@@ -8,6 +8,7 @@
 #include "analysis/instrument/pulse_edges.hpp"
 #include "analysis/instrument/stamp_deviation.hpp"
 #include "services/command/pulse_file.hpp"
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/stamp_deviation.hpp"
@@ -261,7 +262,7 @@ figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPu
 
 Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
   if (auto written =
-          write_output_file(command.output, result_json(command, evaluated).dump(1) + '\n');
+          write_output_file(command.output, json_text(result_json(command, evaluated), 1) + '\n');
       !written) {
     return written;
   }

@@ -6,6 +6,7 @@
 #include "services/bench_check/checks.hpp"
 #include "services/bench_check/report.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/json_text.hpp"
 
 namespace dyncal::services {
 
@@ -13,7 +14,7 @@ namespace {
 
 // Names of files may be other than UTF-8.
 std::string json_text(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include "analysis/response/comparison.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/error.hpp"
+#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
 
@@ -113,7 +114,7 @@ void print_json(const std::vector<ComparedPoint>& points) {
          {"agrees", agrees(point)}});
   }
   json["agreeing"] = std::count_if(points.begin(), points.end(), agrees);
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json, 2));
 }
 
 void print_table(const std::vector<ComparedPoint>& points) {

@@ -12,6 +12,7 @@
 #include "services/doctor/checks.hpp"
 #include "services/doctor/laboratory_watch.hpp"
 #include "services/doctor/report.hpp"
+#include "services/json_text.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/version.hpp"
 
@@ -111,7 +112,7 @@ int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
   append(findings, about_listener);
   append(findings, doctor::check_network(view));
   append(findings, doctor::check_host(host, network.domain));
-  fmt::print("{}", command.json ? doctor::as_json(findings, view).dump(2) + "\n"
+  fmt::print("{}", command.json ? json_text(doctor::as_json(findings, view), 2) + "\n"
                                 : doctor::as_text(findings));
   std::fflush(stdout);
   // At once: Cyclone DDS waits at its end for a packet that it sends to itself, and a firewall that

@@ -12,6 +12,7 @@
 #include "analysis/sine/frequency_estimate.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 #include "services/report/rounding.hpp"
@@ -157,7 +158,7 @@ void print_json(const Fit& fit) {
   json["reference_time_ns"] = fit.reference_ns;
   json["out_of_order"] = fit.out_of_order;
   json["columns"] = std::move(columns);
-  fmt::print("{}\n", json.dump(1));
+  fmt::print("{}\n", json_text(json, 1));
 }
 
 void print_table(const Fit& fit) {

@@ -9,6 +9,7 @@
 
 #include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/drift.hpp"
@@ -80,7 +81,7 @@ void print_json(const History& history) {
                              {"frequency_hz", line.frequency_hz},
                              {"values", std::move(values)}});
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json, 2));
 }
 
 std::string en_text(std::optional<double> en) {

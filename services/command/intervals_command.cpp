@@ -8,6 +8,7 @@
 
 #include "analysis/clock/sample_clock.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 
@@ -98,7 +99,7 @@ void print_json(const analysis::SampleClockStatistics& clock) {
                   {"events", events_json(clock)},
                   {"histogram", histogram_json(clock)},
                   {"allan", allan_json(clock)}};
-  fmt::print("{}\n", json.dump(1));
+  fmt::print("{}\n", json_text(json, 1));
 }
 
 void print_table(const analysis::SampleClockStatistics& clock) {

@@ -8,6 +8,7 @@
 
 #include "services/command/harmless_text.hpp"
 #include "services/command/watched_laboratory.hpp"
+#include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 
 namespace dyncal::services {
@@ -81,8 +82,7 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
     }
   }
   if (command.json) {
-    fmt::print("{}\n", live::laboratory_json(laboratory)
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(live::laboratory_json(laboratory), 2));
   } else {
     print_text(laboratory);
   }

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "services/printable_text.hpp"
+
 namespace dyncal::services {
 
 std::string describe(const RunProgress& progress) {
@@ -34,17 +36,17 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::show(const RunProgress& progress) {
   if (!progress.request.empty()) {
     end();
-    fmt::print(stream_, "{}\n", progress.request);
+    fmt::print(stream_, "{}\n", printable(progress.request));
     std::fflush(stream_);
     return;
   }
   if (!progress.notice.empty()) {
     end();
-    fmt::print(stream_, "{}\n", progress.notice);
+    fmt::print(stream_, "{}\n", printable(progress.notice));
     std::fflush(stream_);
     return;
   }
-  const std::string text = describe(progress);
+  const std::string text = printable(describe(progress));
   if (text == last_text_) {
     return;
   }

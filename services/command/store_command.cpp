@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/command/work_progress.hpp"
+#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -108,7 +109,7 @@ int run_runs(const RunsCommand& command) {
     for (const StoredRun& run : *runs) {
       json["runs"].push_back(run_json(run));
     }
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
     return 0;
   }
   if (runs->empty()) {

@@ -13,6 +13,7 @@
 #include "analysis/response/triaxial.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/error.hpp"
+#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
 
@@ -290,7 +291,7 @@ void print_json(const Measured& measured, const std::vector<ResponsePoint>& poin
     }
     json["points"].push_back(std::move(one));
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json, 2));
 }
 
 void print_table(const TriaxialCommand& command, const Measured& measured,

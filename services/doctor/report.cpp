@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/printable_text.hpp"
+
 namespace dyncal::services::doctor {
 namespace {
 
@@ -121,7 +123,7 @@ std::string as_text(const Findings& findings) {
                         ok                                      ? "ok"
                         : finding.severity == Severity::warning ? "WARNING"
                                                                 : "PROBLEM",
-                        finding.check, finding.sentence);
+                        finding.check, printable(finding.sentence));
   }
   return text + (warnings + problems == 0
                      ? "nothing is wrong\n"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/contract/topics.hpp"
+#include "services/json_text.hpp"
 #include "services/recording/recorded_topics.hpp"
 #include "services/version.hpp"
 
@@ -183,7 +184,7 @@ std::string contents_json(const ExportedRecording& recording, const ExportedRuns
   for (const recording::Metadata& metadata : runs.metadata) {
     json["metadata"][metadata.name] = metadata.entries;
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 } // namespace dyncal::services

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "services/report/json_number.hpp"
 #include "services/version.hpp"
@@ -359,7 +360,7 @@ Json laboratory_json(const Laboratory& laboratory) {
 }
 
 std::string json_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 } // namespace dyncal::services::live

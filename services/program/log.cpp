@@ -8,10 +8,13 @@
 #include <mutex>
 
 #include <spdlog/async.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/dist_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+
+#include "services/printable_text.hpp"
 
 namespace dyncal::services {
 
@@ -19,6 +22,23 @@ namespace {
 
 constexpr std::size_t max_held_lines = 8192;
 constexpr const char* pattern = "%Y-%m-%dT%H:%M:%S.%e %n %l: %v";
+
+// Lines may hold what others have sent: it stays within its line, and steers no terminal.
+class PrintableLines : public spdlog::formatter {
+public:
+  void format(const spdlog::details::log_msg& line, spdlog::memory_buf_t& text) override {
+    const std::string shown = printable({line.payload.data(), line.payload.size()});
+    spdlog::details::log_msg shown_line = line;
+    shown_line.payload = shown;
+    pattern_.format(shown_line, text);
+  }
+  [[nodiscard]] std::unique_ptr<spdlog::formatter> clone() const override {
+    return std::make_unique<PrintableLines>();
+  }
+
+private:
+  spdlog::pattern_formatter pattern_{pattern};
+};
 
 // Standard error as the log's own thread writes it, with the number of lines that were discarded.
 class CountingSink : public spdlog::sinks::base_sink<std::mutex> {
@@ -52,7 +72,7 @@ void block_signals() {
 }
 
 void use(std::shared_ptr<spdlog::logger> logger) {
-  logger->set_pattern(pattern);
+  logger->set_formatter(std::make_unique<PrintableLines>());
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
 }

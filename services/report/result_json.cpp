@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/report/clock_json.hpp"
 #include "services/report/expanded_uncertainty.hpp"
@@ -308,7 +309,7 @@ nlohmann::ordered_json result_json(const RunOutcome& outcome) {
 }
 
 Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-  return write_output_file(path, json.dump(1) + '\n');
+  return write_output_file(path, json_text(json, 1) + '\n');
 }
 
 } // namespace dyncal::services

@@ -12,6 +12,7 @@
 #include "services/bench/named_files.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/digest.hpp"
+#include "services/json_text.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -39,7 +40,7 @@ std::string content_sha256(Json json) {
   for (const char* member : volatile_members) {
     json.erase(member);
   }
-  return sha256_hex(json.dump());
+  return sha256_hex(json_text(json));
 }
 
 std::string source_of(const std::string& channel) {

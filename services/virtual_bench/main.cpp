@@ -12,6 +12,7 @@
 #include "drivers/virtual_bench/can/can_line.hpp"
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/truth.hpp"
+#include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/command_line.hpp"
 #include "services/virtual_bench/bench_options.hpp"
@@ -122,11 +123,11 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     ports["dso"] = server.triggered()->scope_port();
     ports["tss"] = server.triggered()->sensor_port();
   }
-  if (auto written = write_if_named(options.ports_file, ports.dump() + "\n"); !written) {
+  if (auto written = write_if_named(options.ports_file, json_text(ports) + "\n"); !written) {
     return written;
   }
   fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n",
-             options.bench.preset.name, ports.dump(), options.server.dau.text());
+             options.bench.preset.name, json_text(ports), options.server.dau.text());
   server.run(stop_signal());
   if (*can) {
     const auto& line = (*can)->line;

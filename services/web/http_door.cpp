@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/live/laboratory_json.hpp"
+#include "services/printable_text.hpp"
 #include "services/web/host_rules.hpp"
 #include "services/web/page_files.hpp"
 #include "services/web/run_files.hpp"
@@ -24,12 +25,7 @@ constexpr const char* content_policy =
 
 // For a log line: what a visitor wrote, without anything that steers a terminal.
 std::string harmless(std::string_view text) {
-  std::string line;
-  for (const char letter : text.substr(0, 120)) {
-    const auto code = static_cast<unsigned char>(letter);
-    line += code < 0x20 || code >= 0x7f ? '?' : letter;
-  }
-  return line;
+  return printable(text.substr(0, 120));
 }
 
 bool leads_out(const std::string& path) {

@@ -20,10 +20,11 @@ constexpr double phase_rad = 0.7;
 
 // 2000 samples at uneven instants about 1 ms apart, with an offset and, if wanted, a second
 // harmonic.
-std::filesystem::path sine_file(const std::filesystem::path& folder, double harmonic = 0.0) {
+std::filesystem::path sine_file(const std::filesystem::path& folder, double harmonic = 0.0,
+                                const std::string& column = "y") {
   const std::filesystem::path path = folder / "sine.csv";
   std::ofstream stream(path);
-  stream << "t_ns,y,constant\n";
+  stream << "t_ns," << column << ",constant\n";
   for (int i = 0; i < 2000; ++i) {
     const std::int64_t dt_ns = std::int64_t{997'000} * i + (i * 7919) % 5000;
     const double angle = 2.0 * std::numbers::pi * frequency_hz * static_cast<double>(dt_ns) * 1e-9;
@@ -88,6 +89,14 @@ TEST_F(FileCommands, FitTakesHarmonicsOutOfTheResiduals) {
   EXPECT_GT(plain["columns"]["y"]["rss"].get<double>(), 1.0);
   EXPECT_LT(extended["columns"]["y"]["rss"].get<double>(), 1e-12);
   EXPECT_NEAR(extended["columns"]["y"]["amplitude"], amplitude, 1e-9);
+}
+
+// A file of a program that writes Latin-1.
+TEST_F(FileCommands, FitTakesNamesThatAreNotUtf8) {
+  const auto json =
+      json_of({"fit", sine_file(folder, 0.0, "Verst\xe4rker"), "--frequency", "79.8", "--json"});
+  ASSERT_FALSE(json.is_discarded());
+  EXPECT_NEAR(json["columns"]["Verst\xef\xbf\xbdrker"]["amplitude"], amplitude, 1e-10);
 }
 
 TEST_F(FileCommands, FitSaysWhatIsWrongWithAFileAndWhere) {

@@ -1,5 +1,7 @@
 #include "services/report/figures/markup.hpp"
 
+#include "services/printable_text.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -15,7 +17,7 @@ bool is_control(char c) {
 std::string escaped(std::string_view text) {
   std::string result;
   result.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : valid_utf8(text)) {
     switch (c) {
     case '&':
       result += "&amp;";

@@ -1,5 +1,6 @@
 // Text as it stands in the elements and quoted attributes of SVG and HTML, so that no name in a
-// file becomes markup. Characters that XML does not allow become U+FFFD. Any thread.
+// file becomes markup. Characters that XML does not allow, and bytes that are not UTF-8, become
+// U+FFFD. Any thread.
 #pragma once
 
 #include <string>

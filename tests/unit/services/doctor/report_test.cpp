@@ -25,6 +25,12 @@ TEST(DoctorReport, HasALineForEachFinding) {
   EXPECT_EQ(as_text({fine}), "ok       disk        100 MB are free\nnothing is wrong\n");
 }
 
+TEST(DoctorReport, ShowsWhatWasForgedAsOneHarmlessLine) {
+  const Finding forged{Severity::ok, "programs", "a\x1b[2J\nok\xff: dyncal 0.2.0"};
+  EXPECT_EQ(as_text({forged}),
+            "ok       programs    a?[2J?ok\xef\xbf\xbd: dyncal 0.2.0\nnothing is wrong\n");
+}
+
 TEST(DoctorReport, HasAllOfItAsJson) {
   LaboratoryView view;
   view.domain = 7;

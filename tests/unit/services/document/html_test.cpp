@@ -12,6 +12,7 @@ TEST(Html, EscapesText) {
   EXPECT_EQ(escaped("a<b>&\"c\"'d'"), "a&lt;b&gt;&amp;&quot;c&quot;&#39;d&#39;");
   EXPECT_EQ(escaped(std::string("\x01\x7f\n\t", 4)), "\xef\xbf\xbd\xef\xbf\xbd\n\t");
   EXPECT_EQ(escaped("m/s\xc2\xb2"), "m/s\xc2\xb2");
+  EXPECT_EQ(escaped("m/s\xb2"), "m/s\xef\xbf\xbd"); // Latin-1
   EXPECT_EQ(element("p", "<b>", "warning"), "<p class=\"warning\">&lt;b&gt;</p>\n");
 }
 

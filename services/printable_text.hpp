@@ -1,0 +1,73 @@
+// Texts of others (names in files, what instruments and programs on the network say of themselves)
+// as they may be written into JSON and onto a terminal. Whoever writes Latin-1, "Br\xfcel", or
+// anything else that is not UTF-8 (RFC 3629) costs no result and steers no terminal.
+//
+// Plain functions, any thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace dyncal::services {
+
+// How many bytes of `text` are its first letter in UTF-8; 0: it begins with none.
+[[nodiscard]] inline std::size_t first_letter_bytes(std::string_view text) {
+  struct Form {
+    std::size_t bytes;
+    unsigned mask;
+    unsigned lead;
+    std::uint32_t least; // shorter forms of a letter are not valid
+  };
+  constexpr Form forms[] = {{1, 0x80, 0x00, 0x0},
+                            {2, 0xe0, 0xc0, 0x80},
+                            {3, 0xf0, 0xe0, 0x800},
+                            {4, 0xf8, 0xf0, 0x10000}};
+  for (const Form& form : forms) {
+    const auto lead = text.empty() ? 0xffU : static_cast<unsigned char>(text.front());
+    if ((lead & form.mask) != form.lead || text.size() < form.bytes) {
+      continue;
+    }
+    std::uint32_t letter = lead & ~form.mask;
+    bool continues = true;
+    for (const char next : text.substr(1, form.bytes - 1)) {
+      const auto byte = static_cast<unsigned char>(next);
+      continues = continues && (byte & 0xc0U) == 0x80U;
+      letter = (letter << 6U) | (byte & 0x3fU);
+    }
+    const bool is_surrogate = letter >= 0xd800 && letter <= 0xdfff;
+    return continues && letter >= form.least && letter <= 0x10ffff && !is_surrogate ? form.bytes
+                                                                                    : 0;
+  }
+  return 0;
+}
+
+// U+FFFD in place of every byte that is not of a letter in UTF-8.
+[[nodiscard]] inline std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t bytes = first_letter_bytes(text);
+    valid += bytes == 0 ? "\xef\xbf\xbd" : text.substr(0, bytes);
+    text.remove_prefix(bytes == 0 ? 1 : bytes);
+  }
+  return valid;
+}
+
+// The same, and '?' in place of control characters: one line that a terminal only shows.
+[[nodiscard]] inline std::string printable(std::string_view text) {
+  std::string shown = valid_utf8(text);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(shown[i]);
+    const auto next = i + 1 < shown.size() ? static_cast<unsigned char>(shown[i + 1]) : 0U;
+    if (byte < 0x20 || byte == 0x7f) {
+      shown[i] = '?';
+    } else if (byte == 0xc2 && next < 0xa0) {
+      shown.replace(i, 2, "?"); // U+0080 to U+009F
+    }
+  }
+  return shown;
+}
+
+} // namespace dyncal::services

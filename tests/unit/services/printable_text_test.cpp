@@ -1,0 +1,44 @@
+#include "services/printable_text.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/json_text.hpp"
+
+namespace dyncal::services {
+namespace {
+
+TEST(PrintableText, LeavesUtf8AsItIs) {
+  for (const std::string text :
+       {"", "dau/acceleration_x", "Brüel & Kjær, 5 µm/s²", "加速度", "𝜑"}) {
+    EXPECT_EQ(valid_utf8(text), text);
+    EXPECT_EQ(printable(text), text);
+  }
+}
+
+TEST(PrintableText, ReplacesEveryByteThatIsNotUtf8) {
+  EXPECT_EQ(valid_utf8("Br\xfcel"), "Br\xef\xbf\xbd"
+                                    "el");                            // Latin-1
+  EXPECT_EQ(valid_utf8("\xc3"), "\xef\xbf\xbd");                      // cut off
+  EXPECT_EQ(valid_utf8("\xc0\xaf"), "\xef\xbf\xbd\xef\xbf\xbd");      // '/' in a form too long
+  EXPECT_EQ(valid_utf8("\xed\xa0\x80").substr(0, 3), "\xef\xbf\xbd"); // half of a pair of UTF-16
+  EXPECT_EQ(valid_utf8("\xf4\x90\x80\x80").size(), 12U);              // beyond U+10FFFF
+  EXPECT_EQ(valid_utf8("\xe2\x82z"), "\xef\xbf\xbd\xef\xbf\xbdz");
+}
+
+TEST(PrintableText, ShowsNothingThatSteersATerminal) {
+  EXPECT_EQ(printable("a\x1b[2Jb\r\nc\x7f"), "a?[2Jb??c?");
+  EXPECT_EQ(printable("a\xc2\x9b"
+                      "2J"),
+            "a?2J"); // U+009B is ESC [
+}
+
+TEST(JsonText, WritesTextsThatAreNotUtf8) {
+  const nlohmann::ordered_json json{{"serial", "Br\xfcel"}};
+  EXPECT_EQ(json_text(json), "{\"serial\":\"Br\xef\xbf\xbd"
+                             "el\"}");
+  EXPECT_TRUE(nlohmann::json::accept(json_text(json, 2)));
+}
+
+} // namespace
+} // namespace dyncal::services
