@@ -10,14 +10,7 @@
 
 namespace dyncal::services {
 
-namespace {
-
-// Names of files may be other than UTF-8.
-std::string json_text(const nlohmann::ordered_json& json) {
-  return json_text(json, 2) + "\n";
-}
-
-} // namespace
+namespace {} // namespace
 
 int run_check(const CheckCommand& command) {
   std::vector<bench_check::BenchView> views;
@@ -29,7 +22,7 @@ int run_check(const CheckCommand& command) {
     }
     findings = bench_check::check_benches(views);
   }
-  fmt::print("{}", command.json ? json_text(bench_check::as_json(findings, views))
+  fmt::print("{}", command.json ? json_text(bench_check::as_json(findings, views), 2) + "\n"
                                 : bench_check::as_text(findings));
   return bench_check::exit_status(findings);
 }

@@ -13,6 +13,7 @@
 #include "services/command/laboratory_lines.hpp"
 #include "services/command/laboratory_table.hpp"
 #include "services/command/watched_laboratory.hpp"
+#include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 
 namespace dyncal::services {
@@ -75,7 +76,7 @@ public:
 
 private:
   static void print_json(const live::Laboratory& laboratory) {
-    fmt::print("{}\n", live::json_text(live::laboratory_json(laboratory)));
+    fmt::print("{}\n", json_text(live::laboratory_json(laboratory)));
   }
 
   void print_lines(const live::Laboratory& laboratory) {

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "services/report/json_number.hpp"
 #include "services/version.hpp"
@@ -357,10 +356,6 @@ Json laboratory_json(const Laboratory& laboratory) {
     json["events"].push_back(event_json(event));
   }
   return json;
-}
-
-std::string json_text(const Json& json) {
-  return json_text(json);
 }
 
 } // namespace dyncal::services::live

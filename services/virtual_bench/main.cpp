@@ -24,6 +24,7 @@ using dyncal::fail;
 using dyncal::services::Error;
 using dyncal::services::ErrorCode;
 using dyncal::services::Expected;
+using dyncal::services::json_text;
 using dyncal::services::virtual_bench::BenchOptions;
 
 dyncal::drivers::StopSignal& stop_signal() {

@@ -10,7 +10,7 @@
 #include "services/bench/bench_file.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
-#include "services/live/laboratory_json.hpp"
+#include "services/json_text.hpp"
 #include "services/web/laboratory_answers.hpp"
 
 namespace dyncal::services::web {
@@ -25,7 +25,7 @@ void answer_action(bool accepted, const std::string& by, const std::string& mess
                    httplib::Response& response) {
   const Json json{{"answer", accepted ? "accepted" : "refused"}, {"by", by}, {"message", message}};
   response.status = accepted ? 200 : 409;
-  response.set_content(live::json_text(json), "application/json");
+  response.set_content(json_text(json), "application/json");
 }
 
 std::optional<wire::CommandKind> kind_of(const std::string& word) {
@@ -280,7 +280,8 @@ void Actions::list_bench_files(httplib::Response& response) const {
                      {"bench", bench ? Json(bench->bench) : Json(nullptr)},
                      {"problem", bench ? Json(nullptr) : Json(bench.error().message)}});
   }
-  response.set_content(live::json_text({{"files", std::move(files)}}), "application/json");
+  response.set_content(json_text(nlohmann::ordered_json{{"files", std::move(files)}}),
+                       "application/json");
 }
 
 void Actions::start_run(const httplib::Request& request, httplib::Response& response) {

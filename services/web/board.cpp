@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 #include "services/live/run_figures.hpp"
 #include "services/live/run_json.hpp"
@@ -49,7 +50,7 @@ Text Board::young(const std::string& key) {
 }
 
 Text Board::keep(const std::string& key, const Json& json, std::uint64_t number) {
-  Text text = std::make_shared<const std::string>(live::json_text(json));
+  Text text = std::make_shared<const std::string>(json_text(json));
   std::size_t bytes = text->size();
   for (const auto& [other, made] : texts_) {
     bytes += made.text->size();

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/live/laboratory_json.hpp"
+#include "services/json_text.hpp"
 #include "services/report/json_number.hpp"
 #include "services/store/history.hpp"
 #include "services/store/store.hpp"
@@ -115,7 +115,7 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
   auto store = Store::open_existing(place_);
   if (place_.empty() || !store) {
     json["problem"] = place_.empty() ? "there is no store (--store)" : store.error().message;
-    response.set_content(live::json_text(json), "application/json");
+    response.set_content(json_text(json), "application/json");
     return true;
   }
   const auto runs = (*store)->runs({});
@@ -133,7 +133,7 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
   json["sensors"] = sensors_json(*runs);
   json["runs"] = runs_json(*calibrations);
   json["en"] = en_json(history_of(sensor, std::move(*calibrations)));
-  response.set_content(live::json_text(json), "application/json");
+  response.set_content(json_text(json), "application/json");
   return true;
 }
 

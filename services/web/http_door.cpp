@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/live/laboratory_json.hpp"
+#include "services/json_text.hpp"
 #include "services/printable_text.hpp"
 #include "services/web/host_rules.hpp"
 #include "services/web/page_files.hpp"
@@ -39,7 +39,7 @@ void answer_error(int status, const std::string& code, const std::string& messag
                   httplib::Response& response) {
   const nlohmann::ordered_json json{{"error", {{"code", code}, {"message", message}}}};
   response.status = status;
-  response.set_content(live::json_text(json), "application/json");
+  response.set_content(json_text(json), "application/json");
 }
 
 HttpDoor::HttpDoor(DoorOptions options, bus::Clock& clock)

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/live/laboratory_json.hpp"
+#include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "services/web/http_door.hpp"
 
@@ -168,7 +168,7 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
                 {"repetition", result.repetition},
                 {"contributions", live::budget_json(result)}};
   });
-  answer_text(json ? std::make_shared<const std::string>(live::json_text(*json)) : nullptr,
+  answer_text(json ? std::make_shared<const std::string>(json_text(*json)) : nullptr,
               "no such result was heard of", response);
 }
 

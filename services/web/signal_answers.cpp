@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/contract/channel_name.hpp"
-#include "services/live/laboratory_json.hpp"
+#include "services/json_text.hpp"
 #include "services/live_signals/sine_view.hpp"
 #include "services/live_signals/spectrum.hpp"
 #include "services/live_signals/trace.hpp"
@@ -80,7 +80,7 @@ Json trace_json(const Trace& trace) {
 }
 
 Text text_of(const Json& json) {
-  return std::make_shared<const std::string>(live::json_text(json));
+  return std::make_shared<const std::string>(json_text(json));
 }
 
 Json fit_json(const std::string& channel, const analysis::Frequency& frequency,
@@ -173,7 +173,7 @@ Text SignalAnswers::signal_text(const Question& question) {
   if (texts_.size() >= max_texts) {
     texts_.clear();
   }
-  std::string whole = live::json_text(json);
+  std::string whole = json_text(json);
   whole.pop_back();
   whole += ",\"columns\":" + columns_text(trace.columns) + "}";
   Text text = std::make_shared<const std::string>(std::move(whole));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/bus/memory/stepped_clock.hpp"
+#include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "tests/unit/services/live/messages.hpp"
 
