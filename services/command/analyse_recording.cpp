@@ -44,7 +44,7 @@ Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std:
     wish.recipe = std::move(other->recipe);
     adc_file = std::move(other->adc_file);
   }
-  auto opened = open_recording(command.bench_file, count);
+  auto opened = open_recording(command.bench_file, count, stop);
   if (!opened) {
     return fail(opened.error());
   }

@@ -37,7 +37,8 @@ Expected<ExportedFigures> export_with_progress(const ExportCommand& command, Exp
                            .to = command.to,
                            .format = format,
                            .channels = command.channels,
-                           .count = progress.count()},
+                           .count = progress.count(),
+                           .stop = stop},
                           [&](double share) {
                             if (!std::exchange(exporting, true)) {
                               progress.count()->begin_share("exporting");

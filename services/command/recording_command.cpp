@@ -66,7 +66,10 @@ Expected<recording::ScanReport> read_all(const RecordingCommand& command,
     return fail(reader.error());
   }
   ByteCount bytes(progress.count(), "reading", bytes_of_file(command.file));
-  events.walked = [&](std::uint64_t walked) { bytes.set_done(walked); };
+  events.walked = [&](std::uint64_t walked) {
+    bytes.set_done(walked);
+    return true; // Ctrl-C ends the program
+  };
   return reader->scan(events);
 }
 

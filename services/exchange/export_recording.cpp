@@ -80,11 +80,11 @@ Expected<ExportedFigures> export_recording(const ExportWish& wish, const ExportP
   if (auto is_new = is_folder ? Expected<void>{} : check_new_output(wish.to); !is_new) {
     return fail(is_new.error());
   }
-  auto opened = open_recording(wish.recording, wish.count);
+  auto opened = open_recording(wish.recording, wish.count, wish.stop);
   if (!opened) {
     return fail(opened.error());
   }
-  const auto recording = ExportedRecording::open(opened->reader, progress, wish.count);
+  const auto recording = ExportedRecording::open(opened->reader, progress, wish.count, wish.stop);
   if (!recording) {
     return fail(recording.error());
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ struct ExportWish {
   std::filesystem::path to;
   ExportFormat format = ExportFormat::hdf5;
   std::vector<std::string> channels; // as row_tables() takes them
-  SharedWorkCount count{};           // of what is read before `progress` is told of
+  // Of what is read before `progress` is asked:
+  SharedWorkCount count{};
+  std::stop_token stop{};
 };
 
 struct ExportedFigures {

@@ -260,8 +260,9 @@ Expected<void> ExportedRecording::add_source(const std::pair<std::string, std::s
 
 Expected<ExportedRecording> ExportedRecording::open(recording::RecordingReader& reader,
                                                     const ExportProgress& progress,
-                                                    const SharedWorkCount& count) {
-  auto contents = index_contents(reader, count);
+                                                    const SharedWorkCount& count,
+                                                    const std::stop_token& stop) {
+  auto contents = index_contents(reader, count, stop);
   if (!contents) {
     return fail(contents.error());
   }

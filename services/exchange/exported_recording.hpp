@@ -55,7 +55,8 @@ public:
   // `reader` outlives the object.
   [[nodiscard]] static Expected<ExportedRecording> open(recording::RecordingReader& reader,
                                                         const ExportProgress& progress,
-                                                        const SharedWorkCount& count = nullptr);
+                                                        const SharedWorkCount& count = nullptr,
+                                                        const std::stop_token& stop = {});
 
   [[nodiscard]] const std::vector<ExportedSource>& sources() const { return sources_; }
   [[nodiscard]] const RecordingContents& contents() const { return contents_; }

@@ -24,8 +24,9 @@ constexpr std::uint64_t max_text_bytes = std::uint64_t{256} << 20U;
 // The file that is being read.
 class Hdf5Import {
 public:
-  Hdf5Import(const std::filesystem::path& path, Hdf5Handle file, SharedWorkCount count)
-      : path_(path), file_(std::move(file)), count_(std::move(count)) {}
+  Hdf5Import(const std::filesystem::path& path, Hdf5Handle file, SharedWorkCount count,
+             std::stop_token stop)
+      : path_(path), file_(std::move(file)), count_(std::move(count)), stop_(std::move(stop)) {}
 
   [[nodiscard]] Expected<ImportedRecording> read() {
     if (auto opened = open(); !opened) {
@@ -107,6 +108,10 @@ private:
     begin_work(count_, "importing", "messages", list.columns());
     MessageDigest digest;
     for (std::uint64_t i = 0; i < list.columns(); ++i) {
+      if (stop_.stop_requested()) {
+        return fail(ErrorCode::interrupted,
+                    fmt::format("{}: interrupted while it was imported", path_.string()));
+      }
       const auto* const one = list.at<Hdf5Message>(i, 1);
       if (one == nullptr || one->topic >= topics_.size()) {
         return wrong(fmt::format("message {} cannot be read", i + 1));
@@ -171,6 +176,7 @@ private:
   std::filesystem::path path_;
   Hdf5Handle file_;
   SharedWorkCount count_;
+  std::stop_token stop_;
   Hdf5Handle own_;
   std::vector<std::string> topics_;
   std::vector<std::string> runs_;
@@ -180,13 +186,13 @@ private:
 } // namespace
 
 Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
-                                        const SharedWorkCount& count) {
+                                        const SharedWorkCount& count, const std::stop_token& stop) {
   const drivers::files::Hdf5Lock lock;
   auto file = drivers::files::open_hdf5(path);
   if (!file) {
     return fail(ErrorCode::bad_file, file.error().message);
   }
-  return Hdf5Import(path, std::move(*file), count).read();
+  return Hdf5Import(path, std::move(*file), count, stop).read();
 }
 
 #else
@@ -194,7 +200,8 @@ Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
 namespace dyncal::services {
 
 Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
-                                        const SharedWorkCount& /*count*/) {
+                                        const SharedWorkCount& /*count*/,
+                                        const std::stop_token& /*stop*/) {
   return fail(ErrorCode::bad_file,
               path.string() + ": this build cannot read HDF5 (Debian: libhdf5-dev)");
 }

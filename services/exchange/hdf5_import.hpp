@@ -8,6 +8,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ struct ImportedRecording {
 // By its name: .h5, .hdf5
 [[nodiscard]] bool is_hdf5(const std::filesystem::path& path);
 
-// `count`: of its messages.
+// `count`: of its messages. Fails (interrupted) if a stop was requested meanwhile.
 [[nodiscard]] Expected<ImportedRecording> import_hdf5(const std::filesystem::path& path,
-                                                      const SharedWorkCount& count = nullptr);
+                                                      const SharedWorkCount& count = nullptr,
+                                                      const std::stop_token& stop = {});
 
 } // namespace dyncal::services

@@ -23,7 +23,8 @@ std::vector<std::filesystem::path> recordings_in(const std::filesystem::path& fo
 
 // Everything of one file, behind what is there already.
 Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joined,
-                      std::vector<std::string>& warnings, ByteCount& bytes) {
+                      std::vector<std::string>& warnings, ByteCount& bytes,
+                      const std::stop_token& stop) {
   auto reader = recording::RecordingReader::open(path);
   if (!reader) {
     return fail(reader.error());
@@ -49,7 +50,11 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
                         },
                     .attachment = [&](const recording::Attachment& one) { note(joined.add(one)); },
                     .metadata = [&](const recording::Metadata& one) { note(joined.add(one)); },
-                    .walked = [&](std::uint64_t walked) { bytes.set_done(before + walked); }});
+                    .walked =
+                        [&](std::uint64_t walked) {
+                          bytes.set_done(before + walked);
+                          return !stop.stop_requested();
+                        }});
   if (!report) {
     return fail(report.error());
   }
@@ -61,7 +66,7 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
 
 Expected<OpenedRecording> join(const std::filesystem::path& folder,
                                const std::vector<std::filesystem::path>& files,
-                               const SharedWorkCount& count) {
+                               const SharedWorkCount& count, const std::stop_token& stop) {
   recording::WriterOptions options;
   options.library = fmt::format("{} recordings of a run", files.size());
   options.schemas = recording::recorded_schemas();
@@ -73,7 +78,7 @@ Expected<OpenedRecording> join(const std::filesystem::path& folder,
   std::vector<std::string> warnings;
   ByteCount bytes(count, "reading", bytes_of_files(files));
   for (const auto& file : files) {
-    if (auto added = append(file, *joined, warnings, bytes); !added) {
+    if (auto added = append(file, *joined, warnings, bytes, stop); !added) {
       return fail(added.error());
     }
   }
@@ -90,15 +95,16 @@ bool is_recording(const std::filesystem::path& path) {
 }
 
 Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
-                                         const SharedWorkCount& count) {
+                                         const SharedWorkCount& count,
+                                         const std::stop_token& stop) {
   if (is_hdf5(path)) {
-    return import_hdf5(path, count).map([](ImportedRecording imported) {
+    return import_hdf5(path, count, stop).map([](ImportedRecording imported) {
       return OpenedRecording{std::move(imported.reader), std::move(imported.warnings)};
     });
   }
   const auto files = recordings_in(path);
   if (files.size() > 1) {
-    return join(path, files, count);
+    return join(path, files, count, stop);
   }
   return recording::RecordingReader::open(files.empty() ? path : files.front())
       .map([](recording::RecordingReader reader) {

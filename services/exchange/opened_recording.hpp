@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ struct OpenedRecording {
 // By its name, or, of a folder, by what is in it.
 [[nodiscard]] bool is_recording(const std::filesystem::path& path);
 
-// `count`: of what is read, where it is not used as it is.
+// `count`: of what is read, where it is not used as it is. Fails (interrupted) if a stop was
+// requested meanwhile.
 [[nodiscard]] Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
-                                                       const SharedWorkCount& count = nullptr);
+                                                       const SharedWorkCount& count = nullptr,
+                                                       const std::stop_token& stop = {});
 
 } // namespace dyncal::services

@@ -138,7 +138,11 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
       reader->scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
                     .attachment = {},
                     .metadata = {},
-                    .walked = [&](std::uint64_t bytes) { read.set_done(bytes); }});
+                    .walked =
+                        [&](std::uint64_t bytes) {
+                          read.set_done(bytes);
+                          return true;
+                        }});
   if (!report) {
     return report;
   }
@@ -153,7 +157,11 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
       reader->scan({.message = [&](const MessageInFile& message) { copy.add(message); },
                     .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
                     .metadata = [&](const Metadata& metadata) { copy.add(metadata); },
-                    .walked = [&](std::uint64_t bytes) { copied_bytes.set_done(bytes); }});
+                    .walked =
+                        [&](std::uint64_t bytes) {
+                          copied_bytes.set_done(bytes);
+                          return true;
+                        }});
   copy.flush();
   if (!copied) {
     return fail(copied.error());

@@ -51,6 +51,14 @@ void Scan::damage(std::uint64_t offset, std::uint64_t bytes, std::string what) {
   }
 }
 
+Expected<void> Scan::walk_to(std::uint64_t offset) const {
+  if (!events_.walked || events_.walked(offset)) {
+    return {};
+  }
+  return fail(services::ErrorCode::interrupted,
+              fmt::format("{}: interrupted while it was read", reader_.path_.string()));
+}
+
 Expected<ScanReport> Scan::run() {
   report_.file_bytes = reader_.size_;
   offset_ = magic.size();
@@ -60,11 +68,13 @@ Expected<ScanReport> Scan::run() {
     if (!goes_on) {
       return fail(goes_on.error());
     }
+    const auto walked = walk_to(*goes_on ? offset_ : reader_.size_);
+    if (!walked) {
+      return fail(walked.error());
+    }
     if (!*goes_on) {
-      walked_to(reader_.size_);
       return std::move(report_);
     }
-    walked_to(offset_);
   }
 }
 
@@ -372,7 +382,9 @@ Expected<std::optional<std::uint64_t>> Scan::next_whole_chunk(std::uint64_t from
       }
     }
     from += count;
-    walked_to(from);
+    if (const auto walked = walk_to(from); !walked) {
+      return fail(walked.error());
+    }
   }
   return std::nullopt;
 }

@@ -35,11 +35,8 @@ private:
   [[nodiscard]] services::Expected<std::optional<std::uint64_t>>
   next_whole_chunk(std::uint64_t from);
   [[nodiscard]] services::Expected<bool> is_whole_chunk(std::uint64_t offset);
-  void walked_to(std::uint64_t offset) const {
-    if (events_.walked) {
-      events_.walked(offset);
-    }
-  }
+  // Fails (interrupted) if a stop was requested.
+  [[nodiscard]] services::Expected<void> walk_to(std::uint64_t offset) const;
   void damage(std::uint64_t offset, std::uint64_t bytes, std::string what);
 
   const RecordingReader& reader_;

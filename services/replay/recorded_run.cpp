@@ -289,7 +289,7 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
 Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
                                                 const RecordedRunWish& wish,
                                                 const std::stop_token& stop) {
-  const auto index = index_recording(reader, wish.run, wish.count);
+  const auto index = index_recording(reader, wish.run, wish.count, stop);
   if (!index) {
     return fail(index.error());
   }
@@ -312,15 +312,17 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                           .clock_end = index->clock_end,
                           .count = wish.count});
   Evaluating evaluating(reader, *index, evaluator, result.outcome);
-  const auto walked = reader.scan({.message =
-                                       [&](const recording::MessageInFile& message) {
-                                         if (!stop.stop_requested()) {
-                                           evaluating.take(message);
-                                         }
-                                       },
-                                   .attachment = {},
-                                   .metadata = {}});
-  if (!walked) {
+  const auto walked =
+      reader.scan({.message =
+                       [&](const recording::MessageInFile& message) {
+                         if (!stop.stop_requested()) {
+                           evaluating.take(message);
+                         }
+                       },
+                   .attachment = {},
+                   .metadata = {},
+                   .walked = [&](std::uint64_t /*bytes*/) { return !stop.stop_requested(); }});
+  if (!walked && walked.error().code != ErrorCode::interrupted) {
     return fail(walked.error());
   }
   const bool aborted = stop.stop_requested() || index->newest.state() != wire::MEASUREMENT_DONE;

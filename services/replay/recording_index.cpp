@@ -161,14 +161,19 @@ RecordedPosition RecordedSource::position(std::uint64_t session, std::uint64_t n
 }
 
 Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
-                                           const SharedWorkCount& count) {
+                                           const SharedWorkCount& count,
+                                           const std::stop_token& stop) {
   ByteCount bytes(count, "reading", reader.size_bytes());
   Gathering gathering;
   auto report = reader.scan(
       {.message = [&](const recording::MessageInFile& message) { gathering.take(message); },
        .attachment = {},
        .metadata = {},
-       .walked = [&](std::uint64_t walked) { bytes.set_done(walked); }});
+       .walked =
+           [&](std::uint64_t walked) {
+             bytes.set_done(walked);
+             return !stop.stop_requested();
+           }});
   if (!report) {
     return fail(report.error());
   }
@@ -184,8 +189,9 @@ Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
 }
 
 Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
-                                           const std::string& run, const SharedWorkCount& count) {
-  auto contents = index_contents(reader, count);
+                                           const std::string& run, const SharedWorkCount& count,
+                                           const std::stop_token& stop) {
+  auto contents = index_contents(reader, count, stop);
   if (!contents) {
     return fail(contents.error());
   }

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,13 +71,15 @@ struct RecordingContents {
   recording::ScanReport report;
 };
 
-// `count`: of the file's megabytes.
+// `count`: of the file's megabytes. Both fail (interrupted) if a stop was requested meanwhile.
 [[nodiscard]] Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
-                                                         const SharedWorkCount& count = nullptr);
+                                                         const SharedWorkCount& count = nullptr,
+                                                         const std::stop_token& stop = {});
 
 // `run`: empty where the recording holds one.
 [[nodiscard]] Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
                                                          const std::string& run,
-                                                         const SharedWorkCount& count = nullptr);
+                                                         const SharedWorkCount& count = nullptr,
+                                                         const std::stop_token& stop = {});
 
 } // namespace dyncal::services

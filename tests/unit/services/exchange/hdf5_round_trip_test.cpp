@@ -132,5 +132,31 @@ TEST_F(Hdf5RoundTrip, CountsTheMessagesThatItImports) {
   EXPECT_EQ(count->state().done, count->state().total);
 }
 
+TEST_F(Hdf5RoundTrip, StopsWhileItReads) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto imported = import_hdf5(exported_, nullptr, stop.get_token());
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.error().code, ErrorCode::interrupted);
+  const auto run = folder_.path() / "run";
+  std::filesystem::create_directory(run);
+  std::filesystem::copy_file(recording_, run / "recording.mcap");
+  std::filesystem::copy_file(recording_, run / "recording-2.mcap");
+  ASSERT_TRUE(open_recording(run));
+  const auto joined = open_recording(run, nullptr, stop.get_token());
+  ASSERT_FALSE(joined);
+  EXPECT_EQ(joined.error().code, ErrorCode::interrupted);
+  const auto other = folder_.path() / "other.h5";
+  const auto exported = export_recording({.recording = recording_,
+                                          .to = other,
+                                          .format = ExportFormat::hdf5,
+                                          .channels = {},
+                                          .stop = stop.get_token()},
+                                         [](double) { return true; });
+  ASSERT_FALSE(exported);
+  EXPECT_EQ(exported.error().code, ErrorCode::interrupted);
+  EXPECT_FALSE(std::filesystem::exists(other));
+}
+
 } // namespace
 } // namespace dyncal::services

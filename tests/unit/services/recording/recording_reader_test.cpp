@@ -153,10 +153,26 @@ TEST(RecordingReader, TellsHowFarItHasWalked) {
     ASSERT_TRUE(reader.scan(
         {.message = {}, .attachment = {}, .metadata = {}, .walked = [&](std::uint64_t bytes) {
            walked.push_back(bytes);
+           return true;
          }}));
     ASSERT_FALSE(walked.empty());
     EXPECT_TRUE(std::is_sorted(walked.begin(), walked.end()));
     EXPECT_EQ(walked.back(), file.size());
+  }
+}
+
+TEST(RecordingReader, StopsWhereItIsAskedTo) {
+  const std::string whole = example({.chunks = 6, .messages = 200});
+  for (const std::string& file : {whole, std::string(magic) + std::string(3'000'000, '\0')}) {
+    RecordingReader reader = reader_of(file);
+    std::size_t asked = 0;
+    const auto report =
+        reader.scan({.message = {}, .attachment = {}, .metadata = {}, .walked = [&](std::uint64_t) {
+                       return ++asked < 2;
+                     }});
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, services::ErrorCode::interrupted);
+    EXPECT_EQ(asked, 2U);
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 std::filesystem::path write_csv(const tests::TemporaryFolder& folder, std::size_t rows,
                                 const std::string& end) {
-  const auto path = folder.path() / "series.csv";
+  auto path = folder.path() / "series.csv";
   std::ofstream file(path);
   file << "t_ns,sensor\n";
   for (std::size_t i = 0; i < rows; ++i) {
