@@ -220,8 +220,8 @@ std::string SourceStreams::what_is_gone() const {
     if (stream.follower &&
         std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
       return fmt::format("source '{}' of bench '{}' no longer has what it sent at the beginning of "
-                         "the run, so the run cannot be taken over; what was measured before is "
-                         "kept: measure the rest in another run",
+                         "the run, or the run had not begun yet, so it cannot be taken over; what "
+                         "was measured before is kept: measure the rest in another run",
                          name, bench_);
     }
   }
