@@ -247,8 +247,8 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
     last_progress_ = now;
     spdlog::info("bench {}, run {}: armed", bench_, run_);
     publisher_.publish(status_);
-  } else if (missing->is_starting && now - arms_since_ <= starting_limit) {
-    starting_ = now;
+  } else if (missing->is_there && now - arms_since_ <= present_limit) {
+    starting_ = missing->is_starting ? now : starting_;
   } else if (now - std::max(arms_since_, starting_) > arm_limit || missing->is_starting) {
     refuse(missing->sentence);
   }

@@ -6,11 +6,11 @@
 // samples arrive here (idl/README.md, "The run protocol").
 //
 // Limits: a run that is not armed within `arm_limit` is refused with one sentence; a source that is
-// there and has yet to describe its channels is waited for up to `starting_limit`. A live source
-// that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to `patience`, then
-// FAILED. Once the excitation is over and nothing was published for `quiet_limit`, or nothing was
-// heard of the run for `runner_limit`, it ends with what there is. Time in which this process did
-// not work itself (stopped, or without the processor) counts for nobody's silence.
+// there, but is still starting, or busy with other runs, is waited for up to `present_limit`. A
+// live source that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to
+// `patience`, then FAILED. Once the excitation is over and nothing was published for `quiet_limit`,
+// or nothing was heard of the run for `runner_limit`, it ends with what there is. Time in which
+// this process did not work itself (stopped, or without the processor) counts for nobody's silence.
 //
 // A session that begins in the middle of its run (the service was started late, or another one has
 // died) asks every source for what it has sent since its answer, and gives the results that the
@@ -53,7 +53,7 @@ struct AnalysisContext {
 class RunSession {
 public:
   static constexpr std::chrono::seconds arm_limit{6};
-  static constexpr std::chrono::seconds starting_limit{15};
+  static constexpr std::chrono::seconds present_limit{15};
   static constexpr std::chrono::seconds bench_limit{5};
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds patience{120};

@@ -269,13 +269,14 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
     if (!stream.follower) {
       return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
                                  name, bench_, reason_given_by(source)),
-                     true};
+                     true, true};
     }
     if (!has_answered(stream)) {
       return Missing{
           fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
                       "samples get through from its host to this one?",
-                      name, bench_)};
+                      name, bench_),
+          true};
     }
   }
   return std::nullopt;

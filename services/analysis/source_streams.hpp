@@ -39,7 +39,8 @@ public:
   // Why a run is not armed yet.
   struct Missing {
     std::string sentence;
-    bool is_starting = false; // a source that is there and has yet to describe its channels
+    bool is_there = false;    // a source that has yet to describe its channels, or to answer
+    bool is_starting = false; // that has yet to describe them
   };
 
   using Instant = bus::Clock::Instant;

@@ -87,10 +87,11 @@ protected:
     case 3:
       return {false, wire::SOURCE_STARTING,
               "source 'dau' of bench 'synthetic' has not described its channels yet: no packets",
-              RunSession::starting_limit};
+              RunSession::present_limit};
     default:
       return {true, wire::SOURCE_RUNNING,
-              "source 'dau' of bench 'synthetic' does not answer in its sample stream"};
+              "source 'dau' of bench 'synthetic' does not answer in its sample stream",
+              RunSession::present_limit};
     }
   }
 };
@@ -140,7 +141,7 @@ TEST_F(RunSessionTest, ArmsWithASourceThatWasRestartedMeanwhile) {
   report(dau_, wire::SOURCE_STARTING, "no packets");
   work();
   acs_.answer_commands();
-  clock_.advance(RunSession::starting_limit - 1s);
+  clock_.advance(RunSession::present_limit - 1s);
   work();
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
   describe(dau_);
