@@ -57,9 +57,10 @@ void KeptBlocks::keep(KeptMessage message, Instant now) {
                       .payload = std::make_shared<const std::string>(std::move(message.payload))});
   memory_bytes_ += size + entry_bytes;
   while (memory_bytes_ > limits_.max_memory_bytes && entries_.size() > in_file_ + 1) {
+    const Place dropped = entries_[in_file_].place;
     drop_entry(in_file_);
     ++not_kept_;
-    run_short(now, "the disk is too slow");
+    run_short(dropped, now, "the disk is too slow");
   }
 }
 
@@ -82,14 +83,15 @@ void KeptBlocks::drop_entry(std::size_t index) {
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-bool KeptBlocks::is_of_newest_run(const Entry& entry, Instant now) const {
+bool KeptBlocks::is_of_newest_run(Place place, Instant now) const {
   return wanted_until_ && now <= *wanted_until_ && !answers_.empty() &&
-         entry.place >= answers_.back().place;
+         place >= answers_.back().place;
 }
 
 void KeptBlocks::drop_old(Instant now) {
   while (!entries_.empty()) {
-    const bool is_of_run = is_of_newest_run(entries_.front(), now);
+    const Place oldest = entries_.front().place;
+    const bool is_of_run = is_of_newest_run(oldest, now);
     const auto age = now - entries_.front().time;
     if (age <= (is_of_run ? std::max(limits_.run_span, limits_.span) : limits_.span)) {
       return;
@@ -97,7 +99,8 @@ void KeptBlocks::drop_old(Instant now) {
     drop_oldest();
     if (is_of_run) {
       run_short(
-          now, fmt::format("no more than {:.0f} min of a run are kept", minutes(limits_.run_span)));
+          oldest, now,
+          fmt::format("no more than {:.0f} min of a run are kept", minutes(limits_.run_span)));
     }
   }
 }
@@ -106,8 +109,9 @@ void KeptBlocks::drop_oldest() {
   drop_entry(0);
 }
 
-void KeptBlocks::run_short(Instant now, const std::string& reason) {
+void KeptBlocks::run_short(Place place, Instant now, const std::string& reason) {
   short_since_ = now;
+  short_place_ = place;
   const auto kept = entries_.empty() ? std::chrono::nanoseconds(0) : now - entries_.front().time;
   if (kept < limits_.span) {
     problem_ = fmt::format("keeps {:.1f} of {:.1f} min for who catches up: {}", minutes(kept),
@@ -160,8 +164,9 @@ bool KeptBlocks::move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant
     return true;
   }
   ++not_kept_;
+  const Place dropped = entries_.front().place;
   drop_oldest(); // of the file, if that holds any
-  run_short(now, offset.error().message);
+  run_short(dropped, now, offset.error().message);
   if (file_) {
     const std::uint64_t begin = in_file_ > 0 ? entries_.front().offset : file_->end();
     file_->drop_before(begin);
@@ -174,7 +179,7 @@ void KeptBlocks::tidy(Instant now) {
   drop_old(now);
   while (move_oldest_to_file(lock, now)) {
   }
-  if (short_since_ && now - *short_since_ > limits_.span) {
+  if (short_since_ && now - *short_since_ > limits_.span && !is_of_newest_run(short_place_, now)) {
     short_since_.reset();
     problem_.clear();
   }

@@ -101,13 +101,14 @@ private:
     Place place = 0;
   };
 
-  [[nodiscard]] bool is_of_newest_run(const Entry& entry, Instant now) const;
+  [[nodiscard]] bool is_of_newest_run(Place place, Instant now) const;
   void drop_old(Instant now);
   void drop_oldest();
   void drop_entry(std::size_t index);
   void note(const KeptMessage& message);
   [[nodiscard]] bool move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant now);
-  void run_short(Instant now, const std::string& reason);
+  // The message at `place` was dropped for want of room.
+  void run_short(Place place, Instant now, const std::string& reason);
   [[nodiscard]] Expected<std::uint64_t> append(const std::string& payload);
   [[nodiscard]] std::size_t index_of(Place place) const; // of the first entry there or behind
 
@@ -125,6 +126,7 @@ private:
   std::optional<Instant> wanted_until_;
   std::uint64_t not_kept_ = 0;
   std::optional<Instant> short_since_; // dropped for want of room, lately
+  Place short_place_ = 0;              // the last one that was
   std::string problem_;
 };
 

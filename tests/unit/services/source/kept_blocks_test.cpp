@@ -118,6 +118,24 @@ TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
   EXPECT_THAT(kept.problem(), HasSubstr("4 MiB"));
 }
 
+TEST_F(KeptBlocksTest, SaysThatTheBeginningIsGoneAsLongAsTheRunLasts) {
+  KeptLimits small = limits();
+  small.span = 20s;
+  small.file_bytes = 4 << 20U;
+  KeptBlocks kept(small);
+  keep(kept, 0, "long");
+  keep_run(kept, 1, 100);
+  for (int second = 0; second < 60; ++second) { // nothing more comes, and room is enough
+    kept.want(now_);
+    kept.tidy(now_);
+    now_ += 1s;
+  }
+  EXPECT_THAT(kept.problem(), HasSubstr("min of run 'long', not its beginning"));
+  now_ += 61s; // the run is over
+  kept.tidy(now_);
+  EXPECT_EQ(kept.problem(), "");
+}
+
 TEST_F(KeptBlocksTest, SaysThatARunIsLongerThanRunsAreKept) {
   KeptLimits hour = limits();
   hour.span = 20s;
