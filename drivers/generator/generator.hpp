@@ -36,7 +36,7 @@ public:
   // set it returns, otherwise when the operator has confirmed; waits up to `limit` for that.
   [[nodiscard]] virtual Expected<bool> wait_for_effect(std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<double> clock_now_s() = 0;
-  virtual void call_while_waiting(std::function<bool()> /*callback*/) {}
+  virtual void call_while_waiting(const std::function<bool()>& /*callback*/) {}
   // Returns the bench time when it has reached `time_s`, or earlier when a stop is requested.
   [[nodiscard]] virtual Expected<double> wait_until_s(double time_s, std::stop_token stop) = 0;
 };

@@ -119,8 +119,8 @@ Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
   return time_s;
 }
 
-void ScpiGenerator::call_while_waiting(std::function<bool()> callback) {
-  while_waiting_ = std::move(callback);
+void ScpiGenerator::call_while_waiting(const std::function<bool()>& callback) {
+  while_waiting_ = callback;
 }
 
 bool ScpiGenerator::go_on_waiting() {

@@ -38,7 +38,7 @@ public:
   // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
-  void call_while_waiting(std::function<bool()> callback) override;
+  void call_while_waiting(const std::function<bool()>& callback) override;
   [[nodiscard]] Expected<double> clock_now_s() override;
   [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override;
 

@@ -28,7 +28,7 @@ LevelMeter::LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescriptio
       samples_(std::move(samples)), record_(reference_.source, max_samples) {}
 
 Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench,
-                                        std::shared_ptr<bus::WakeUp> wake_up) {
+                                        const std::shared_ptr<bus::WakeUp>& wake_up) {
   auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());

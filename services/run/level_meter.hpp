@@ -32,7 +32,7 @@ public:
   // Of the channel that is the bench's reference. Fails as readers do.
   [[nodiscard]] static Expected<LevelMeter> create(bus::Participant& participant,
                                                    const BenchFile& bench,
-                                                   std::shared_ptr<bus::WakeUp> wake_up);
+                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
   // Takes what has come; `bench_time_s` is the bench's time now.
   void take(double bench_time_s);

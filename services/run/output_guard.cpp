@@ -81,6 +81,7 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   std::vector<std::string> arguments{(program_folder() / "dyncal").string(), "guard-output",
                                      generator_address};
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) {
     pointers.push_back(argument.data());
   }

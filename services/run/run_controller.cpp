@@ -186,8 +186,10 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
                               "or begin a new run",
                               run_));
     }
-    if (analysis &&
-        (analysis->arm() == wire::ARM_FINISHED || analysis->arm() == wire::ARM_REFUSED)) {
+    if (analysis && analysis->arm() == wire::ARM_REFUSED) {
+      return fail(watch_->outlook().reason);
+    }
+    if (analysis && analysis->arm() == wire::ARM_FINISHED) {
       return fail(ErrorCode::no_analysis,
                   fmt::format("run '{}' has ended at the analysis service {}; begin a new run",
                               run_, analysis->service().c_str()));
@@ -266,6 +268,10 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
       watch_->set_state(wire::MEASUREMENT_ABORTED, interrupted_by_user);
     }
     const RunOutlook outlook = watch_->outlook();
+    if (watch_->analysis()->arm() == wire::ARM_REFUSED && !plays_files()) {
+      return fail(
+          outlook.reason); // an analysis that took the run over, and could not go on with it
+    }
     const bool is_at_work = watch_->signs_of_work() != signs_before;
     const bool is_waited_for = (!attended || outlook.kind == Kind::waits) && !stop.stop_requested();
     const bool may_still_come = is_waited_for || (plays_files() && outlook.kind != Kind::over);

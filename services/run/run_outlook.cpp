@@ -13,6 +13,11 @@ std::string message_of(const wire::ServiceStatus& analysis, const char* otherwis
              : analysis.message();
 }
 
+// Its last word: it says nothing more of the run, and no other takes the run over.
+bool has_ended(const wire::ServiceStatus& analysis) {
+  return analysis.arm() == wire::ARM_REFUSED || analysis.arm() == wire::ARM_FINISHED;
+}
+
 RunOutlook outlook_by(const wire::ServiceStatus& analysis) {
   if (analysis.arm() == wire::ARM_REFUSED) {
     return {Kind::over, {ErrorCode::no_source, message_of(analysis, "refuses the run")}};
@@ -44,7 +49,7 @@ RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
         {ErrorCode::no_result, fmt::format("ended by a command of '{}'", *commands.aborted_by())}};
   }
   RunOutlook outlook;
-  if (analysis && unheard > attention_limit) {
+  if (analysis && !has_ended(*analysis) && unheard > attention_limit) {
     outlook = {Kind::waits,
                {ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
                                                     analysis->service().c_str())}};

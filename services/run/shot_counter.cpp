@@ -7,7 +7,7 @@
 namespace dyncal::services {
 
 Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
-                                          std::shared_ptr<bus::WakeUp> wake_up) {
+                                          const std::shared_ptr<bus::WakeUp>& wake_up) {
   auto traces = participant.reader<wire::TriggeredRecord>(
       bus::topics::dso_record, bus::Profile::live_samples, bench, wake_up);
   if (!traces) {

@@ -19,7 +19,7 @@ class ShotCounter {
 public:
   [[nodiscard]] static Expected<ShotCounter> create(bus::Participant& participant,
                                                     const std::string& bench,
-                                                    std::shared_ptr<bus::WakeUp> wake_up);
+                                                    const std::shared_ptr<bus::WakeUp>& wake_up);
 
   // Forgets what has been counted.
   void begin(const std::string& run, std::uint32_t step, std::uint32_t attempt);

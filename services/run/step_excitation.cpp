@@ -45,7 +45,7 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
                                                                std::shared_ptr<bus::WakeUp> wake_up,
                                                                StepHooks hooks) {
   std::unique_ptr<StepExcitation> excitation(new StepExcitation(
-      environment, bench, measurement.run().to_string(), wake_up, std::move(hooks)));
+      environment, bench, measurement.run().to_string(), std::move(wake_up), std::move(hooks)));
   if (const auto valid = excitation->check_levels(measurement); !valid) {
     return fail(valid.error());
   }
@@ -59,7 +59,7 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
     return !self->stop_.stop_requested();
   });
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
-    auto counter = ShotCounter::create(environment.participant, bench.bench, wake_up);
+    auto counter = ShotCounter::create(environment.participant, bench.bench, excitation->wake_up_);
     if (!counter) {
       return fail(counter.error());
     }
@@ -221,7 +221,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   if (!loop) {
     return fail(of_step(step, ErrorCode::bad_argument, loop.error().message));
   }
-  const auto began = switch_on(step, loop->voltage_v(), stop);
+  auto began = switch_on(step, loop->voltage_v(), stop);
   if (!began || stop.stop_requested()) {
     return began;
   }
@@ -310,7 +310,7 @@ Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
     if (*in_effect) {
       return {};
     }
-    if (const auto alive = hooks_.keep_alive(); !alive) {
+    if (auto alive = hooks_.keep_alive(); !alive) {
       return alive;
     }
   }

@@ -151,7 +151,7 @@ Expected<void> StepSequence::keep_alive() {
 }
 
 RunOutlook StepSequence::outlook() const {
-  const RunOutlook by_others = watch_.outlook();
+  RunOutlook by_others = watch_.outlook();
   if (by_others.kind == Kind::over || !generator_away_) {
     return by_others;
   }

@@ -278,6 +278,33 @@ TEST_F(RunControllerTest, EndsTheStepWhenTheAnalysisReportsALostSource) {
   EXPECT_EQ(std::count(instrument_.settings.begin(), instrument_.settings.end(), "on"), 1);
 }
 
+TEST_F(RunControllerTest, EndsAtOnceWhenAnAnalysisThatTookOverRefusesTheRun) {
+  clock_.every(1s, [this] {
+    if (clock_.elapsed() < 3s) {
+      analysis_.report(wire::ARM_ARMED);
+    } else if (clock_.elapsed() == 3s) { // its last word
+      analysis_.report(wire::ARM_REFUSED, "source 'dau' no longer has what it sent");
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "source 'dau' no longer has what it sent");
+  EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
+  EXPECT_LE(clock_.elapsed(), 3s + 4 * look);
+}
+
+TEST_F(RunControllerTest, SaysThatARunWasRefusedBeforeItsLastResults) {
+  play_analysis();
+  clock_.at(12s, [this] { // all is excited; the results are missing
+    finished_ = true;
+    analysis_.report(wire::ARM_REFUSED, "source 'dau' no longer has what it sent");
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->problem, "source 'dau' no longer has what it sent");
+  EXPECT_LE(clock_.elapsed(), 12s + 2 * look);
+}
+
 TEST_F(RunControllerTest, EndsTheRunWhenTheGeneratorFails) {
   play_analysis();
   instrument_.failing_call = "set_frequency";

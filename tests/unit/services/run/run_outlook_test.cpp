@@ -58,7 +58,10 @@ TEST_F(RunOutlookTest, WaitsForAnAnalysisThatIsSilentAndForNoneThatHasEndedTheRu
   EXPECT_EQ(silent.reason.code, ErrorCode::no_analysis);
   EXPECT_EQ(silent.reason.message, "the analysis service analysis@lab:7 has gone silent");
   EXPECT_EQ(look(status(wire::ARM_FINISHED)).kind, Kind::over);
-  EXPECT_EQ(look(status(wire::ARM_REFUSED, wire::HEALTH_FAILED, "in use")).kind, Kind::over);
+  const auto refused = status(wire::ARM_REFUSED, wire::HEALTH_FAILED, "in use");
+  EXPECT_EQ(look(refused).kind, Kind::over);
+  EXPECT_EQ(look(refused, attention_limit + 1ns).kind, Kind::over); // its last word
+  EXPECT_EQ(look(refused, attention_limit + 1ns).reason.message, "in use");
 }
 
 TEST_F(RunOutlookTest, WaitsForWhatTheAnalysisWaitsForAndEndsWithWhatHasFailed) {
