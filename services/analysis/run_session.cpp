@@ -68,7 +68,8 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
   evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), limits);
   streams_.emplace(participant_, wake_up_, bench_, run_, *evaluator_, begin);
   if (begin == SourceStreams::Begin::behind) {
-    status_.arm = wire::ARM_ARMED;
+    status_ = {wire::ARM_ARMED, wire::HEALTH_WAITING, taking_over_sentence()};
+    taking_over_ = true;
     spdlog::info("bench {}, run {}: began before this service; asking its sources for what they "
                  "have sent",
                  bench_, run_);
@@ -94,7 +95,8 @@ void RunSession::update(const wire::Measurement& measurement) {
   const bool aborted = measurement_.state() == wire::MEASUREMENT_ABORTED;
   spdlog::info("bench {}, run {}: {}", bench_, run_, aborted ? "aborted" : "excitation done");
   excitation_ended_ = aborted;
-  if (status_.health == wire::HEALTH_FAILED || (aborted && status_.health != wire::HEALTH_OK)) {
+  const bool source_is_away = status_.health == wire::HEALTH_WAITING && !taking_over_;
+  if (status_.health == wire::HEALTH_FAILED || (aborted && source_is_away)) {
     evaluator_->end_of_excitation(aborted);
     evaluator_->finish_now(); // a source is lost: nothing more will come, or nobody waits for it
   }
@@ -167,11 +169,29 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     watch_sources(now);
     watch_level();
     evaluate(now);
+    end_takeover();
   }
   if (now >= next_status_) {
     report_work(now);
     publisher_.publish(status_);
     next_status_ = now + status_interval;
+  }
+}
+
+std::string RunSession::taking_over_sentence() const {
+  return fmt::format("taking the run over: {} messages that its sources have kept so far",
+                     streams_->recovered());
+}
+
+// With the results of all that was measured before: whoever goes on with the run knows by them what
+// is left.
+void RunSession::end_takeover() {
+  if (!taking_over_ || streams_->is_catching_up() || evaluator_->is_evaluating()) {
+    return;
+  }
+  taking_over_ = false;
+  if (status_.health == wire::HEALTH_WAITING) {
+    report(wire::HEALTH_OK, "");
   }
 }
 
@@ -269,7 +289,10 @@ void RunSession::watch_sources(Instant now) {
       streams_->lost_source(now, std::max(last_progress_, present_since_), silence_limit,
                             excited_by_steps_ && measurement_.state() == wire::MEASUREMENT_RUNNING);
   if (!lost) {
-    if (status_.health == wire::HEALTH_WAITING) {
+    if (taking_over_) {
+      waiting_since_ = now;
+      status_.message = taking_over_sentence();
+    } else if (status_.health == wire::HEALTH_WAITING) {
       spdlog::info("bench {}, run {}: all sources are back", bench_, run_);
       last_progress_ = now;
       report(wire::HEALTH_OK, "");
@@ -284,10 +307,12 @@ void RunSession::watch_sources(Instant now) {
 void RunSession::wait_for_source(std::string message, Instant now) {
   if (status_.health == wire::HEALTH_OK) {
     waiting_since_ = now;
-    report(wire::HEALTH_WAITING, std::move(message));
-  } else if (now - std::max(waiting_since_, present_since_) > patience) {
+  }
+  if (now - std::max(waiting_since_, present_since_) > patience) {
     report(wire::HEALTH_FAILED,
            fmt::format("{}, and nothing more for {} s", message, patience.count()));
+  } else if (status_.message != message) {
+    report(wire::HEALTH_WAITING, std::move(message));
   }
 }
 
@@ -319,6 +344,9 @@ void RunSession::evaluate(Instant now) {
 }
 
 void RunSession::finish() {
+  if (std::exchange(taking_over_, false) && status_.health == wire::HEALTH_WAITING) {
+    status_ = {};
+  }
   status_.arm = wire::ARM_FINISHED;
   streams_.reset();
   evaluator_.reset();
@@ -328,8 +356,8 @@ void RunSession::finish() {
 
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
-  const bool quiet = excitation_over() && status_.health != wire::HEALTH_WAITING &&
-                     now - last_progress_ > quiet_limit;
+  const bool source_is_away = status_.health == wire::HEALTH_WAITING && !taking_over_;
+  const bool quiet = excitation_over() && !source_is_away && now - last_progress_ > quiet_limit;
   if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }

@@ -14,9 +14,11 @@
 //
 // A session that begins in the middle of its run (the service was started late, or another one has
 // died) asks every source for what it has sent since its answer, and gives the results that the
-// other would have: the same samples, the same bits. Where a source does not have the beginning any
-// more, the run is refused: steps could be taken for others. What was announced meanwhile counts
-// when the samples have come, here and after a link was down (stream_follower.hpp).
+// other would have: the same samples, the same bits. Until then it is WAITING, so that nothing is
+// excited that nobody watches, and who resumes the run learns which of its steps are left. Where a
+// source does not have the beginning any more, the run is refused: steps could be taken for others.
+// What was announced meanwhile counts when the samples have come, here and after a link was down
+// (stream_follower.hpp).
 //
 // One bench, one run: what one run excites, another would take for its own. A run that finds
 // another of its bench before it waits for the end of that one for `bench_limit`, and is refused as
@@ -96,6 +98,8 @@ private:
   void arm(const KnownSources& sources, Instant now);
   void watch_sources(Instant now);
   void watch_level();
+  [[nodiscard]] std::string taking_over_sentence() const;
+  void end_takeover();
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
@@ -123,6 +127,7 @@ private:
   // What was announced while samples were still to be caught up with.
   std::deque<StepAnnouncement> announced_;
   std::optional<bool> excitation_ended_; // true: aborted
+  bool taking_over_ = false;             // what was measured before is not evaluated yet
   Instant created_;
   Instant arms_since_; // since when it has the bench to itself
   Instant starting_;   // when a source had yet to describe itself, the last time

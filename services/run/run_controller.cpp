@@ -1,6 +1,7 @@
 #include "services/run/run_controller.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -175,11 +176,15 @@ Expected<void> RunController::check_before_first_step(const std::stop_token& sto
 
 // Until the analysis attends to the run and all of its results so far have come.
 Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
-  const Instant began = clock_.now();
+  Instant attended = clock_.now();
+  std::size_t signs_before = watch_->signs_of_work();
   while (!stop.stop_requested()) {
     const auto& analysis = watch_->analysis();
     watch_->follow(analysis && !analysis->message().empty() ? analysis->message()
                                                             : "waiting for the analysis");
+    if (watch_->signs_of_work() != std::exchange(signs_before, watch_->signs_of_work())) {
+      attended = clock_.now();
+    }
     if (watch_->has_other_recipe()) {
       return fail(ErrorCode::bad_file,
                   fmt::format("run '{}' was made with another bench file; resume it with that one, "
@@ -200,7 +205,7 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
                                  outcome_.results.size()));
       return {};
     }
-    if (clock_.now() - began > (analysis ? analysis_limit : armed_limit)) {
+    if (clock_.now() - attended > (analysis ? analysis_limit : armed_limit)) {
       return fail(ErrorCode::no_analysis,
                   fmt::format("no analysis service holds run '{}' of bench '{}'; begin a new run",
                               run_, bench_.bench));

@@ -171,7 +171,7 @@ std::size_t RunMessages::take(RunOutcome& outcome) {
 void RunMessages::take_status(RunOutcome& outcome) {
   endpoints_.status.take([&](const wire::ServiceStatus& status) {
     if (status.run().to_string() == run_ && follows(status)) {
-      const bool reports_work = !status.message().empty() && status.health() == wire::HEALTH_OK;
+      const bool reports_work = !status.message().empty() && status.health() != wire::HEALTH_FAILED;
       const bool is_news = !analysis_ || analysis_->message() != status.message();
       signs_of_work_ += reports_work && is_news ? 1 : 0;
       analysis_ = status;

@@ -45,7 +45,7 @@ public:
   // Returns how many results have come, transfer functions and reports of clocks among them.
   std::size_t take(RunOutcome& outcome);
   // How many results have come, those that came again too, and how often the analysis has reported
-  // that it is at work on them.
+  // something new of its work.
   [[nodiscard]] std::size_t signs_of_work() const { return signs_of_work_; }
   [[nodiscard]] bool has_other_recipe() const { return other_recipe_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It

@@ -15,6 +15,12 @@ constexpr auto broken_off_limit = 10s;    // for the result of a step that was b
 constexpr auto generator_interval = 1s;   // between two attempts to reach it
 constexpr auto last_result_quiet = 300ms; // then all results of a step have come
 
+// A sentence that comes again with other numbers is no news for a line of its own.
+std::string without_digits(std::string sentence) {
+  std::erase_if(sentence, [](char character) { return character >= '0' && character <= '9'; });
+  return sentence;
+}
+
 std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
   std::vector<std::uint32_t> numbers;
   for (const wire::PlannedStep& step : measurement.steps()) {
@@ -184,18 +190,24 @@ Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
   begin_pause(waiting_phase(now)); // as others are told, so that a recording holds it
   bool waits = false;              // for something that is away, since then
   Instant since;
+  std::size_t signs_before = watch_.signs_of_work();
   while (now.kind != Kind::well && now.kind != Kind::over && !stop.stop_requested()) {
     if (now.kind == Kind::waits && !waits) {
       since = watch_.analysis_heard();
     }
     waits = now.kind == Kind::waits;
+    if (watch_.signs_of_work() != std::exchange(signs_before, watch_.signs_of_work())) {
+      since = watch_.clock().now();
+    }
     if (waits && watch_.clock().now() - since > away_limit) {
       end_pause();
       return fail(now.reason);
     }
     const std::string phase = waiting_phase(now);
     if (watch_.measurement().message() != phase) {
-      watch_.notice(phase);
+      if (without_digits(watch_.measurement().message()) != without_digits(phase)) {
+        watch_.notice(phase);
+      }
       watch_.set_state(watch_.measurement().state(), phase);
     }
     watch_.follow(phase);

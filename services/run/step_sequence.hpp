@@ -3,8 +3,9 @@
 // No step is begun unless the analysis attends to the run, its sources are there, nobody has paused
 // it, and the generator answers with its output off. When one of these fails in a step, the output
 // is switched off and the step is broken off; once all is well again the run goes on with the next.
-// What does not come back within `away_limit` ends the run; run_outlook.hpp decides what is waited
-// for at all. Pauses are said at once and kept in the outcome.
+// What neither comes back within `away_limit` nor reports that it is at work ends the run;
+// run_outlook.hpp decides what is waited for at all. Pauses are said at once and kept in the
+// outcome.
 //
 // The next step begins only when the result of one that was broken off has come, or none comes: a
 // step of the same frequency could be taken for it.

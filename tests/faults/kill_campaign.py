@@ -5,7 +5,8 @@
                      [--draws 100] [--at-once 4] [--seed 1] [--stop-s 30]
 
 PROGRAMS is the folder of the built programs. A case is a service that is killed and restarted, as
-systemd does, `run` (`dyncal run` killed, and resumed), or `stop:SERVICE` (SIGSTOP for --stop-s).
+systemd does, `run` (`dyncal run` killed, and resumed), `host` (both it and the analysis at once, as
+when the host dies that they share), or `stop:SERVICE` (SIGSTOP for --stop-s).
 Every draw is a laboratory of its own: a run of three steps of which the fault meets one instant.
 
 Held: the run ends with 0, has every value, valid, without loss and without flag, within five
@@ -83,8 +84,10 @@ def stopped_service(laboratory, service, instant_s, stop_s, run):
     return run
 
 
-def killed_run(laboratory, instant_s, run):
+def killed_run(laboratory, instant_s, run, with_analysis_for_s=None):
     time.sleep(instant_s)
+    if with_analysis_for_s is not None:
+        laboratory.services["dyncal-analysis"].send(signal.SIGKILL)
     if not run.runs():
         return run
     run.send(signal.SIGKILL)
@@ -93,6 +96,9 @@ def killed_run(laboratory, instant_s, run):
     unattended_s = time.monotonic() - killed_s
     if unattended_s > MAX_UNATTENDED_S:
         raise Failure(f"the output was on for {unattended_s:.2f} s without a conductor")
+    if with_analysis_for_s is not None:
+        time.sleep(with_analysis_for_s)
+        laboratory.restart("dyncal-analysis")
     return laboratory.run("--resume", "campaign")
 
 
@@ -110,6 +116,8 @@ def draw(arguments, case, vendors, number, undisturbed):
             run = laboratory.run("--run", "campaign")
             if case == "run":
                 run = killed_run(laboratory, instant_s, run)
+            elif case == "host":
+                run = killed_run(laboratory, instant_s, run, away_s)
             elif case.startswith("stop:"):
                 service = case.removeprefix("stop:")
                 run = stopped_service(laboratory, service, instant_s, arguments.stop_s, run)
@@ -163,7 +171,7 @@ def campaign(arguments, case, vendors, pool, undisturbed):
 
 
 def main():
-    cases = ["run", *SERVICES, "stop:dyncal-analysis"]
+    cases = ["run", "host", *SERVICES, "stop:dyncal-analysis"]
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--cases", type=lambda text: text.split(","), default=cases)

@@ -16,6 +16,7 @@ class RunSessionCatchUp : public RunSessionTest {
 protected:
   static std::vector<std::string> bits_of(const std::vector<wire::CalibrationResult>& results) {
     std::vector<std::string> bits;
+    bits.reserve(results.size());
     for (const wire::CalibrationResult& result : results) {
       bits.push_back(fmt::format("{} {:a} {:a} {:a} {:a} {} {}", result.valid(), result.magnitude(),
                                  result.u_magnitude(), result.phase_rad(), result.u_phase_rad(),
@@ -119,6 +120,47 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
   finish();
   EXPECT_EQ(published_.newest_status().service().to_string(), "analysis@test:2");
   EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+// Whoever resumes the run excites what has no result: it must not look before there is one.
+TEST_F(RunSessionCatchUp, IsNotReadyBeforeTheResultsOfARunThatBeganBeforeIt) {
+  arm_and_run();
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  session_.reset(); // died, and the conductor with it: nothing is announced
+  begin_behind();
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  run_for(1500ms, {});
+  acs_.answer_requests();
+  run_for(1500ms, {});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_THAT(published_.newest_status().message(), testing::StartsWith("taking the run over: "));
+  EXPECT_TRUE(published_.results().empty());
+  dau_.answer_requests();
+  run_for(100ms, {});
+  for (const wire::ServiceStatus& status : published_.statuses()) {
+    if (status.service().to_string() == "analysis@test:2" && status.health() == wire::HEALTH_OK) {
+      EXPECT_EQ(status.results_published(), 1U);
+    }
+  }
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  EXPECT_EQ(published_.results().size(), 1U);
+}
+
+TEST_F(RunSessionCatchUp, SaysWhichSourceIsAwayWhileItTakesARunOver) {
+  arm_and_run();
+  acs_.send(synthetic_.acs_blocks());
+  dau_.send(synthetic_.dau_blocks());
+  session_.reset();
+  begin_behind();
+  run_for(1s, {&acs_});
+  acs_.answer_requests();
+  run_for(6s, {&acs_}); // and nothing of the other
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_EQ(published_.newest_status().message(),
+            "source 'dau' of bench 'synthetic' has sent nothing for 5 s");
+  run_for(RunSession::patience + 2s, {&acs_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
 }
 
 TEST_F(RunSessionCatchUp, RefusesARunOfWhichASourceHasTheBeginningNoMore) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -566,6 +567,48 @@ TEST_F(StepSequenceTest, AResumedRunGoesOnBehindTheResultsThatAreThere) {
   EXPECT_THAT(attempts_of(*outcome), ElementsAre(1, 2, 1));
   EXPECT_THAT(notices_, Contains("run 'r1' is resumed, with 1 results so far"));
   EXPECT_EQ(state_, wire::MEASUREMENT_DONE);
+}
+
+// Conductor and analysis have died together: which steps are left shows when the next analysis has
+// evaluated what the sources have kept.
+TEST_F(StepSequenceTest, AResumedRunWaitsUntilTheAnalysisKnowsWhatWasMeasured) {
+  silent_ = true; // played here until it is done
+  clock_.every(1s, [this] {
+    if (silent_ && clock_.elapsed() < 200s) {
+      analysis_.report(wire::ARM_ARMED, wire::HEALTH_WAITING,
+                       fmt::format("taking the run over: {} messages", clock_.elapsed() / 1s));
+    } else if (silent_) {
+      published_[1] = good({1, 1});
+      analysis_.publish(good({1, 1}));
+      silent_ = false;
+    }
+  });
+  const auto outcome = try_to_resume();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_THAT(excited_, ElementsAre(Attempt{2, 1}, Attempt{3, 1}, Attempt{2, 2}));
+  EXPECT_THAT(notices_, Contains("run 'r1' is resumed, with 1 results so far"));
+}
+
+TEST_F(StepSequenceTest, NothingIsExcitedWhileAnotherAnalysisTakesTheRunOver) {
+  bench_.excitation.duration_s = 10.0;
+  silent_between(14s, 220s); // in the second step
+  clock_.every(1s, [this] {
+    if (clock_.elapsed() > 20s && clock_.elapsed() < 220s) {
+      EXPECT_FALSE(instrument_.on);
+      analysis_.report(wire::ARM_ARMED, wire::HEALTH_WAITING,
+                       fmt::format("taking the run over: {} messages", clock_.elapsed() / 1s));
+    }
+  });
+  const RunOutcome outcome = conduct();
+  EXPECT_EQ(outcome.problem, ""); // it reports that it is at work
+  EXPECT_EQ(outcome.pauses.size(), 1U);
+  EXPECT_EQ(std::count_if(notices_.begin(), notices_.end(),
+                          [](const std::string& notice) {
+                            return notice.find("taking the run over") != std::string::npos;
+                          }),
+            1);
+  EXPECT_THAT(attempts_of(outcome), ElementsAre(1, 2, 1));
 }
 
 TEST_F(StepSequenceTest, ARunThatDiedInARepeatIsResumedThere) {
