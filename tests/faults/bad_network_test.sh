@@ -15,9 +15,12 @@
 #     --garbage KIND     5000 malformed packets a second to the bench's and the analysis' host each
 #                        (rtps_garbage.py): no service may end or grow by 100 MB
 #
-# The long form, 960 runs:
-#   bad_network_test.sh build/bin --runs 20 --loss "0 3 10 20" --mbit "0 100 10"
+# The long form, 960 runs (two readers of Fast DDS, the analysis and what records the run, each get
+# the samples by themselves: real time is what fits 10 Mbit/s):
+#   bad_network_test.sh build/bin --runs 20 --loss "0 3 10 20" --mbit "0 100"
 #     --vendors "FFF CCC FCF CFC" --speed 4
+#   bad_network_test.sh build/bin --runs 20 --loss "0 3 10 20" --mbit 10
+#     --vendors "FFF CCC FCF CFC" --speed 1
 # and of taking over on a narrow link:
 #   bad_network_test.sh build/bin --runs 20 --loss "0 3" --mbit "20 10" --takeover 8 --speed 1
 #     --acs-rate 50000 --vendors "FFF CCC FCF CFC"

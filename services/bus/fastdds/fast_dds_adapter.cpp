@@ -64,6 +64,9 @@ dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
   // 3 s by default: so long a lost last packet would stay unnoticed.
   qos.reliable_writer_qos().times.heartbeatPeriod = duration(fast_dds_heartbeat);
   qos.reliable_writer_qos().times.nackResponseDelay = duration(std::chrono::seconds(0));
+  // With one in every packet, a Fast DDS reader asks hundreds of times a second for every sample
+  // that is on the way: a link of 10 Mbit/s is then full of requests and of what they ask for.
+  qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
   return qos;
 }
 
