@@ -95,8 +95,7 @@ void RunSession::update(const wire::Measurement& measurement) {
   const bool aborted = measurement_.state() == wire::MEASUREMENT_ABORTED;
   spdlog::info("bench {}, run {}: {}", bench_, run_, aborted ? "aborted" : "excitation done");
   excitation_ended_ = aborted;
-  const bool source_is_away = status_.health == wire::HEALTH_WAITING && !taking_over_;
-  if (status_.health == wire::HEALTH_FAILED || (aborted && source_is_away)) {
+  if (status_.health == wire::HEALTH_FAILED || (aborted && waits_for_source())) {
     evaluator_->end_of_excitation(aborted);
     evaluator_->finish_now(); // a source is lost: nothing more will come, or nobody waits for it
   }
@@ -179,7 +178,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
 }
 
 std::string RunSession::taking_over_sentence() const {
-  return fmt::format("taking the run over: {} messages that its sources have kept so far",
+  return fmt::format("taking the run over; its sources have repeated {} messages so far",
                      streams_->recovered());
 }
 
@@ -356,8 +355,7 @@ void RunSession::finish() {
 
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
-  const bool source_is_away = status_.health == wire::HEALTH_WAITING && !taking_over_;
-  const bool quiet = excitation_over() && !source_is_away && now - last_progress_ > quiet_limit;
+  const bool quiet = excitation_over() && !waits_for_source() && now - last_progress_ > quiet_limit;
   if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }

@@ -107,6 +107,9 @@ private:
   void report(wire::HealthState health, std::string message);
   void wait_for_source(std::string message, Instant now);
   void refuse(std::string message);
+  [[nodiscard]] bool waits_for_source() const {
+    return status_.health == wire::HEALTH_WAITING && !taking_over_;
+  }
   [[nodiscard]] bool excitation_over() const {
     return measurement_.state() == wire::MEASUREMENT_DONE ||
            measurement_.state() == wire::MEASUREMENT_ABORTED;

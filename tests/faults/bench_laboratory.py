@@ -14,6 +14,7 @@ import subprocess
 import time
 
 PATIENCE_S = 300.0
+CHANNELS = 3  # of the sensor
 SERVICES = ("dyncal-analysis", "dyncal-dau", "dyncal-acs", "dyncal-guard")
 READY = {
     "dyncal-analysis": "analysis ready",
@@ -216,6 +217,16 @@ adc_delay_s = 1e-6
 
     def result(self):
         return json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+
+    def expect_whole_result(self):
+        """Every value is there, valid, without loss and without flag; returns the values."""
+        points = self.result()["points"]
+        if len(points) != len(self.frequencies) * CHANNELS:
+            raise Failure(f"{self.name}: {len(points)} values")
+        for point in points:
+            if not point["valid"] or point["lost"] or point["flags"]:
+                raise Failure(f"{self.name}: {point['problem'] if not point['valid'] else point}")
+        return points
 
     def generator_host(self):
         return "127.0.0.1"

@@ -27,10 +27,9 @@ import sys
 import tempfile
 import time
 
-from bench_laboratory import SERVICES, VENDORS, BenchLaboratory, Failure, wait_until
+from bench_laboratory import CHANNELS, SERVICES, VENDORS, BenchLaboratory, Failure, wait_until
 
 RUN_S = 11.0  # about what an undisturbed run takes, from its first word to its last
-CHANNELS = 3
 MAX_UNATTENDED_S = 2.0
 AGREEMENT_U = 5.0
 REFUSALS = (

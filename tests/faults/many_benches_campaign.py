@@ -14,7 +14,6 @@ Exit status 1 if something did not hold, 77 where there are no network namespace
 """
 
 import argparse
-import json
 import pathlib
 import shutil
 import sys
@@ -28,7 +27,6 @@ from process_figures import figures
 MAX_CORE = 0.3
 MAX_RESIDENT_MB = 200.0
 BENCHES_OF_THOSE = 8
-CHANNELS = 3
 RUNS_OF_AN_OPERATOR = 16
 
 
@@ -72,14 +70,7 @@ def judge(bench, run):
     status = run.wait()
     if status != 0:
         raise Failure(f"{bench.name}: exit status {status}: {run.errors().strip()[-300:]}")
-    result = json.loads((bench.folder / "run.json").read_text(encoding="utf-8"))
-    points = result["points"]
-    if len(points) != len(bench.frequencies) * CHANNELS:
-        raise Failure(f"{bench.name}: {len(points)} values")
-    for point in points:
-        if not point["valid"] or point["lost"] or point["flags"]:
-            raise Failure(f"{bench.name}: {point['problem'] if not point['valid'] else point}")
-    return sum("attempt" in point for point in points)
+    return sum("attempt" in point for point in bench.expect_whole_result())
 
 
 def used_of(services):

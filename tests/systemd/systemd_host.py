@@ -91,7 +91,11 @@ class SystemdHost:
             text=True,
         )
         self.first_process = ""
-        wait_until(self.has_booted, "systemd to start basic.target", 60.0)
+        try:
+            wait_until(self.has_booted, "systemd to start basic.target", 60.0)
+        except Failure:
+            self.close()
+            raise
 
     def has_booted(self):
         if self.holder.poll() is not None:

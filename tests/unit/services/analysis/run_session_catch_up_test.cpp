@@ -134,7 +134,7 @@ TEST_F(RunSessionCatchUp, IsNotReadyBeforeTheResultsOfARunThatBeganBeforeIt) {
   acs_.answer_requests();
   run_for(1500ms, {});
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
-  EXPECT_THAT(published_.newest_status().message(), testing::StartsWith("taking the run over: "));
+  EXPECT_THAT(published_.newest_status().message(), testing::StartsWith("taking the run over; "));
   EXPECT_TRUE(published_.results().empty());
   dau_.answer_requests();
   run_for(100ms, {});

@@ -25,6 +25,12 @@ protected:
             .min_free_bytes = 0,
             .folder = folder_.path()};
   }
+  KeptLimits with_little_room() const {
+    KeptLimits small = limits();
+    small.span = 20s;
+    small.file_bytes = 4 << 20U;
+    return small;
+  }
   static std::string payload(std::uint64_t number) {
     return std::string(message_bytes, static_cast<char>('a' + number % 26)) +
            std::to_string(number);
@@ -107,10 +113,7 @@ TEST_F(KeptBlocksTest, KeepsTheNewestRunFromItsBeginningHoweverOldThatIs) {
 }
 
 TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
-  KeptLimits small = limits();
-  small.span = 20s;
-  small.file_bytes = 4 << 20U;
-  KeptBlocks kept(small);
+  KeptBlocks kept(with_little_room());
   keep(kept, 0, "long");
   keep_run(kept, 1, 200);
   EXPECT_GT(numbers(kept).front(), 140U);
@@ -119,10 +122,7 @@ TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
 }
 
 TEST_F(KeptBlocksTest, SaysThatTheBeginningIsGoneAsLongAsTheRunLasts) {
-  KeptLimits small = limits();
-  small.span = 20s;
-  small.file_bytes = 4 << 20U;
-  KeptBlocks kept(small);
+  KeptBlocks kept(with_little_room());
   keep(kept, 0, "long");
   keep_run(kept, 1, 100);
   for (int second = 0; second < 60; ++second) { // nothing more comes, and room is enough
