@@ -127,7 +127,8 @@ void RunSession::note_own_absence(Instant now) {
 }
 
 // What was announced is of the samples that have come: a step that is over shows in a source within
-// some seconds of its own time (run_records.hpp).
+// some seconds of its own time (run_records.hpp). How far a silent source is, nobody knows: one
+// that has started again answers before it has sent anything.
 void RunSession::catch_up(Instant now) {
   auto due = streams_->requests_due(now);
   if (!due) {
@@ -137,7 +138,7 @@ void RunSession::catch_up(Instant now) {
   for (const SourceStreams::Request& request : *due) {
     publisher_.ask_to_catch_up(request.source, streams_->asker(), request.what);
   }
-  if (streams_->is_catching_up()) {
+  if (streams_->is_catching_up() || (!excitation_over() && streams_->is_silent(now))) {
     return;
   }
   for (; !announced_.empty(); announced_.pop_front()) {

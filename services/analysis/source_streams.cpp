@@ -20,7 +20,7 @@ std::string reason_given_by(const KnownSource& source) {
   return gives_one ? ": " + source.status->message() : "";
 }
 
-bool is_silent(const KnownSource& source) {
+bool says_that_it_is_silent(const KnownSource& source) {
   return source.status && (source.status->state() == wire::SOURCE_SILENT ||
                            source.status->state() == wire::SOURCE_FAILED);
 }
@@ -215,6 +215,13 @@ bool SourceStreams::is_catching_up() const {
   });
 }
 
+bool SourceStreams::is_silent(Instant now) const {
+  return std::any_of(streams_.begin(), streams_.end(), [&](const auto& stream) {
+    const auto& follower = stream.second.follower;
+    return follower && std::visit([&](const auto& one) { return one.silent(now); }, *follower);
+  });
+}
+
 std::string SourceStreams::what_is_gone() const {
   for (const auto& [name, stream] : streams_) {
     if (stream.follower &&
@@ -259,7 +266,7 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
                       name, bench_)};
     }
     const KnownSource& source = found->second;
-    if (is_silent(source)) {
+    if (says_that_it_is_silent(source)) {
       return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
                                  reason_given_by(source))};
     }

@@ -74,6 +74,8 @@ public:
   [[nodiscard]] std::string what_is_gone() const;
   // Some source's messages are behind what it has sent.
   [[nodiscard]] bool is_catching_up() const;
+  // Some source has sent no samples for a while (stream_follower.hpp).
+  [[nodiscard]] bool is_silent(Instant now) const;
   // Messages that had to be asked for.
   [[nodiscard]] std::uint64_t recovered() const;
 

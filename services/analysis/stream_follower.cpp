@@ -1,6 +1,7 @@
 #include "services/analysis/stream_follower.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -147,6 +148,12 @@ void StreamFollower<Message>::end_catch_up(Instant now) {
       hold(message);
     }
   }
+}
+
+template <class Message>
+bool StreamFollower<Message>::silent(Instant now) const {
+  return std::is_same_v<Message, wire::SampleBlock> && answered_ && !ended_ &&
+         now - heard_ > silence_limit;
 }
 
 template <class Message>

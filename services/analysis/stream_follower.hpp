@@ -72,6 +72,9 @@ public:
   [[nodiscard]] bool lacks_beginning() const { return lacks_beginning_; }
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool catching_up() const { return request_.has_value(); }
+  // Nothing that was not known came for `silence_limit`, although blocks come all the time: an
+  // answer without any does not end that.
+  [[nodiscard]] bool silent(Instant now) const;
   // When a message came last that was not known.
   [[nodiscard]] Instant heard() const { return heard_; }
   // Messages that had to be asked for again and came.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <thread>
+#include <variant>
 
 #include <fmt/core.h>
 
@@ -77,6 +78,7 @@ public:
       return;
     }
     now_ = message.message.log_time;
+    ++walked_;
     const std::string& topic = message.channel.topic;
     if (topic == topics::excitation) {
       announce(message);
@@ -90,6 +92,7 @@ public:
     } else {
       return;
     }
+    hand_over_said(false);
     collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
   }
 
@@ -98,6 +101,10 @@ public:
       for (auto& [name, source] : sources_) {
         hand_over_waiting(name, source, true);
       }
+      hand_over_said(true);
+      collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
+    }
+    if (outcome_of_walk_ && !evaluator_.finished()) {
       evaluator_.end_of_excitation(aborted);
       evaluator_.finish_now();
       collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
@@ -113,13 +120,20 @@ private:
     std::optional<std::uint64_t> described{}; // session
     std::deque<wire::SampleBlock> waiting{};
     std::uint64_t waiting_since = 0;
+    std::uint64_t heard = 0; // the newest block: its place in the walk
+    bool ended = false;
+  };
+  // What the conductor said, and when: its place in the walk.
+  struct Said {
+    std::uint64_t place = 0;
+    std::variant<StepAnnouncement, wire::MeasurementState> what;
   };
 
   void announce(const recording::MessageInFile& message) {
     const auto excitation = recording::decode<wire::Excitation>(message.message.data);
     if (excitation && excitation->run() == run_) {
       evaluator_.expect_announcements();
-      evaluator_.announce(from_message(*excitation));
+      said_.push_back({walked_, from_message(*excitation)});
     }
   }
 
@@ -128,8 +142,26 @@ private:
     if (measurement && measurement->run() == run_ &&
         (measurement->state() == wire::MEASUREMENT_DONE ||
          measurement->state() == wire::MEASUREMENT_ABORTED)) {
-      evaluator_.end_of_excitation(measurement->state() == wire::MEASUREMENT_ABORTED);
+      said_.push_back({walked_, measurement->state()});
     }
+  }
+
+  // What was said is of the samples up to then, and how far a silent source was by then shows only
+  // when it sends again.
+  void hand_over_said(bool at_once) {
+    for (; !said_.empty() && (at_once || is_heard_behind(said_.front().place)); said_.pop_front()) {
+      if (const auto* step = std::get_if<StepAnnouncement>(&said_.front().what)) {
+        evaluator_.announce(*step);
+      } else {
+        evaluator_.end_of_excitation(std::get<wire::MeasurementState>(said_.front().what) ==
+                                     wire::MEASUREMENT_ABORTED);
+      }
+    }
+  }
+  [[nodiscard]] bool is_heard_behind(std::uint64_t place) const {
+    return std::ranges::all_of(sources_, [place](const auto& source) {
+      return source.second.recorded.triggered || source.second.ended || source.second.heard > place;
+    });
   }
 
   // Everything of the source up to this message that has not been handed over yet.
@@ -194,6 +226,10 @@ private:
     }
     source.waiting.push_back(block);
     hand_over_waiting(name, source, false);
+    if (source.waiting.empty()) {
+      source.heard = walked_;
+      source.ended = block.end_of_stream();
+    }
   }
   void add(const std::string& name, Source& source, const wire::TriggeredRecord& record) {
     describe(name, source, record.session());
@@ -229,6 +265,8 @@ private:
   std::string run_;
   std::map<std::string, Source> sources_;
   std::uint64_t now_ = 0; // log_time
+  std::uint64_t walked_ = 0;
+  std::deque<Said> said_;
   Expected<void> outcome_of_walk_;
 };
 

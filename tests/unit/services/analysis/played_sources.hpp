@@ -81,6 +81,7 @@ public:
   }
   void send(const std::vector<wire::SampleBlock>& blocks) {
     for (wire::SampleBlock block : blocks) {
+      block.session(description_.session());
       block.block(number_++);
       write(block);
     }
@@ -93,6 +94,12 @@ public:
 
   // As if it had been too long ago.
   void forget_what_was_sent() { kept_.clear(); }
+  // Numbers begin anew, and what was kept is gone.
+  void restart() {
+    description_.session(description_.session() + 1);
+    number_ = 0;
+    kept_.clear();
+  }
 
   // Requests that came, without repeats; each is answered with what is kept behind its message, or
   // from the answer to ARM on.

@@ -106,6 +106,33 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
 }
 
+// The service has been started again, but its samples do not come through yet: how far it had come
+// when the step was announced to be over is not known.
+TEST_F(RunSessionCatchUp, TakesNoStepForOverInASourceThatIsSilent) {
+  const auto blocks = synthetic_.dau_blocks();
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(synthetic_.acs_blocks());
+  wire::SampleBlock early = blocks.front();
+  for (std::int64_t& stamp_ns : early.stamps_ns()) {
+    stamp_ns -= 10'000'000'000; // more than the grace of a step
+  }
+  dau_.send({early});
+  run_for(2500ms, {});
+  dau_.restart();
+  EXPECT_EQ(dau_.answer_requests().size(), 1U); // with nothing
+  run_for(100ms, {});
+  excite(wire::EXCITATION_DONE);
+  run_for(500ms, {});
+  for (const wire::SampleBlock& block : blocks) {
+    dau_.send({block});
+    run_for(100ms, {});
+  }
+  finish();
+  ASSERT_EQ(published_.results().size(), 1U);
+  EXPECT_TRUE(published_.results()[0].valid()) << published_.results()[0].problem();
+}
+
 TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
   const auto expected = UndisturbedRun().results();
   arm_and_run();
