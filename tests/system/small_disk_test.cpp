@@ -7,7 +7,9 @@
 #include <sys/mount.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +26,7 @@ using testing::Not;
 
 LiveBenchSettings short_bench() {
   LiveBenchSettings settings;
-  settings.bench_arguments = {"--speed", "8"};
+  settings.bench_arguments = {"--speed", "4"};
   settings.excitation = R"(frequencies_hz = ["40", "80", "160"]
 level = 10.0
 repetitions = 2
@@ -64,6 +66,21 @@ protected:
     EXPECT_FALSE(fs::exists(disk_ / "runs/live") && !fs::is_empty(disk_ / "runs/live"));
   }
 
+  // Until this many values are in the only run of the bench.
+  [[nodiscard]] bool wait_for_values(std::size_t values) const {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      for (const auto& run : fs::directory_iterator(disk_ / "runs/live")) {
+        const auto result = read_json(run.path() / "result.json");
+        if (!result.is_discarded() && result["points"].size() >= values) {
+          return true;
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10)); // between two looks
+    }
+    return false;
+  }
+
   fs::path folder_;
   fs::path disk_;
 };
@@ -85,6 +102,7 @@ TEST_F(SmallDisk, HasWhatWasPromisedWhenItFillsUpInTheRun) {
   }
   ProgramRun& run = bench.start({"run", bench.bench_file(), "--folder", disk_ / "runs"});
   ASSERT_TRUE(run.wait_for_error_text("step 4 of 6", patience)) << run.errors();
+  ASSERT_TRUE(wait_for_values(6)) << run.errors();
   {
     std::ofstream filler(disk_ / "filler", std::ios::binary);
     const std::string megabyte(std::size_t{1} << 20U, 'x');
