@@ -10,7 +10,8 @@ namespace dyncal::drivers::smartup {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::int64_t max_wait_for_description_ns = 5 * second_ns; // they come every 4 s
+// They come every 4 s, and one of them may be lost.
+constexpr std::int64_t max_wait_for_description_ns = 9 * second_ns;
 constexpr std::uint64_t max_beginning = 16; // samples of one sensor in one datagram
 constexpr std::int64_t pause_of_sensor_ns = 2 * second_ns;
 constexpr std::int64_t pause_in_steps = 10;

@@ -138,7 +138,7 @@ void RunSession::catch_up(Instant now) {
   for (const SourceStreams::Request& request : *due) {
     publisher_.ask_to_catch_up(request.source, streams_->asker(), request.what);
   }
-  if (streams_->is_catching_up() || (!excitation_over() && streams_->is_silent(now))) {
+  if (streams_->is_catching_up() || (!excitation_over() && streams_->is_held_up(now))) {
     return;
   }
   for (; !announced_.empty(); announced_.pop_front()) {

@@ -20,6 +20,11 @@ std::string reason_given_by(const KnownSource& source) {
   return gives_one ? ": " + source.status->message() : "";
 }
 
+std::size_t bytes_of(const wire::SampleBlock& block) {
+  return sizeof(block) + block.values().size() * sizeof(double) +
+         block.stamps_ns().size() * sizeof(std::int64_t);
+}
+
 bool says_that_it_is_silent(const KnownSource& source) {
   return source.status && (source.status->state() == wire::SOURCE_SILENT ||
                            source.status->state() == wire::SOURCE_FAILED);
@@ -42,7 +47,8 @@ Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Insta
   for (auto& [name, stream] : streams_) {
     const auto source = known.find(name);
     if (source == known.end() || !source->second.description ||
-        source->second.description == stream.description) {
+        *source->second.description ==
+            (stream.unfit ? stream.unfit->description : stream.description)) {
       continue;
     }
     if (auto described = describe(name, stream, *source->second.description, now); !described) {
@@ -57,13 +63,21 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   const bool same_session = stream.description &&
                             stream.description->session() == description.session() &&
                             !is_triggered(stream);
-  stream.description = description;
   if (same_session) {
+    stream.description = description;
+    replace_unfit(stream);
     return {}; // what its samples mean was known from the beginning
   }
-  if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
+  if (stream.description) {
+    if (std::string why = why_unfit(name, description); !why.empty()) {
+      stream.unfit = {description, std::move(why)};
+      return {};
+    }
+  } else if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
     return accepted;
   }
+  stream.description = description;
+  replace_unfit(stream);
   const bool triggered = services::is_triggered(from_wire(description.kind()));
   if (!stream.follower) {
     stream.follower.emplace(make_follower(name, triggered));
@@ -75,14 +89,42 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
                    : open_reader(block_readers_, description.kind());
 }
 
+std::string SourceStreams::why_unfit(const std::string& name,
+                                     const wire::SourceDescription& description) {
+  const auto& settings = evaluator_.recipe().source_settings;
+  if (const auto of_run = settings.find(name); of_run != settings.end()) {
+    if (const auto difference = settings_difference(description.settings(), of_run->second)) {
+      return refusal(*difference, bench_, name, description.host());
+    }
+  }
+  const auto accepted = evaluator_.describe(name, from_message(description));
+  return accepted ? "" : accepted.error().message;
+}
+
+bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
+  return stream.unfit && stream.unfit->description.session() == session;
+}
+
+// Samples of a session that was never described as anything else mean nothing to the run.
+void SourceStreams::replace_unfit(Stream& stream) {
+  const auto unfit = std::exchange(stream.unfit, std::nullopt);
+  if (unfit && unfit->description.session() != stream.description->session()) {
+    std::erase_if(stream.waiting, [&](const wire::SampleBlock& block) {
+      const bool is_of_it = block.session() == unfit->description.session();
+      stream.waiting_bytes -= is_of_it ? bytes_of(block) : 0;
+      return is_of_it;
+    });
+  }
+}
+
 SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bool triggered) {
   if (triggered) {
-    return StreamFollower<wire::TriggeredRecord>(run_, asker_,
-                                                 [this, name](const wire::TriggeredRecord& record) {
-                                                   if (record.run() == run_) {
-                                                     evaluator_.add(name, from_message(record));
-                                                   }
-                                                 });
+    return StreamFollower<wire::TriggeredRecord>(
+        run_, asker_, [this, name](const wire::TriggeredRecord& record) {
+          if (record.run() == run_ && !is_unfit(streams_.at(name), record.session())) {
+            evaluator_.add(name, from_message(record));
+          }
+        });
   }
   return StreamFollower<wire::SampleBlock>(
       run_, asker_,
@@ -91,11 +133,25 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
 
 void SourceStreams::hand_over(const std::string& name, Stream& stream,
                               const wire::SampleBlock& block) {
-  if (!stream.waiting.empty() || !evaluator_.is_ready_for(name, block.session())) {
-    stream.waiting.push_back(block);
+  if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
+      !evaluator_.is_ready_for(name, block.session())) {
+    wait(stream, block);
   } else {
     evaluator_.add(name, view_block(block));
   }
+}
+
+void SourceStreams::wait(Stream& stream, const wire::SampleBlock& block) {
+  stream.waiting.push_back(block);
+  stream.waiting_bytes += bytes_of(block);
+  while (stream.waiting_bytes > max_waiting_bytes) {
+    drop_oldest(stream);
+  }
+}
+
+void SourceStreams::drop_oldest(Stream& stream) {
+  stream.waiting_bytes -= bytes_of(stream.waiting.front());
+  stream.waiting.pop_front();
 }
 
 void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, Instant now) {
@@ -104,10 +160,14 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
     return;
   }
   const bool overdue = now - stream.waiting_since > session_limit;
-  while (!stream.waiting.empty() &&
-         (overdue || evaluator_.is_ready_for(name, stream.waiting.front().session()))) {
-    evaluator_.add(name, view_block(stream.waiting.front()));
-    stream.waiting.pop_front();
+  while (!stream.waiting.empty()) {
+    const wire::SampleBlock& block = stream.waiting.front();
+    if (is_unfit(stream, block.session()) ||
+        (!overdue && !evaluator_.is_ready_for(name, block.session()))) {
+      return;
+    }
+    evaluator_.add(name, view_block(block));
+    drop_oldest(stream);
   }
 }
 
@@ -215,10 +275,12 @@ bool SourceStreams::is_catching_up() const {
   });
 }
 
-bool SourceStreams::is_silent(Instant now) const {
-  return std::any_of(streams_.begin(), streams_.end(), [&](const auto& stream) {
-    const auto& follower = stream.second.follower;
-    return follower && std::visit([&](const auto& one) { return one.silent(now); }, *follower);
+bool SourceStreams::is_held_up(Instant now) const {
+  return std::any_of(streams_.begin(), streams_.end(), [&](const auto& one) {
+    const Stream& stream = one.second;
+    const auto silent = [&](const auto& follower) { return follower.silent(now); };
+    return stream.unfit || !stream.waiting.empty() ||
+           (stream.follower && std::visit(silent, *stream.follower));
   });
 }
 
@@ -273,6 +335,9 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
     if (stream.twins.twins()) {
       return Missing{two_send_as(name)};
     }
+    if (stream.unfit) {
+      return Missing{stream.unfit->why};
+    }
     if (!stream.follower) {
       return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
                                  name, bench_, reason_given_by(source)),
@@ -316,6 +381,9 @@ std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watche
   for (const auto& [name, stream] : streams_) {
     if (stream.twins.twins()) {
       return LostSource{two_send_as(name), false};
+    }
+    if (stream.unfit) {
+      return LostSource{stream.unfit->why};
     }
     if (!stream.follower) {
       return LostSource{

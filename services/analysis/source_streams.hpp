@@ -6,8 +6,11 @@
 // in order and without a break as long as the source can close it (stream_follower.hpp), also when
 // the run began before this service. Readers are opened when a source's kind is known, one a topic;
 // those of answers to requests when the first is due. A source that has restarted is waited with
-// for up to `session_limit` where the evaluator still needs what it sent before. Belongs to the
-// run's one thread.
+// for up to `session_limit` where the evaluator still needs what it sent before. One that then
+// describes itself as something the run cannot go by (other channels, another bench file) counts as
+// lost until it describes itself otherwise. Samples wait meanwhile; of more than
+// `max_waiting_bytes` the oldest are thrown away, which the evaluation counts as lost. Belongs to
+// the run's one thread.
 #pragma once
 
 #include <chrono>
@@ -46,6 +49,7 @@ public:
   using Instant = bus::Clock::Instant;
 
   static constexpr std::chrono::seconds session_limit{5};
+  static constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20U; // of one source
 
   enum class Begin { with_answer, behind }; // behind: the run began before this service
 
@@ -74,8 +78,9 @@ public:
   [[nodiscard]] std::string what_is_gone() const;
   // Some source's messages are behind what it has sent.
   [[nodiscard]] bool is_catching_up() const;
-  // Some source has sent no samples for a while (stream_follower.hpp).
-  [[nodiscard]] bool is_silent(Instant now) const;
+  // What some source sends now does not reach the evaluator: it is silent (stream_follower.hpp), or
+  // its samples wait.
+  [[nodiscard]] bool is_held_up(Instant now) const;
   // Messages that had to be asked for.
   [[nodiscard]] std::uint64_t recovered() const;
 
@@ -96,10 +101,16 @@ public:
 private:
   using Follower =
       std::variant<StreamFollower<wire::SampleBlock>, StreamFollower<wire::TriggeredRecord>>;
+  struct UnfitDescription {
+    wire::SourceDescription description;
+    std::string why;
+  };
   struct Stream {
     std::optional<wire::SourceDescription> description; // as the evaluator knows it
-    // Of a session that the evaluator is not ready for.
+    std::optional<UnfitDescription> unfit{};            // a newer one
+    // Of a session that the evaluator is not ready for, or whose description is unfit.
     std::deque<wire::SampleBlock> waiting{};
+    std::size_t waiting_bytes = 0;
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
     TwinWatch twins;
@@ -107,9 +118,16 @@ private:
 
   [[nodiscard]] static bool is_triggered(const Stream& stream);
   [[nodiscard]] static bool has_answered(const Stream& stream);
+  [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
+  static void wait(Stream& stream, const wire::SampleBlock& block);
+  static void drop_oldest(Stream& stream);
+  static void replace_unfit(Stream& stream);
   [[nodiscard]] std::string two_send_as(const std::string& source) const;
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
                                         const wire::SourceDescription& description, Instant now);
+  // Why the run cannot go on by this description of a source that it knows; empty: it can.
+  [[nodiscard]] std::string why_unfit(const std::string& name,
+                                      const wire::SourceDescription& description);
   [[nodiscard]] Follower make_follower(const std::string& name, bool triggered);
   template <class Message>
   [[nodiscard]] Expected<void>

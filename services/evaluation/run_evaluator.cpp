@@ -65,19 +65,30 @@ Expected<void> RunEvaluator::describe(const std::string& source,
   if (record == nullptr) {
     return {};
   }
+  auto before = record->described() ? std::optional(record->description()) : std::nullopt;
   record->describe(std::move(description));
+  if (auto checked = check_description(*record); !checked) {
+    if (before) {
+      record->describe(std::move(*before));
+    }
+    return checked;
+  }
   ahead_.reset();
-  if (auto checked = check_channels(*record); !checked) {
-    return checked;
-  }
-  if (auto checked = check_frequencies(*record); !checked) {
-    return checked;
-  }
   if (!recipe_->dut().empty()) { // else all channels are under calibration
     keep_needed_channels(*record);
   }
   if (clock_ && clock_->source() == source) {
     clock_->describe(record->description());
+  }
+  return {};
+}
+
+Expected<void> RunEvaluator::check_description(const SourceRecord& source) const {
+  if (auto checked = check_channels(source); !checked) {
+    return checked;
+  }
+  if (auto checked = check_frequencies(source); !checked) {
+    return checked;
   }
   return method_->check_time_scales(records_);
 }

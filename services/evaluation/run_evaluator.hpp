@@ -83,7 +83,7 @@ public:
 
   // Fails (no_source) with the channels there are when the source lacks one that the recipe needs,
   // when a planned frequency is not below half its sample rate, and when its time scale does not
-  // fit those of others.
+  // fit those of others. Then the run goes on by the description that was accepted before, if any.
   Expected<void> describe(const std::string& source, drivers::SourceDescription description);
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
@@ -121,6 +121,7 @@ public:
   void finish_now();
 
 private:
+  [[nodiscard]] Expected<void> check_description(const SourceRecord& source) const;
   [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
   [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;

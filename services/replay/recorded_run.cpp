@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/bench_file_origin.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/source_kind.hpp"
@@ -122,6 +123,8 @@ private:
     std::uint64_t waiting_since = 0;
     std::uint64_t heard = 0; // the newest block: its place in the walk
     bool ended = false;
+    bool is_unfit =
+        false; // its session: the run cannot go by what it describes (source_streams.hpp)
   };
   // What the conductor said, and when: its place in the walk.
   struct Said {
@@ -203,6 +206,7 @@ private:
     if (of_session == source.recorded.descriptions.end() && source.described) {
       return;
     }
+    const bool is_first = !source.described;
     source.described = session;
     if (of_session == source.recorded.descriptions.end() && !source.recorded.newest) {
       outcome_of_walk_ =
@@ -214,8 +218,16 @@ private:
     const wire::SourceDescription& description = of_session == source.recorded.descriptions.end()
                                                      ? *source.recorded.newest
                                                      : of_session->second;
+    const auto& settings = evaluator_.recipe().source_settings;
+    const auto of_run = settings.find(name);
+    source.is_unfit = !is_first && of_run != settings.end() &&
+                      settings_difference(description.settings(), of_run->second).has_value();
+    if (source.is_unfit) {
+      return;
+    }
     if (auto described = evaluator_.describe(name, from_message(description)); !described) {
-      outcome_of_walk_ = std::move(described);
+      source.is_unfit = !is_first;
+      outcome_of_walk_ = is_first ? std::move(described) : Expected<void>{};
     }
   }
 
@@ -226,14 +238,14 @@ private:
     }
     source.waiting.push_back(block);
     hand_over_waiting(name, source, false);
-    if (source.waiting.empty()) {
+    if (source.waiting.empty() && !source.is_unfit) {
       source.heard = walked_;
       source.ended = block.end_of_stream();
     }
   }
   void add(const std::string& name, Source& source, const wire::TriggeredRecord& record) {
     describe(name, source, record.session());
-    if (outcome_of_walk_ && record.run() == run_) {
+    if (outcome_of_walk_ && !source.is_unfit && record.run() == run_) {
       evaluator_.add(name, from_message(record));
     }
   }
@@ -250,7 +262,7 @@ private:
         return;
       }
       describe(name, source, block.session());
-      if (outcome_of_walk_) {
+      if (outcome_of_walk_ && !source.is_unfit) {
         evaluator_.add(name, view_block(block));
       }
       source.waiting.pop_front();
@@ -337,6 +349,9 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   }
   recipe->bench = index->plan.bench().to_string();
   recipe->run = index->plan.run().to_string();
+  if (wish.recipe) {
+    recipe->source_settings.clear(); // the sources had read the file of their run
+  }
   RecordedRunOutcome result;
   result.live_results = index->live_results;
   result.outcome = outcome_of(*recipe);

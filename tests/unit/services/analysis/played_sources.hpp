@@ -95,8 +95,11 @@ public:
   // As if it had been too long ago.
   void forget_what_was_sent() { kept_.clear(); }
   // Numbers begin anew, and what was kept is gone.
-  void restart() {
-    description_.session(description_.session() + 1);
+  void restart() { restart(description_); }
+  void restart(const wire::SourceDescription& as) {
+    const std::uint64_t session = description_.session() + 1;
+    description_ = as;
+    description_.session(session);
     number_ = 0;
     kept_.clear();
   }

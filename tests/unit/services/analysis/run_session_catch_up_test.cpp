@@ -24,6 +24,11 @@ protected:
     }
     return bits;
   }
+  // Of a source that goes on.
+  static std::vector<wire::SampleBlock> endless(std::vector<wire::SampleBlock> blocks) {
+    blocks.back().end_of_stream(false);
+    return blocks;
+  }
   void excite(wire::ExcitationState state) {
     wire::Excitation excitation;
     excitation.bench(tests::played_bench);
@@ -131,6 +136,71 @@ TEST_F(RunSessionCatchUp, TakesNoStepForOverInASourceThatIsSilent) {
   finish();
   ASSERT_EQ(published_.results().size(), 1U);
   EXPECT_TRUE(published_.results()[0].valid()) << published_.results()[0].problem();
+}
+
+// The service has been started again, and the descriptions of its sensor's channels are not there
+// yet: what it sends meanwhile is not thrown away.
+TEST_F(RunSessionCatchUp, WaitsForASourceThatComesBackWithOtherChannels) {
+  const auto expected = UndisturbedRun().results();
+  const wire::SourceDescription whole = dau_.description();
+  wire::SourceDescription nameless = whole;
+  for (wire::ChannelDescription& channel : nameless.channels()) {
+    channel.name("data_" + channel.name());
+  }
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  dau_.restart(nameless);
+  describe(dau_);
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.send(endless(synthetic_.dau_blocks()));
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_THAT(published_.newest_status().message(),
+              testing::StartsWith("source 'dau' has no channel "));
+  excite(wire::EXCITATION_DONE);
+  run_for(10s, {&acs_, &dau_});
+  EXPECT_TRUE(published_.results().empty());
+  sources_[dau_.name()].description->channels(whole.channels()); // of the same session
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+TEST_F(RunSessionCatchUp, TakesNothingOfASourceThatComesBackWithAnotherBenchFile) {
+  wire::PlannedSource planned;
+  planned.source("dau");
+  planned.settings("sensor = 1\n");
+  wire::Measurement measurement = synthetic_.measurement();
+  measurement.sources().push_back(planned);
+  session_ = create(measurement);
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(endless(synthetic_.acs_blocks()));
+  const wire::SourceDescription before = dau_.description();
+  wire::SourceDescription other = before;
+  other.settings("sensor = 2\n");
+  dau_.restart(other);
+  describe(dau_);
+  dau_.send(endless(synthetic_.dau_blocks()));
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_THAT(published_.newest_status().message(),
+              testing::HasSubstr("key 'sources.dau.sensor' is 2 there and 1 here"));
+  EXPECT_TRUE(published_.results().empty());
+  dau_.restart(before); // with the right one
+  describe(dau_);
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  excite(wire::EXCITATION_DONE);
+  set_state(wire::MEASUREMENT_DONE);
+  for (int i = 0; i < 200 && !session_->finished(); ++i) {
+    pass(100ms);
+    acs_.send_nothing();
+    dau_.send_nothing();
+  }
+  ASSERT_EQ(published_.results().size(), 1U);
+  EXPECT_FALSE(published_.results()[0].valid()); // its samples were those of another sensor
 }
 
 TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {

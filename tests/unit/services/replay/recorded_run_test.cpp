@@ -74,6 +74,33 @@ TEST_F(RecordedRun, TakesNoStepForOverInASourceThatWasSilent) {
   EXPECT_TRUE(recorded.outcome.results[0].valid) << recorded.outcome.results[0].problem;
 }
 
+// As the live analysis: it waited for a description that the run can go by.
+TEST_F(RecordedRun, LeavesOutASessionWhoseChannelsAreOthers) {
+  add_early_dau_block();
+  add_acs();
+  wire::SourceDescription nameless = synthetic_.dau_description();
+  nameless.session(nameless.session() + 1);
+  for (wire::ChannelDescription& channel : nameless.channels()) {
+    channel.name("data_" + channel.name());
+  }
+  recording_.add("SourceDescription", nameless);
+  for (const std::uint64_t restarts : {1U, 2U}) {
+    for (wire::SampleBlock block : dau_) {
+      block.session(block.session() + restarts);
+      block.received_utc_ns(block.received_utc_ns() + static_cast<std::int64_t>(restarts));
+      recording_.add("DauSamples", block);
+    }
+    wire::SourceDescription whole = synthetic_.dau_description();
+    whole.session(whole.session() + 2);
+    recording_.add("SourceDescription", whole);
+  }
+  add_excitation(wire::EXCITATION_DONE);
+  add_state(wire::MEASUREMENT_DONE);
+  const RecordedRunOutcome recorded = evaluate();
+  ASSERT_EQ(recorded.outcome.results.size(), 1U);
+  EXPECT_TRUE(recorded.outcome.results[0].valid) << recorded.outcome.results[0].problem;
+}
+
 // The results of the steps are there, and the end of the run as it was recorded.
 TEST_F(RecordedRun, EndsWithASourceThatSendsNothingMore) {
   add_early_dau_block();
