@@ -38,8 +38,10 @@ case ${1:-} in
     # do in their callbacks, so that a race of our own there is found; no suppression is needed. One
     # by library (called_from_lib) would lose their locks, and find races where there are none.
     export TSAN_OPTIONS=ignore_noninstrumented_modules=1:second_deadlock_stack=1
-    # Programs run ten times slower: what depends on keeping up says nothing here.
-    left_out=(--exclude-regex '^(dau_load|analyse_speed|bus_netns_test|Style|Install)\.')
+    # Programs run ten times slower: what depends on keeping up says nothing here, and what computes
+    # for minutes would take hours.
+    slow='dau_load|analyse_speed|bus_netns_test|progress_cost|Coverage|Style|Install'
+    left_out=(--exclude-regex "^(($slow)\\.|CommandLine\\.progress)")
     ;;
 esac
 [[ $preset == release ]] || directory=build-$preset

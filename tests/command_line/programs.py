@@ -60,6 +60,10 @@ def commands_of(program):
     return found
 
 
+# What a sanitizer is to pass over: without it, it reports on the terminal.
+SANITIZERS = ("ASAN_OPTIONS", "LSAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS")
+
+
 def environment(**more):
-    kept = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    kept = {name: os.environ[name] for name in ("PATH", "HOME", *SANITIZERS) if name in os.environ}
     return {**kept, "LC_ALL": "C.UTF-8", "PATH": f"{FOLDER}:{kept['PATH']}", **more}
