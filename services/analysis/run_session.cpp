@@ -126,9 +126,14 @@ void RunSession::note_own_absence(Instant now) {
   worked_ = now;
 }
 
+// What its sources have sent so far. How far a silent one is, nobody knows: one that has started
+// again answers before it has sent anything.
+bool RunSession::lacks_samples(Instant now) const {
+  return streams_->is_catching_up() || (!excitation_over() && streams_->is_held_up(now));
+}
+
 // What was announced is of the samples that have come: a step that is over shows in a source within
-// some seconds of its own time (run_records.hpp). How far a silent source is, nobody knows: one
-// that has started again answers before it has sent anything.
+// some seconds of its own time (run_records.hpp).
 void RunSession::catch_up(Instant now) {
   auto due = streams_->requests_due(now);
   if (!due) {
@@ -138,7 +143,7 @@ void RunSession::catch_up(Instant now) {
   for (const SourceStreams::Request& request : *due) {
     publisher_.ask_to_catch_up(request.source, streams_->asker(), request.what);
   }
-  if (streams_->is_catching_up() || (!excitation_over() && streams_->is_held_up(now))) {
+  if (lacks_samples(now)) {
     return;
   }
   for (; !announced_.empty(); announced_.pop_front()) {
@@ -169,7 +174,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     watch_sources(now);
     watch_level();
     evaluate(now);
-    end_takeover();
+    end_takeover(now);
   }
   if (now >= next_status_) {
     report_work(now);
@@ -185,8 +190,8 @@ std::string RunSession::taking_over_sentence() const {
 
 // With the results of all that was measured before: whoever goes on with the run knows by them what
 // is left.
-void RunSession::end_takeover() {
-  if (!taking_over_ || streams_->is_catching_up() || evaluator_->is_evaluating()) {
+void RunSession::end_takeover(Instant now) {
+  if (!taking_over_ || lacks_samples(now) || evaluator_->is_evaluating()) {
     return;
   }
   taking_over_ = false;

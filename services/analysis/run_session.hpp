@@ -99,7 +99,7 @@ private:
   void watch_sources(Instant now);
   void watch_level();
   [[nodiscard]] std::string taking_over_sentence() const;
-  void end_takeover();
+  void end_takeover(Instant now);
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
@@ -107,6 +107,7 @@ private:
   void report(wire::HealthState health, std::string message);
   void wait_for_source(std::string message, Instant now);
   void refuse(std::string message);
+  [[nodiscard]] bool lacks_samples(Instant now) const;
   [[nodiscard]] bool waits_for_source() const {
     return status_.health == wire::HEALTH_WAITING && !taking_over_;
   }

@@ -68,7 +68,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
     replace_unfit(stream);
     return {}; // what its samples mean was known from the beginning
   }
-  if (stream.description) {
+  if (stream.description || begin_ == Begin::behind) {
     if (std::string why = why_unfit(name, description); !why.empty()) {
       stream.unfit = {description, std::move(why)};
       return {};
@@ -279,8 +279,8 @@ bool SourceStreams::is_held_up(Instant now) const {
   return std::any_of(streams_.begin(), streams_.end(), [&](const auto& one) {
     const Stream& stream = one.second;
     const auto silent = [&](const auto& follower) { return follower.silent(now); };
-    return stream.unfit || !stream.waiting.empty() ||
-           (stream.follower && std::visit(silent, *stream.follower));
+    return !stream.follower || stream.unfit || !stream.waiting.empty() ||
+           std::visit(silent, *stream.follower);
   });
 }
 

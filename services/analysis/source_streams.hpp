@@ -6,9 +6,9 @@
 // in order and without a break as long as the source can close it (stream_follower.hpp), also when
 // the run began before this service. Readers are opened when a source's kind is known, one a topic;
 // those of answers to requests when the first is due. A source that has restarted is waited with
-// for up to `session_limit` where the evaluator still needs what it sent before. One that then
-// describes itself as something the run cannot go by (other channels, another bench file) counts as
-// lost until it describes itself otherwise. Samples wait meanwhile; of more than
+// for up to `session_limit` where the evaluator still needs what it sent before. One that describes
+// itself in the middle of a run as something the run cannot go by (other channels, another bench
+// file) counts as lost until it describes itself otherwise. Samples wait meanwhile; of more than
 // `max_waiting_bytes` the oldest are thrown away, which the evaluation counts as lost. Belongs to
 // the run's one thread.
 #pragma once
@@ -78,8 +78,8 @@ public:
   [[nodiscard]] std::string what_is_gone() const;
   // Some source's messages are behind what it has sent.
   [[nodiscard]] bool is_catching_up() const;
-  // What some source sends now does not reach the evaluator: it is silent (stream_follower.hpp), or
-  // its samples wait.
+  // What some source sends now does not reach the evaluator: it is not there, or silent
+  // (stream_follower.hpp), or its samples wait.
   [[nodiscard]] bool is_held_up(Instant now) const;
   // Messages that had to be asked for.
   [[nodiscard]] std::uint64_t recovered() const;

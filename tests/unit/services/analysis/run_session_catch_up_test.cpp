@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 // undisturbed run, bit for bit.
 class RunSessionCatchUp : public RunSessionTest {
 protected:
+  wire::Measurement synthetic_plan_ = synthetic_.measurement(); // that another service takes over
+
   static std::vector<std::string> bits_of(const std::vector<wire::CalibrationResult>& results) {
     std::vector<std::string> bits;
     bits.reserve(results.size());
@@ -39,7 +41,7 @@ protected:
   }
   // Another service takes the run over.
   void begin_behind() {
-    wire::Measurement running = synthetic_.measurement();
+    wire::Measurement running = synthetic_plan_;
     running.state(wire::MEASUREMENT_RUNNING);
     const AnalysisContext context{participant_,
                                   clock_,
@@ -258,6 +260,35 @@ TEST_F(RunSessionCatchUp, SaysWhichSourceIsAwayWhileItTakesARunOver) {
             "source 'dau' of bench 'synthetic' has sent nothing for 5 s");
   run_for(RunSession::patience + 2s, {&acs_});
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
+}
+
+TEST_F(RunSessionCatchUp, IsNotReadyWhileASourceIsMissingOrHasAnotherBenchFile) {
+  wire::PlannedSource planned;
+  planned.source("dau");
+  planned.settings("sensor = 1\n");
+  synthetic_plan_.sources().push_back(planned);
+  arm_and_run();
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.send(endless(synthetic_.dau_blocks()));
+  session_.reset(); // died, and the DAU with it
+  sources_.erase(dau_.name());
+  begin_behind();
+  for (int i = 0; i < 30; ++i) {
+    run_for(100ms, {&acs_});
+    acs_.answer_requests();
+    EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  }
+  EXPECT_EQ(published_.newest_status().message(),
+            "source 'dau' of bench 'synthetic' is not on the network");
+  wire::SourceDescription other = dau_.description();
+  other.settings("sensor = 2\n");
+  dau_.restart(other);
+  describe(dau_);
+  run_for(3s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_THAT(published_.newest_status().message(),
+              testing::HasSubstr("key 'sources.dau.sensor' is 2 there and 1 here"));
+  EXPECT_TRUE(published_.results().empty());
 }
 
 TEST_F(RunSessionCatchUp, RefusesARunOfWhichASourceHasTheBeginningNoMore) {
