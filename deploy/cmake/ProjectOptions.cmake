@@ -32,7 +32,7 @@ set(CMAKE_C_FLAGS_RELEASE "-O2")
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
 
 find_program(CCACHE ccache)
-if(CCACHE)
+if(CCACHE AND NOT DEFINED ENV{CCACHE_DISABLE}) # ccache then leaves paths as they are
   # What was compiled in one clone is found in another: ccache makes the paths relative. The other
   # two settings are what it needs for precompiled headers.
   set(CMAKE_C_COMPILER_LAUNCHER env CCACHE_BASEDIR=${dyncal_root}
