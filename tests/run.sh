@@ -4,7 +4,8 @@
 #   tests/run.sh [--sanitize | --thread-sanitize] [options of ctest, e.g. -R sine or -L fuzz]
 #
 # --sanitize         with the address and undefined-behaviour sanitizers
-# --thread-sanitize  with the thread sanitizer, without what measures load or waits for packet loss
+# --thread-sanitize  with the thread sanitizer, without what measures load, waits for packet loss
+#                    or computes for minutes
 #
 # Each has a build directory of its own. Tests that must have the machine to themselves carry
 # ctest's RUN_SERIAL. The exit status is that of ctest; the last lines name every test that was

@@ -20,11 +20,6 @@ std::string reason_given_by(const KnownSource& source) {
   return gives_one ? ": " + source.status->message() : "";
 }
 
-std::size_t bytes_of(const wire::SampleBlock& block) {
-  return sizeof(block) + block.values().size() * sizeof(double) +
-         block.stamps_ns().size() * sizeof(std::int64_t);
-}
-
 bool says_that_it_is_silent(const KnownSource& source) {
   return source.status && (source.status->state() == wire::SOURCE_SILENT ||
                            source.status->state() == wire::SOURCE_FAILED);
@@ -92,10 +87,8 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
 std::string SourceStreams::why_unfit(const std::string& name,
                                      const wire::SourceDescription& description) {
   const auto& settings = evaluator_.recipe().source_settings;
-  if (const auto of_run = settings.find(name); of_run != settings.end()) {
-    if (const auto difference = settings_difference(description.settings(), of_run->second)) {
-      return refusal(*difference, bench_, name, description.host());
-    }
+  if (const auto difference = settings_difference(description.settings(), settings, name)) {
+    return refusal(*difference, bench_, name, description.host());
   }
   const auto accepted = evaluator_.describe(name, from_message(description));
   return accepted ? "" : accepted.error().message;
@@ -145,11 +138,11 @@ void SourceStreams::wait(Stream& stream, const wire::SampleBlock& block) {
   stream.waiting.push_back(block);
   stream.waiting_bytes += bytes_of(block);
   while (stream.waiting_bytes > max_waiting_bytes) {
-    drop_oldest(stream);
+    take_off_oldest(stream);
   }
 }
 
-void SourceStreams::drop_oldest(Stream& stream) {
+void SourceStreams::take_off_oldest(Stream& stream) {
   stream.waiting_bytes -= bytes_of(stream.waiting.front());
   stream.waiting.pop_front();
 }
@@ -167,7 +160,7 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
       return;
     }
     evaluator_.add(name, view_block(block));
-    drop_oldest(stream);
+    take_off_oldest(stream);
   }
 }
 
@@ -357,12 +350,11 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
 std::string
 SourceStreams::what_differs(const std::map<std::string, std::string>& settings_of_run) const {
   for (const auto& [name, stream] : streams_) {
-    const auto of_run = settings_of_run.find(name);
-    if (of_run == settings_of_run.end() || !stream.description) {
+    if (!stream.description) {
       continue;
     }
     if (const auto difference =
-            settings_difference(stream.description->settings(), of_run->second)) {
+            settings_difference(stream.description->settings(), settings_of_run, name)) {
       return refusal(*difference, bench_, name, stream.description->host());
     }
   }

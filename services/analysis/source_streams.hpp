@@ -9,8 +9,8 @@
 // for up to `session_limit` where the evaluator still needs what it sent before. One that describes
 // itself in the middle of a run as something the run cannot go by (other channels, another bench
 // file) counts as lost until it describes itself otherwise. Samples wait meanwhile; of more than
-// `max_waiting_bytes` the oldest are thrown away, which the evaluation counts as lost. Belongs to
-// the run's one thread.
+// `max_waiting_bytes` the oldest are thrown away, and a step that lay in them has no result.
+// Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
@@ -120,7 +120,7 @@ private:
   [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
   static void wait(Stream& stream, const wire::SampleBlock& block);
-  static void drop_oldest(Stream& stream);
+  static void take_off_oldest(Stream& stream);
   static void replace_unfit(Stream& stream);
   [[nodiscard]] std::string two_send_as(const std::string& source) const;
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,

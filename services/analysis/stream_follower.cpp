@@ -34,13 +34,13 @@ std::size_t bytes_of(const Message& message) {
   return sizeof(Message) + message.values().size() * sizeof(double);
 }
 
+} // namespace
+
 std::size_t bytes_of(const wire::SampleBlock& block) {
   return sizeof(block) + block.values().size() * sizeof(double) +
          block.stamps_ns().size() * sizeof(std::int64_t) +
          block.stamp_uncertainty_ns().size() * sizeof(std::uint32_t) + block.stamp_flags().size();
 }
-
-} // namespace
 
 template <class Message>
 bool StreamFollower<Message>::is_known(const Message& message) const {

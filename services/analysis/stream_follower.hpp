@@ -28,6 +28,9 @@
 
 namespace dyncal::services {
 
+// That a block takes in memory.
+[[nodiscard]] std::size_t bytes_of(const wire::SampleBlock& block);
+
 // A message within its source: block, or shot.
 struct StreamPosition {
   std::uint64_t session = 0; // 0: before the first

@@ -49,6 +49,13 @@ std::optional<SettingsDifference> settings_difference(const std::string& of_serv
   return std::nullopt;
 }
 
+std::optional<SettingsDifference>
+settings_difference(const std::string& of_service, const std::map<std::string, std::string>& of_run,
+                    const std::string& source) {
+  const auto found = of_run.find(source);
+  return found == of_run.end() ? std::nullopt : settings_difference(of_service, found->second);
+}
+
 std::string refusal(const SettingsDifference& difference, const std::string& bench,
                     const std::string& source, const std::string& host) {
   return fmt::format("the service of source '{}' of bench '{}'{} has read another bench file than "

@@ -6,6 +6,7 @@
 // written with a dot, numbers as numbers whatever their notation. Plain functions, any thread.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,11 @@ struct SettingsDifference {
 // Nothing if they agree, or if either is empty: not known.
 [[nodiscard]] std::optional<SettingsDifference> settings_difference(const std::string& of_service,
                                                                     const std::string& of_run);
+
+// The same for a source by its name, with the settings that the run has for each.
+[[nodiscard]] std::optional<SettingsDifference>
+settings_difference(const std::string& of_service, const std::map<std::string, std::string>& of_run,
+                    const std::string& source);
 
 // One sentence about a difference, and what to do about it.
 [[nodiscard]] std::string refusal(const SettingsDifference& difference, const std::string& bench,

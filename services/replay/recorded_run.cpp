@@ -219,9 +219,8 @@ private:
                                                      ? *source.recorded.newest
                                                      : of_session->second;
     const auto& settings = evaluator_.recipe().source_settings;
-    const auto of_run = settings.find(name);
-    source.is_unfit = !is_first && of_run != settings.end() &&
-                      settings_difference(description.settings(), of_run->second).has_value();
+    source.is_unfit =
+        !is_first && settings_difference(description.settings(), settings, name).has_value();
     if (source.is_unfit) {
       return;
     }

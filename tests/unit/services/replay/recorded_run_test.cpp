@@ -22,9 +22,15 @@ protected:
     recording_.add("SourceDescription", synthetic_.acs_description());
     recording_.add("SourceDescription", synthetic_.dau_description());
     add_excitation(wire::EXCITATION_SETTLING);
+    add_early_dau_block();
+    add_acs();
   }
   void add_state(wire::MeasurementState state) {
+    wire::PlannedSource planned;
+    planned.source("dau");
+    planned.settings("sensor = 1\n");
     wire::Measurement measurement = synthetic_.measurement();
+    measurement.sources().push_back(planned);
     measurement.state(state);
     recording_.add("Measurement", measurement);
   }
@@ -52,6 +58,24 @@ protected:
     }
     recording_.add("DauSamples", early);
   }
+  void add_description(wire::SourceDescription description, std::uint64_t restarts) {
+    description.session(description.session() + restarts);
+    recording_.add("SourceDescription", description);
+  }
+  // What its service sent after it had been started again.
+  void add_restarted_dau(std::uint64_t restarts) {
+    for (wire::SampleBlock block : dau_) {
+      block.session(block.session() + restarts);
+      block.received_utc_ns(block.received_utc_ns() + static_cast<std::int64_t>(restarts));
+      recording_.add("DauSamples", block);
+    }
+  }
+  void expect_a_valid_result() {
+    add_state(wire::MEASUREMENT_DONE);
+    const RecordedRunOutcome recorded = evaluate();
+    ASSERT_EQ(recorded.outcome.results.size(), 1U);
+    EXPECT_TRUE(recorded.outcome.results[0].valid) << recorded.outcome.results[0].problem;
+  }
   RecordedRunOutcome evaluate() {
     EXPECT_TRUE(recording_.writer.close());
     auto reader = recording::RecordingReader::open(folder_.path() / "run.mcap");
@@ -60,51 +84,39 @@ protected:
 };
 
 TEST_F(RecordedRun, TakesNoStepForOverInASourceThatWasSilent) {
-  add_early_dau_block();
-  add_acs();
   add_excitation(wire::EXCITATION_DONE);
-  for (wire::SampleBlock block : dau_) {
-    block.session(block.session() + 1); // its service was started again
-    block.received_utc_ns(block.received_utc_ns() + 1);
-    recording_.add("DauSamples", block);
-  }
-  add_state(wire::MEASUREMENT_DONE);
-  const RecordedRunOutcome recorded = evaluate();
-  ASSERT_EQ(recorded.outcome.results.size(), 1U);
-  EXPECT_TRUE(recorded.outcome.results[0].valid) << recorded.outcome.results[0].problem;
+  add_restarted_dau(1);
+  expect_a_valid_result();
 }
 
 // As the live analysis: it waited for a description that the run can go by.
 TEST_F(RecordedRun, LeavesOutASessionWhoseChannelsAreOthers) {
-  add_early_dau_block();
-  add_acs();
   wire::SourceDescription nameless = synthetic_.dau_description();
-  nameless.session(nameless.session() + 1);
   for (wire::ChannelDescription& channel : nameless.channels()) {
     channel.name("data_" + channel.name());
   }
-  recording_.add("SourceDescription", nameless);
-  for (const std::uint64_t restarts : {1U, 2U}) {
-    for (wire::SampleBlock block : dau_) {
-      block.session(block.session() + restarts);
-      block.received_utc_ns(block.received_utc_ns() + static_cast<std::int64_t>(restarts));
-      recording_.add("DauSamples", block);
-    }
-    wire::SourceDescription whole = synthetic_.dau_description();
-    whole.session(whole.session() + 2);
-    recording_.add("SourceDescription", whole);
-  }
+  add_description(nameless, 1);
+  add_restarted_dau(1);
+  add_description(synthetic_.dau_description(), 2);
+  add_restarted_dau(2);
+  add_excitation(wire::EXCITATION_DONE);
+  expect_a_valid_result();
+}
+
+TEST_F(RecordedRun, LeavesOutASessionOfAnotherBenchFile) {
+  wire::SourceDescription other = synthetic_.dau_description();
+  other.settings("sensor = 2\n");
+  add_description(other, 1);
+  add_restarted_dau(1);
   add_excitation(wire::EXCITATION_DONE);
   add_state(wire::MEASUREMENT_DONE);
   const RecordedRunOutcome recorded = evaluate();
   ASSERT_EQ(recorded.outcome.results.size(), 1U);
-  EXPECT_TRUE(recorded.outcome.results[0].valid) << recorded.outcome.results[0].problem;
+  EXPECT_FALSE(recorded.outcome.results[0].valid); // its samples were those of another sensor
 }
 
 // The results of the steps are there, and the end of the run as it was recorded.
 TEST_F(RecordedRun, EndsWithASourceThatSendsNothingMore) {
-  add_early_dau_block();
-  add_acs();
   add_excitation(wire::EXCITATION_DONE);
   add_state(wire::MEASUREMENT_DONE);
   const RecordedRunOutcome recorded = evaluate();
