@@ -36,6 +36,7 @@ struct RecordedPlace {
 struct RecordedPosition {
   std::size_t session = 0;
   std::uint64_t number = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): a zero that the compiler puts in
   auto operator<=>(const RecordedPosition&) const = default;
 };
 
