@@ -28,7 +28,9 @@ def program():
 
 
 class Chromium:
-    def __init__(self):
+    """script_options: of its JavaScript engine."""
+
+    def __init__(self, script_options=()):
         self.folder = tempfile.mkdtemp(prefix="dyncal-browser-")
         to_browser, self._commands = os.pipe()
         self._answers, from_browser = os.pipe()
@@ -45,7 +47,7 @@ class Chromium:
             "--no-default-browser-check",
             "--mute-audio",
             "--lang=en-US",
-            "--js-flags=--expose-gc",
+            f"--js-flags={' '.join(('--expose-gc', *script_options))}",
             "--enable-precise-memory-info",
         ]
         if os.geteuid() == 0:

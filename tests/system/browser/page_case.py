@@ -31,9 +31,11 @@ def run():
 
 
 class PageCase(unittest.TestCase):
+    script_options = ()  # of the browser
+
     @classmethod
     def setUpClass(cls):
-        cls.browser = chromium.Chromium()
+        cls.browser = chromium.Chromium(cls.script_options)
 
     @classmethod
     def tearDownClass(cls):
