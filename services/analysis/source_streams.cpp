@@ -102,11 +102,7 @@ bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
 void SourceStreams::replace_unfit(Stream& stream) {
   const auto unfit = std::exchange(stream.unfit, std::nullopt);
   if (unfit && unfit->description.session() != stream.description->session()) {
-    std::erase_if(stream.waiting, [&](const wire::SampleBlock& block) {
-      const bool is_of_it = block.session() == unfit->description.session();
-      stream.waiting_bytes -= is_of_it ? bytes_of(block) : 0;
-      return is_of_it;
-    });
+    stream.waiting.leave_out_session(unfit->description.session());
   }
 }
 
@@ -128,23 +124,10 @@ void SourceStreams::hand_over(const std::string& name, Stream& stream,
                               const wire::SampleBlock& block) {
   if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
       !evaluator_.is_ready_for(name, block.session())) {
-    wait(stream, block);
+    stream.waiting.add(block);
   } else {
     evaluator_.add(name, view_block(block));
   }
-}
-
-void SourceStreams::wait(Stream& stream, const wire::SampleBlock& block) {
-  stream.waiting.push_back(block);
-  stream.waiting_bytes += bytes_of(block);
-  while (stream.waiting_bytes > max_waiting_bytes) {
-    take_off_oldest(stream);
-  }
-}
-
-void SourceStreams::take_off_oldest(Stream& stream) {
-  stream.waiting_bytes -= bytes_of(stream.waiting.front());
-  stream.waiting.pop_front();
 }
 
 void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, Instant now) {
@@ -154,13 +137,13 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
   }
   const bool overdue = now - stream.waiting_since > session_limit;
   while (!stream.waiting.empty()) {
-    const wire::SampleBlock& block = stream.waiting.front();
+    const wire::SampleBlock& block = stream.waiting.oldest();
     if (is_unfit(stream, block.session()) ||
         (!overdue && !evaluator_.is_ready_for(name, block.session()))) {
       return;
     }
     evaluator_.add(name, view_block(block));
-    take_off_oldest(stream);
+    stream.waiting.take_off_oldest();
   }
 }
 

@@ -8,13 +8,11 @@
 // those of answers to requests when the first is due. A source that has restarted is waited with
 // for up to `session_limit` where the evaluator still needs what it sent before. One that describes
 // itself in the middle of a run as something the run cannot go by (other channels, another bench
-// file) counts as lost until it describes itself otherwise. Samples wait meanwhile; of more than
-// `max_waiting_bytes` the oldest are thrown away, and a step that lay in them has no result.
-// Belongs to the run's one thread.
+// file) counts as lost until it describes itself otherwise. Samples wait meanwhile
+// (waiting_blocks.hpp). Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +23,7 @@
 #include "services/analysis/known_sources.hpp"
 #include "services/analysis/stream_follower.hpp"
 #include "services/analysis/twin_watch.hpp"
+#include "services/analysis/waiting_blocks.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
@@ -49,7 +48,6 @@ public:
   using Instant = bus::Clock::Instant;
 
   static constexpr std::chrono::seconds session_limit{5};
-  static constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20U; // of one source
 
   enum class Begin { with_answer, behind }; // behind: the run began before this service
 
@@ -109,8 +107,7 @@ private:
     std::optional<wire::SourceDescription> description; // as the evaluator knows it
     std::optional<UnfitDescription> unfit{};            // a newer one
     // Of a session that the evaluator is not ready for, or whose description is unfit.
-    std::deque<wire::SampleBlock> waiting{};
-    std::size_t waiting_bytes = 0;
+    WaitingBlocks waiting{};
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
     TwinWatch twins;
@@ -119,8 +116,6 @@ private:
   [[nodiscard]] static bool is_triggered(const Stream& stream);
   [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
-  static void wait(Stream& stream, const wire::SampleBlock& block);
-  static void take_off_oldest(Stream& stream);
   static void replace_unfit(Stream& stream);
   [[nodiscard]] std::string two_send_as(const std::string& source) const;
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
