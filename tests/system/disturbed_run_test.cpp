@@ -1,6 +1,7 @@
 // What disturbs a run for a while is waited out: it goes on, repeats what was spoilt, and ends with
 // every result, unflagged.
 #include <csignal>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,6 +34,15 @@ protected:
     const auto result = expect_every_result();
     EXPECT_GE(repeated_, 3) << run_->errors(); // of the step that was broken off
     EXPECT_FALSE(result["pauses"].empty());
+  }
+  [[nodiscard]] double true_magnitude(const nlohmann::json& point) const {
+    for (const auto& expected : bench_->truth()["transfer_function"]) {
+      if ("dau/" + expected["channel"].get<std::string>() == point["channel"] &&
+          expected["frequency_hz"] == point["frequency_hz"]) {
+        return expected["magnitude"].get<double>();
+      }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
   }
   nlohmann::json expect_every_result() {
     const auto status = run_->wait(patience);
@@ -79,6 +89,32 @@ TEST_F(DisturbedRun, ASourceThatIsRestarted) {
   ASSERT_TRUE(run_->wait_for_error_text("waiting for it up to 120 s", patience)) << run_->errors();
   bench_->start_service("dyncal-dau");
   expect_complete();
+}
+
+// Somebody edits the bench file, and the service dies and comes back with what it says now: two
+// axes have changed places. Nothing of it becomes a value.
+TEST_F(DisturbedRun, ASourceThatIsRestartedWithAnotherBenchFile) {
+  start("source-restarted-otherwise");
+  bench_->service("dyncal-dau").send(SIGKILL);
+  ASSERT_TRUE(run_->wait_for_error_text("waiting for it up to 120 s", patience)) << run_->errors();
+  ProgramRun& swapped = bench_->start_service(
+      "dyncal-dau",
+      bench_->changed_bench_file("swapped.toml", "channels =",
+                                 "channels = { Data_11 = \"sync\", Data_02 = \"acceleration_z\", "
+                                 "Data_03 = \"acceleration_y\" }"));
+  ASSERT_TRUE(run_->wait_for_error_text("has read another bench file than this run: key "
+                                        "'sources.dau.channels.",
+                                        patience))
+      << run_->errors() << swapped.errors();
+  EXPECT_EQ(bench_->ask_generator(":OUTPut1?"), "OFF");
+  swapped.send(SIGTERM);
+  ASSERT_TRUE(swapped.wait(patience));
+  bench_->start_service("dyncal-dau");
+  const auto result = expect_every_result();
+  for (const auto& point : result["points"]) {
+    const double magnitude = true_magnitude(point);
+    EXPECT_NEAR(point["magnitude"].get<double>(), magnitude, 0.1 * magnitude) << point;
+  }
 }
 
 // The bench stands still, as when its link is down: generator and sources do not answer.

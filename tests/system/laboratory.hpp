@@ -50,7 +50,7 @@ inline std::filesystem::path recorded_bench(const std::filesystem::path& folder,
                      "2.0"},
                     folder);
   EXPECT_EQ(record.wait(patience), 0) << record.errors();
-  const std::filesystem::path file = folder / "bench.toml";
+  std::filesystem::path file = folder / "bench.toml";
   std::ofstream(file) << "bench = \"" << bench << R"("
 [excitation]
 frequencies_hz = ["20", "80", "160"]

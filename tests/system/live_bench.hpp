@@ -93,9 +93,12 @@ public:
   }
   // Again, if it runs or did: the newest is what service() returns.
   ProgramRun& start_service(const std::string& program) {
+    return start_service(program, bench_file());
+  }
+  ProgramRun& start_service(const std::string& program, const std::filesystem::path& bench_file) {
     std::vector<std::string> arguments;
     if (program != "dyncal-analysis") {
-      arguments.push_back(bench_file());
+      arguments.push_back(bench_file);
     }
     ProgramRun& started = laboratory_.start(program, arguments, settings_.dds);
     services_[program] = &started;
