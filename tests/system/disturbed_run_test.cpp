@@ -36,7 +36,8 @@ protected:
     EXPECT_FALSE(result["pauses"].empty());
   }
   [[nodiscard]] double true_magnitude(const nlohmann::json& point) const {
-    for (const auto& expected : bench_->truth()["transfer_function"]) {
+    const auto truth = bench_->truth();
+    for (const auto& expected : truth["transfer_function"]) {
       if ("dau/" + expected["channel"].get<std::string>() == point["channel"] &&
           expected["frequency_hz"] == point["frequency_hz"]) {
         return expected["magnitude"].get<double>();
