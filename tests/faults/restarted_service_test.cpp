@@ -71,7 +71,7 @@ protected:
 
   static std::filesystem::path played_at_twice_the_speed(const std::filesystem::path& file) {
     std::ifstream in(file);
-    const std::filesystem::path played = file.parent_path() / "played.toml";
+    std::filesystem::path played = file.parent_path() / "played.toml";
     std::ofstream out(played);
     for (std::string line; std::getline(in, line);) {
       out << line << '\n' << (line.starts_with("driver = ") ? "play = 2.0\n" : "");
