@@ -7,6 +7,7 @@
 
 #include "services/byte_count.hpp"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/result/run_pause.hpp"
 #include "services/recording/recorded_topics.hpp"
 
 namespace dyncal::services {
@@ -77,13 +78,10 @@ private:
   }
   static void take_pause(const wire::Measurement& measurement, std::int64_t time_utc_ns,
                          RecordedRunIndex& run) {
-    const bool pauses =
-        measurement.state() == wire::MEASUREMENT_RUNNING && !measurement.message().empty();
-    const bool paused_before = !run.pauses.empty() && run.pauses.back().ended_utc_ns == 0;
-    if (pauses && !paused_before) {
-      run.pauses.push_back({time_utc_ns, 0, measurement.message()});
-    } else if (!pauses && paused_before) {
-      run.pauses.back().ended_utc_ns = time_utc_ns;
+    if (measurement.state() == wire::MEASUREMENT_RUNNING && !measurement.message().empty()) {
+      note_pause(run.pauses, time_utc_ns, measurement.message());
+    } else {
+      end_pause(run.pauses, time_utc_ns);
     }
   }
   void take(const wire::SourceDescription& description,

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "services/evaluation/result/run_pause.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -14,12 +16,6 @@ using Kind = RunOutlook::Kind;
 constexpr auto broken_off_limit = 10s;    // for the result of a step that was broken off
 constexpr auto generator_interval = 1s;   // between two attempts to reach it
 constexpr auto last_result_quiet = 300ms; // then all results of a step have come
-
-// A sentence that comes again with other numbers is no news for a line of its own.
-std::string without_digits(std::string sentence) {
-  std::erase_if(sentence, [](char character) { return character >= '0' && character <= '9'; });
-  return sentence;
-}
 
 std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
   std::vector<std::uint32_t> numbers;
@@ -187,8 +183,9 @@ Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
   if (now.kind == Kind::over) {
     return fail(now.reason);
   }
-  begin_pause(waiting_phase(now)); // as others are told, so that a recording holds it
-  bool waits = false;              // for something that is away, since then
+  const Instant began = watch_.clock().now();
+  note_pause(watch_.outcome().pauses, watch_.clock().utc_now_ns(), waiting_phase(now));
+  bool waits = false; // for something that is away, since then
   Instant since;
   std::size_t signs_before = watch_.signs_of_work();
   while (now.kind != Kind::well && now.kind != Kind::over && !stop.stop_requested()) {
@@ -200,21 +197,22 @@ Expected<void> StepSequence::wait_until_well(const std::stop_token& stop) {
       since = watch_.clock().now();
     }
     if (waits && watch_.clock().now() - since > away_limit) {
-      end_pause();
+      go_on(began);
       return fail(now.reason);
     }
     const std::string phase = waiting_phase(now);
-    if (watch_.measurement().message() != phase) {
-      if (without_digits(watch_.measurement().message()) != without_digits(phase)) {
+    if (watch_.measurement().message() != phase) { // as others are told, for recordings
+      if (!is_same_reason(watch_.measurement().message(), phase)) {
         watch_.notice(phase);
       }
+      note_pause(watch_.outcome().pauses, watch_.clock().utc_now_ns(), phase);
       watch_.set_state(watch_.measurement().state(), phase);
     }
     watch_.follow(phase);
     try_generator();
     now = outlook();
   }
-  end_pause();
+  go_on(began);
   if (now.kind == Kind::over) {
     return fail(now.reason);
   }
@@ -246,16 +244,11 @@ void StepSequence::try_generator() {
   generator_tried_ = watch_.clock().now();
 }
 
-void StepSequence::begin_pause(const std::string& reason) {
-  watch_.outcome().pauses.push_back({watch_.clock().utc_now_ns(), 0, reason});
-}
-
-void StepSequence::end_pause() {
-  RunPause& pause = watch_.outcome().pauses.back();
-  pause.ended_utc_ns = watch_.clock().utc_now_ns();
+void StepSequence::go_on(Instant since) {
+  end_pause(watch_.outcome().pauses, watch_.clock().utc_now_ns());
   watch_.set_state(watch_.measurement().state());
-  watch_.notice(fmt::format("the run has paused for {:.0f} s",
-                            static_cast<double>(pause.ended_utc_ns - pause.began_utc_ns) * 1e-9));
+  const std::chrono::duration<double> paused = watch_.clock().now() - since;
+  watch_.notice(fmt::format("the run has paused for {:.0f} s", paused.count()));
 }
 
 Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {

@@ -64,8 +64,7 @@ private:
   [[nodiscard]] RunOutlook outlook() const;
   [[nodiscard]] std::string waiting_phase(const RunOutlook& outlook) const;
   void try_generator();
-  void begin_pause(const std::string& reason);
-  void end_pause();
+  void go_on(Instant since); // after a pause
   [[nodiscard]] std::size_t place_of(std::uint32_t step) const;
 
   RunWatch& watch_;

@@ -112,6 +112,7 @@ TEST_F(DisturbedRun, ASourceThatIsRestartedWithAnotherBenchFile) {
   ASSERT_TRUE(swapped.wait(patience));
   bench_->start_service("dyncal-dau");
   const auto result = expect_every_result();
+  EXPECT_THAT(result["pauses"].dump(), HasSubstr("has read another bench file than this run"));
   for (const auto& point : result["points"]) {
     const double magnitude = true_magnitude(point);
     EXPECT_NEAR(point["magnitude"].get<double>(), magnitude, 0.1 * magnitude) << point;

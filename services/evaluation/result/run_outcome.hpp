@@ -13,6 +13,7 @@
 #include "services/contract/source_kind.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/clock_report.hpp"
+#include "services/evaluation/result/run_pause.hpp"
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
@@ -31,13 +32,6 @@ struct AdcFile {
   std::string path;
   std::string channel; // its input and path, as the file names them
   std::string sha256;
-};
-
-// A time in which nothing was excited, for something was away or somebody asked for it.
-struct RunPause {
-  std::int64_t began_utc_ns = 0;
-  std::int64_t ended_utc_ns = 0;
-  std::string reason;
 };
 
 struct RunOutcome {

@@ -412,7 +412,10 @@ TEST_F(StepSequenceTest, ALossOfGeneratorAndAnalysisAtOnceIsWaitedOut) { // the 
   silent_between(14s, 37s);
   const RunOutcome outcome = conduct();
   EXPECT_EQ(outcome.problem, "");
-  EXPECT_EQ(outcome.pauses.size(), 1U);
+  ASSERT_EQ(outcome.pauses.size(), 2U);
+  EXPECT_THAT(outcome.pauses[0].reason, HasSubstr("does not answer"));
+  EXPECT_THAT(outcome.pauses[1].reason, HasSubstr("has gone silent"));
+  EXPECT_EQ(outcome.pauses[0].ended_utc_ns, outcome.pauses[1].began_utc_ns);
   EXPECT_THAT(attempts_of(outcome), ElementsAre(1, 2, 1));
 }
 
@@ -602,7 +605,9 @@ TEST_F(StepSequenceTest, NothingIsExcitedWhileAnotherAnalysisTakesTheRunOver) {
   });
   const RunOutcome outcome = conduct();
   EXPECT_EQ(outcome.problem, ""); // it reports that it is at work
-  EXPECT_EQ(outcome.pauses.size(), 1U);
+  ASSERT_EQ(outcome.pauses.size(), 2U);
+  EXPECT_THAT(outcome.pauses[0].reason, HasSubstr("has gone silent"));
+  EXPECT_THAT(outcome.pauses[1].reason, HasSubstr("taking the run over"));
   EXPECT_EQ(std::count_if(notices_.begin(), notices_.end(),
                           [](const std::string& notice) {
                             return notice.find("taking the run over") != std::string::npos;
