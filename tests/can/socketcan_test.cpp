@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <thread>
 
 #include "tests/can/kernel_can.hpp"
@@ -232,13 +233,20 @@ TEST(SocketCan, StopsFromAnotherThreadWhileItWaits) {
   }
 }
 
-TEST(SocketCan, Loses0Of480000FramesAt8000FramesPerSecond) {
+// DYNCAL_CAN_SECONDS=60 for the long form.
+int load_seconds() {
+  const char* wished = std::getenv("DYNCAL_CAN_SECONDS");
+  return wished == nullptr ? 10 : std::atoi(wished);
+}
+
+TEST(SocketCan, LosesNoFrameAt8000FramesPerSecond) {
   const VirtualCan link("vcan0");
   SocketCanSource source(on("vcan0"));
   ASSERT_TRUE(source.open(sensor_only));
-  constexpr int seconds = 60;
+  const int seconds = load_seconds();
   constexpr int rate_hz = 8000;
-  constexpr std::uint32_t sent = seconds * rate_hz;
+  const auto sent = static_cast<std::uint32_t>(seconds * rate_hz);
+  ASSERT_GT(sent, 0U);
   std::atomic<std::uint32_t> not_sent = 0;
   const auto begin = std::chrono::steady_clock::now();
   std::jthread sender_thread([&](const std::stop_token& stop) {
