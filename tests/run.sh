@@ -53,8 +53,8 @@ deploy/build.sh "$preset" with-tests
 output=$(mktemp)
 trap 'rm -f "$output"' EXIT
 status=0
-# Tests wait more than they compute: four at once do not fill two processors.
-ctest --test-dir "$directory" --parallel 4 --output-on-failure --no-tests=error "${left_out[@]}" \
+# Tests wait more than they compute: five at once do not fill two processors.
+ctest --test-dir "$directory" --parallel 5 --output-on-failure --no-tests=error "${left_out[@]}" \
   "$@" 2>&1 | tee "$output" || status=${PIPESTATUS[0]}
 tests/summary.sh "$output" "$directory/Testing/Temporary/LastTest.log"
 exit "$status"
