@@ -13,7 +13,6 @@
 namespace dyncal::tests {
 namespace {
 
-using testing::AnyOf;
 using testing::HasSubstr;
 
 constexpr const char* axis = "acceleration_z";
