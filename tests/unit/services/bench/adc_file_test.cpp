@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bench/adc_file_writer.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -26,13 +27,6 @@ AdcCorrectionSettings settings_for(const std::string& channel,
 
 class AdcFile : public testing::Test {
 protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("adc_file_") + info->name() + ".json");
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
   Expected<std::vector<analysis::AdcCalibrationPoint>>
   read(const std::string& text, AdcCorrectionSettings settings = settings_for("ADC1")) {
     std::ofstream(path_) << text;
@@ -40,7 +34,8 @@ protected:
     return read_adc_file(settings);
   }
 
-  std::filesystem::path path_;
+  const tests::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_.path() / "adc.json";
 };
 
 const std::string frequencies = R"({

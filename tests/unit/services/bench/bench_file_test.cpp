@@ -162,17 +162,17 @@ TEST(BenchFile, TakesADelayOfTheAdcOnlyWhereItIsNotCalibrated) {
   EXPECT_EQ(parse_bench_file(with_uncertainty("adc_delay_s = 1e-6"), "bench.toml")
                 ->uncertainty.adc_delay_s,
             1e-6);
-  const auto adc = std::filesystem::temp_directory_path() / "dyncal-bench-file-test-adc.json";
-  std::ofstream(adc) << "{}";
-  const std::string both = replaced(with_uncertainty("adc_delay_s = 1e-6"), "[uncertainty]",
-                                    "[corrections]\nadc = { file = \"" + adc.string() +
-                                        "\", channel = \"a\" }\n[uncertainty]");
+  const tests::TemporaryFolder folder;
+  const std::string adc = folder.write("adc.json", "{}");
+  const std::string both =
+      replaced(with_uncertainty("adc_delay_s = 1e-6"), "[uncertainty]",
+               "[corrections]\nadc = { file = \"" + adc + "\", channel = \"a\" }\n[uncertainty]");
   EXPECT_THAT(problem_of(both), HasSubstr("is for a sync ADC without calibration"));
-  std::filesystem::remove(adc);
 }
 
 TEST(BenchFile, ReadsTheCalibrationOfTheReference) {
-  const auto table = std::filesystem::temp_directory_path() / "dyncal-bench-file-test-ref.csv";
+  const tests::TemporaryFolder folder;
+  const auto table = folder.path() / "reference.csv";
   const auto with_table = [&] {
     return replaced(complete, "[uncertainty]",
                     "[corrections]\nreference = \"" + table.string() + "\"\n[uncertainty]");
@@ -185,7 +185,6 @@ TEST(BenchFile, ReadsTheCalibrationOfTheReference) {
   std::ofstream(table) << "frequency_hz,magnitude,phase_rad\n10,1.01,x\n";
   EXPECT_THAT(problem_of(with_table()), HasSubstr("'corrections.reference' names " +
                                                   table.string() + ":2:9: 'x' is not a number"));
-  std::filesystem::remove(table);
 }
 
 TEST(BenchFile, RefusesAUnitThatIsNone) {

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "services/bench/bench_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -17,11 +17,9 @@ using testing::HasSubstr;
 class CanKeys : public testing::Test {
 protected:
   CanKeys() {
-    std::filesystem::create_directories(folder);
     std::ofstream(folder / "sensor.dbc") << "BO_ 291 Sample: 8 S\n";
     std::ofstream(folder / "drive.log") << "(1.000000) can0 123#00\n";
   }
-  ~CanKeys() override { std::filesystem::remove_all(folder); }
 
   [[nodiscard]] Expected<BenchFile> bench(const std::string& keys) const {
     return parse_bench_file(
@@ -38,8 +36,8 @@ protected:
     return file ? "accepted" : file.error().message;
   }
 
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("dyncal-can-keys-" + std::to_string(getpid()));
+  const tests::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
 };
 
 TEST_F(CanKeys, ReachTheDriverAsTheyStand) {

@@ -8,6 +8,7 @@
 
 #include "services/bench/bench_file.hpp"
 #include "services/bench/dso_delay_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -98,7 +99,8 @@ TEST(SeriesBench, NumbersThatCannotBeAreRefused) {
 }
 
 TEST(SeriesBench, TheDelayComesFromTheFileOfItsCalibration) {
-  const std::filesystem::path folder = testing::TempDir();
+  const tests::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   std::ofstream(folder / "delay.json")
       << R"({"instrument": "scope", "value_s": 2.365e-7, "u_s": 3e-10, "shots": 50})";
   const std::string text = with("{ value_s = 236e-9, u_s = 1e-9 }", "{ file = \"delay.json\" }");

@@ -7,11 +7,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "drivers/can/bus/scripted_source.hpp"
 #include "services/can/can_status.hpp"
 #include "services/source/source_service.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/services/source/bench_listener.hpp"
 
@@ -54,7 +54,6 @@ CanFrame sample(int k) {
 class CanService : public testing::Test {
 protected:
   CanService() {
-    std::filesystem::create_directories(folder);
     std::ofstream(folder / "sensor.dbc")
         << "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [-50|50] \"m/s^2\" S\n"
            " SG_ counter : 16|16@1+ (1,0) [0|0] \"\" S\n";
@@ -66,7 +65,6 @@ protected:
     can.nominal_rate_hz = 1000.0;
     can.u_utc_s = 1e-6;
   }
-  ~CanService() override { std::filesystem::remove_all(folder); }
 
   // Publishes the events until the source has ended and that was heard.
   void publish(std::vector<BusEvent> events) {
@@ -98,8 +96,8 @@ protected:
     return 0;
   }
 
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("dyncal-can-service-" + std::to_string(getpid()));
+  const tests::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   const std::string bench = "can";
   SourceSettings settings;
   bus::Participant network = tests::participant(bus::Vendor::fast_dds);
@@ -110,6 +108,7 @@ protected:
 
 TEST_F(CanService, PublishesSamplesWithTheirDescriptionAsTheContractSays) {
   std::vector<BusEvent> events;
+  events.reserve(3000);
   for (int k = 0; k < 3000; ++k) {
     events.emplace_back(sample(k));
   }

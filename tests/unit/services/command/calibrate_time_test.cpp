@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/command/pulse_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -16,17 +17,8 @@ using ::testing::HasSubstr;
 
 class CalibrateTime : public ::testing::Test {
 protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              ("calibrate_time_" +
-               std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path file(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
+    return own_.write(name, text);
   }
   static nlohmann::json json_of(const fs::path& path) {
     std::ifstream stream(path);
@@ -37,7 +29,8 @@ protected:
     return read ? "" : read.error().message;
   }
 
-  fs::path folder_;
+  const tests::TemporaryFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 // 14 s of a real record at 100 MHz: the counter wraps at the end.

@@ -6,15 +6,16 @@
 #include <gtest/gtest.h>
 
 #include "services/bench/bench_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
 
 TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
-  const std::filesystem::path folder = testing::TempDir();
-  std::ofstream(folder / "adc.json") << "{}";
-  std::ofstream(folder / "dso-delay.json") << R"({"value_s": 236e-9, "u_s": 1e-9})";
-  std::ofstream(folder / "sensor.dbc") << "VERSION \"\"\n";
+  const tests::TemporaryFolder folder;
+  folder.write("adc.json", "{}");
+  folder.write("dso-delay.json", R"({"value_s": 236e-9, "u_s": 1e-9})");
+  folder.write("sensor.dbc", "VERSION \"\"\n");
   const DemoAddresses addresses{.dau_listen = "127.0.0.1:7654",
                                 .acs = "127.0.0.1:5026",
                                 .generator = "127.0.0.1:5025",
@@ -23,8 +24,9 @@ TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
                                 .can_interface = "can0",
                                 .can_bus = "fd-5M"};
   for (const DemoPreset& preset : demo_presets()) {
-    const auto file = parse_bench_file(
-        demo_bench_file(preset, "demo-1", addresses, {1e-3, 2e-3, 3e-7}), folder / "bench.toml");
+    const auto file =
+        parse_bench_file(demo_bench_file(preset, "demo-1", addresses, {1e-3, 2e-3, 3e-7}),
+                         folder.path() / "bench.toml");
     ASSERT_TRUE(file) << preset.name << ": " << file.error().message;
     EXPECT_EQ(file->bench, "demo-1");
     EXPECT_EQ(file->excitation.frequencies_hz, preset.frequencies_hz);

@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
+
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -14,9 +15,6 @@ using testing::HasSubstr;
 
 class OutputFile : public testing::Test {
 protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static std::string text_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -26,8 +24,9 @@ protected:
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / ("output_file_" + std::to_string(getpid()));
-  fs::path path_ = folder_ / "result.json";
+  const tests::TemporaryFolder own_;
+  const fs::path& folder_ = own_.path();
+  const fs::path path_ = folder_ / "result.json";
 };
 
 TEST_F(OutputFile, HasTheWholeTextAndLeavesNothingBeside) {

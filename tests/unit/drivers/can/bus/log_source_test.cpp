@@ -5,7 +5,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::drivers::can {
 namespace {
@@ -16,13 +17,11 @@ const std::vector<FrameFilter> sensor_only = {{0x123, 0x7FF, false}};
 
 class Log : public testing::Test {
 protected:
-  ~Log() override { std::filesystem::remove(path); }
   std::filesystem::path write(const std::string& text) const {
-    std::ofstream(path) << text;
-    return path;
+    return folder.write("drive.log", text);
   }
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("dyncal-log-" + std::to_string(getpid()) + ".log");
+
+  const tests::TemporaryFolder folder;
 };
 
 TEST_F(Log, GivesTheFramesOfItsInterfaceInOrderAndEnds) {

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.hpp"
+
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
@@ -14,9 +16,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 Expected<ResponseTable> read(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "response_file_test.csv";
-  std::ofstream(path) << text;
-  return read_response_file(path);
+  const tests::TemporaryFolder folder;
+  return read_response_file(folder.write("response.csv", text));
 }
 
 TEST(ResponseFile, HasTheValuesOfItsLinesAndKnowsWhereItEnds) {
@@ -74,8 +75,8 @@ TEST_P(WrongResponseFile, IsRefusedWithFileAndLine) {
   const auto table = read(GetParam().text);
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().code, ErrorCode::malformed);
-  EXPECT_THAT(table.error().message, AllOf(HasSubstr("response_file_test.csv"),
-                                           HasSubstr(GetParam().line), HasSubstr(GetParam().what)));
+  EXPECT_THAT(table.error().message, AllOf(HasSubstr("response.csv"), HasSubstr(GetParam().line),
+                                           HasSubstr(GetParam().what)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
