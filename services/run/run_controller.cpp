@@ -195,9 +195,11 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
       return fail(watch_->outlook().reason);
     }
     if (analysis && analysis->arm() == wire::ARM_FINISHED) {
-      return fail(ErrorCode::no_analysis,
-                  fmt::format("run '{}' has ended at the analysis service {}; begin a new run",
-                              run_, analysis->service().c_str()));
+      return fail(
+          ErrorCode::no_analysis,
+          fmt::format("run '{}' has ended at the analysis service {}; what it measured is in "
+                      "its run folder, begin a new run for the rest",
+                      run_, analysis->service().c_str()));
     }
     if (analysis && watch_->outlook().kind == Kind::well &&
         outcome_.results.size() >= analysis->results_published()) {

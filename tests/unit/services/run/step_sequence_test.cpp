@@ -641,7 +641,10 @@ TEST_F(StepSequenceTest, ARunThatHasEndedIsNotResumed) {
   clock_.at(1s, [this] { analysis_.report(wire::ARM_FINISHED); });
   const auto outcome = try_to_resume();
   ASSERT_FALSE(outcome);
-  EXPECT_THAT(outcome.error().message, HasSubstr("run 'r1' has ended"));
+  EXPECT_EQ(
+      outcome.error().message,
+      "run 'r1' has ended at the analysis service analysis@test:1; what it measured is in its "
+      "run folder, begin a new run for the rest");
   EXPECT_EQ(instrument_.connections, 0);
 }
 
