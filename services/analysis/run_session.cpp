@@ -70,6 +70,7 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
   if (begin == SourceStreams::Begin::behind) {
     status_ = {wire::ARM_ARMED, wire::HEALTH_WAITING, taking_over_sentence()};
     taking_over_ = true;
+    evaluator_->expect_announcements(); // what was announced before, it has not heard
     spdlog::info("bench {}, run {}: began before this service; asking its sources for what they "
                  "have sent",
                  bench_, run_);
@@ -359,9 +360,20 @@ void RunSession::finish() {
   publisher_.publish(status_);
 }
 
+// Whoever excites by steps goes on, or ends the run, as soon as it knows what was measured before.
+// Files, and excitation by hand, announce nothing.
+bool RunSession::is_played_to_its_end(Instant now) const {
+  return !excited_by_steps_ && !excitation_over() && !taking_over_ &&
+         evaluator_->has_planned_steps() && now - last_progress_ > announcement_limit;
+}
+
 void RunSession::end_overdue(Instant now) {
   const bool runner_lost = now - last_heard_of_run_ > runner_limit;
   const bool quiet = excitation_over() && !waits_for_source() && now - last_progress_ > quiet_limit;
+  if (is_played_to_its_end(now)) {
+    evaluator_->end_of_excitation(false);
+    wake_up_->ring();
+  }
   if ((!runner_lost && !quiet) || evaluator_->is_evaluating()) {
     return;
   }

@@ -18,7 +18,9 @@
 // excited that nobody watches, and who resumes the run learns which of its steps are left. Where a
 // source does not have the beginning any more, the run is refused: steps could be taken for others.
 // What was announced meanwhile counts when the samples have come, here and after a link was down
-// (stream_follower.hpp).
+// (stream_follower.hpp). Whether steps were announced at all, such a session has not heard: with
+// all that was planned, it waits for `announcement_limit` for who excites them, and may excite some
+// again.
 //
 // One bench, one run: what one run excites, another would take for its own. A run that finds
 // another of its bench before it waits for the end of that one for `bench_limit`, and is refused as
@@ -60,6 +62,7 @@ public:
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds patience{120};
   static constexpr std::chrono::seconds quiet_limit{8};
+  static constexpr std::chrono::seconds announcement_limit{20};
   static constexpr std::chrono::seconds runner_limit{135}; // it may wait for `patience`, too
 
   // Fails (network) as writers do. A recipe that cannot be evaluated makes a session that is
@@ -103,6 +106,7 @@ private:
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
+  [[nodiscard]] bool is_played_to_its_end(Instant now) const;
   void report_work(Instant now);
   void report(wire::HealthState health, std::string message);
   void wait_for_source(std::string message, Instant now);

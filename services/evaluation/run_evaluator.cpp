@@ -166,8 +166,7 @@ bool RunEvaluator::is_ready_for(const std::string& source, std::uint64_t session
 bool RunEvaluator::has_all_steps() const {
   const ExcitationProgress& excitation = records_.excitation();
   return next_step_ >= excitation.steps_expected() &&
-         (excitation.ended() ||
-          (!excitation.is_conducted() && next_step_ >= recipe_->steps.size()));
+         (excitation.ended() || (!excitation.is_conducted() && has_planned_steps()));
 }
 
 std::optional<std::string> RunEvaluator::source_of_clock_alone() const {

@@ -115,6 +115,8 @@ public:
   [[nodiscard]] std::size_t steps_ready() const { return steps_ready_; }
   // Steps are being evaluated in threads of their own.
   [[nodiscard]] bool is_evaluating() const { return !evaluations_.is_idle(); }
+  // Every planned step has been evaluated; some may be excited again.
+  [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->steps.size(); }
   // Everything of this run has been handed over.
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.

@@ -246,6 +246,41 @@ TEST_F(RunSessionCatchUp, IsNotReadyBeforeTheResultsOfARunThatBeganBeforeIt) {
   EXPECT_EQ(published_.results().size(), 1U);
 }
 
+// Analysis and conductor died after the last step, and somebody resumes the run: only that one
+// knows whether a step is excited again, and needs an analysis that has not ended it.
+TEST_F(RunSessionCatchUp, EndsNoRunThatItHasTakenOverBeforeItsConductorDoes) {
+  arm_and_run();
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.send(endless(synthetic_.dau_blocks()));
+  session_.reset();
+  begin_behind();
+  run_for(1s, {&acs_, &dau_});
+  acs_.answer_requests();
+  dau_.answer_requests();
+  run_for(RunSession::announcement_limit - 2s, {&acs_, &dau_});
+  EXPECT_EQ(published_.results().size(), 1U);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+  set_state(wire::MEASUREMENT_DONE);
+  pass(200ms);
+  EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+  EXPECT_EQ(published_.results().size(), 1U);
+}
+
+TEST_F(RunSessionCatchUp, EndsRecordedFilesThatItHasTakenOverWithTheirLastStep) {
+  arm_and_run();
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.send(endless(synthetic_.dau_blocks()));
+  session_.reset();
+  begin_behind();
+  run_for(1s, {&acs_, &dau_});
+  acs_.answer_requests();
+  dau_.answer_requests();
+  run_for(RunSession::announcement_limit + 3s, {&acs_, &dau_}); // and nobody announces a step
+  EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+  EXPECT_EQ(published_.results().size(), 1U);
+}
+
 TEST_F(RunSessionCatchUp, SaysWhichSourceIsAwayWhileItTakesARunOver) {
   arm_and_run();
   acs_.send(synthetic_.acs_blocks());
