@@ -7,13 +7,13 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "drivers/can/time/frame_duration.hpp"
-#include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
 
@@ -141,8 +141,17 @@ bool CanCalibration::bench_was_starved() {
   return starved(bench_->errors());
 }
 
-std::optional<CanCalibration::Points>
-CanCalibration::run(const std::vector<std::string>& channels) {
+void CanCalibration::kill_and_restart(Laboratory& services, ProgramRun& can,
+                                      const std::string& file, const SourceKill& kill) {
+  std::this_thread::sleep_for(kill.after); // the drawn instant
+  can.send(SIGKILL);
+  EXPECT_TRUE(can.wait(patience));
+  std::this_thread::sleep_for(kill.away); // drawn as well
+  services.start("dyncal-can", {file}, "cyclonedds");
+}
+
+std::optional<CanCalibration::Points> CanCalibration::run(const std::vector<std::string>& channels,
+                                                          const std::optional<SourceKill>& kill) {
   write_bench_file(channels);
   const std::string file = folder_ / "bench.toml";
   Laboratory services(folder_);
@@ -159,6 +168,9 @@ CanCalibration::run(const std::vector<std::string>& channels) {
                  {"run", file, "--json", folder_ / "result.json", "--dds", "cyclonedds", "--domain",
                   std::to_string(own_dds_domain())},
                  folder_);
+  if (kill) {
+    kill_and_restart(services, can, file, *kill);
+  }
   const auto status = run.wait(patience);
   if (bench_was_starved()) {
     return std::nullopt;
@@ -170,6 +182,16 @@ CanCalibration::run(const std::vector<std::string>& channels) {
     points[{point["channel"], fmt::format("{:g}", point["frequency_hz"].get<double>())}] = point;
   }
   return points;
+}
+
+void CanCalibration::expect_whole(std::size_t channels) const {
+  const nlohmann::json result = read_json(folder_ / "result.json");
+  EXPECT_EQ(result["points"].size(), 3 * channels); // of three frequencies
+  for (const auto& point : result["points"]) {
+    EXPECT_TRUE(point["valid"].get<bool>()) << point["problem"];
+    EXPECT_EQ(point["lost"], 0) << point;
+    EXPECT_EQ(point["flags"], nlohmann::json::array()) << point;
+  }
 }
 
 void CanCalibration::expect_truth(const Points& points, const std::string& source,

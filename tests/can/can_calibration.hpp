@@ -3,6 +3,7 @@
 // result of dyncal run, held against the truth of the virtual bench.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -14,7 +15,7 @@
 
 #include "drivers/can/time/frame_duration.hpp"
 #include "tests/can/kernel_can.hpp"
-#include "tests/system/program_run.hpp"
+#include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
 
@@ -30,6 +31,12 @@ struct Bus {
 
 // How long the sensor's frames are on the bus, on average over their contents.
 [[nodiscard]] double mean_frame_s(const Bus& bus);
+
+// dyncal-can is killed in a run, and started again.
+struct SourceKill {
+  std::chrono::duration<double> after; // the start of the run
+  std::chrono::duration<double> away;
+};
 
 // True, with a line that the test was skipped, when the virtual bench says that it could not keep
 // the time of a bus. `said`: at its end.
@@ -48,7 +55,11 @@ public:
   void add_source(const std::string& name, const std::string& interface_name,
                   const std::string& settings);
   // Calibrates the channels. Nothing when the machine had no time for it.
-  [[nodiscard]] std::optional<Points> run(const std::vector<std::string>& channels);
+  [[nodiscard]] std::optional<Points> run(const std::vector<std::string>& channels,
+                                          const std::optional<SourceKill>& kill = std::nullopt);
+
+  // Every point is there, valid, without loss and without flag.
+  void expect_whole(std::size_t channels) const;
 
   // All three axes of a source within `max_in_u` of the truth in phase and magnitude, with a line
   // for each frequency of the axis of excitation.
@@ -60,6 +71,8 @@ public:
 private:
   // Ends the bench; true if it had no time to keep the time of a bus.
   bool bench_was_starved();
+  static void kill_and_restart(Laboratory& services, ProgramRun& can, const std::string& file,
+                               const SourceKill& kill);
 
   void write_bench_file(const std::vector<std::string>& channels) const;
 

@@ -14,24 +14,24 @@ import subprocess
 import time
 
 PATIENCE_S = 300.0
-CHANNELS = 3  # of the sensor
 SERVICES = ("dyncal-analysis", "dyncal-dau", "dyncal-acs", "dyncal-guard")
 READY = {
     "dyncal-analysis": "analysis ready",
     "dyncal-dau": "listening at UDP",
     "dyncal-acs": ", source ",
+    "dyncal-dso": " is ready",
     "dyncal-guard": "guarding the output",
+    "dyncal-recorder": "recorder ready",
+    "dyncal-web": "web ready",
     "dyncal-virtual-bench": "datagrams to",
 }
+FAST_DDS_IN_MIXED = ("dyncal", "dyncal-acs", "dyncal-dso", "dyncal-web")
+ON_BUS = sorted({*READY, "dyncal"} - {"dyncal-virtual-bench"})
 VENDORS = {
-    "cyclonedds": dict.fromkeys((*SERVICES, "dyncal"), "cyclonedds"),
-    "fastdds": dict.fromkeys((*SERVICES, "dyncal"), "fastdds"),
+    "cyclonedds": dict.fromkeys(ON_BUS, "cyclonedds"),
+    "fastdds": dict.fromkeys(ON_BUS, "fastdds"),
     "mixed": {
-        "dyncal-analysis": "cyclonedds",
-        "dyncal-dau": "cyclonedds",
-        "dyncal-acs": "fastdds",
-        "dyncal-guard": "cyclonedds",
-        "dyncal": "fastdds",
+        program: "fastdds" if program in FAST_DDS_IN_MIXED else "cyclonedds" for program in ON_BUS
     },
 }
 
@@ -120,6 +120,11 @@ class BenchLaboratory:
     without the analysis to all but one.
     """
 
+    preset = "mpu9250-ptb"  # of the virtual bench
+    channels = 3  # of its sensor
+    sensor_uncertainty = "adc_delay_s = 1e-6"
+    run_s = 11.0  # about what an undisturbed run takes, from its first word to its last
+
     def __init__(
         self,
         programs,
@@ -150,7 +155,7 @@ class BenchLaboratory:
         ports_file = self.folder / "ports.json"
         bench = self.start_program(
             "dyncal-virtual-bench",
-            ["--preset", "mpu9250-ptb", "--dau", self.dau, "--ports-file", ports_file]
+            ["--preset", self.preset, "--dau", self.dau, "--ports-file", ports_file]
             + ["--truth", self.folder / "truth.json"]
             + ["--frequencies", ",".join(self.frequencies), "--levels", "20"]
             + ["--acs-rate", self.acs_rate_hz],
@@ -172,26 +177,30 @@ duration_s = 1.5
 driver = "scpi"
 address = "{self.generator_host()}:{self.ports['generator']}"
 level_per_volt = 50.0
-[sources.dau]
+[sources.acs]
+driver = "socket"
+address = "127.0.0.1:{self.ports['acs']}"
+{self.sensor_text()}
+[uncertainty]
+reference_magnitude_rel = 1e-3
+reference_phase_rad = 1.7e-3
+{self.sensor_uncertainty}
+"""
+
+    def sensor_text(self):
+        """Its sources, and the method."""
+        return f"""[sources.dau]
 driver = "smartup"
 sensor = "0xbccb0100"
 listen = "{self.dau}"
 channels = {{ Data_11 = "sync" }}
 time_base = "utc"
-[sources.acs]
-driver = "socket"
-address = "127.0.0.1:{self.ports['acs']}"
 [method]
 kind = "sample-timestamping"
 reference = "acs/reference"
 sync_acs = "acs/sync"
 sync_dau = "dau/sync"
-dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]
-[uncertainty]
-reference_magnitude_rel = 1e-3
-reference_phase_rad = 1.7e-3
-adc_delay_s = 1e-6
-"""
+dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
 
     def start_program(self, program, arguments, on_host=()):
         place = self.folder / f"{len(self.started):02}-{program}"
@@ -206,9 +215,16 @@ adc_delay_s = 1e-6
         return self.start_program(program, [*arguments, *place])
 
     def restart(self, service):
-        files = [] if service == "dyncal-analysis" else [self.bench_file]
-        self.services[service] = self.on_bus(service, files)
+        arguments = {
+            "dyncal-analysis": [],
+            "dyncal-recorder": ["--folder", self.recordings()],
+            "dyncal-web": ["--listen", "127.0.0.1:0", "--store", "none"],
+        }.get(service, [self.bench_file])
+        self.services[service] = self.on_bus(service, arguments)
         self.services[service].wait_for_text(READY[service])
+
+    def recordings(self):
+        return self.folder / "recordings"
 
     def run(self, *arguments):
         return self.on_bus(
@@ -221,7 +237,7 @@ adc_delay_s = 1e-6
     def expect_whole_result(self):
         """Every value is there, valid, without loss and without flag; returns the values."""
         points = self.result()["points"]
-        if len(points) != len(self.frequencies) * CHANNELS:
+        if len(points) != len(self.frequencies) * self.channels:
             raise Failure(f"{self.name}: {len(points)} values")
         for point in points:
             if not point["valid"] or point["lost"] or point["flags"]:

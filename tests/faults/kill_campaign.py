@@ -8,16 +8,20 @@ PROGRAMS is the folder of the built programs. A case is a service that is killed
 systemd does, `run` (`dyncal run` killed, and resumed), `host` (both it and the analysis at once, as
 when the host dies that they share), or `stop:SERVICE` (SIGSTOP for --stop-s).
 Every draw is a laboratory of its own: a run of three steps of which the fault meets one instant.
+dyncal-dso has a bench of its own, with a sensor that it triggers; the recorder and the web page are
+started for their own draws alone.
 
 Held: the run ends with 0, has every value, valid, without loss and without flag, within five
 standard uncertainties of the undisturbed run's; the output is off in the end, and is never on for
-more than two seconds while its conductor is dead. A run that missed the analysis or a source at its
-start, and said so before anything was excited, counts as refused. Exit status 1 if a draw did not
-hold.
+more than two seconds while its conductor is dead. Who only looks on, the recorder and the web page,
+disturbs no step, and the recording gives the run's values to the last bit. A run that missed the
+analysis or a source at its start, and said so before anything was excited, counts as refused. Exit
+status 1 if a draw did not hold.
 """
 
 import argparse
 import concurrent.futures
+import json
 import math
 import pathlib
 import random
@@ -27,9 +31,10 @@ import sys
 import tempfile
 import time
 
-from bench_laboratory import CHANNELS, SERVICES, VENDORS, BenchLaboratory, Failure, wait_until
+from bench_laboratory import SERVICES, VENDORS, BenchLaboratory, Failure, wait_until
+from series_laboratory import SeriesLaboratory
 
-RUN_S = 11.0  # about what an undisturbed run takes, from its first word to its last
+SPECTATORS = ("dyncal-recorder", "dyncal-web")
 MAX_UNATTENDED_S = 2.0
 AGREEMENT_U = 5.0
 REFUSALS = (
@@ -46,10 +51,12 @@ def values(result):
     }
 
 
-def judge(result, undisturbed, steps):
+def judge(laboratory, undisturbed):
+    """Returns how many values are of a repeated step."""
     expected = values(undisturbed)
-    got = values(result)
-    if len(expected) != steps * CHANNELS or set(got) != set(expected):
+    got = values(laboratory.result())
+    wanted = len(laboratory.frequencies) * laboratory.channels
+    if len(expected) != wanted or set(got) != set(expected):
         raise Failure(f"{len(got)} of {len(expected)} values are there and valid")
     for key, point in got.items():
         if point["lost"] or point["flags"]:
@@ -101,9 +108,48 @@ def killed_run(laboratory, instant_s, run, with_analysis_for_s=None):
     return laboratory.run("--resume", "campaign")
 
 
+def judge_recording(laboratory):
+    """The newest recording of the run, begun before or after the kill, gives its values."""
+    laboratory.services["dyncal-recorder"].end()
+    recordings = laboratory.recordings().glob(f"{laboratory.name}/campaign*.mcap")
+    newest = max(recordings, key=lambda path: path.stat().st_mtime_ns, default=None)
+    if newest is None:
+        raise Failure("there is no recording of the run")
+    result = laboratory.folder / "recorded.json"
+    analyse = laboratory.start_program("dyncal", ["analyse", newest, "--json", result])
+    if analyse.wait() != 0:
+        raise Failure(f"{newest.name}: {analyse.errors().strip().splitlines()[-1:]}")
+    if json.loads(result.read_text(encoding="utf-8"))["points"] != laboratory.result()["points"]:
+        raise Failure(f"{newest.name} does not give the values of the run")
+
+
+def bench_of(case):
+    return SeriesLaboratory if case.endswith("dyncal-dso") else BenchLaboratory
+
+
+def disturbed_run(arguments, case, laboratory, instant_s, away_s):
+    """The run's programs in their order: one, or with the one that resumed it two."""
+    service = case.removeprefix("stop:")
+    if service in SPECTATORS:
+        laboratory.restart(service)
+    run = laboratory.run("--run", "campaign")
+    if case == "run":
+        return [run, killed_run(laboratory, instant_s, run)]
+    if case == "host":
+        return [run, killed_run(laboratory, instant_s, run, away_s)]
+    if case != service:
+        return [stopped_service(laboratory, service, instant_s, arguments.stop_s, run)]
+    return [killed_service(laboratory, service, instant_s, away_s, run)]
+
+
+def was_refused(runs):
+    said = "".join(run.errors() for run in runs)
+    return "step 1 of" not in said and any(one in runs[-1].errors() for one in REFUSALS)
+
+
 def draw(arguments, case, vendors, number, undisturbed):
     chance = random.Random(f"{arguments.seed} {case} {vendors} {number}")
-    instant_s = chance.uniform(0.0, RUN_S)
+    instant_s = chance.uniform(0.0, bench_of(case).run_s)
     away_s = chance.choice((0.1, 1.0, chance.uniform(0.0, 8.0)))
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"dyncal-{case.replace(':', '-')}-"))
     begin_s = time.monotonic()
@@ -111,28 +157,20 @@ def draw(arguments, case, vendors, number, undisturbed):
     problem = ""
     refused = False
     try:
-        with BenchLaboratory(arguments.programs, folder, vendors) as laboratory:
-            first = run = laboratory.run("--run", "campaign")
-            if case == "run":
-                run = killed_run(laboratory, instant_s, run)
-            elif case == "host":
-                run = killed_run(laboratory, instant_s, run, away_s)
-            elif case.startswith("stop:"):
-                service = case.removeprefix("stop:")
-                run = stopped_service(laboratory, service, instant_s, arguments.stop_s, run)
-            elif case != "undisturbed":
-                run = killed_service(laboratory, case, instant_s, away_s, run)
-            status = run.wait()
+        with bench_of(case)(arguments.programs, folder, vendors) as laboratory:
+            runs = disturbed_run(arguments, case, laboratory, instant_s, away_s)
+            status = runs[-1].wait()
             expect_off(laboratory)
-            refused = "step 1 of" not in first.errors() + run.errors() and any(
-                one in run.errors() for one in REFUSALS
-            )
+            refused = was_refused(runs)
             if status != 0 and not refused:
-                raise Failure(f"exit status {status}: {run.errors().strip().splitlines()[-1:]}")
+                last_line = runs[-1].errors().strip().splitlines()[-1:]
+                raise Failure(f"exit status {status}: {last_line}")
             if not refused:
-                result = laboratory.result()
-                undisturbed = undisturbed or result
-                repeated = judge(result, undisturbed, len(laboratory.frequencies))
+                repeated = judge(laboratory, undisturbed)
+            if case.removeprefix("stop:") in SPECTATORS and (repeated or refused):
+                raise Failure("who looks on has disturbed the run")
+            if case == "dyncal-recorder":
+                judge_recording(laboratory)
     except Failure as failure:
         problem = str(failure)
     took_s = time.monotonic() - begin_s
@@ -141,13 +179,18 @@ def draw(arguments, case, vendors, number, undisturbed):
         print(f"    start, away {away_s:.2f} s; logs in {folder})", flush=True)
     else:
         shutil.rmtree(folder)
-    return {
-        "problem": problem,
-        "repeated": repeated,
-        "refused": refused,
-        "took_s": took_s,
-        "result": undisturbed,
-    }
+    return {"problem": problem, "repeated": repeated, "refused": refused, "took_s": took_s}
+
+
+def undisturbed_result(arguments, bench):
+    """What an undisturbed run gives; fails where it has not every value."""
+    with tempfile.TemporaryDirectory(prefix="dyncal-undisturbed-") as folder:
+        with bench(arguments.programs, folder, "cyclonedds") as laboratory:
+            run = laboratory.run()
+            if run.wait() != 0:
+                raise Failure(f"undisturbed: {run.errors().strip().splitlines()[-1:]}")
+            judge(laboratory, laboratory.result())
+            return laboratory.result()
 
 
 def campaign(arguments, case, vendors, pool, undisturbed):
@@ -170,7 +213,7 @@ def campaign(arguments, case, vendors, pool, undisturbed):
 
 
 def main():
-    cases = ["run", "host", *SERVICES, "stop:dyncal-analysis"]
+    cases = ["run", "host", *SERVICES, "dyncal-dso", *SPECTATORS, "stop:dyncal-analysis"]
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--cases", type=lambda text: text.split(","), default=cases)
@@ -181,14 +224,14 @@ def main():
     parser.add_argument("--stop-s", type=float, default=30.0)
     arguments = parser.parse_args()
     arguments.programs = arguments.programs.resolve()
-    undisturbed = draw(arguments, "undisturbed", "cyclonedds", 0, None)
-    if undisturbed["problem"]:
-        return 1
+    undisturbed = {
+        bench: undisturbed_result(arguments, bench) for bench in set(map(bench_of, arguments.cases))
+    }
     held = True
     with concurrent.futures.ThreadPoolExecutor(arguments.at_once) as pool:
         for case in arguments.cases:
             for vendors in arguments.vendors:
-                held &= campaign(arguments, case, vendors, pool, undisturbed["result"])
+                held &= campaign(arguments, case, vendors, pool, undisturbed[bench_of(case)])
     return 0 if held else 1
 
 

@@ -91,7 +91,7 @@ def draw(arguments, host, down_s, vendors, number, undisturbed):
             if status != 0:
                 raise Failure(f"exit status {status}: {run.errors().strip().splitlines()[-1:]}")
             result = laboratory.result()
-            repeated = judge(result, undisturbed or result, len(laboratory.frequencies))
+            repeated = judge(laboratory, undisturbed or result)
     except Failure as failure:
         problem = str(failure)
         print(f"{host} down {down_s:g} s, {vendors} draw {number}: {problem}")

@@ -103,7 +103,6 @@ def campaign(arguments, vendors):
                     acs_rate_hz=arguments.acs_rate_hz,
                 )
             )
-        benches[0].vendors = {**VENDORS[vendors], "dyncal-web": VENDORS[vendors]["dyncal-dau"]}
         for name in SERVICES:
             files = [] if name == "dyncal-analysis" else [bench.bench_file for bench in benches]
             benches[0].on_bus(name, files).wait_for_text(READY[name])
