@@ -72,13 +72,13 @@ void BenchRecordings::take(const wire::Measurement& measurement) {
   if (bench.run && bench.run->name == run) {
     bench.run->heard = now;
     if (is_over(measurement) && !bench.run->ends) {
-      bench.run->ends = now + end_limit;
+      bench.run->ends = bench.run->give_up = now + end_limit;
     }
   } else if (!is_over(measurement)) {
     if (bench.run) {
       over_.insert({name, bench.run->name});
     }
-    bench.run = Run{run, now, std::nullopt};
+    bench.run = Run{run, now, std::nullopt, std::nullopt};
   }
 }
 
@@ -103,10 +103,21 @@ void BenchRecordings::work() {
   }
 }
 
+// Whether there is nothing more to record of its run.
+bool BenchRecordings::is_past(const Bench& bench, Instant now) {
+  const Run& run = *bench.run;
+  if (now - run.heard > silence_limit) {
+    return true;
+  }
+  if (!run.ends || now <= *run.ends) {
+    return false;
+  }
+  return now > *run.give_up || !bench.recorder || !bench.recorder->status().catches_up;
+}
+
 void BenchRecordings::choose_file(const std::string& name, Bench& bench) {
   const Instant now = clock_.now();
-  if (bench.run &&
-      (now > bench.run->ends.value_or(Instant::max()) || now - bench.run->heard > silence_limit)) {
+  if (bench.run && is_past(bench, now)) {
     over_.insert({name, bench.run->name});
     bench.run.reset();
   }
@@ -167,6 +178,11 @@ Expected<void> BenchRecordings::end(const std::string& name, Bench& bench) {
   spdlog::info("bench {}: {} has {} messages, {:.1f} MB; {} not stored, {} never came", name,
                path.string(), status.stored, static_cast<double>(status.file_bytes) / 1e6,
                status.not_stored, status.missing);
+  if (status.catches_up) {
+    spdlog::warn("bench {}: {} ended before its sources had given again what it missed; it lacks "
+                 "the beginning of its run or parts of it",
+                 name, path.string());
+  }
   return {};
 }
 

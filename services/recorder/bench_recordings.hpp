@@ -2,11 +2,11 @@
 //
 // A bench is recorded from the moment it is known: named beforehand, or heard of by a description
 // of its sources or by a run. Each run has a file of its own, from its announcement until its
-// analysis has finished, or `end_limit` after its end, or until the next run; a run that went on
-// when the recorder was started, too. Between runs another file is written, unless only runs are
-// wanted; one that is larger than `max_file_bytes` is followed by the next. A recording that ended
-// by itself (disk full) is not begun anew before the next run, or before its time is over: its
-// status goes on saying why.
+// analysis has finished and what was missed has been given again, or `end_limit` after its end, or
+// until the next run; a run that went on when the recorder was started, too. Between runs another
+// file is written, unless only runs are wanted; one that is larger than `max_file_bytes` is
+// followed by the next. A recording that ended by itself (disk full) is not begun anew before the
+// next run, or before its time is over: its status goes on saying why.
 //
 // work() begins and ends recordings and returns at once otherwise, but for the time that a file
 // takes to be ended. One thread.
@@ -62,7 +62,8 @@ private:
   struct Run {
     std::string name;
     Instant heard;
-    std::optional<Instant> ends; // at the latest
+    std::optional<Instant> ends;    // unless something is still caught up with
+    std::optional<Instant> give_up; // at the latest
   };
   struct Bench {
     std::unique_ptr<recording::Recorder> recorder;
@@ -83,6 +84,7 @@ private:
   void take(const wire::Measurement& measurement);
   void take(const wire::ServiceStatus& status);
   [[nodiscard]] bool is_wanted(const std::string& bench) const;
+  [[nodiscard]] static bool is_past(const Bench& bench, Instant now);
   void choose_file(const std::string& name, Bench& bench);
   void begin(const std::string& name, Bench& bench, const std::string& run);
   Expected<void> end(const std::string& name, Bench& bench);

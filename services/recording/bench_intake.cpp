@@ -178,7 +178,7 @@ void BenchIntake::look_at(const wire::Measurement& measurement) {
   }
   if (measurement.state() != wire::MEASUREMENT_RUNNING) {
     if (run_ && run_->name == name) {
-      run_.reset();
+      run_->over = true;
     }
     return;
   }
@@ -200,9 +200,9 @@ BenchIntake::Source& BenchIntake::source(const std::string& name) {
   return sources_.try_emplace(name, fmt::format("{} {}", asker_, name)).first->second;
 }
 
-// Of a run that goes on and whose beginning in a source was not heard.
+// Of a run whose beginning in a source was not heard.
 void BenchIntake::ask_for_beginnings(Instant now) {
-  if (!run_ || now - run_->since < beginning_patience) {
+  if (!run_ || (!run_->over && now - run_->since < beginning_patience)) {
     return;
   }
   for (const std::string& name : run_->sources) {
@@ -213,6 +213,19 @@ void BenchIntake::ask_for_beginnings(Instant now) {
       found->second.gaps.ask_for_all(now);
     }
   }
+}
+
+bool BenchIntake::beginnings_are_asked_for() const {
+  return std::ranges::all_of(run_->sources, [&](const std::string& name) {
+    const auto found = sources_.find(name);
+    return found != sources_.end() && (found->second.answered.contains(run_->name) ||
+                                       found->second.asked_all.contains(run_->name));
+  });
+}
+
+bool BenchIntake::catches_up() const {
+  return (run_ && run_->over && !beginnings_are_asked_for()) ||
+         std::ranges::any_of(sources_, [](const auto& one) { return one.second.gaps.waits(); });
 }
 
 Expected<void> BenchIntake::open_answer_readers() {
@@ -247,6 +260,9 @@ Expected<void> BenchIntake::ask() {
     request.session(due->session);
     request.after(due->number);
     requests_->write(request, request_write_limit);
+  }
+  if (run_ && run_->over && !catches_up()) {
+    run_.reset();
   }
   return {};
 }

@@ -53,6 +53,8 @@ public:
   // By source, as metadata "dyncal.losses" has it.
   [[nodiscard]] TextMap losses() const;
   [[nodiscard]] std::uint64_t missing() const;
+  // What was asked for, or of a run that is over is still to be, has yet to come or be given up.
+  [[nodiscard]] bool catches_up() const;
   [[nodiscard]] std::uint64_t recovered() const;
 
 private:
@@ -76,6 +78,7 @@ private:
     std::string name; // the newest that goes on
     std::vector<std::string> sources;
     Instant since{};
+    bool over = false; // kept until its beginnings are there
   };
   struct AnswerReaders {
     bus::Reader<wire::SampleBlock> blocks;
@@ -95,6 +98,7 @@ private:
   void look_at(const wire::SourceDescription& description);
   [[nodiscard]] Source& source(const std::string& name);
   void ask_for_beginnings(Instant now);
+  [[nodiscard]] bool beginnings_are_asked_for() const;
   [[nodiscard]] services::Expected<void> open_answer_readers();
 
   bus::Participant& participant_;

@@ -92,6 +92,7 @@ public:
     status.stored = figures.stored;
     status.not_stored = figures.not_stored + dropped_;
     status.missing = missing_;
+    status.catches_up = catches_up_;
     status.recovered = recovered_;
     status.malformed = participant_.malformed_messages();
     status.file_bytes = figures.file_bytes;
@@ -142,6 +143,7 @@ private:
     if (const auto asked = intake_->ask(); !asked) {
       spdlog::error("bench {}: {}", options_.bench, asked.error().message);
     }
+    catches_up_ = intake_->catches_up();
     const Instant now = clock_.now();
     if (urgent_ || now - chunk_began_ >= chunk_interval) {
       hand_over();
@@ -207,6 +209,7 @@ private:
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> missing_{0};
   std::atomic<std::uint64_t> recovered_{0};
+  std::atomic<bool> catches_up_{false};
   std::jthread thread_; // the last member: it ends before what it uses
 };
 

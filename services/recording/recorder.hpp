@@ -46,6 +46,7 @@ struct RecorderStatus {
   std::uint64_t file_bytes = 0;
   std::uint64_t free_bytes = 0; // on the disk
   std::uint64_t malformed = 0;  // messages that do not match the contract, not stored
+  bool catches_up = false;      // what it asked sources for again has yet to come
   bool ended = false;           // nothing more is stored
   std::string problem;          // why it ended before it was stopped; empty: it did not
 };

@@ -46,6 +46,8 @@ public:
   // Everything of the run that goes on is to be asked for.
   void ask_for_all(Instant now);
   [[nodiscard]] std::optional<Request> due(Instant now);
+  // Something was asked for, or is to be, and is neither there nor given up.
+  [[nodiscard]] bool waits() const { return active_ || !waiting_.empty(); }
 
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t recovered() const { return recovered_; }

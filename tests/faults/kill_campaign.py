@@ -109,18 +109,29 @@ def killed_run(laboratory, instant_s, run, with_analysis_for_s=None):
 
 
 def judge_recording(laboratory):
-    """The newest recording of the run, begun before or after the kill, gives its values."""
-    laboratory.services["dyncal-recorder"].end()
+    """The newest recording of the run, begun before or after the kill, gives its values.
+
+    Where the run ended before the recorder was there again, it says what it lacks.
+    """
     recordings = laboratory.recordings().glob(f"{laboratory.name}/campaign*.mcap")
     newest = max(recordings, key=lambda path: path.stat().st_mtime_ns, default=None)
     if newest is None:
         raise Failure("there is no recording of the run")
+    second = newest.name != "campaign.mcap"
+    recorder = laboratory.services["dyncal-recorder"]
+    if second:
+        recorder.wait_for_text(f"{newest.name} has ")
+    recorder.end()
     result = laboratory.folder / "recorded.json"
     analyse = laboratory.start_program("dyncal", ["analyse", newest, "--json", result])
-    if analyse.wait() != 0:
-        raise Failure(f"{newest.name}: {analyse.errors().strip().splitlines()[-1:]}")
-    if json.loads(result.read_text(encoding="utf-8"))["points"] != laboratory.result()["points"]:
-        raise Failure(f"{newest.name} does not give the values of the run")
+    analyse.wait()
+    recorded = json.loads(result.read_text(encoding="utf-8"))["points"]
+    given = laboratory.result()["points"]
+    unsaid = [one for one in recorded if one not in given and one["valid"] and not one["flags"]]
+    if unsaid:
+        raise Failure(f"{newest.name} gives other values than the run: {unsaid[0]}")
+    if not recorded or (second and recorded != given):
+        raise Failure(f"{newest.name} gives {len(recorded)} of {len(given)} values of the run")
 
 
 def bench_of(case):

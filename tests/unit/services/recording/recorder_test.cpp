@@ -152,6 +152,10 @@ TEST_F(RecorderTest, AsksForWhatItMissedAndSaysWhatItCouldNotHave) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->session(), 5U);
   EXPECT_EQ(request->after(), 1U);
+  while (!recorder->status().catches_up && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield(); // it tells so behind its request
+  }
+  EXPECT_TRUE(recorder->status().catches_up);
   auto answer = others_.writer(bus::topics::catch_up_samples, request->asker().to_string()).value();
   answer.write(block_of(2));
   answer.write(block_of(3));
@@ -160,9 +164,11 @@ TEST_F(RecorderTest, AsksForWhatItMissedAndSaysWhatItCouldNotHave) {
   end.values().clear();
   end.acknowledged_run(request->request());
   answer.write(end);
-  while (recorder->status().recovered < 2 && std::chrono::steady_clock::now() < deadline) {
+  while ((recorder->status().recovered < 2 || recorder->status().catches_up) &&
+         std::chrono::steady_clock::now() < deadline) {
     std::this_thread::yield();
   }
+  EXPECT_FALSE(recorder->status().catches_up);
   const auto status = recorder->stop();
   ASSERT_TRUE(status);
   EXPECT_EQ(status->recovered, 2U);
