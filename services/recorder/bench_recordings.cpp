@@ -179,8 +179,8 @@ Expected<void> BenchRecordings::end(const std::string& name, Bench& bench) {
                path.string(), status.stored, static_cast<double>(status.file_bytes) / 1e6,
                status.not_stored, status.missing);
   if (status.catches_up) {
-    spdlog::warn("bench {}: {} ended before its sources had given again what it missed; it lacks "
-                 "the beginning of its run or parts of it",
+    spdlog::warn("bench {}: {} ended before its sources had given again what it missed; it may "
+                 "lack the beginning of its run, or parts of it",
                  name, path.string());
   }
   return {};

@@ -183,6 +183,7 @@ void BenchIntake::look_at(const wire::Measurement& measurement) {
     return;
   }
   if (run_ && run_->name == name) {
+    run_->over = false; // it may be resumed
     return;
   }
   run_ = Run{name, {}, clock_.now()};

@@ -14,7 +14,8 @@ started for their own draws alone.
 Held: the run ends with 0, has every value, valid, without loss and without flag, within five
 standard uncertainties of the undisturbed run's; the output is off in the end, and is never on for
 more than two seconds while its conductor is dead. Who only looks on, the recorder and the web page,
-disturbs no step, and the recording gives the run's values to the last bit. A run that missed the
+disturbs no step; the recording of a recorder that is there again before the run ends gives the
+run's values to the last bit, that of another says what it lacks. A run that missed the
 analysis or a source at its start, and said so before anything was excited, counts as refused. Exit
 status 1 if a draw did not hold.
 """
@@ -124,14 +125,16 @@ def judge_recording(laboratory):
     recorder.end()
     result = laboratory.folder / "recorded.json"
     analyse = laboratory.start_program("dyncal", ["analyse", newest, "--json", result])
-    analyse.wait()
+    status = analyse.wait()
     recorded = json.loads(result.read_text(encoding="utf-8"))["points"]
     given = laboratory.result()["points"]
     unsaid = [one for one in recorded if one not in given and one["valid"] and not one["flags"]]
     if unsaid:
         raise Failure(f"{newest.name} gives other values than the run: {unsaid[0]}")
-    if not recorded or (second and recorded != given):
-        raise Failure(f"{newest.name} gives {len(recorded)} of {len(given)} values of the run")
+    if not recorded or (status == 0 and len(recorded) != len(given)):
+        raise Failure(f"{newest.name} gives {len(recorded)} of {len(given)} values")
+    if second and recorded != given:
+        raise Failure(f"{newest.name} lacks some of the run, and says so")
 
 
 def bench_of(case):

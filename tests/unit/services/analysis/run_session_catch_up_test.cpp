@@ -49,6 +49,17 @@ protected:
                                   {.service = "analysis@test:2", .host = "test", .dds = "memory"}};
     session_ = RunSession::create(context, running, SourceStreams::Begin::behind).value();
   }
+  // All of the plan has been sent when this service takes the run over, and is sent again.
+  void take_over_behind_the_last_step() {
+    arm_and_run();
+    acs_.send(endless(synthetic_.acs_blocks()));
+    dau_.send(endless(synthetic_.dau_blocks()));
+    session_.reset();
+    begin_behind();
+    run_for(1s, {&acs_, &dau_});
+    acs_.answer_requests();
+    dau_.answer_requests();
+  }
   void finish() {
     excite(wire::EXCITATION_DONE);
     set_state(wire::MEASUREMENT_DONE);
@@ -249,14 +260,7 @@ TEST_F(RunSessionCatchUp, IsNotReadyBeforeTheResultsOfARunThatBeganBeforeIt) {
 // Analysis and conductor died after the last step, and somebody resumes the run: only that one
 // knows whether a step is excited again, and needs an analysis that has not ended it.
 TEST_F(RunSessionCatchUp, EndsNoRunThatItHasTakenOverBeforeItsConductorDoes) {
-  arm_and_run();
-  acs_.send(endless(synthetic_.acs_blocks()));
-  dau_.send(endless(synthetic_.dau_blocks()));
-  session_.reset();
-  begin_behind();
-  run_for(1s, {&acs_, &dau_});
-  acs_.answer_requests();
-  dau_.answer_requests();
+  take_over_behind_the_last_step();
   run_for(RunSession::announcement_limit - 2s, {&acs_, &dau_});
   EXPECT_EQ(published_.results().size(), 1U);
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
@@ -268,14 +272,7 @@ TEST_F(RunSessionCatchUp, EndsNoRunThatItHasTakenOverBeforeItsConductorDoes) {
 }
 
 TEST_F(RunSessionCatchUp, EndsRecordedFilesThatItHasTakenOverWithTheirLastStep) {
-  arm_and_run();
-  acs_.send(endless(synthetic_.acs_blocks()));
-  dau_.send(endless(synthetic_.dau_blocks()));
-  session_.reset();
-  begin_behind();
-  run_for(1s, {&acs_, &dau_});
-  acs_.answer_requests();
-  dau_.answer_requests();
+  take_over_behind_the_last_step();
   run_for(RunSession::announcement_limit + 3s, {&acs_, &dau_}); // and nobody announces a step
   EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
   EXPECT_EQ(published_.results().size(), 1U);
