@@ -43,13 +43,21 @@ StartLatency judge_start_latency(std::span<const double> offsets_s, double u_s, 
     result.log_likelihood_ratio += std::log(std::max(density, 1e-300)) - fixed;
   }
   const double uniform_s = sample_s / std::sqrt(12.0);
-  if (result.log_likelihood_ratio < -evidence && result.scatter_s < 3.0 * u) {
+  result.too_wide_for_fixed = result.scatter_s >= 3.0 * u;
+  result.too_wide_for_uniform = result.scatter_s >= 2.0 * std::hypot(uniform_s, u);
+  if (result.log_likelihood_ratio < -evidence && !result.too_wide_for_fixed) {
     result.kind = StartKind::fixed;
   } else if (result.log_likelihood_ratio > evidence && result.scatter_s > 0.3 * uniform_s &&
              result.scatter_s < 2.0 * uniform_s) {
     result.kind = StartKind::uniform;
   }
   return result;
+}
+
+StartKind StartLatency::kind_after(StartKind other_steps) const {
+  const bool contradicted = (other_steps == StartKind::fixed && too_wide_for_fixed) ||
+                            (other_steps == StartKind::uniform && too_wide_for_uniform);
+  return kind == StartKind::undecided && !contradicted ? other_steps : kind;
 }
 
 const char* to_string(StartKind kind) {

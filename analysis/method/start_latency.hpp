@@ -8,7 +8,9 @@
 // The likelihoods of N(0, u^2) and of the rectangle T convolved with it are compared: the better
 // one must be 20 times as likely and must itself explain the scatter s, below 3 u for a fixed
 // start, within 0.3 .. 2 of T / sqrt(12) for a uniform one. Anything else, or fewer than three
-// shots, is undecided: then nothing is corrected. Any thread.
+// shots, is undecided: then nothing is corrected. A step that is undecided because it resolves too
+// little (a low frequency) may be told by other steps of its run; one whose shots scatter more than
+// that start explains (a shot that does not belong to its trigger) may not. Any thread.
 #pragma once
 
 #include <span>
@@ -21,6 +23,12 @@ struct StartLatency {
   StartKind kind = StartKind::undecided;
   double scatter_s = 0.0;            // standard deviation between shots
   double log_likelihood_ratio = 0.0; // of uniform against fixed
+  bool too_wide_for_fixed = false;   // the scatter: above what this start explains
+  bool too_wide_for_uniform = false;
+
+  // The own kind; where that is undecided, the one that other steps tell, unless this scatter
+  // contradicts it.
+  [[nodiscard]] StartKind kind_after(StartKind other_steps) const;
 };
 
 // `u_s`: standard uncertainty of one offset without any scatter of the start; `sample_s`: T.

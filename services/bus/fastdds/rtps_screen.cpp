@@ -179,6 +179,7 @@ Bytes RtpsScreen::pass(Bytes datagram) {
 
 void RtpsScreen::begin(Bytes header) {
   used_ = 0;
+  stamp_.reset();
   append(header);
 }
 
@@ -219,6 +220,8 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
     return pass_gap(flags, body);
   case acknack:
     return pass_acknack(flags, body);
+  case info_timestamp:
+    return pass_timestamp(flags, body);
   case nack_frag:
     whole = nack_frag_is_whole(flags, body);
     break;
@@ -227,9 +230,6 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
     break;
   case heartbeat_frag:
     whole = body.size() >= entities_bytes + sequence_bytes + 8;
-    break;
-  case info_timestamp:
-    whole = (flags & no_timestamp_flag) != 0 || body.size() >= 8;
     break;
   case info_source:
     whole = body.size() == 20;
@@ -307,11 +307,53 @@ bool RtpsScreen::pass_fragments(unsigned char flags, Bytes body) {
       payload < std::min(count * fragment_bytes, sample_bytes - offset)) {
     return false;
   }
+  const SampleStamps::Sample sample = sample_of(flags, body);
+  std::optional<RtpsStamp> missing_stamp;
+  if (first == 1) {
+    stamps_->begin(sample, stamp_);
+  } else if (!stamp_) {
+    missing_stamp = stamps_->of(sample);
+    if (!missing_stamp) {
+      return true; // left out
+    }
+    append_stamp(*missing_stamp);
+  }
   unsigned char* passed = append_submessage(data_frag, flags, body);
   if (qos->key_hash) {
     std::memcpy(passed + *qos->key_hash, &pid_pad, sizeof pid_pad);
   }
+  if (missing_stamp) {
+    append_submessage(info_timestamp, little_endian_flag | no_timestamp_flag, {});
+  }
   return true;
+}
+
+SampleStamps::Sample RtpsScreen::sample_of(unsigned char flags, Bytes body) const {
+  SampleStamps::Sample sample;
+  const Bytes source = Bytes(buffer_).subspan(header_bytes - guid_prefix_bytes, guid_prefix_bytes);
+  std::ranges::copy(source, sample.participant.begin());
+  std::ranges::copy(body.subspan(8, sample.writer.size()), sample.writer.begin());
+  sample.sequence = sequence_at(body, 4 + entities_bytes, flags).value_or(0);
+  return sample;
+}
+
+bool RtpsScreen::pass_timestamp(unsigned char flags, Bytes body) {
+  if ((flags & no_timestamp_flag) != 0) {
+    stamp_.reset();
+  } else if (body.size() < 8) {
+    return false;
+  } else {
+    stamp_ = {number_at<std::uint32_t>(body, 0, flags), number_at<std::uint32_t>(body, 4, flags)};
+  }
+  append_submessage(info_timestamp, flags, body);
+  return true;
+}
+
+void RtpsScreen::append_stamp(const RtpsStamp& stamp) {
+  unsigned char body[8];
+  put_number(body, stamp.seconds, little_endian_flag);
+  put_number(body + 4, stamp.fraction, little_endian_flag);
+  append_submessage(info_timestamp, little_endian_flag, body);
 }
 
 // From `first` to before `end`.

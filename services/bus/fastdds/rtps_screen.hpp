@@ -8,6 +8,10 @@
 //   DATA_FRAG  loses its key hash: Fast DDS then takes the key from the sample once it is whole
 //   GAP        becomes one GAP for each run of samples, without a list
 //
+// A sample in fragments is filed by the stamp of the fragment that comes first (sample_stamps.hpp).
+// So a fragment without a stamp gets that of its sample, and is left out while the first fragment
+// has not come: the writer sends both again.
+//
 // Where a reader in Cyclone DDS begins anew, it takes no notice (acknack_counts.hpp). So
 //   ACKNACK    of that kind becomes one for sample 0 with a new count
 //
@@ -20,10 +24,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "services/bus/fastdds/acknack_counts.hpp"
+#include "services/bus/fastdds/sample_stamps.hpp"
 
 namespace dyncal::bus {
 
@@ -31,6 +37,9 @@ class RtpsScreen {
 public:
   // No message of the contract is longer.
   static constexpr std::uint32_t max_sample_bytes = 64U << 20;
+
+  // `stamps` is that of the participant, and outlives the object.
+  explicit RtpsScreen(SampleStamps& stamps) : stamps_(&stamps) {}
 
   // The message to hand on, valid until the next call; empty if there is none. Up to
   // readable_bytes_behind bytes behind it may be read: Fast DDS copies the last fragment of a
@@ -54,7 +63,13 @@ private:
   bool pass_data(unsigned char flags, std::span<const unsigned char> body);
   bool pass_fragments(unsigned char flags, std::span<const unsigned char> body);
   bool pass_gap(unsigned char flags, std::span<const unsigned char> body);
+  bool pass_timestamp(unsigned char flags, std::span<const unsigned char> body);
+  void append_stamp(const RtpsStamp& stamp);
+  [[nodiscard]] SampleStamps::Sample sample_of(unsigned char flags,
+                                               std::span<const unsigned char> body) const;
 
+  SampleStamps* stamps_;
+  std::optional<RtpsStamp> stamp_; // of what follows in the message
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;
   bool refused_ = false;

@@ -30,11 +30,11 @@ public:
     return below->send(bytes, count, destinations_begin, destinations_end, timeout);
   }
 
-  // Each socket has a thread.
+  // Each socket has a thread, which ends with it.
   void receive(vendor::TransportReceiverInterface* above, const rtps::octet* bytes,
                std::uint32_t count, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
-    thread_local RtpsScreen screen;
+    thread_local RtpsScreen screen(stamps_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
@@ -47,6 +47,7 @@ public:
 
 private:
   std::shared_ptr<RefusedPackets> refused_;
+  SampleStamps stamps_;
 };
 
 struct ScreenedTransportDescriptor : vendor::ChainingTransportDescriptor {

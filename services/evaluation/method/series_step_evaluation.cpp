@@ -155,9 +155,7 @@ analysis::Expected<EvaluatedSeries> evaluate_series(analysis::SeriesStampingInpu
     return fail(evaluated.error());
   }
   analysis::StartLatency start = start_latency(*evaluated, input.frequency.angular());
-  if (start.kind == analysis::StartKind::undecided) {
-    start.kind = start_so_far;
-  }
+  start.kind = start.kind_after(start_so_far);
   if (start.kind == analysis::StartKind::uniform) {
     const double sample_s = 1.0 / evaluated->rate.real_rate_hz;
     input.start_latency_s = 0.5 * sample_s;
@@ -209,6 +207,7 @@ void add_flags(const SeriesStepInput& input, const EvaluatedSeries& evaluated, s
 std::vector<std::size_t> columns_of(const SourceRecord& sensor,
                                     const std::vector<ChannelName>& dut) {
   std::vector<std::size_t> columns;
+  columns.reserve(dut.size());
   for (const ChannelName& channel : dut) {
     columns.push_back(*sensor.channel(channel.channel));
   }

@@ -54,7 +54,9 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
                             .shots = shots_.of_step(attempt),
                             .lost = shots_.lost_in(attempt),
                             .start_so_far = start_});
-  start_ = evaluated.start;
+  if (evaluated.start != analysis::StartKind::undecided) {
+    start_ = evaluated.start;
+  }
   if (evaluated.rate) {
     rates_.insert_or_assign(records.excitation().order().index(step), *evaluated.rate);
   }

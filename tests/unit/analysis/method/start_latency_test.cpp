@@ -60,6 +60,37 @@ TEST(StartLatency, AScatterThatNeitherExplainsIsUndecided) {
   EXPECT_EQ(judge_start_latency(offsets, u_s, sample_s).kind, StartKind::undecided);
 }
 
+TEST(StartLatency, OtherStepsTellWhereThisOneResolvesTooLittle) {
+  for (const std::vector<double>& offsets : {fixed_start(2, 1), uniform_start(2, 1)}) {
+    const StartLatency start = judge_start_latency(offsets, u_s, sample_s);
+    EXPECT_EQ(start.kind_after(StartKind::fixed), StartKind::fixed);
+    EXPECT_EQ(start.kind_after(StartKind::uniform), StartKind::uniform);
+    EXPECT_EQ(start.kind_after(StartKind::undecided), StartKind::undecided);
+  }
+  const StartLatency noisy = judge_start_latency(uniform_start(5, 7), sample_s, sample_s);
+  ASSERT_EQ(noisy.kind, StartKind::undecided);
+  EXPECT_EQ(noisy.kind_after(StartKind::fixed), StartKind::fixed);
+  EXPECT_EQ(noisy.kind_after(StartKind::uniform), StartKind::uniform);
+}
+
+TEST(StartLatency, OtherStepsDoNotHideAShotOfAnotherTrigger) {
+  std::vector<double> offsets = fixed_start(5, 3);
+  offsets[2] += 20.0 * u_s;
+  const StartLatency outlier = judge_start_latency(offsets, u_s, sample_s);
+  ASSERT_EQ(outlier.kind, StartKind::undecided);
+  EXPECT_EQ(outlier.kind_after(StartKind::fixed), StartKind::undecided);
+  offsets[2] += 10.0 * sample_s;
+  EXPECT_EQ(judge_start_latency(offsets, u_s, sample_s).kind_after(StartKind::uniform),
+            StartKind::undecided);
+}
+
+TEST(StartLatency, WhatAStepTellsItselfStands) {
+  const StartLatency fixed = judge_start_latency(fixed_start(5, 1), u_s, sample_s);
+  ASSERT_EQ(fixed.kind, StartKind::fixed);
+  EXPECT_EQ(fixed.kind_after(StartKind::uniform), StartKind::fixed);
+  EXPECT_EQ(fixed.kind_after(StartKind::undecided), StartKind::fixed);
+}
+
 TEST(StartLatency, TwoShotsOrNoSampleIntervalDecideNothing) {
   EXPECT_EQ(judge_start_latency(fixed_start(2, 1), u_s, sample_s).kind, StartKind::undecided);
   EXPECT_EQ(judge_start_latency(fixed_start(5, 1), u_s, 0.0).kind, StartKind::undecided);

@@ -71,20 +71,22 @@ Bytes gap(std::uint64_t first, std::uint64_t base, std::uint32_t bits, const Byt
 }
 
 Bytes passed(const Bytes& datagram) {
-  RtpsScreen screen;
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
   const auto bytes = screen.pass(datagram);
   return {bytes.begin(), bytes.end()};
 }
 
+const Bytes stamp = submessage(0x09, 0x01, sequence(77));
+
 TEST(RtpsScreen, LeavesWholeMessagesAsTheyAre) {
-  const Bytes timestamp = submessage(0x09, 0x01, sequence(77));
   const Bytes destination = submessage(0x0e, 0x01, Bytes(12, 4));
   const Bytes acknack =
       submessage(0x06, 0x01, entities + sequence(3) + u32(33) + Bytes(8, 1) + u32(9));
   const Bytes nack =
       submessage(0x12, 0x01, entities + sequence(3) + u32(1) + u32(2) + u32(0) + u32(9));
-  const Bytes message = header() + destination + timestamp + data(key_hash() + sentinel) +
-                        heartbeat() + acknack + nack;
+  const Bytes message =
+      header() + destination + stamp + data(key_hash() + sentinel) + heartbeat() + acknack + nack;
   EXPECT_EQ(passed(message), message);
 }
 
@@ -93,7 +95,8 @@ Bytes acknack(unsigned char flags, std::uint64_t base, std::uint32_t count) {
 }
 
 TEST(RtpsScreen, MakesAReaderThatBeginsAnewOneThatFastDdsTakesNoticeOf) {
-  RtpsScreen screen;
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
   const auto expect_passed = [&screen](const Bytes& message, const Bytes& expected) {
     const auto bytes = screen.pass(header() + message);
     EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), header() + expected);
@@ -117,6 +120,42 @@ TEST(RtpsScreen, TakesTheKeyHashOutOfFragments) {
   EXPECT_EQ(passed(header() + fragments({})), expected);
 }
 
+TEST(RtpsScreen, GivesEveryFragmentTheStampOfItsSample) {
+  SampleStamps stamps;
+  RtpsScreen first_socket(stamps);
+  RtpsScreen screen(stamps);
+  const auto passed_now = [&screen](const Bytes& message) {
+    const auto bytes = screen.pass(header() + message);
+    EXPECT_FALSE(screen.refused());
+    return Bytes(bytes.begin(), bytes.end());
+  };
+  const Bytes second = fragments({.first = 2, .qos = {}});
+  EXPECT_EQ(passed_now(second), Bytes{}) << "Fast DDS would file the sample under time 0";
+  EXPECT_EQ(passed_now(second + heartbeat()), header() + heartbeat());
+
+  const Bytes begun = header() + stamp + fragments({.qos = {}});
+  ASSERT_EQ(first_socket.pass(begun).size(), begun.size());
+  const Bytes no_stamp = submessage(0x09, 0x03, {});
+  EXPECT_EQ(passed_now(second), header() + stamp + second + no_stamp);
+  EXPECT_EQ(passed_now(stamp + second), header() + stamp + second) << "has its own";
+  EXPECT_EQ(passed_now(stamp + no_stamp + second),
+            header() + stamp + no_stamp + stamp + second + no_stamp);
+}
+
+TEST(RtpsScreen, ReadsStampsInEitherByteOrder) {
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
+  const Bytes big_endian{0x09, 0x00, 0, 8, 0, 0, 0, 3, 0, 0, 0, 4};
+  ASSERT_FALSE(screen.pass(header() + big_endian + fragments({.qos = {}})).empty());
+  const auto bytes = screen.pass(header() + fragments({.first = 2, .qos = {}}));
+  const Bytes expected = header() + submessage(0x09, 0x01, u32(3) + u32(4));
+  ASSERT_GT(bytes.size(), expected.size());
+  EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(expected.size())),
+            expected);
+  EXPECT_TRUE(screen.pass(header() + submessage(0x09, 0x01, u32(3))).empty());
+  EXPECT_TRUE(screen.refused());
+}
+
 TEST(RtpsScreen, MakesAGapOfEveryRunOfAList) {
   // Of 40 samples from 12 on: the second and third, and the last.
   const Bytes words = u32(0x60000000) + u32(0x01000000);
@@ -134,7 +173,8 @@ TEST(RtpsScreen, ReadsBigEndian) {
 }
 
 TEST(RtpsScreen, TellsWhatIsMalformedFromWhatNobodyNeeds) {
-  RtpsScreen screen;
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
   const auto refuses = [&screen](const Bytes& datagram) {
     static_cast<void>(screen.pass(datagram));
     return screen.refused();
@@ -190,8 +230,11 @@ TEST(RtpsScreen, DropsAMessageWithASubmessageThatEndsTooSoon) {
 
 TEST(RtpsScreen, DropsFragmentsThatAreNotWithinTheirSample) {
   EXPECT_FALSE(passed(header() + fragments({})).empty());
-  EXPECT_FALSE(passed(header() + fragments({.first = 3, .payload = 50})).empty());
-  EXPECT_FALSE(passed(header() + fragments({.first = 2, .count = 2, .payload = 150})).empty());
+  for (const Fragments& later :
+       {Fragments{.first = 3, .payload = 50}, Fragments{.first = 2, .count = 2, .payload = 150}}) {
+    EXPECT_EQ(passed(header() + stamp + fragments(later)).size(),
+              header().size() + stamp.size() + (fragments(later).size() + 3) / 4 * 4);
+  }
   const std::uint32_t too_long = RtpsScreen::max_sample_bytes + 1;
   for (const Fragments& wrong :
        {Fragments{.first = 0}, Fragments{.first = 4}, Fragments{.first = 0xffffffff},
@@ -199,7 +242,7 @@ TEST(RtpsScreen, DropsFragmentsThatAreNotWithinTheirSample) {
         Fragments{.payload = 99}, Fragments{.fragment_bytes = 0}, Fragments{.fragment_bytes = 63},
         Fragments{.fragment_bytes = 251, .payload = 300}, Fragments{.sample_bytes = 99},
         Fragments{.sample_bytes = too_long}, Fragments{.first = 3, .payload = 49}}) {
-    EXPECT_TRUE(passed(header() + fragments(wrong)).empty())
+    EXPECT_TRUE(passed(header() + stamp + fragments(wrong)).empty())
         << wrong.first << ' ' << wrong.count << ' ' << wrong.fragment_bytes << ' '
         << wrong.sample_bytes << ' ' << wrong.payload;
   }
@@ -216,7 +259,8 @@ TEST(RtpsScreen, DropsInlineQosWithoutEndAndSequencesThatCannotBe) {
 }
 
 TEST(RtpsScreen, IsUsedAgainAndAgain) {
-  RtpsScreen screen;
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
   const Bytes message = header() + heartbeat();
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(screen.pass(header()).empty());
