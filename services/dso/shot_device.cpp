@@ -44,7 +44,7 @@ Expected<void> ShotDevice::connect(double frequency_hz) {
       .map_error(device_error);
 }
 
-Expected<ShotPair> ShotDevice::take(double frequency_hz) {
+Expected<std::optional<ShotPair>> ShotDevice::take(double frequency_hz) {
   if (auto ready = connect(frequency_hz); !ready) {
     return fail(ready.error());
   }
@@ -60,10 +60,13 @@ Expected<ShotPair> ShotDevice::take(double frequency_hz) {
   if (!series) {
     return fail(series.error());
   }
-  return ShotPair{std::move(*trace), std::move(*series)};
+  if (!*series) {
+    return std::nullopt;
+  }
+  return ShotPair{std::move(*trace), std::move(**series)};
 }
 
-Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
+Expected<std::optional<drivers::tss::Series>> ShotDevice::series_of_last_trigger() {
   const auto before = triggers_.last();
   const auto deadline = std::chrono::steady_clock::now() + series_limit;
   for (;;) {
@@ -77,6 +80,8 @@ Expected<drivers::tss::Series> ShotDevice::series_of_last_trigger() {
       return std::move(*series);
     case SeriesVerdict::late:
       break; // the right one is still to come
+    case SeriesVerdict::first:
+      return std::nullopt;
     case SeriesVerdict::open:
       return fail(
           ErrorCode::device,

@@ -5,12 +5,14 @@
 // the sensor's series is waited for. The sensor counts its triggers: a series that is late is
 // dropped, and where the count leaves open whether the two records belong together (a spurious or
 // missed trigger, trigger_count.hpp), the shot fails. A shot that fails changes nothing; the next
-// call tries again, over new connections where these were lost. One thread.
+// call tries again, over new connections where these were lost. The first shot is no pair: whether
+// its records belong together cannot be told, so it only tells the sensor's count. One thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/dso/oscilloscope.hpp"
@@ -36,14 +38,15 @@ public:
   // Connects both, so that they can be described. The sensor's channels are known only with its
   // first series.
   [[nodiscard]] Expected<void> connect(double frequency_hz);
-  [[nodiscard]] Expected<ShotPair> take(double frequency_hz);
+  // Nothing: the shot only told the sensor's count; the next one can be taken at once.
+  [[nodiscard]] Expected<std::optional<ShotPair>> take(double frequency_hz);
 
   [[nodiscard]] const std::string& oscilloscope_identity() const {
     return oscilloscope_.identity();
   }
 
 private:
-  [[nodiscard]] Expected<drivers::tss::Series> series_of_last_trigger();
+  [[nodiscard]] Expected<std::optional<drivers::tss::Series>> series_of_last_trigger();
 
   drivers::dso::Oscilloscope oscilloscope_;
   std::unique_ptr<drivers::tss::SeriesSource> sensor_;

@@ -5,7 +5,12 @@
 // and so many may have come (shots of which the trace was lost). A series whose number says that it
 // belongs to one of the earlier triggers is late: the right one is still to come. A number that
 // fits no count, or more than one, leaves it open; then the shot is given up, and counting begins
-// anew with it. One thread.
+// anew with it.
+//
+// The first series of all belongs to nothing that is known: an edge before the oscilloscope was
+// armed may have triggered the sensor, which then did not take the trigger that was seen. It only
+// tells the sensor's count and is left out; so is the first one after the sensor began or ceased to
+// count. The later ones of a sensor that does not count are believed. One thread.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +18,7 @@
 
 namespace dyncal::services::dso {
 
-enum class SeriesVerdict { belongs, late, open };
+enum class SeriesVerdict { belongs, late, open, first };
 
 class TriggerCount {
 public:
@@ -21,21 +26,33 @@ public:
   void trigger_may_have_come() { ++possible_; }
 
   [[nodiscard]] SeriesVerdict judge(std::uint64_t shot) {
-    const bool nothing_known = !last_ || *last_ == 0 || shot == 0;
-    const std::uint64_t least = nothing_known ? shot : *last_ + certain_;
-    if (!nothing_known && shot > *last_ && shot < least) {
-      return SeriesVerdict::late;
+    const SeriesVerdict verdict = compare(shot);
+    if (verdict != SeriesVerdict::late) {
+      last_ = shot;
+      certain_ = 0;
+      possible_ = 0;
     }
-    const bool fits = nothing_known || shot == least + possible_;
-    last_ = shot;
-    certain_ = 0;
-    possible_ = 0;
-    return fits ? SeriesVerdict::belongs : SeriesVerdict::open;
+    return verdict;
   }
 
   [[nodiscard]] std::optional<std::uint64_t> last() const { return last_; }
 
 private:
+  [[nodiscard]] SeriesVerdict compare(std::uint64_t shot) const {
+    const bool counts = shot != 0;
+    if (!last_ || (*last_ != 0) != counts) {
+      return SeriesVerdict::first;
+    }
+    if (!counts) {
+      return SeriesVerdict::belongs;
+    }
+    const std::uint64_t least = *last_ + certain_;
+    if (shot > *last_ && shot < least) {
+      return SeriesVerdict::late;
+    }
+    return shot == least + possible_ ? SeriesVerdict::belongs : SeriesVerdict::open;
+  }
+
   std::optional<std::uint64_t> last_; // number of the series that was judged last and was not late
   std::uint64_t certain_ = 0;
   std::uint64_t possible_ = 0;

@@ -117,7 +117,6 @@ void TriggeredBench::run(const std::stop_token& stop) {
     device_stop_.raise();
     wake_up_->ring();
   });
-  report();
   while (!stop.stop_requested()) {
     follow_excitation();
     if (!connected_) {
@@ -230,13 +229,14 @@ void TriggeredBench::describe_sensor(const drivers::tss::Series& series) {
 
 void TriggeredBench::take_shot() {
   const Step step = *step_;
-  auto pair = device_.take(step.frequency_hz);
-  if (pair) {
-    auto selected =
-        select_channels(std::move(pair->series), sensor_.settings.channels, sensor_channels_);
-    pair = selected ? Expected<ShotPair>(ShotPair{std::move(pair->trace), std::move(*selected)})
-                    : fail(selected.error());
+  auto taken = device_.take(step.frequency_hz);
+  if (taken && !*taken) {
+    spdlog::info("bench {}: the first shot after a start is left out; it tells how many triggers "
+                 "the sensor has counted",
+                 bench_);
+    return;
   }
+  auto pair = taken ? with_bench_channels(std::move(**taken)) : fail(taken.error());
   follow_excitation();
   if (pair && !in_step(step.run, step.step, step.attempt)) {
     pair = fail(ErrorCode::device, "the excitation ended during the shot, which is left out");
@@ -247,6 +247,15 @@ void TriggeredBench::take_shot() {
   } else if (publish(std::move(*pair), step)) {
     ++step_->shots;
   }
+}
+
+Expected<ShotPair> TriggeredBench::with_bench_channels(ShotPair pair) const {
+  auto selected =
+      select_channels(std::move(pair.series), sensor_.settings.channels, sensor_channels_);
+  if (!selected) {
+    return fail(selected.error());
+  }
+  return ShotPair{std::move(pair.trace), std::move(*selected)};
 }
 
 void TriggeredBench::reject_shot(const Step& step, const std::string& reason) {

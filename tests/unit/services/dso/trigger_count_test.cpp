@@ -5,8 +5,43 @@
 namespace dyncal::services::dso {
 namespace {
 
-TEST(TriggerCount, OneMoreForEveryTriggerBelongs) {
+// A count that knows of the sensor's trigger number `shot`.
+TriggerCount count_after(std::uint64_t shot) {
   TriggerCount count;
+  count.trigger_came();
+  EXPECT_EQ(count.judge(shot), SeriesVerdict::first);
+  return count;
+}
+
+TEST(TriggerCount, TheFirstSeriesOnlyTellsTheCount) {
+  TriggerCount count;
+  count.trigger_came();
+  EXPECT_EQ(count.judge(17), SeriesVerdict::first); // may be that of an edge before
+  EXPECT_EQ(count.last(), 17U);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(18), SeriesVerdict::belongs);
+}
+
+TEST(TriggerCount, TriggersWithoutSeriesDoNotMakeTheFirstOneBelong) {
+  TriggerCount count;
+  count.trigger_may_have_come();
+  count.trigger_came(); // no series comes
+  count.trigger_came();
+  EXPECT_EQ(count.judge(3), SeriesVerdict::first);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(4), SeriesVerdict::belongs);
+}
+
+TEST(TriggerCount, AfterTheFirstASeriesThatDoesNotFitIsOpen) {
+  TriggerCount count = count_after(17);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(19), SeriesVerdict::open);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(20), SeriesVerdict::belongs);
+}
+
+TEST(TriggerCount, OneMoreForEveryTriggerBelongs) {
+  TriggerCount count = count_after(16);
   for (const std::uint64_t shot : {17U, 18U, 19U}) {
     count.trigger_came();
     EXPECT_EQ(count.judge(shot), SeriesVerdict::belongs) << shot;
@@ -14,9 +49,7 @@ TEST(TriggerCount, OneMoreForEveryTriggerBelongs) {
 }
 
 TEST(TriggerCount, ASeriesThatCameTooLateForItsShotIsNotTakenForTheNext) {
-  TriggerCount count;
-  count.trigger_came();
-  ASSERT_EQ(count.judge(1), SeriesVerdict::belongs);
+  TriggerCount count = count_after(1);
   count.trigger_came(); // its series, number 2, does not come in time
   count.trigger_came();
   EXPECT_EQ(count.judge(2), SeriesVerdict::late);
@@ -24,18 +57,14 @@ TEST(TriggerCount, ASeriesThatCameTooLateForItsShotIsNotTakenForTheNext) {
 }
 
 TEST(TriggerCount, ALostTraceWhoseTriggerCameDoesNotMatter) {
-  TriggerCount count;
-  count.trigger_came();
-  ASSERT_EQ(count.judge(1), SeriesVerdict::belongs);
+  TriggerCount count = count_after(1);
   count.trigger_may_have_come();
   count.trigger_came();
   EXPECT_EQ(count.judge(3), SeriesVerdict::belongs);
 }
 
 TEST(TriggerCount, WhereItMayBelongToTheLostTraceItIsLeftOutOnce) {
-  TriggerCount count;
-  count.trigger_came();
-  ASSERT_EQ(count.judge(1), SeriesVerdict::belongs);
+  TriggerCount count = count_after(1);
   count.trigger_may_have_come();
   count.trigger_came();
   EXPECT_EQ(count.judge(2), SeriesVerdict::open); // late, or the other trigger never came
@@ -44,9 +73,7 @@ TEST(TriggerCount, WhereItMayBelongToTheLostTraceItIsLeftOutOnce) {
 }
 
 TEST(TriggerCount, ASpuriousTriggerOrARestartIsLeftOutOnce) {
-  TriggerCount count;
-  count.trigger_came();
-  ASSERT_EQ(count.judge(5), SeriesVerdict::belongs);
+  TriggerCount count = count_after(5);
   count.trigger_came();
   EXPECT_EQ(count.judge(7), SeriesVerdict::open);
   count.trigger_came();
@@ -55,13 +82,25 @@ TEST(TriggerCount, ASpuriousTriggerOrARestartIsLeftOutOnce) {
   EXPECT_EQ(count.judge(2), SeriesVerdict::belongs);
 }
 
-TEST(TriggerCount, ASensorThatDoesNotCountIsBelieved) {
-  TriggerCount count;
+TEST(TriggerCount, ASensorThatDoesNotCountIsBelievedAfterTheFirst) {
+  TriggerCount count = count_after(0);
   for (int shot = 0; shot < 3; ++shot) {
     count.trigger_came();
     count.trigger_may_have_come();
     EXPECT_EQ(count.judge(0), SeriesVerdict::belongs);
   }
+}
+
+TEST(TriggerCount, ASensorThatBeginsOrCeasesToCountHasAFirstSeriesAgain) {
+  TriggerCount count = count_after(0);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(7), SeriesVerdict::first);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(8), SeriesVerdict::belongs);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(0), SeriesVerdict::first);
+  count.trigger_came();
+  EXPECT_EQ(count.judge(0), SeriesVerdict::belongs);
 }
 
 } // namespace

@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/link/stop_signal.hpp"
+#include "drivers/tss/series_source.hpp"
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/contract/topics.hpp"
@@ -217,6 +219,25 @@ TEST_F(TriggeredBenchTest, AStepThatIsSteadyGetsItsShotsAndNoMore) {
   EXPECT_TRUE(has_shots(1, 4));
   EXPECT_EQ(*trace_shots_[1].begin(), 1U);
   EXPECT_EQ(*trace_shots_[2].rbegin(), 8U);
+}
+
+TEST_F(TriggeredBenchTest, TheFirstShotAfterAStartIsLeftOutAndIsNoFault) {
+  start();
+  ASSERT_TRUE(wait_for([&] { return is(wire::SOURCE_RUNNING); }));
+  const drivers::StopSignal never;
+  const auto sensor =
+      drivers::tss::series_from_socket(fmt::format("127.0.0.1:{}", sensor_port_), never);
+  ASSERT_TRUE(sensor->discard_pending().has_value());
+  announce(1, wire::EXCITATION_STEADY);
+  ASSERT_TRUE(wait_for([&] { return has_shots(1, 4); }));
+  for (const std::uint64_t trigger : {1U, 2U, 3U, 4U, 5U}) { // one more than shots
+    const auto series = sensor->next(tests::patience);
+    ASSERT_TRUE(series.has_value()) << series.error().message;
+    EXPECT_EQ(series->shot, trigger);
+  }
+  ASSERT_TRUE(wait_for([&] { return status_seen_->received() == 4; }));
+  EXPECT_EQ(status_seen_->rejected(), 0U);
+  EXPECT_THAT(messages_, testing::IsEmpty());
 }
 
 TEST_F(TriggeredBenchTest, AnInstrumentThatIsSwitchedOffAndOnAgainGoesOnWithTheStep) {
