@@ -4,14 +4,17 @@ Everything runs on loopback, on a DDS domain of its own and in a folder of its o
 what was started. Programs are those of a build tree or of an installation.
 """
 
-import contextlib
 import json
 import os
 import pathlib
 import signal
 import socket
 import subprocess
+import sys
 import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import reserve_dds_domain  # noqa: E402
 
 PATIENCE_S = 300.0
 SERVICES = ("dyncal-analysis", "dyncal-dau", "dyncal-acs", "dyncal-guard")
@@ -46,17 +49,6 @@ def wait_until(condition, what, patience_s=PATIENCE_S, interval_s=0.02):
         if time.monotonic() > deadline:
             raise Failure(f"waited {patience_s:.0f} s for {what}")
         time.sleep(interval_s)  # between two looks at the condition
-
-
-def own_domain():
-    """A domain that no other test of this machine has, and what keeps it: tests/dds_domain.hpp."""
-    for domain in range(1, 101):
-        keeper = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        with contextlib.suppress(OSError):
-            keeper.bind(f"\0dyncal-test-dds-domain-{domain}")
-            return domain, keeper
-        keeper.close()
-    raise Failure("every DDS domain is taken")
 
 
 def free_udp_port():
@@ -143,7 +135,7 @@ class BenchLaboratory:
         self.frequencies = frequencies
         self.name = name
         self.acs_rate_hz = acs_rate_hz
-        self.domain, self.keeper = (domain, None) if domain else own_domain()
+        self.domain, self.keeper = (domain, None) if domain else reserve_dds_domain()
         self.started = []
         self.services = {}
         self.start_virtual_bench()

@@ -7,7 +7,7 @@ whatever happens on the way. On loopback, on a DDS domain of its own; close() en
 import json
 import pathlib
 
-from bench_laboratory import READY, VENDORS, Failure, Program, own_domain
+from bench_laboratory import READY, VENDORS, Failure, Program, reserve_dds_domain
 
 FREQUENCIES = ("20", "80", "160")
 LEVELS = ("10", "100", "100")
@@ -53,7 +53,7 @@ class PlayedLaboratory:
         self.folder = pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.vendors = VENDORS[vendors]
-        self.domain, self.keeper = own_domain()
+        self.domain, self.keeper = reserve_dds_domain()
         self.started = []
         self.bench_file = self.folder / "bench.toml"
         self.bench_file.write_text(BENCH.format(name=name, speed=speed), encoding="utf-8")

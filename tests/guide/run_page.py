@@ -28,6 +28,9 @@ import pages
 import readers
 import toml_text
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import reserve, reserve_dds_domain  # noqa: E402
+
 SECONDS_PER_BLOCK = 200
 ADDRESS = re.compile(r"127\.0\.0\.1:(\d{4,5})\b")
 SKIPPED = 77
@@ -35,26 +38,6 @@ SKIPPED = 77
 
 class Failure(Exception):
     pass
-
-
-def reserve(name):
-    """As tests/dds_domain.hpp does; nothing if another test has it."""
-    one = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-    try:
-        one.bind(f"\0dyncal-test-{name}")
-    except OSError:
-        one.close()
-        return None
-    return one
-
-
-def own_domain():
-    for i in range(100):
-        domain = 1 + (os.getpid() + i) % 100
-        held = reserve(f"dds-domain-{domain}")
-        if held:
-            return domain, held
-    raise Failure("every DDS domain for tests is in use")
 
 
 def free_port():
@@ -149,7 +132,7 @@ class Page:
         self.ports = {}
         self.held = []
         self.counts = dict.fromkeys(("commands", "outputs", "files"), 0)
-        domain, held = own_domain()
+        domain, held = reserve_dds_domain()
         self.held.append(held)
         self.shell = Shell(
             folder,

@@ -68,7 +68,7 @@ def main():
     if not program.exists() or not (options.guide / "index.html").exists():
         print("SKIPPED: this build has no dyncal-web, or no HTML of the guide")
         sys.exit(run_page.SKIPPED)
-    domain, held_domain = run_page.own_domain()
+    domain, held_domain = run_page.reserve_dds_domain()
     port, held_port = run_page.free_port()
     with held_domain, held_port:
         running = subprocess.Popen(

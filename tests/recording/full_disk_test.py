@@ -3,7 +3,6 @@
 full_disk_test.py PROGRAMS PUBLISHER FOLDER; needs the right to mount a tmpfs, else it is skipped.
 """
 
-import os
 import pathlib
 import shutil
 import signal
@@ -14,6 +13,9 @@ import unittest
 
 import walk
 from killed_recorder_test import Acknowledged
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import own_dds_domain  # noqa: E402
 
 PATIENCE_S = 60
 DISK_MB = 24
@@ -32,7 +34,7 @@ class FullDisk(unittest.TestCase):
         if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
             self.skipTest("SKIPPED: no right to mount a small tmpfs: run it as root")
         self.addCleanup(subprocess.run, ["umount", str(self.disk)], check=False)
-        self.domain = str(100 + os.getpid() % 100)
+        self.domain = str(own_dds_domain())
 
     def fill(self, min_free_mb, ended):
         """Records until `ended` stands in the log. Returns acknowledged counts and the log."""

@@ -17,6 +17,9 @@ import unittest
 import public_reader
 import walk
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import own_dds_domain  # noqa: E402
+
 PATIENCE_S = 60
 KILLS = int(os.environ.get("DYNCAL_KILLS", "3"))
 
@@ -52,7 +55,7 @@ class KilledRecorder(unittest.TestCase):
         self.programs, self.publisher, self.folder = map(pathlib.Path, ARGUMENTS)
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
-        self.domain = str(100 + os.getpid() % 100)
+        self.domain = str(own_dds_domain())
 
     def recorder(self, folder, log):
         return subprocess.Popen(

@@ -18,6 +18,9 @@ import unittest
 
 import public_reader
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import own_dds_domain  # noqa: E402
+
 PATIENCE_S = 300
 PACKAGES = ["@mcap/core", "@foxglove/omgidl-parser", "@foxglove/omgidl-serialization"]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -97,7 +100,7 @@ class PublicDecoder(unittest.TestCase):
         programs, folder = self.programs, self.folder
         shutil.rmtree(folder)
         folder.mkdir()
-        domain = str(100 + os.getpid() % 100)
+        domain = str(own_dds_domain())
         with open(folder / "recorder.log", "w", encoding="utf-8") as log:
             recorder = subprocess.Popen(
                 [

@@ -20,6 +20,9 @@ import sys
 import threading
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import own_dds_domain  # noqa: E402
+
 BENCHES = 4
 PATIENCE_S = 60
 
@@ -55,7 +58,7 @@ def measure(arguments):
     programs, folder = arguments.programs, arguments.folder
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    domain = str(100 + os.getpid() % 100)
+    domain = str(own_dds_domain())
     log = folder / "recorder.log"
     recorder = subprocess.Popen(
         [programs / "dyncal-recorder", "--folder", folder, "--domain", domain, "--dds",
