@@ -26,7 +26,7 @@ std::string addition_text(StoreAddition addition) {
 
 std::string sensors_text(const StoredRun& run) {
   std::string text;
-  for (const RecordedSource& source : run.sources) {
+  for (const RecordedInstrument& source : run.sources) {
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", source.source,
                         source.serial.empty() ? "" : " " + source.serial);
   }
@@ -52,7 +52,7 @@ Json run_json(const StoredRun& run) {
             {"result_sha256", run.result_sha256},
             {"folder", run.folder},
             {"sources", Json::array()}};
-  for (const RecordedSource& source : run.sources) {
+  for (const RecordedInstrument& source : run.sources) {
     json["sources"].push_back({{"source", source.source},
                                {"device", source.device},
                                {"serial", source.serial},

@@ -21,6 +21,7 @@
 #include "services/recording/recorded_topics.hpp"
 #include "services/replay/recorded_messages.hpp"
 #include "services/replay/recording_index.hpp"
+#include "services/replay/waiting_announcements.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -70,7 +71,13 @@ public:
         source.next = found->second.messages.begin();
         // Without the answer in the recording its samples count from the first one.
         source.answered = !found->second.answered.contains(run_);
+        if (!source.recorded.triggered) {
+          announcements_.wait_for(name);
+        }
       }
+    }
+    if (index.first_announced) {
+      evaluator.expect_announcements();
     }
   }
 
@@ -82,7 +89,7 @@ public:
     ++walked_;
     const std::string& topic = message.channel.topic;
     if (topic == topics::excitation) {
-      announce(message);
+      take_excitation(message);
     } else if (topic == topics::measurement) {
       take_state(message);
     } else if (topic == topics::dau_samples || topic == topics::acs_samples ||
@@ -93,7 +100,7 @@ public:
     } else {
       return;
     }
-    hand_over_said(false);
+    announce(false);
     collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
   }
 
@@ -102,7 +109,7 @@ public:
       for (auto& [name, source] : sources_) {
         hand_over_waiting(name, source, true);
       }
-      hand_over_said(true);
+      announce(true);
       collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
     }
     if (outcome_of_walk_ && !evaluator_.finished()) {
@@ -121,22 +128,14 @@ private:
     std::optional<std::uint64_t> described{}; // session
     std::deque<wire::SampleBlock> waiting{};
     std::uint64_t waiting_since = 0;
-    std::uint64_t heard = 0; // the newest block: its place in the walk
-    bool ended = false;
     bool is_unfit =
         false; // its session: the run cannot go by what it describes (source_streams.hpp)
   };
-  // What the conductor said, and when: its place in the walk.
-  struct Said {
-    std::uint64_t place = 0;
-    std::variant<StepAnnouncement, wire::MeasurementState> what;
-  };
 
-  void announce(const recording::MessageInFile& message) {
+  void take_excitation(const recording::MessageInFile& message) {
     const auto excitation = recording::decode<wire::Excitation>(message.message.data);
     if (excitation && excitation->run() == run_) {
-      evaluator_.expect_announcements();
-      said_.push_back({walked_, from_message(*excitation)});
+      announcements_.add(here(), from_message(*excitation));
     }
   }
 
@@ -145,26 +144,22 @@ private:
     if (measurement && measurement->run() == run_ &&
         (measurement->state() == wire::MEASUREMENT_DONE ||
          measurement->state() == wire::MEASUREMENT_ABORTED)) {
-      said_.push_back({walked_, measurement->state()});
+      announcements_.add(here(), measurement->state());
     }
   }
 
-  // What was said is of the samples up to then, and how far a silent source was by then shows only
-  // when it sends again.
-  void hand_over_said(bool at_once) {
-    for (; !said_.empty() && (at_once || is_heard_behind(said_.front().place)); said_.pop_front()) {
-      if (const auto* step = std::get_if<StepAnnouncement>(&said_.front().what)) {
+  void announce(bool at_once) {
+    announcements_.hand_over(at_once, [this](const auto& announcement) {
+      if (const auto* step = std::get_if<StepAnnouncement>(&announcement)) {
         evaluator_.announce(*step);
       } else {
-        evaluator_.end_of_excitation(std::get<wire::MeasurementState>(said_.front().what) ==
+        evaluator_.end_of_excitation(std::get<wire::MeasurementState>(announcement) ==
                                      wire::MEASUREMENT_ABORTED);
       }
-    }
-  }
-  [[nodiscard]] bool is_heard_behind(std::uint64_t place) const {
-    return std::ranges::all_of(sources_, [place](const auto& source) {
-      return source.second.recorded.triggered || source.second.ended || source.second.heard > place;
     });
+  }
+  [[nodiscard]] WaitingAnnouncements::Instant here() const {
+    return {walked_, static_cast<std::int64_t>(now_)};
   }
 
   // Everything of the source up to this message that has not been handed over yet.
@@ -183,7 +178,7 @@ private:
     while (source.next != source.recorded.messages.end() && source.next->first <= here) {
       const auto& [position, place] = *source.next++;
       if (position == here) {
-        add(found->first, source, *decoded);
+        add(found->first, source, *decoded, place.sent_ns);
         continue;
       }
       const auto elsewhere = others_.at(place);
@@ -193,7 +188,7 @@ private:
         return;
       }
       if (other) {
-        add(found->first, source, *other);
+        add(found->first, source, *other, place.sent_ns);
       }
     }
   }
@@ -230,7 +225,8 @@ private:
     }
   }
 
-  void add(const std::string& name, Source& source, const wire::SampleBlock& block) {
+  void add(const std::string& name, Source& source, const wire::SampleBlock& block,
+           std::int64_t sent_ns) {
     source.answered = source.answered || block.acknowledged_run() == run_;
     if (!source.answered) {
       return;
@@ -238,11 +234,11 @@ private:
     source.waiting.push_back(block);
     hand_over_waiting(name, source, false);
     if (source.waiting.empty() && !source.is_unfit) {
-      source.heard = walked_;
-      source.ended = block.end_of_stream();
+      announcements_.reach(name, walked_, sent_ns, block.end_of_stream());
     }
   }
-  void add(const std::string& name, Source& source, const wire::TriggeredRecord& record) {
+  void add(const std::string& name, Source& source, const wire::TriggeredRecord& record,
+           std::int64_t /*sent_ns*/) {
     describe(name, source, record.session());
     if (outcome_of_walk_ && !source.is_unfit && record.run() == run_) {
       evaluator_.add(name, from_message(record));
@@ -277,9 +273,19 @@ private:
   std::map<std::string, Source> sources_;
   std::uint64_t now_ = 0; // log_time
   std::uint64_t walked_ = 0;
-  std::deque<Said> said_;
+  WaitingAnnouncements announcements_;
   Expected<void> outcome_of_walk_;
 };
+
+// The recorder came later than the first step.
+bool begins_behind(const RecordedRunIndex& index, const Recipe& recipe) {
+  if (!index.first_announced || recipe.steps.empty()) {
+    return false;
+  }
+  const StepAnnouncement first = from_message(*index.first_announced);
+  return first.step != recipe.steps.front().step || first.attempt > 1 ||
+         !first.repeated_steps.empty();
+}
 
 void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {
   for (const std::string& name : outcome.recipe->sources()) {
@@ -357,12 +363,14 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
   result.warnings = warnings_of(*index, *recipe, reader.path());
   add_setup(*index, result.outcome);
+  const bool behind = begins_behind(*index, *recipe);
   RunEvaluator evaluator(std::move(*recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
                           .clock_to_the_end = index->clock_end.has_value(),
                           .clock_end = index->clock_end,
-                          .count = wish.count});
+                          .count = wish.count,
+                          .behind = behind});
   Evaluating evaluating(reader, *index, evaluator, result.outcome);
   const auto walked =
       reader.scan({.message =

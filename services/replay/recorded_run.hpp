@@ -3,9 +3,9 @@
 //
 // What was recorded is handed to the evaluation in the order of the file, samples of each source in
 // the order of their numbers (recording_index.hpp). Samples count from the source's answer to the
-// run on. What the conductor announced counts once every source has sent something behind it. The
-// report on the sample clock covers what the live one covered. Results take the way of the
-// contract's messages, as live ones do.
+// run on. What the conductor announced counts once the samples that it is about have come
+// (waiting_announcements.hpp). The report on the sample clock covers what the live one covered.
+// Results take the way of the contract's messages, as live ones do.
 //
 // With another recipe the same samples are evaluated by that one. Fails (bad_file) as
 // index_recording(), and as RunEvaluator::describe(). Whatever is damaged or missing in the file is

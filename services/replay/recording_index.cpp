@@ -33,6 +33,11 @@ public:
   [[nodiscard]] RecordingContents contents() {
     RecordingContents contents;
     contents.runs = std::move(runs_);
+    for (auto& [name, run] : contents.runs) {
+      if (const auto first = first_announced_.find(name); first != first_announced_.end()) {
+        run.first_announced = first->second;
+      }
+    }
     for (const auto& [key, source] : sources_) {
       contents.sources.emplace(key, ordered(source));
     }
@@ -44,11 +49,13 @@ private:
   template <class T>
   static constexpr bool is_looked_at =
       recording::is_of_source<T> || std::is_same_v<T, wire::Measurement> ||
-      std::is_same_v<T, wire::SourceDescription> || std::is_same_v<T, wire::ServiceStatus> ||
-      std::is_same_v<T, wire::SampleClockReport> || std::is_same_v<T, wire::CalibrationResult>;
+      std::is_same_v<T, wire::Excitation> || std::is_same_v<T, wire::SourceDescription> ||
+      std::is_same_v<T, wire::ServiceStatus> || std::is_same_v<T, wire::SampleClockReport> ||
+      std::is_same_v<T, wire::CalibrationResult>;
 
   struct Session {
     std::int64_t began_utc_ns = 0;
+    std::int64_t min_delay_ns = 0; // from its source's clock to the recorder's
     std::map<std::uint64_t, RecordedPlace> messages;
   };
   struct Source {
@@ -75,6 +82,9 @@ private:
     if ((state == wire::MEASUREMENT_DONE || state == wire::MEASUREMENT_ABORTED) && run.ended == 0) {
       run.ended = message.message.log_time;
     }
+  }
+  void take(const wire::Excitation& excitation, const recording::MessageInFile& /*message*/) {
+    first_announced_.try_emplace(excitation.run().to_string(), excitation);
   }
   static void take_pause(const wire::Measurement& measurement, std::int64_t time_utc_ns,
                          RecordedRunIndex& run) {
@@ -123,7 +133,11 @@ private:
     Session& session = found->second;
     session.began_utc_ns = is_new ? message.received_utc_ns()
                                   : std::min(session.began_utc_ns, message.received_utc_ns());
-    session.messages.try_emplace(number, RecordedPlace{in_file.chunk, in_file.position});
+    const std::int64_t delay_ns =
+        static_cast<std::int64_t>(in_file.message.log_time) - message.received_utc_ns();
+    session.min_delay_ns = is_new ? delay_ns : std::min(session.min_delay_ns, delay_ns);
+    session.messages.try_emplace(
+        number, RecordedPlace{in_file.chunk, in_file.position, message.received_utc_ns()});
   }
 
   [[nodiscard]] static RecordedSource ordered(const Source& source) {
@@ -139,7 +153,9 @@ private:
       return source.sessions.at(a).began_utc_ns < source.sessions.at(b).began_utc_ns;
     });
     for (std::size_t i = 0; i < one.sessions.size(); ++i) {
-      for (const auto& [number, place] : source.sessions.at(one.sessions[i]).messages) {
+      const Session& session = source.sessions.at(one.sessions[i]);
+      for (auto [number, place] : session.messages) {
+        place.sent_ns += session.min_delay_ns;
         one.messages.emplace(RecordedPosition{i, number}, place);
       }
     }
@@ -147,6 +163,7 @@ private:
   }
 
   std::map<std::string, RecordedRunIndex> runs_;
+  std::map<std::string, wire::Excitation> first_announced_; // by run, which may be stored behind it
   std::map<SourceKey, Source> sources_;
   std::uint64_t undecodable_ = 0;
 };

@@ -30,6 +30,10 @@ namespace dyncal::services {
 struct RecordedPlace {
   std::uint64_t chunk = 0;
   std::uint64_t position = 0;
+  // When the source sent it first, by the recorder's clock; what was given again was recorded
+  // later. How far the two clocks are apart the message tells that was recorded soonest, of those
+  // of its session.
+  std::int64_t sent_ns = 0;
 };
 
 // A message within its source: session by its place in time, block or shot.
@@ -55,6 +59,7 @@ struct RecordedSource {
 struct RecordedRunIndex {
   wire::Measurement plan; // as it came first
   wire::Measurement newest;
+  std::optional<wire::Excitation> first_announced;
   std::uint64_t began = 0;                       // log_time of state RUNNING; 0: not heard
   std::uint64_t ended = 0;                       // log_time of the state behind it; 0: not heard
   std::map<std::string, RecordedSource> sources; // of the bench

@@ -96,18 +96,19 @@ void add_values(const Json& json, ResultRecord& record) {
   }
 }
 
-RunState state_of(const Json& json, const ResultRecord& record) {
+RunCompletion state_of(const Json& json, const ResultRecord& record) {
   const bool is_live = text(json.at("dds"), "analysis") != no_network;
   if (is_live && record.ended_utc.empty()) {
-    return RunState::unfinished;
+    return RunCompletion::unfinished;
   }
   if (json.at("interrupted").get<bool>()) {
-    return RunState::interrupted;
+    return RunCompletion::interrupted;
   }
   if (!record.problem.empty()) {
-    return RunState::ended_early;
+    return RunCompletion::ended_early;
   }
-  return record.measured_steps < record.planned_steps ? RunState::incomplete : RunState::complete;
+  return record.measured_steps < record.planned_steps ? RunCompletion::incomplete
+                                                      : RunCompletion::complete;
 }
 
 ResultRecord record_of(const Json& json) {
@@ -133,17 +134,17 @@ ResultRecord record_of(const Json& json) {
 
 } // namespace
 
-std::string to_string(RunState state) {
+std::string to_string(RunCompletion state) {
   switch (state) {
-  case RunState::complete:
+  case RunCompletion::complete:
     return "complete";
-  case RunState::incomplete:
+  case RunCompletion::incomplete:
     return "incomplete";
-  case RunState::interrupted:
+  case RunCompletion::interrupted:
     return "interrupted";
-  case RunState::ended_early:
+  case RunCompletion::ended_early:
     return "ended-early";
-  case RunState::unfinished:
+  case RunCompletion::unfinished:
     return "unfinished";
   }
   return "";

@@ -15,16 +15,16 @@
 
 namespace dyncal::services {
 
-enum class RunState {
+enum class RunCompletion {
   complete,    // every planned step has a value
   incomplete,  // steps without a value, or a channel
   interrupted, // by the user
   ended_early, // for a reason that the result states
   unfinished   // runs now, or its program ended before it
 };
-[[nodiscard]] std::string to_string(RunState state);
+[[nodiscard]] std::string to_string(RunCompletion state);
 
-struct RecordedSource {
+struct RecordedInstrument {
   std::string source;
   std::string device;
   std::string serial;
@@ -63,7 +63,7 @@ struct ResultRecord {
   std::string recipe_sha256;
   std::string bench;
   std::string run;
-  RunState state = RunState::complete;
+  RunCompletion state = RunCompletion::complete;
   std::string method;
   std::string began_utc; // "": not known
   std::string ended_utc;
@@ -74,7 +74,7 @@ struct ResultRecord {
   std::string recipe;
   std::string folder;   // or file, absolute
   std::string document; // the file
-  std::vector<RecordedSource> sources;
+  std::vector<RecordedInstrument> sources;
   std::vector<RecordedPoint> points;
   std::vector<RecordedSamples> samples;
 };

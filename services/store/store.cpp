@@ -50,7 +50,7 @@ constexpr const char* select_runs =
     "result_sha256, planned_steps, measured_steps, problem, folder FROM results "
     "ORDER BY began_utc, added_utc, result_sha256";
 
-bool is_sensor(const RecordedSource& source, const std::string& sensor) {
+bool is_sensor(const RecordedInstrument& source, const std::string& sensor) {
   return source.serial == sensor || source.device == sensor || source.source == sensor;
 }
 
@@ -63,8 +63,9 @@ bool is_within(const std::string& began_utc, const RunFilter& filter) {
 bool passes(const StoredRun& run, const RunFilter& filter) {
   const bool has_sensor =
       filter.sensor.empty() ||
-      std::any_of(run.sources.begin(), run.sources.end(),
-                  [&](const RecordedSource& source) { return is_sensor(source, filter.sensor); });
+      std::any_of(run.sources.begin(), run.sources.end(), [&](const RecordedInstrument& source) {
+        return is_sensor(source, filter.sensor);
+      });
   return has_sensor && is_within(run.began_utc, filter) &&
          (filter.bench.empty() || run.bench == filter.bench) &&
          (filter.state.empty() || run.state == filter.state);
@@ -150,7 +151,7 @@ Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
     if (text_of(row[2]) != record.recipe_sha256 || other_files) {
       continue;
     }
-    if (text_of(row[3]) != to_string(RunState::unfinished)) {
+    if (text_of(row[3]) != to_string(RunCompletion::unfinished)) {
       return fail(other_result(record, row));
     }
     if (const auto removed = remove(text_of(row[0])); !removed) {
@@ -174,7 +175,7 @@ Expected<void> Store::insert(const ResultRecord& record) {
   if (!done) {
     return fail(done.error());
   }
-  for (const RecordedSource& source : record.sources) {
+  for (const RecordedInstrument& source : record.sources) {
     const auto inserted = database_->execute(
         "INSERT INTO sources (result_sha256, source, device, serial, firmware, software) "
         "VALUES ($1, $2, $3, $4, $5, $6)",
@@ -249,7 +250,7 @@ Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
   return found;
 }
 
-Expected<std::vector<RecordedSource>> Store::sources_of(const std::string& result_sha256) {
+Expected<std::vector<RecordedInstrument>> Store::sources_of(const std::string& result_sha256) {
   const auto rows = database_->execute(
       "SELECT source, device, serial, firmware, software FROM sources WHERE result_sha256 = $1 "
       "ORDER BY source",
@@ -257,7 +258,7 @@ Expected<std::vector<RecordedSource>> Store::sources_of(const std::string& resul
   if (!rows) {
     return fail(rows.error());
   }
-  std::vector<RecordedSource> sources;
+  std::vector<RecordedInstrument> sources;
   for (const DatabaseRow& row : *rows) {
     sources.push_back(
         {text_of(row[0]), text_of(row[1]), text_of(row[2]), text_of(row[3]), text_of(row[4])});
@@ -305,7 +306,7 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
   begin_work(count, "reading", "calibrations", runs_with_sensor->size());
   std::vector<Calibration> calibrations;
   for (const StoredRun& run : *runs_with_sensor) {
-    for (const RecordedSource& source : run.sources) {
+    for (const RecordedInstrument& source : run.sources) {
       auto points = is_sensor(source, sensor) ? points_of(run.result_sha256, source.source)
                                               : Expected<std::vector<RecordedPoint>>{};
       if (!points) {

@@ -32,7 +32,7 @@ enum class StoreAddition { added, already_there, replaced_unfinished };
 struct StoredRun {
   std::string bench;
   std::string run;
-  std::string state; // to_string(RunState)
+  std::string state; // to_string(RunCompletion)
   std::string began_utc;
   std::string ended_utc;
   std::string method;
@@ -43,7 +43,7 @@ struct StoredRun {
   std::int64_t measured_steps = 0;
   std::string problem;
   std::string folder;
-  std::vector<RecordedSource> sources;
+  std::vector<RecordedInstrument> sources;
 };
 
 struct RunFilter { // empty: any
@@ -83,7 +83,7 @@ private:
   Expected<void> insert(const ResultRecord& record);
   Expected<void> insert_values(const ResultRecord& record);
   Expected<void> remove(const std::string& result_sha256);
-  Expected<std::vector<RecordedSource>> sources_of(const std::string& result_sha256);
+  Expected<std::vector<RecordedInstrument>> sources_of(const std::string& result_sha256);
   Expected<std::vector<RecordedPoint>> points_of(const std::string& result_sha256,
                                                  const std::string& source);
 

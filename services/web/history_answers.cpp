@@ -28,7 +28,7 @@ Json milliseconds(const std::string& utc_text) {
 Json sensors_json(const std::vector<StoredRun>& runs) {
   std::set<std::string> sensors;
   for (const StoredRun& run : runs) {
-    for (const RecordedSource& source : run.sources) {
+    for (const RecordedInstrument& source : run.sources) {
       if (!source.serial.empty()) {
         sensors.insert(source.serial);
       } else if (!source.device.empty()) {

@@ -124,5 +124,52 @@ TEST_F(RecordedRun, EndsWithASourceThatSendsNothingMore) {
   EXPECT_FALSE(recorded.outcome.results[0].valid);
 }
 
+// The recorder was started again when the step was over: everything is stored behind that.
+class RecordingBegunAgain : public RecordedRun {
+protected:
+  void SetUp() override {
+    add_excitation(wire::EXCITATION_DONE); // kept for whoever comes late, as the run itself
+    add_state(wire::MEASUREMENT_RUNNING);
+    recording_.add("SourceDescription", synthetic_.acs_description());
+    recording_.add("SourceDescription", synthetic_.dau_description());
+  }
+  // What was sent a minute ago, and one block of now, which tells how far the clocks are apart.
+  void add_given_again(const std::string& topic, std::vector<wire::SampleBlock> blocks) {
+    blocks.front().acknowledged_run(synthetic_.measurement().run().to_string());
+    for (wire::SampleBlock& block : blocks) {
+      const auto order_ns = static_cast<std::int64_t>(block.block());
+      block.received_utc_ns(example_utc_ns - 60'000'000'000 + order_ns);
+      recording_.add(topic, block);
+    }
+    wire::SampleBlock now = blocks.back();
+    now.block(now.block() + 1);
+    now.first_sample(now.first_sample() + now.sample_count());
+    for (std::int64_t& stamp_ns : now.stamps_ns()) {
+      stamp_ns += 60'000'000'000;
+    }
+    now.received_utc_ns(example_utc_ns + std::int64_t{recording_.sequence} * 1'000'000);
+    recording_.add(topic, now);
+  }
+  // Its answer to the run long before the step.
+  [[nodiscard]] std::vector<wire::SampleBlock> dau_blocks() const {
+    std::vector<wire::SampleBlock> blocks{dau_.front()};
+    for (std::int64_t& stamp_ns : blocks.front().stamps_ns()) {
+      stamp_ns -= 10'000'000'000; // more than the grace of a step
+    }
+    for (wire::SampleBlock block : dau_) {
+      block.block(block.block() + 1);
+      block.first_sample(block.first_sample() + dau_.front().sample_count());
+      blocks.push_back(block);
+    }
+    return blocks;
+  }
+};
+
+TEST_F(RecordingBegunAgain, TakesNoStepForOverBeforeItsSamplesHaveCome) {
+  add_given_again("AcsSamples", synthetic_.acs_blocks());
+  add_given_again("DauSamples", dau_blocks());
+  expect_a_valid_result();
+}
+
 } // namespace
 } // namespace dyncal::services
