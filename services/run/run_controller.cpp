@@ -62,6 +62,9 @@ RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_cali
   if (const auto known = wait_until_known(stop); !known) {
     return fail(known.error()); // and not aborted: what the analysis holds of it is left as it is
   }
+  if (has_ended_at_analysis()) {
+    return collect_of_ended_run(stop);
+  }
   const auto ready = check_before_first_step(stop).and_then([&] { return open_sequence(); });
   if (!ready) {
     return fail(ready.error());
@@ -95,6 +98,45 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
   watch_->wait_for_acknowledgments(acknowledgment_limit);
   sort_outcome(outcome_);
   return std::move(outcome_);
+}
+
+// Its conductor died while it collected, or was away for longer than the analysis waits.
+Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& stop) {
+  outcome_.began_utc_ns = clock_.utc_now_ns();
+  const Expected<void> collected = wait_for_results(stop);
+  if (watch_->has_other_recipe()) {
+    return fail(other_bench_file());
+  }
+  outcome_.problem = collected ? lack_of_ended_run() : collected.error().message;
+  outcome_.interrupted = stop.stop_requested();
+  outcome_.ended_utc_ns = clock_.utc_now_ns();
+  watch_->set_state(final_state(outcome_.problem.empty()), outcome_.problem);
+  watch_->wait_for_acknowledgments(acknowledgment_limit);
+  sort_outcome(outcome_);
+  return std::move(outcome_);
+}
+
+bool RunController::has_ended_at_analysis() const {
+  return watch_->analysis()->arm() == wire::ARM_FINISHED;
+}
+
+std::string RunController::lack_of_ended_run() const {
+  const auto& steps = outcome_.recipe->steps;
+  const auto lacking = std::count_if(steps.begin(), steps.end(), [&](const RecipeStep& step) {
+    return std::none_of(outcome_.results.begin(), outcome_.results.end(),
+                        [&](const StepResult& result) { return result.step == step.step; });
+  });
+  return lacking == 0
+             ? ""
+             : fmt::format("run '{}' had ended at the analysis service {} before {} of "
+                           "its {} steps; begin a new run for those",
+                           run_, watch_->analysis()->service().c_str(), lacking, steps.size());
+}
+
+Error RunController::other_bench_file() const {
+  return {ErrorCode::bad_file, fmt::format("run '{}' was made with another bench file; resume it "
+                                           "with that one, or begin a new run",
+                                           run_)};
 }
 
 wire::MeasurementState RunController::final_state(bool excited) const {
@@ -186,20 +228,16 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
       attended = clock_.now();
     }
     if (watch_->has_other_recipe()) {
-      return fail(ErrorCode::bad_file,
-                  fmt::format("run '{}' was made with another bench file; resume it with that one, "
-                              "or begin a new run",
-                              run_));
+      return fail(other_bench_file());
     }
     if (analysis && analysis->arm() == wire::ARM_REFUSED) {
       return fail(watch_->outlook().reason);
     }
-    if (analysis && analysis->arm() == wire::ARM_FINISHED) {
-      return fail(
-          ErrorCode::no_analysis,
-          fmt::format("run '{}' has ended at the analysis service {}; what it measured is in "
-                      "its run folder, begin a new run for the rest",
-                      run_, analysis->service().c_str()));
+    if (analysis && has_ended_at_analysis()) {
+      watch_->notice(fmt::format("run '{}' has ended at the analysis service {}; its results are "
+                                 "collected",
+                                 run_, analysis->service().c_str()));
+      return {};
     }
     if (analysis && watch_->outlook().kind == Kind::well &&
         outcome_.results.size() >= analysis->results_published()) {

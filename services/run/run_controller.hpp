@@ -58,9 +58,10 @@ public:
   conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
           const std::stop_token& stop);
   // Goes on with the run of this name, whose conductor has died: steps that have their results are
-  // not excited again. Fails too where no analysis holds the run any more (no_analysis), where it
-  // was made with another bench file (bad_file), and for recorded files (bad_argument).
-  // REQUIRES: nobody else conducts it.
+  // not excited again. A run that has ended at the analysis is not gone on with: what it gave is
+  // collected, and the steps that it lacks are the outcome's problem. Fails too where no analysis
+  // holds the run any more (no_analysis), where it was made with another bench file (bad_file), and
+  // for recorded files (bad_argument). REQUIRES: nobody else conducts it.
   [[nodiscard]] Expected<RunOutcome>
   resume(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
          const std::stop_token& stop);
@@ -72,6 +73,7 @@ private:
   Expected<void> open_sequence();
   Expected<void> check_before_first_step(const std::stop_token& stop);
   Expected<RunOutcome> excite_and_collect(const std::stop_token& stop);
+  Expected<RunOutcome> collect_of_ended_run(const std::stop_token& stop);
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> wait_until_known(const std::stop_token& stop);
   // Nothing while the analysis may still answer.
@@ -79,6 +81,10 @@ private:
   [[nodiscard]] std::string silence_of_analysis() const;
   Expected<void> wait_for_results(const std::stop_token& stop);
   void abort(const std::string& reason);
+  [[nodiscard]] bool has_ended_at_analysis() const;
+  // What an analysis that has ended the run does not give; empty where it gives all.
+  [[nodiscard]] std::string lack_of_ended_run() const;
+  [[nodiscard]] Error other_bench_file() const;
   [[nodiscard]] bool everything_has_come() const;
   [[nodiscard]] bool plays_files() const;
   [[nodiscard]] wire::MeasurementState final_state(bool excited) const;

@@ -636,16 +636,47 @@ TEST_F(StepSequenceTest, ARunThatNobodyHoldsIsNotResumed) {
   EXPECT_EQ(instrument_.connections, 0);
 }
 
-TEST_F(StepSequenceTest, ARunThatHasEndedIsNotResumed) {
+TEST_F(StepSequenceTest, OfARunThatHasEndedTheResultsAreCollected) {
   finished_ = true;
+  for (const std::uint32_t step : {1U, 2U, 3U}) {
+    analysis_.publish(good({step, 1}));
+  }
+  clock_.at(1s, [this] { analysis_.report(wire::ARM_FINISHED); });
+  const auto outcome = try_to_resume();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 3U);
+  follow_run();
+  EXPECT_EQ(state_, wire::MEASUREMENT_DONE);
+  EXPECT_THAT(notices_, Contains("run 'r1' has ended at the analysis service analysis@test:1; its "
+                                 "results are collected"));
+  EXPECT_EQ(instrument_.connections, 0);
+}
+
+TEST_F(StepSequenceTest, OfARunThatHasEndedTheMissingStepsAreNamed) {
+  finished_ = true;
+  analysis_.publish(good({1, 1}));
+  clock_.at(1s, [this] { analysis_.report(wire::ARM_FINISHED); });
+  const auto outcome = try_to_resume();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "run 'r1' had ended at the analysis service analysis@test:1 before 2 "
+                              "of its 3 steps; begin a new run for those");
+  EXPECT_EQ(outcome->results.size(), 1U);
+  follow_run();
+  EXPECT_EQ(state_, wire::MEASUREMENT_ABORTED);
+  EXPECT_EQ(instrument_.connections, 0);
+}
+
+TEST_F(StepSequenceTest, AnEndedRunOfAnotherBenchFileIsNotTakenForThisOne) {
+  bench_.sha256 = "new";
+  finished_ = true;
+  wire::CalibrationResult result = good({1, 1});
+  result.recipe_sha256("old");
+  analysis_.publish(result);
   clock_.at(1s, [this] { analysis_.report(wire::ARM_FINISHED); });
   const auto outcome = try_to_resume();
   ASSERT_FALSE(outcome);
-  EXPECT_EQ(
-      outcome.error().message,
-      "run 'r1' has ended at the analysis service analysis@test:1; what it measured is in its "
-      "run folder, begin a new run for the rest");
-  EXPECT_EQ(instrument_.connections, 0);
+  EXPECT_EQ(outcome.error().code, ErrorCode::bad_file);
 }
 
 TEST_F(StepSequenceTest, ARunOfAnotherBenchFileIsNotResumed) {
