@@ -13,6 +13,12 @@ void RefusedPackets::add(std::uint32_t sender) {
         "(`dyncal doctor` tells how many come)");
 }
 
+void RefusedPackets::add_implausible(std::uint32_t sender) {
+  if (implausible_++ >= many_implausible) {
+    add(sender);
+  }
+}
+
 std::string RefusedPackets::last_sender() const {
   const std::uint32_t address = last_sender_;
   if (address == 0) {

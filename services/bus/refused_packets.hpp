@@ -19,6 +19,10 @@ public:
 
   // `sender` is an IPv4 address, the first byte uppermost; 0 if it is not known.
   void add(std::uint32_t sender);
+  // A packet that is RTPS, but does not go on from those before (rtps/message_check.hpp). Some do
+  // not after a link was down: so they count from the one behind `many_implausible` on.
+  void add_implausible(std::uint32_t sender);
+  static constexpr std::uint64_t many_implausible = 1000;
   [[nodiscard]] std::uint64_t count() const { return count_; }
   // "10.0.0.7"; empty if it is not known.
   [[nodiscard]] std::string last_sender() const;
@@ -26,6 +30,7 @@ public:
 private:
   std::function<void(const std::string&)> warn_;
   std::atomic<std::uint64_t> count_{0};
+  std::atomic<std::uint64_t> implausible_{0};
   std::atomic<std::uint32_t> last_sender_{0};
 };
 

@@ -36,7 +36,7 @@ FLOORS = {
     ],
     "services": [
         ["."],
-        ["output"],
+        ["bus/rtps", "output"],
         ["contract", "report/figures"],
         ["bench", "bus", "supervision"],
         ["bus/cyclonedds", "bus/fastdds", "bus/memory", "host_clocks", "live_signals"],

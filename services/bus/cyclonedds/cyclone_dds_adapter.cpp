@@ -7,6 +7,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_screen.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -39,11 +40,13 @@ private:
 // Cyclone DDS configures a domain once a process, so that all participants in it share the settings
 // of the first.
 struct Domain {
+  CycloneDdsScreen screen; // outlives the domain's threads
   Entity entity;
   std::string config;
 };
 
-services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::string& config) {
+services::Expected<std::shared_ptr<Domain>>
+open_domain(int number, const std::string& config, const std::shared_ptr<RefusedPackets>& refused) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> open;
   const std::lock_guard lock(mutex);
@@ -64,7 +67,8 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
                                   " programs of a domain, and CYCLONEDDS_URI may be the cause)",
                               handle));
   }
-  auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
+  auto domain =
+      std::shared_ptr<Domain>(new Domain{CycloneDdsScreen(refused), Entity(handle), config});
   open[number] = domain;
   return domain;
 }
@@ -260,6 +264,8 @@ private:
                                                         &sertype, nullptr, nullptr, nullptr);
     if (topic < 0) {
       release_cyclone_sertype(sertype);
+    } else {
+      participant_->domain->screen.install(domain_of(*sertype));
     }
     return topic;
   }
@@ -282,7 +288,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   }
 
   auto refused = packets_refused_by_cyclone_dds(options.warn);
-  auto domain = open_domain(options.domain, *config);
+  auto domain = open_domain(options.domain, *config, refused);
   if (!domain) {
     return fail(domain.error());
   }

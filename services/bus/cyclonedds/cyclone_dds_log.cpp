@@ -22,13 +22,13 @@ void write_or_count(void* refused, const dds_log_data_t* data) {
 
 } // namespace
 
-std::shared_ptr<const RefusedPackets>
+std::shared_ptr<RefusedPackets>
 packets_refused_by_cyclone_dds(const std::function<void(const std::string&)>& warn) {
   // Never destroyed: Cyclone DDS may log while the process ends.
   static const auto* const refused = [&] {
     auto counter = std::make_shared<RefusedPackets>(warn);
     dds_set_log_sink(write_or_count, counter.get());
-    return new std::shared_ptr<const RefusedPackets>(std::move(counter));
+    return new std::shared_ptr<RefusedPackets>(std::move(counter));
   }();
   return *refused;
 }

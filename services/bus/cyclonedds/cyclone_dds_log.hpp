@@ -11,7 +11,7 @@
 namespace dyncal::bus {
 
 // The first call's `warn` is told of the first packet.
-[[nodiscard]] std::shared_ptr<const RefusedPackets>
+[[nodiscard]] std::shared_ptr<RefusedPackets>
 packets_refused_by_cyclone_dds(const std::function<void(const std::string&)>& warn);
 
 } // namespace dyncal::bus

@@ -308,6 +308,10 @@ void release_cyclone_sertype(ddsi_sertype* sertype) {
   ddsi_sertype_unref(sertype);
 }
 
+const ddsi_domaingv& domain_of(const ddsi_sertype& sertype) {
+  return *static_cast<const ddsi_domaingv*>(ddsrt_atomic_ldvoidp(&sertype.gv));
+}
+
 bool read_cyclone_serdata(const TypeSupport& type, const ddsi_serdata* serdata, void* sample) {
   return decode(type, own(serdata), sample);
 }

@@ -14,6 +14,7 @@
 #include "services/bus/malformed_messages.hpp"
 #include "services/bus/type_support.hpp"
 
+struct ddsi_domaingv;
 struct ddsi_sertype;
 struct ddsi_serdata;
 
@@ -24,6 +25,8 @@ namespace dyncal::bus {
 [[nodiscard]] ddsi_sertype* make_cyclone_sertype(const TypeSupport& type,
                                                  std::shared_ptr<MalformedMessages> malformed);
 void release_cyclone_sertype(ddsi_sertype* sertype);
+// REQUIRES: dds_create_topic_sertype() has given it.
+[[nodiscard]] const ddsi_domaingv& domain_of(const ddsi_sertype& sertype);
 
 // Decodes what dds_takecdr() gave: a whole sample, or one with key members only. False when the
 // bytes are not a message of the type.

@@ -1,136 +1,32 @@
 #include "services/bus/fastdds/rtps_screen.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <optional>
 
-#include "services/bus/discovery.hpp"
+#include "services/bus/rtps/rtps_format.hpp"
 
 namespace dyncal::bus {
+
+using namespace rtps_format;
+
 namespace {
 
-using Bytes = std::span<const unsigned char>;
-
-constexpr std::size_t header_bytes = 20;
-constexpr std::size_t submessage_header_bytes = 4;
-constexpr unsigned char protocol_major = 2;
-
-constexpr unsigned char acknack = 0x06;
-constexpr unsigned char heartbeat = 0x07;
-constexpr unsigned char gap = 0x08;
-constexpr unsigned char info_timestamp = 0x09;
-constexpr unsigned char info_source = 0x0c;
-constexpr unsigned char info_destination = 0x0e;
-constexpr unsigned char nack_frag = 0x12;
-constexpr unsigned char heartbeat_frag = 0x13;
-constexpr unsigned char data = 0x15;
-constexpr unsigned char data_frag = 0x16;
 constexpr unsigned char first_of_security = 0x30;
 constexpr unsigned char last_of_security = 0x34;
-
-constexpr unsigned char little_endian_flag = 0x01;
-constexpr unsigned char final_flag = 0x02; // of ACKNACK
-constexpr unsigned char no_timestamp_flag = 0x02;
-constexpr unsigned char inline_qos_flag = 0x02;
-constexpr unsigned char data_flag = 0x04; // of DATA
-constexpr unsigned char key_flag = 0x08;  // of DATA
-constexpr unsigned char key_of_fragment_flag = 0x04;
-
-constexpr std::size_t entities_bytes = 8; // reader and writer
-constexpr std::size_t sequence_bytes = 8;
-constexpr std::size_t data_bytes_before_qos = 20;
-constexpr std::size_t fragment_bytes_before_qos = 32;
-
-constexpr std::uint16_t pid_pad = 0x0000;
-constexpr std::uint16_t pid_sentinel = 0x0001;
-constexpr std::uint16_t pid_key_hash = 0x0070;
 
 // Below this Fast DDS has no room for its list of missing fragments; both vendors send 1 kB and
 // more.
 constexpr std::uint32_t min_fragment_bytes = 64;
-constexpr std::uint32_t max_bits_of_set = 256;
 // Fast DDS visits each sample of a GAP. Longer than any source runs between two of its heartbeats.
 constexpr std::int64_t max_gap = 1 << 24;
-constexpr std::int64_t max_sequence = std::int64_t{1} << 48;
 constexpr std::size_t max_message_bytes = 1U << 20;
-
-template <class Number>
-Number number_at(Bytes bytes, std::size_t at, unsigned char flags) {
-  Number value{};
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  if ((flags & little_endian_flag) != 0) {
-    return value;
-  }
-  if constexpr (sizeof value == 2) {
-    return static_cast<Number>(__builtin_bswap16(value));
-  } else {
-    return static_cast<Number>(__builtin_bswap32(value));
-  }
-}
 
 void put_number(unsigned char* at, std::uint32_t value, unsigned char flags) {
   if ((flags & little_endian_flag) == 0) {
     value = __builtin_bswap32(value);
   }
   std::memcpy(at, &value, sizeof value);
-}
-
-static_assert(std::endian::native == std::endian::little,
-              "byte orders here are written for little-endian machines");
-
-// Nothing where it is not one that a writer can have.
-std::optional<std::int64_t> sequence_at(Bytes bytes, std::size_t at, unsigned char flags) {
-  const auto high = static_cast<std::int32_t>(number_at<std::uint32_t>(bytes, at, flags));
-  const std::int64_t low = number_at<std::uint32_t>(bytes, at + 4, flags);
-  const std::int64_t sequence = std::int64_t{high} * (std::int64_t{1} << 32) + low;
-  return sequence >= 0 && sequence < max_sequence ? std::optional(sequence) : std::nullopt;
-}
-
-// Words of a bitmap behind its number of bits at `at`; nothing where they are not there.
-std::optional<std::size_t> bitmap_words(Bytes body, std::size_t at, unsigned char flags) {
-  if (at + 4 > body.size()) {
-    return std::nullopt;
-  }
-  const auto bits = number_at<std::uint32_t>(body, at, flags);
-  const std::size_t words = (std::size_t{bits} + 31) / 32;
-  return bits <= max_bits_of_set && at + 4 + 4 * words <= body.size() ? std::optional(words)
-                                                                      : std::nullopt;
-}
-
-struct InlineQos {
-  std::size_t end = 0;                      // where the payload begins
-  std::optional<std::size_t> key_hash = {}; // where the identifier of a key hash is
-};
-
-// Nothing where the list does not end within the submessage.
-std::optional<InlineQos> inline_qos(Bytes body, std::size_t begin, unsigned char flags) {
-  InlineQos found{begin};
-  if ((flags & inline_qos_flag) == 0) {
-    return found;
-  }
-  for (std::size_t at = begin; at + 4 <= body.size();) {
-    const auto id = number_at<std::uint16_t>(body, at, flags);
-    const std::size_t length = number_at<std::uint16_t>(body, at + 2, flags);
-    if (id == pid_sentinel) {
-      found.end = at + 4;
-      return found;
-    }
-    if (id == pid_key_hash) {
-      found.key_hash = at;
-    }
-    at += 4 + ((length + 3U) & ~std::size_t{3});
-  }
-  return std::nullopt;
-}
-
-// Where the inline QoS begins; nothing where it is not within the submessage.
-std::optional<std::size_t> qos_begin(Bytes body, std::size_t at_least, unsigned char flags) {
-  if (body.size() < at_least) {
-    return std::nullopt;
-  }
-  const std::size_t begin = 4U + number_at<std::uint16_t>(body, 2, flags);
-  return begin >= at_least && begin <= body.size() ? std::optional(begin) : std::nullopt;
 }
 
 bool nack_frag_is_whole(unsigned char flags, Bytes body) {
@@ -164,7 +60,7 @@ Bytes RtpsScreen::pass(Bytes datagram) {
     const unsigned char flags = datagram[at + 1];
     std::size_t length = number_at<std::uint16_t>(datagram, at + 2, flags);
     at += submessage_header_bytes;
-    if (length == 0 && id != info_timestamp && id != 0x01) {
+    if (length == 0 && id != info_timestamp && id != pad) {
       length = datagram.size() - at; // the last one
     }
     if (length > datagram.size() - at || used_ > max_message_bytes ||
@@ -258,7 +154,7 @@ bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
   const std::size_t count_at = bits_at + 4 + 4 * *words;
   const auto count = number_at<std::uint32_t>(body, count_at, flags);
   const bool begins_anew = *base == 1 && *words == 0 && count == 0 && (flags & final_flag) == 0;
-  const Bytes source = Bytes(buffer_).subspan(header_bytes - guid_prefix_bytes, guid_prefix_bytes);
+  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
   const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
   unsigned char* passed = append_submessage(acknack, flags, body);
   if (begins_anew) {
@@ -330,7 +226,7 @@ bool RtpsScreen::pass_fragments(unsigned char flags, Bytes body) {
 
 SampleStamps::Sample RtpsScreen::sample_of(unsigned char flags, Bytes body) const {
   SampleStamps::Sample sample;
-  const Bytes source = Bytes(buffer_).subspan(header_bytes - guid_prefix_bytes, guid_prefix_bytes);
+  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
   std::ranges::copy(source, sample.participant.begin());
   std::ranges::copy(body.subspan(8, sample.writer.size()), sample.writer.begin());
   sample.sequence = sequence_at(body, 4 + entities_bytes, flags).value_or(0);

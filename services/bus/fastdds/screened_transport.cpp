@@ -5,12 +5,20 @@
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 
 #include "services/bus/fastdds/rtps_screen.hpp"
+#include "services/bus/rtps/message_check.hpp"
 
 namespace dyncal::bus {
 namespace {
 
 namespace vendor = eprosima::fastdds::rtps;
 namespace rtps = eprosima::fastrtps::rtps;
+
+// Of IPv4, the first byte uppermost.
+std::uint32_t address_of(const rtps::Locator_t& locator) {
+  const rtps::octet* ipv4 = locator.address + 12;
+  return std::uint32_t{ipv4[0]} << 24U | std::uint32_t{ipv4[1]} << 16U |
+         std::uint32_t{ipv4[2]} << 8U | std::uint32_t{ipv4[3]};
+}
 
 class ScreenedTransport : public vendor::ChainingTransport {
 public:
@@ -34,19 +42,22 @@ public:
   void receive(vendor::TransportReceiverInterface* above, const rtps::octet* bytes,
                std::uint32_t count, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
+    if (!check_.accepts({bytes, count})) {
+      refused_->add_implausible(address_of(remote));
+      return;
+    }
     thread_local RtpsScreen screen(stamps_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
     } else if (screen.refused()) {
-      const rtps::octet* ipv4 = remote.address + 12;
-      refused_->add(std::uint32_t{ipv4[0]} << 24U | std::uint32_t{ipv4[1]} << 16U |
-                    std::uint32_t{ipv4[2]} << 8U | std::uint32_t{ipv4[3]});
+      refused_->add(address_of(remote));
     }
   }
 
 private:
   std::shared_ptr<RefusedPackets> refused_;
+  MessageCheck check_;
   SampleStamps stamps_;
 };
 

@@ -1,4 +1,5 @@
-// A transport of Fast DDS whose received datagrams go through RtpsScreen; sending is left alone.
+// A transport of Fast DDS whose received datagrams go through MessageCheck and RtpsScreen; sending
+// is left alone.
 #pragma once
 
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -8,7 +9,7 @@
 
 namespace dyncal::bus {
 
-// Around `transport`, e.g. UDP. What is dropped as malformed is counted in `refused`.
+// Around `transport`, e.g. UDP. What is dropped is counted in `refused`.
 [[nodiscard]] std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>
 screened(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
          std::shared_ptr<RefusedPackets> refused);

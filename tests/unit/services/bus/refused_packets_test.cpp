@@ -25,5 +25,19 @@ TEST(RefusedPackets, AreCountedAndSaidOnce) {
   EXPECT_THAT(said, ElementsAre(HasSubstr("malformed packet from 192.0.2.7, and will refuse")));
 }
 
+// After a link was down some packets do not go on from those before.
+TEST(RefusedPackets, AreImplausibleInLargeNumbersOnly) {
+  std::vector<std::string> said;
+  RefusedPackets refused([&](const std::string& sentence) { said.push_back(sentence); });
+  for (std::uint64_t i = 0; i < RefusedPackets::many_implausible; ++i) {
+    refused.add_implausible(10U << 24U | 255U);
+  }
+  EXPECT_EQ(refused.count(), 0U);
+  EXPECT_THAT(said, testing::IsEmpty());
+  refused.add_implausible(10U << 24U | 255U);
+  EXPECT_EQ(refused.count(), 1U);
+  EXPECT_THAT(said, ElementsAre(HasSubstr("from 10.0.0.255")));
+}
+
 } // namespace
 } // namespace dyncal::bus

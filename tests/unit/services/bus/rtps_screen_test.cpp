@@ -4,35 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+
 namespace dyncal::bus {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-
-Bytes operator+(Bytes left, const Bytes& right) {
-  left.insert(left.end(), right.begin(), right.end());
-  return left;
-}
-
-Bytes header() {
-  return {'R', 'T', 'P', 'S', 2, 1, 1, 16, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-}
-
-Bytes u16(unsigned value) {
-  return {static_cast<unsigned char>(value), static_cast<unsigned char>(value >> 8U)};
-}
-
-Bytes u32(std::uint32_t value) {
-  return u16(value & 0xffffU) + u16(value >> 16U);
-}
-
-Bytes sequence(std::uint64_t value) {
-  return u32(static_cast<std::uint32_t>(value >> 32U)) + u32(static_cast<std::uint32_t>(value));
-}
-
-Bytes submessage(unsigned char id, unsigned char flags, const Bytes& body) {
-  return Bytes{id, flags} + u16(static_cast<unsigned>(body.size())) + body;
-}
+using namespace tests_of_rtps;
 
 const Bytes entities{0, 0, 1, 7, 0, 0, 1, 2};
 

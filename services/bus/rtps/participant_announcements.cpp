@@ -1,0 +1,106 @@
+#include "services/bus/rtps/participant_announcements.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace dyncal::bus {
+
+using namespace rtps_format;
+
+namespace {
+
+constexpr std::array<unsigned char, entity_bytes> participant_writer{0x00, 0x01, 0x00, 0xc2};
+constexpr std::array<unsigned char, entity_bytes> publications_writer{0x00, 0x00, 0x03, 0xc2};
+constexpr std::array<unsigned char, entity_bytes> subscriptions_writer{0x00, 0x00, 0x04, 0xc2};
+
+constexpr std::uint16_t pid_participant_guid = 0x0050;
+constexpr std::uint16_t pid_endpoint_guid = 0x005a;
+// Lease duration, protocol version, vendor, locators and built-in endpoints of a participant.
+constexpr std::array<std::uint16_t, 9> lasting = {
+    0x0002, 0x0015, 0x0016, 0x0031, 0x0032, 0x0033, 0x0048, 0x0058, pid_participant_guid};
+
+struct Announced {
+  std::optional<Bytes> guid;
+  std::string lasting_fields;
+};
+
+// Nothing where it is no list of parameters.
+std::optional<Announced> announced_in(Bytes payload, std::uint16_t guid_parameter) {
+  constexpr std::size_t encapsulation_bytes = 4;
+  if (payload.size() < encapsulation_bytes || payload[0] != 0 ||
+      (payload[1] != 2 && payload[1] != 3)) {
+    return std::nullopt;
+  }
+  const unsigned char flags = payload[1] == 3 ? little_endian_flag : 0;
+  Announced found;
+  for (std::size_t at = encapsulation_bytes; at + 4 <= payload.size();) {
+    const auto id = number_at<std::uint16_t>(payload, at, flags);
+    const std::size_t length = number_at<std::uint16_t>(payload, at + 2, flags);
+    if (id == pid_sentinel) {
+      return found;
+    }
+    if (at + 4 + length > payload.size()) {
+      return std::nullopt;
+    }
+    const Bytes parameter = payload.subspan(at, 4 + length);
+    if (id == guid_parameter) {
+      found.guid = parameter.subspan(4);
+    }
+    if (std::ranges::find(lasting, id) != lasting.end()) {
+      found.lasting_fields.append(parameter.begin(), parameter.end());
+    }
+    at += 4 + ((length + 3U) & ~std::size_t{3});
+  }
+  return std::nullopt;
+}
+
+bool is_of(const std::optional<Bytes>& guid, const Prefix& prefix) {
+  return !guid ||
+         (guid->size() >= prefix_bytes && std::ranges::equal(guid->first(prefix_bytes), prefix));
+}
+
+} // namespace
+
+bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, Bytes body) {
+  constexpr std::size_t writer_at = 8;
+  const auto begin = qos_begin(body, data_bytes_before_qos, flags);
+  const auto qos = begin ? inline_qos(body, *begin, flags) : std::nullopt;
+  if (!qos || (flags & data_flag) == 0) {
+    return true; // the end of something, or not whole
+  }
+  const Bytes writer = body.subspan(writer_at, entity_bytes);
+  const bool is_participant = std::ranges::equal(writer, participant_writer);
+  if (!is_participant && !std::ranges::equal(writer, publications_writer) &&
+      !std::ranges::equal(writer, subscriptions_writer)) {
+    return true;
+  }
+  auto announced = announced_in(body.subspan(qos->end),
+                                is_participant ? pid_participant_guid : pid_endpoint_guid);
+  if (!announced || !is_of(announced->guid, from)) {
+    return false;
+  }
+  return !is_participant || accepts_announcement(from, std::move(announced->lasting_fields));
+}
+
+bool ParticipantAnnouncements::accepts_announcement(const Prefix& from, std::string announced) {
+  const std::lock_guard lock(mutex_);
+  if (known_.size() >= max_participants && !known_.contains(from)) {
+    known_.clear();
+  }
+  const auto [found, is_new] = known_.try_emplace(from, Known{announced, {}, 0});
+  Known& known = found->second;
+  if (is_new || announced == known.announced) {
+    known.changed_in_a_row = 0;
+    return true;
+  }
+  known.changed_in_a_row = announced == known.changed ? known.changed_in_a_row + 1 : 1;
+  known.changed = std::move(announced);
+  if (known.changed_in_a_row < sure_after) {
+    return false;
+  }
+  known.announced = known.changed;
+  known.changed_in_a_row = 0;
+  return true;
+}
+
+} // namespace dyncal::bus

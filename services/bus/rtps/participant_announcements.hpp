@@ -1,0 +1,45 @@
+// Whether a participant announces itself, and as it did before.
+//
+// A library believes an announcement (DDSI-RTPS 8.5.3) whoever sent it: one changed byte gives a
+// participant a lease of 0 s, with which it and all it writes are gone, or an address at which
+// nobody is. So the GUID in it is that of the message's sender, and where it can be reached, for
+// how long it is alive and what it consists of stay as they were. A change counts when it has come
+// `sure_after` times in a row without the old announcement between. The GUID of a writer or reader
+// that is announced (8.5.4) has the prefix of the message's sender, too.
+//
+// Fields that are not known here may change. What is no list of parameters is refused.
+// Bound: max_participants; when there are more, all are forgotten. Any thread.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "services/bus/rtps/rtps_format.hpp"
+
+namespace dyncal::bus {
+
+class ParticipantAnnouncements {
+public:
+  static constexpr int sure_after = 3;
+  static constexpr std::size_t max_participants = 4096;
+
+  // Of a DATA submessage, whatever it is about.
+  [[nodiscard]] bool accepts(const rtps_format::Prefix& from, unsigned char flags,
+                             rtps_format::Bytes body);
+
+private:
+  struct Known {
+    std::string announced;
+    std::string changed; // as it came last
+    int changed_in_a_row = 0;
+  };
+
+  bool accepts_announcement(const rtps_format::Prefix& from, std::string announced);
+
+  std::mutex mutex_;
+  std::map<rtps_format::Prefix, Known> known_;
+};
+
+} // namespace dyncal::bus

@@ -1,0 +1,91 @@
+#include "services/bus/rtps/participant_announcements.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+using namespace tests_of_rtps;
+
+const Bytes participants{0, 1, 0, 0xc2};
+const Bytes publications{0, 0, 3, 0xc2};
+const Bytes sentinel = u16(1) + u16(0);
+
+Bytes parameter(unsigned id, const Bytes& value) {
+  return u16(id) + u16(static_cast<unsigned>(value.size())) + value;
+}
+
+Bytes guid_of(const Bytes& prefix, unsigned parameter_id = 0x50) {
+  return parameter(parameter_id, prefix + Bytes{0, 0, 1, 0xc1});
+}
+
+Bytes lease(std::uint32_t seconds) {
+  return parameter(0x02, u32(seconds) + u32(0));
+}
+
+class Announcements : public testing::Test {
+protected:
+  ParticipantAnnouncements announcements_;
+  rtps_format::Prefix from_{};
+
+  Announcements() { std::ranges::copy(participant, from_.begin()); }
+
+  bool announced(const Bytes& writer, const Bytes& parameters, unsigned char flags = 0x05) {
+    return announcements_.accepts(from_, flags,
+                                  u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(1) +
+                                      Bytes{0, 3, 0, 0} + parameters);
+  }
+  bool announced(std::uint32_t lease_s, const Bytes& more = {}) {
+    return announced(participants, guid_of(participant) + lease(lease_s) + more + sentinel);
+  }
+};
+
+TEST_F(Announcements, AreOfThemselves) {
+  EXPECT_TRUE(announced(participants, guid_of(participant) + sentinel));
+  EXPECT_FALSE(announced(participants, guid_of(Bytes(12, 7)) + sentinel));
+  EXPECT_TRUE(announced(publications, guid_of(participant, 0x5a) + sentinel));
+  EXPECT_FALSE(announced(publications, guid_of(Bytes(12, 7), 0x5a) + sentinel));
+}
+
+TEST_F(Announcements, StayAsTheyAre) {
+  EXPECT_TRUE(announced(10));
+  EXPECT_FALSE(announced(0)) << "it would be gone at once";
+  EXPECT_TRUE(announced(10));
+  EXPECT_FALSE(announced(10, parameter(0x32, Bytes(24, 1)))) << "nobody would reach it";
+  EXPECT_TRUE(announced(10, parameter(0x2c, Bytes(8, 1)))) << "user data may change";
+}
+
+TEST_F(Announcements, ChangeWhenTheChangeStays) {
+  EXPECT_TRUE(announced(10));
+  EXPECT_FALSE(announced(20));
+  EXPECT_FALSE(announced(20));
+  EXPECT_TRUE(announced(20));
+  EXPECT_FALSE(announced(10));
+}
+
+TEST_F(Announcements, DoNotChangeBesideTheOldOne) {
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(announced(10));
+    EXPECT_FALSE(announced(20));
+    EXPECT_FALSE(announced(20));
+  }
+}
+
+TEST_F(Announcements, AreListsOfParameters) {
+  EXPECT_FALSE(announced(participants, guid_of(participant))) << "no end";
+  EXPECT_FALSE(announced(participants, u16(0x02) + u16(200) + sentinel)) << "beyond the end";
+  EXPECT_FALSE(announced(participants, {}));
+}
+
+TEST_F(Announcements, OtherDataIsLeftToOthers) {
+  EXPECT_TRUE(announced({0, 0, 1, 2}, Bytes(3, 9)));
+  EXPECT_TRUE(announced(participants, {}, 0x09)) << "a goodbye has a key only";
+  EXPECT_TRUE(announcements_.accepts(from_, 0x05, Bytes(5, 0))) << "not whole";
+}
+
+} // namespace
+} // namespace dyncal::bus
