@@ -13,24 +13,39 @@ AcknackCounts::Pair AcknackCounts::pair(std::span<const unsigned char> source,
 }
 
 AcknackCounts::Counts& AcknackCounts::of(const Pair& pair) {
-  const auto known = counts_.find(pair);
-  if (known != counts_.end()) {
+  if (const auto known = known_.find(pair); known != known_.end()) {
     return known->second;
   }
-  if (counts_.size() >= max_pairs) {
-    counts_.clear();
+  if (newcomers_.size() >= max_newcomers && !newcomers_.contains(pair)) {
+    newcomers_.clear();
   }
-  return counts_[pair];
+  return newcomers_[pair];
 }
 
-std::uint32_t AcknackCounts::continued(const Pair& pair, std::uint32_t count) {
+std::uint32_t AcknackCounts::continued(const Pair& pair, std::uint32_t count, Instant now) {
   Counts& counts = of(pair);
-  counts.newest = std::max(counts.newest, count);
-  return count + counts.begun_anew;
+  const std::uint32_t passed = count + counts.begun_anew;
+  if (count > counts.newest) {
+    const bool is_known = counts.went_on || counts.began;
+    counts.newest = count;
+    counts.went_on = now;
+    if (auto newcomer = is_known ? newcomers_.extract(pair) : AllCounts::node_type()) {
+      if (known_.size() >= max_known) {
+        known_.clear();
+      }
+      known_.insert(std::move(newcomer));
+    }
+  }
+  return passed;
 }
 
-std::uint32_t AcknackCounts::begin_anew(const Pair& pair) {
+std::optional<std::uint32_t> AcknackCounts::begin_anew(const Pair& pair, Instant now) {
   Counts& counts = of(pair);
+  if ((counts.went_on && now - *counts.went_on < min_silence) ||
+      (counts.began && now - *counts.began < min_interval)) {
+    return std::nullopt;
+  }
+  counts.began = now;
   return counts.newest + ++counts.begun_anew;
 }
 

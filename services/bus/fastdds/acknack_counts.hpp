@@ -10,21 +10,34 @@
 // reader lacked: not even which writers and readers it has, and the two were silent to each other
 // for ever.
 //
-// Bound: max_pairs; when there are more, all are forgotten. Then as many ACKNACKs of a reader are
-// left out as it had begun anew, which it repeats within 20 ms. One thread at a time.
+// A copy of such an ACKNACK can come at any time. A reader begins anew after a silence, so it is
+// believed where its pair has been silent for min_silence, and every min_interval: before that
+// Fast DDS may not know the reader. Otherwise it counts as an old one, which Fast DDS passes over.
+//
+// Bound: max_newcomers and max_known pairs, of which all are forgotten when there are more. A pair
+// is known when it has gone on; packets with a changed sender make newcomers only. Forgotten with a
+// pair is how often it has begun anew, and so many of its ACKNACKs are left out. One thread at a
+// time.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 
 namespace dyncal::bus {
 
 class AcknackCounts {
 public:
-  static constexpr std::size_t max_pairs = 10'000;
+  using Instant = std::chrono::steady_clock::time_point;
+
+  static constexpr std::size_t max_newcomers = 4096;
+  static constexpr std::size_t max_known = 10'000;
+  static constexpr std::chrono::milliseconds min_silence{1000};
+  static constexpr std::chrono::milliseconds min_interval{100};
 
   using Pair = std::array<unsigned char, 20>;
   // `source` is the prefix of the reader's participant, `entities` the ids of reader and writer.
@@ -32,18 +45,23 @@ public:
                                  std::span<const unsigned char> entities);
 
   // Of an ACKNACK with this count.
-  [[nodiscard]] std::uint32_t continued(const Pair& pair, std::uint32_t count);
-  // Of one by which the reader begins anew.
-  [[nodiscard]] std::uint32_t begin_anew(const Pair& pair);
+  [[nodiscard]] std::uint32_t continued(const Pair& pair, std::uint32_t count, Instant now);
+  // Of one by which the reader begins anew; nothing where that is not believed.
+  [[nodiscard]] std::optional<std::uint32_t> begin_anew(const Pair& pair, Instant now);
 
 private:
   struct Counts {
     std::uint32_t newest = 0; // as the reader counts
     std::uint32_t begun_anew = 0;
+    std::optional<Instant> went_on;
+    std::optional<Instant> began;
   };
+  using AllCounts = std::map<Pair, Counts>;
+
   Counts& of(const Pair& pair);
 
-  std::map<Pair, Counts> counts_;
+  AllCounts newcomers_;
+  AllCounts known_;
 };
 
 } // namespace dyncal::bus

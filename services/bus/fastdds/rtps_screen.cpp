@@ -1,6 +1,7 @@
 #include "services/bus/fastdds/rtps_screen.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <optional>
 
@@ -157,11 +158,12 @@ bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
   const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
   const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
   unsigned char* passed = append_submessage(acknack, flags, body);
-  if (begins_anew) {
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto anew = begins_anew ? acknack_counts_.begin_anew(pair, now) : std::nullopt) {
     std::memset(passed + entities_bytes, 0, sequence_bytes);
-    put_number(passed + count_at, acknack_counts_.begin_anew(pair), flags);
+    put_number(passed + count_at, *anew, flags);
   } else {
-    put_number(passed + count_at, acknack_counts_.continued(pair, count), flags);
+    put_number(passed + count_at, acknack_counts_.continued(pair, count, now), flags);
   }
   return true;
 }

@@ -85,17 +85,21 @@ bool PlausibleNumbers::accepts_sample(const Way& way, unsigned char flags, Bytes
     return true;
   }
   const auto number = sequence_at(body, writer_at + entity_bytes, flags);
-  return !number || judge(of_writer(way, body.subspan(writer_at), Numbered::samples), *number,
-                          max_samples_ahead) != Kind::implausible;
+  return number && judge(of_writer(way, body.subspan(writer_at), Numbered::samples), *number,
+                         max_samples_ahead) != Kind::implausible;
 }
 
 bool PlausibleNumbers::accepts_gap(const Way& way, unsigned char flags, Bytes body) {
   constexpr std::size_t base_at = entities_bytes + sequence_bytes;
   constexpr std::size_t bits_at = base_at + sequence_bytes;
   const auto words = bitmap_words(body, bits_at, flags);
-  const auto base = words ? sequence_at(body, base_at, flags) : std::nullopt;
-  if (!base) {
+  if (!words) {
     return true;
+  }
+  const auto first = sequence_at(body, entities_bytes, flags);
+  const auto base = sequence_at(body, base_at, flags);
+  if (!first || !base) {
+    return false;
   }
   const std::int64_t newest = *base - 1 + number_at<std::uint32_t>(body, bits_at, flags);
   return judge(of_writer(way, body.subspan(entity_bytes), Numbered::samples), newest,
@@ -111,7 +115,7 @@ bool PlausibleNumbers::accepts_heartbeat(const Way& way, unsigned char flags, By
   const auto first = sequence_at(body, entities_bytes, flags);
   const auto last = sequence_at(body, last_at, flags);
   if (!first || !last) {
-    return true;
+    return false;
   }
   const Bytes writer = body.subspan(entity_bytes);
   const Kind count = judge(of_writer(way, writer, Numbered::heartbeats),
@@ -128,18 +132,22 @@ bool PlausibleNumbers::accepts_heartbeat(const Way& way, unsigned char flags, By
 bool PlausibleNumbers::accepts_heartbeat_frag(const Way& way, unsigned char flags, Bytes body) {
   constexpr std::size_t count_at = entities_bytes + sequence_bytes + 4;
   return body.size() < count_at + 4 ||
-         judge(of_writer(way, body.subspan(entity_bytes), Numbered::heartbeat_frags),
-               number_at<std::uint32_t>(body, count_at, flags),
-               max_counts_ahead) != Kind::implausible;
+         (sequence_at(body, entities_bytes, flags) &&
+          judge(of_writer(way, body.subspan(entity_bytes), Numbered::heartbeat_frags),
+                number_at<std::uint32_t>(body, count_at, flags),
+                max_counts_ahead) != Kind::implausible);
 }
 
 bool PlausibleNumbers::accepts_acknack(const Way& way, unsigned char flags, Bytes body) {
   constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
   const auto words = bitmap_words(body, bits_at, flags);
-  const auto base = words ? sequence_at(body, entities_bytes, flags) : std::nullopt;
   const std::size_t count_at = bits_at + 4 + 4 * words.value_or(0);
-  if (!base || body.size() < count_at + 4) {
+  if (!words || body.size() < count_at + 4) {
     return true;
+  }
+  const auto base = sequence_at(body, entities_bytes, flags);
+  if (!base) {
+    return false;
   }
   const Kind count = judge(of_reader(way, body, Numbered::acks),
                            number_at<std::uint32_t>(body, count_at, flags), max_counts_ahead);
@@ -154,9 +162,10 @@ bool PlausibleNumbers::accepts_nack_frag(const Way& way, unsigned char flags, By
   const auto words = bitmap_words(body, bits_at, flags);
   const std::size_t count_at = bits_at + 4 + 4 * words.value_or(0);
   return !words || body.size() < count_at + 4 ||
-         judge(of_reader(way, body, Numbered::nacks),
-               number_at<std::uint32_t>(body, count_at, flags),
-               max_counts_ahead) != Kind::implausible;
+         (sequence_at(body, entities_bytes, flags) &&
+          judge(of_reader(way, body, Numbered::nacks),
+                number_at<std::uint32_t>(body, count_at, flags),
+                max_counts_ahead) != Kind::implausible);
 }
 
 } // namespace dyncal::bus

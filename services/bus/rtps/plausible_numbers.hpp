@@ -13,6 +13,9 @@
 //   ACKNACK          its base    at most max_acknowledged_ahead of the one before
 //   count of HEARTBEAT, HEARTBEAT_FRAG, ACKNACK, NACK_FRAG  at most max_counts_ahead
 //
+// A number that no writer can have (rtps_format.hpp) is refused at any time: Cyclone DDS 0.10 takes a
+// negative one for a very large one.
+//
 // What is refused for once is like a lost packet, and repaired like one. A submessage that is too
 // short is none of this; others look at that.
 //
@@ -35,7 +38,7 @@ namespace dyncal::bus {
 class PlausibleNumbers {
 public:
   static constexpr std::int64_t max_samples_ahead = 8;
-  static constexpr std::int64_t max_announced_ahead = 1024;
+  static constexpr std::int64_t max_announced_ahead = 128;
   static constexpr std::int64_t max_acknowledged_ahead = 4096;
   static constexpr std::int64_t max_counts_ahead = 64;
   static constexpr std::size_t max_newcomers = 4096;
