@@ -13,8 +13,8 @@
 //   ACKNACK          its base    at most max_acknowledged_ahead of the one before
 //   count of HEARTBEAT, HEARTBEAT_FRAG, ACKNACK, NACK_FRAG  at most max_counts_ahead
 //
-// A number that no writer can have (rtps_format.hpp) is refused at any time: Cyclone DDS 0.10 takes a
-// negative one for a very large one.
+// A number that no writer can have (rtps_format.hpp) is refused at any time: Cyclone DDS 0.10 takes
+// a negative one for a very large one.
 //
 // What is refused for once is like a lost packet, and repaired like one. A submessage that is too
 // short is none of this; others look at that.
