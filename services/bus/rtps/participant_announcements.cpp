@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace dyncal::bus {
 
@@ -65,11 +66,17 @@ bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, 
   constexpr std::size_t writer_at = 8;
   const auto begin = qos_begin(body, data_bytes_before_qos, flags);
   const auto qos = begin ? inline_qos(body, *begin, flags) : std::nullopt;
-  if (!qos || (flags & data_flag) == 0) {
-    return true; // the end of something, or not whole
+  if (!qos) {
+    return true; // not whole
   }
   const Bytes writer = body.subspan(writer_at, entity_bytes);
   const bool is_participant = std::ranges::equal(writer, participant_writer);
+  if (!is_participant && (flags & data_flag) == 0) {
+    return true;
+  }
+  if (qos->ends_instance) {
+    return !is_participant || accepts_goodbye(from);
+  }
   if (!is_participant && !std::ranges::equal(writer, publications_writer) &&
       !std::ranges::equal(writer, subscriptions_writer)) {
     return true;
@@ -82,12 +89,19 @@ bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, 
   return !is_participant || accepts_announcement(from, std::move(announced->lasting_fields));
 }
 
+bool ParticipantAnnouncements::accepts_goodbye(const Prefix& from) {
+  const std::lock_guard lock(mutex_);
+  const auto known = known_.find(from);
+  return known == known_.end() || !std::exchange(known->second.has_left, true);
+}
+
 bool ParticipantAnnouncements::accepts_announcement(const Prefix& from, std::string announced) {
   const std::lock_guard lock(mutex_);
   if (known_.size() >= max_participants && !known_.contains(from)) {
     known_.clear();
   }
-  const auto [found, is_new] = known_.try_emplace(from, Known{announced, {}, 0});
+  const auto [found, is_new] =
+      known_.try_emplace(from, Known{.announced = announced, .changed = {}});
   Known& known = found->second;
   if (is_new || announced == known.announced) {
     known.changed_in_a_row = 0;

@@ -34,6 +34,10 @@ std::optional<InlineQos> inline_qos(Bytes body, std::size_t begin, unsigned char
     if (id == pid_key_hash) {
       found.key_hash = at;
     }
+    constexpr std::size_t last_of_status = 7; // bits 0 and 1, in big endian whatever the flags
+    if (id == pid_status_info && length >= 4 && at + last_of_status < body.size()) {
+      found.ends_instance = (body[at + last_of_status] & 0x03U) != 0;
+    }
     at += 4 + ((length + 3U) & ~std::size_t{3});
   }
   return std::nullopt;

@@ -54,6 +54,7 @@ constexpr std::size_t fragment_bytes_before_qos = 32;
 constexpr std::uint16_t pid_pad = 0x0000;
 constexpr std::uint16_t pid_sentinel = 0x0001;
 constexpr std::uint16_t pid_key_hash = 0x0070;
+constexpr std::uint16_t pid_status_info = 0x0071;
 
 constexpr std::uint32_t max_bits_of_set = 256;
 constexpr std::int64_t max_sequence = std::int64_t{1} << 48;
@@ -85,6 +86,7 @@ template <class Number>
 struct InlineQos {
   std::size_t end = 0;                      // where the payload begins
   std::optional<std::size_t> key_hash = {}; // where the identifier of a key hash is
+  bool ends_instance = false;               // it is disposed of, or its writer leaves it
 };
 
 // Nothing where the list does not end within the submessage.

@@ -39,6 +39,12 @@ protected:
                                   u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(1) +
                                       Bytes{0, 3, 0, 0} + parameters);
   }
+  bool goodbye(const Bytes& writer) {
+    constexpr unsigned char key_and_qos = 0x0b;
+    return announcements_.accepts(from_, key_and_qos,
+                                  u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(2) +
+                                      parameter(0x71, {0, 0, 0, 3}) + sentinel + Bytes(20, 0));
+  }
   bool announced(std::uint32_t lease_s, const Bytes& more = {}) {
     return announced(participants, guid_of(participant) + lease(lease_s) + more + sentinel);
   }
@@ -81,9 +87,24 @@ TEST_F(Announcements, AreListsOfParameters) {
   EXPECT_FALSE(announced(participants, {}));
 }
 
+TEST_F(Announcements, EndOnce) {
+  EXPECT_TRUE(goodbye(participants)) << "of somebody unknown, which ends nothing";
+  EXPECT_TRUE(announced(10));
+  EXPECT_TRUE(goodbye(participants));
+  EXPECT_TRUE(announced(10)) << "it was not its own";
+  EXPECT_FALSE(goodbye(participants));
+  EXPECT_TRUE(goodbye(publications)) << "a writer may end whenever it likes";
+}
+
+TEST_F(Announcements, DoNotEndBecauseOfAChangedFlag) {
+  EXPECT_TRUE(announced(10));
+  constexpr unsigned char key_only = 0x09;
+  EXPECT_FALSE(announced(participants, guid_of(participant) + lease(0) + sentinel, key_only));
+  EXPECT_TRUE(goodbye(participants)) << "its own counts";
+}
+
 TEST_F(Announcements, OtherDataIsLeftToOthers) {
   EXPECT_TRUE(announced({0, 0, 1, 2}, Bytes(3, 9)));
-  EXPECT_TRUE(announced(participants, {}, 0x09)) << "a goodbye has a key only";
   EXPECT_TRUE(announcements_.accepts(from_, 0x05, Bytes(5, 0))) << "not whole";
 }
 
