@@ -10,6 +10,7 @@ using namespace rtps_format;
 
 namespace {
 
+constexpr std::array<unsigned char, entity_bytes> participant_entity{0x00, 0x00, 0x01, 0xc1};
 constexpr std::array<unsigned char, entity_bytes> participant_writer{0x00, 0x01, 0x00, 0xc2};
 constexpr std::array<unsigned char, entity_bytes> publications_writer{0x00, 0x00, 0x03, 0xc2};
 constexpr std::array<unsigned char, entity_bytes> subscriptions_writer{0x00, 0x00, 0x04, 0xc2};
@@ -55,9 +56,13 @@ std::optional<Announced> announced_in(Bytes payload, std::uint16_t guid_paramete
   return std::nullopt;
 }
 
-bool is_of(const std::optional<Bytes>& guid, const Prefix& prefix) {
-  return !guid ||
-         (guid->size() >= prefix_bytes && std::ranges::equal(guid->first(prefix_bytes), prefix));
+bool is_of(const std::optional<Bytes>& guid, const Prefix& prefix, bool is_participant) {
+  if (!guid) {
+    return !is_participant;
+  }
+  return guid->size() == prefix_bytes + entity_bytes &&
+         std::ranges::equal(guid->first(prefix_bytes), prefix) &&
+         (!is_participant || std::ranges::equal(guid->last(entity_bytes), participant_entity));
 }
 
 } // namespace
@@ -83,7 +88,7 @@ bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, 
   }
   auto announced = announced_in(body.subspan(qos->end),
                                 is_participant ? pid_participant_guid : pid_endpoint_guid);
-  if (!announced || !is_of(announced->guid, from)) {
+  if (!announced || !is_of(announced->guid, from, is_participant)) {
     return false;
   }
   return !is_participant || accepts_announcement(from, std::move(announced->lasting_fields));

@@ -8,10 +8,11 @@
 // that is announced (8.5.4) has the prefix of the message's sender, too.
 //
 // A participant leaves once, and says so (9.6.3.4): an announcement whose flags were changed is
-// none of that. Fast DDS 2.9 ends on an assertion (PDP.cpp) where somebody is taken away while the
-// timer of the lease fires: rare for one goodbye, and not for thousands of copies of it between
-// copies of announcements. So a second one is refused; whoever is there again after a first one
-// that was wrong is missed at the end of the lease.
+// none of that. Of copies of goodbyes only the first is let through; whoever is there again after
+// one that was wrong is missed at the end of the lease.
+//
+// An announcement without a GUID is refused: Fast DDS 2.9 ends on an assertion (PDP.cpp) when the
+// lease of a participant without one is over.
 //
 // Fields that are not known here may change. What is no list of parameters is refused.
 // Bound: max_participants; when there are more, all are forgotten. Any thread.

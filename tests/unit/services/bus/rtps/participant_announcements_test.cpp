@@ -53,6 +53,9 @@ protected:
 TEST_F(Announcements, AreOfThemselves) {
   EXPECT_TRUE(announced(participants, guid_of(participant) + sentinel));
   EXPECT_FALSE(announced(participants, guid_of(Bytes(12, 7)) + sentinel));
+  EXPECT_FALSE(announced(participants, lease(10) + sentinel)) << "without a name";
+  const Bytes endpoint = participant + Bytes{0, 0, 1, 2};
+  EXPECT_FALSE(announced(participants, parameter(0x50, endpoint) + sentinel));
   EXPECT_TRUE(announced(publications, guid_of(participant, 0x5a) + sentinel));
   EXPECT_FALSE(announced(publications, guid_of(Bytes(12, 7), 0x5a) + sentinel));
 }
