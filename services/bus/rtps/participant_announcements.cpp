@@ -76,22 +76,43 @@ bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, 
   }
   const Bytes writer = body.subspan(writer_at, entity_bytes);
   const bool is_participant = std::ranges::equal(writer, participant_writer);
-  if (!is_participant && (flags & data_flag) == 0) {
+  const bool is_endpoint = std::ranges::equal(writer, publications_writer) ||
+                           std::ranges::equal(writer, subscriptions_writer);
+  if (!is_participant && !is_endpoint) {
     return true;
   }
   if (qos->ends_instance) {
-    return !is_participant || accepts_goodbye(from);
+    return is_endpoint || accepts_goodbye(from);
   }
-  if (!is_participant && !std::ranges::equal(writer, publications_writer) &&
-      !std::ranges::equal(writer, subscriptions_writer)) {
-    return true;
+  if ((flags & data_flag) == 0) {
+    return false; // neither one thing nor the other
   }
   auto announced = announced_in(body.subspan(qos->end),
                                 is_participant ? pid_participant_guid : pid_endpoint_guid);
   if (!announced || !is_of(announced->guid, from, is_participant)) {
     return false;
   }
-  return !is_participant || accepts_announcement(from, std::move(announced->lasting_fields));
+  if (is_participant) {
+    return accepts_announcement(from, announced->lasting_fields);
+  }
+  const auto number = sequence_at(body, writer_at + entity_bytes, flags);
+  return number && (!announced->guid || accepts_endpoint(*announced->guid, *number));
+}
+
+template <class Value>
+bool ParticipantAnnouncements::Lasting<Value>::accepts(const Value& announced) {
+  if (announced == value) {
+    changed_in_a_row = 0;
+    return true;
+  }
+  changed_in_a_row = announced == changed ? changed_in_a_row + 1 : 1;
+  changed = announced;
+  if (changed_in_a_row < sure_after) {
+    return false;
+  }
+  value = announced;
+  changed_in_a_row = 0;
+  return true;
 }
 
 bool ParticipantAnnouncements::accepts_goodbye(const Prefix& from) {
@@ -100,26 +121,25 @@ bool ParticipantAnnouncements::accepts_goodbye(const Prefix& from) {
   return known == known_.end() || !std::exchange(known->second.has_left, true);
 }
 
-bool ParticipantAnnouncements::accepts_announcement(const Prefix& from, std::string announced) {
+bool ParticipantAnnouncements::accepts_announcement(const Prefix& from,
+                                                    const std::string& announced) {
   const std::lock_guard lock(mutex_);
   if (known_.size() >= max_participants && !known_.contains(from)) {
     known_.clear();
   }
-  const auto [found, is_new] =
-      known_.try_emplace(from, Known{.announced = announced, .changed = {}});
-  Known& known = found->second;
-  if (is_new || announced == known.announced) {
-    known.changed_in_a_row = 0;
-    return true;
+  return known_.try_emplace(from, Known{.fields = {.value = announced}})
+      .first->second.fields.accepts(announced);
+}
+
+bool ParticipantAnnouncements::accepts_endpoint(Bytes guid, std::int64_t number) {
+  EndpointGuid endpoint{};
+  std::ranges::copy(guid, endpoint.begin());
+  const std::lock_guard lock(mutex_);
+  if (endpoints_.size() >= max_endpoints && !endpoints_.contains(endpoint)) {
+    endpoints_.clear();
   }
-  known.changed_in_a_row = announced == known.changed ? known.changed_in_a_row + 1 : 1;
-  known.changed = std::move(announced);
-  if (known.changed_in_a_row < sure_after) {
-    return false;
-  }
-  known.announced = known.changed;
-  known.changed_in_a_row = 0;
-  return true;
+  return endpoints_.try_emplace(endpoint, Lasting<std::int64_t>{.value = number})
+      .first->second.accepts(number);
 }
 
 } // namespace dyncal::bus

@@ -14,11 +14,18 @@
 // An announcement without a GUID is refused: Fast DDS 2.9 ends on an assertion (PDP.cpp) when the
 // lease of a participant without one is over.
 //
+// A writer or reader is announced once, and seldom changes. A copy of its announcement with another
+// number would take the place of the announcement that gets this number, and that writer or reader
+// would never be known. So a second number for one counts when it has come `sure_after` times in a
+// row, as whoever misses it asks for it.
+//
 // Fields that are not known here may change. What is no list of parameters is refused.
-// Bound: max_participants; when there are more, all are forgotten. Any thread.
+// Bound: max_participants and max_endpoints; when there are more, all are forgotten. Any thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <string>
@@ -31,24 +38,35 @@ class ParticipantAnnouncements {
 public:
   static constexpr int sure_after = 3;
   static constexpr std::size_t max_participants = 4096;
+  static constexpr std::size_t max_endpoints = 16'384;
 
   // Of a DATA submessage, whatever it is about.
   [[nodiscard]] bool accepts(const rtps_format::Prefix& from, unsigned char flags,
                              rtps_format::Bytes body);
 
 private:
-  struct Known {
-    std::string announced;
-    std::string changed; // as it came last
+  // What somebody stays with until another value has come often enough.
+  template <class Value>
+  struct Lasting {
+    Value value{};
+    Value changed{}; // as it came last
     int changed_in_a_row = 0;
+
+    bool accepts(const Value& announced);
+  };
+  struct Known {
+    Lasting<std::string> fields;
     bool has_left = false;
   };
+  using EndpointGuid = std::array<unsigned char, rtps_format::prefix_bytes + 4>;
 
+  bool accepts_endpoint(rtps_format::Bytes guid, std::int64_t number);
   bool accepts_goodbye(const rtps_format::Prefix& from);
-  bool accepts_announcement(const rtps_format::Prefix& from, std::string announced);
+  bool accepts_announcement(const rtps_format::Prefix& from, const std::string& announced);
 
   std::mutex mutex_;
   std::map<rtps_format::Prefix, Known> known_;
+  std::map<EndpointGuid, Lasting<std::int64_t>> endpoints_; // numbers of their announcements
 };
 
 } // namespace dyncal::bus

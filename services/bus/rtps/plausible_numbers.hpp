@@ -37,7 +37,7 @@ namespace dyncal::bus {
 
 class PlausibleNumbers {
 public:
-  static constexpr std::int64_t max_samples_ahead = 8;
+  static constexpr std::int64_t max_samples_ahead = 4;
   static constexpr std::int64_t max_announced_ahead = 128;
   static constexpr std::int64_t max_acknowledged_ahead = 4096;
   static constexpr std::int64_t max_counts_ahead = 64;

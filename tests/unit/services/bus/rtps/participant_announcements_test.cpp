@@ -34,9 +34,10 @@ protected:
 
   Announcements() { std::ranges::copy(participant, from_.begin()); }
 
-  bool announced(const Bytes& writer, const Bytes& parameters, unsigned char flags = 0x05) {
+  bool announced(const Bytes& writer, const Bytes& parameters, unsigned char flags = 0x05,
+                 std::uint64_t number = 1) {
     return announcements_.accepts(from_, flags,
-                                  u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(1) +
+                                  u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(number) +
                                       Bytes{0, 3, 0, 0} + parameters);
   }
   bool goodbye(const Bytes& writer) {
@@ -97,6 +98,18 @@ TEST_F(Announcements, EndOnce) {
   EXPECT_TRUE(announced(10)) << "it was not its own";
   EXPECT_FALSE(goodbye(participants));
   EXPECT_TRUE(goodbye(publications)) << "a writer may end whenever it likes";
+}
+
+TEST_F(Announcements, OfAWriterKeepTheirNumber) {
+  const auto of_writer = [this](std::uint64_t number) {
+    return announced(publications, guid_of(participant, 0x5a) + sentinel, 0x05, number);
+  };
+  EXPECT_TRUE(of_writer(7));
+  EXPECT_FALSE(of_writer(8)) << "another writer will have it";
+  EXPECT_TRUE(of_writer(7));
+  EXPECT_FALSE(of_writer(9)) << "the writer changes";
+  EXPECT_FALSE(of_writer(9));
+  EXPECT_TRUE(of_writer(9)) << "and says so to whoever asks";
 }
 
 TEST_F(Announcements, DoNotEndBecauseOfAChangedFlag) {
