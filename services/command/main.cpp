@@ -65,6 +65,7 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
       ->capture_default_str();
   command
       ->add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")
+      ->envname("DYNCAL_DOMAIN")
       ->check(CLI::Range(0, 232));
   command->add_option("--output", demo.folder, "folder of all files")->capture_default_str();
   command->add_option("--json", demo.json,

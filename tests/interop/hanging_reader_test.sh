@@ -3,7 +3,7 @@
 # is one that hangs (it is alive and takes nothing). The first must have every block in order, and
 # no write may take long: 4000 blocks of 40 kB at 200 a second, more than the hanging one holds.
 #
-#   hanging_reader_test.sh PEER [VENDOR...]
+#   hanging_reader_test.sh PEER [VENDOR...]      DYNCAL_DOMAIN: default 45
 set -euo pipefail
 
 peer=$1
@@ -17,7 +17,7 @@ cleanup() {
   rm -rf "$folder"
 }
 trap cleanup EXIT
-options=(--domain 45 --blocks 4000 --rate 200)
+options=(--domain "${DYNCAL_DOMAIN:-45}" --blocks 4000 --rate 200)
 patience_s=240
 failed=0
 

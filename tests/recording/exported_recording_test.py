@@ -12,6 +12,9 @@ import subprocess
 import sys
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import own_dds_domain  # noqa: E402
+
 PATIENCE_S = 300
 # Debian's interpreter by its path: another python3 may be in PATH.
 PYTHON = "/usr/bin/python3"
@@ -48,6 +51,7 @@ class ExportedRecording(unittest.TestCase):
     def recorded_demo(self):
         self.run_dyncal(
             *("demo", "--preset", "mpu9250-ptb", "--repetitions", "1", "--duration", "0.5"),
+            *("--domain", own_dds_domain()),
             *("--output", self.folder / "demo", "--folder", self.folder / "runs"),
             status=(0, 1),
         )
