@@ -335,7 +335,7 @@ int execute(const CLI::App& app, const Commands& commands) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the program
   CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS.",
                "dyncal"};
   app.footer("Exit status: 0 success, 1 failure, 2 wrong command line, 130 interrupted.");

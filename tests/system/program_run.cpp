@@ -155,7 +155,7 @@ double ProgramRun::seconds() const {
 }
 
 std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(DYNCAL_TEST_OUTPUT) / name;
+  std::filesystem::path folder = std::filesystem::path(DYNCAL_TEST_OUTPUT) / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -4,8 +4,8 @@
 // What was sent before comes again (a repair, a late packet, the copy of a packet) and is let
 // through: libraries tell it by its number. A number that is further ahead than `max_step` is not
 // plausible. It becomes so when `sure_after` such numbers in a row have gone on from one another
-// and none near the known ones has come: then the packets between were lost, for a link was down or
-// nobody here listened.
+// and none has gone on from the known ones: then the packets between were lost, for a link was down
+// or nobody here listened. Numbers that come again tell neither way.
 //
 // Who comes late does not know where the numbers are, and the first one may be wrong. So they are
 // only held against each other once two have agreed. Belongs to one thread.
