@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 // The bench file with its files played at four times their speed.
 std::filesystem::path played(const std::filesystem::path& file) {
   std::ifstream in(file);
-  const std::filesystem::path path = file.parent_path() / "played.toml";
+  std::filesystem::path path = file.parent_path() / "played.toml";
   std::ofstream out(path);
   for (std::string line; std::getline(in, line);) {
     out << line << '\n' << (line.starts_with("driver = ") ? "play = 4.0\n" : "");

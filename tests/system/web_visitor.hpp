@@ -26,7 +26,7 @@ class WebVisitor {
 public:
   using Holds = std::function<bool(const nlohmann::json&)>;
 
-  explicit WebVisitor(const ProgramRun& web, std::string token = "")
+  explicit WebVisitor(const ProgramRun& web, const std::string& token = "")
       : client_("127.0.0.1", port_of(web)) {
     client_.set_read_timeout(std::chrono::seconds(20));
     if (!token.empty()) {
