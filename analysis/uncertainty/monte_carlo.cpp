@@ -195,6 +195,9 @@ propagate_distributions(std::span<const InputQuantity> inputs,
   }
   std::vector<Trials> trials(outputs, Trials(settings.probability));
   for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
+    if (settings.stop.stop_requested()) {
+      return fail(ErrorCode::not_converged, "drawing was stopped before its end");
+    }
     const auto stable = draw_batch(*draws, model, trials);
     if (!stable) {
       return fail(stable.error());

@@ -11,13 +11,14 @@
 // same seed gives the same numbers.
 //
 // Fails: invalid_argument (as law_of_propagation.hpp; correlation of inputs that are not normal;
-// correlation matrix not positive definite), not_finite (the model gave no number). No threads of
-// its own.
+// correlation matrix not positive definite), not_finite (the model gave no number), not_converged
+// (`stop` was requested first). No threads of its own.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "analysis/base/error.hpp"
@@ -30,6 +31,7 @@ struct MonteCarloSettings {
   std::uint64_t seed = 1;
   std::size_t max_trials = 1'000'000;
   double probability = two_sigma_probability;
+  std::stop_token stop{}; // looked at between batches
 };
 
 struct MonteCarloResult { // of one output

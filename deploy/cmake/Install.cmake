@@ -64,8 +64,9 @@ foreach(component IN LISTS exported)
     COMPONENT development)
 endforeach()
 
-set(bus_packages fastcdr fastrtps fmt OpenSSL tl-expected) # the contract's types use fastrtps, too
-set(bus_modules fmt libcrypto)
+# The contract's types use fastrtps, too.
+set(bus_packages fastcdr fastrtps fmt OpenSSL tl-expected ZLIB)
+set(bus_modules fmt libcrypto zlib)
 set(bus_libs -lfastcdr)
 if(DYNCAL_FAST_DDS)
   list(PREPEND bus_libs -lfastrtps)

@@ -16,8 +16,8 @@ constexpr std::size_t max_description = 65536;
 constexpr std::uint32_t frame_magic = 0x46534341; // "ACSF"
 constexpr std::uint32_t max_samples = 65536;
 constexpr milliseconds retry_interval{500};
-constexpr std::chrono::hours frame_limit{
-    24 * 365}; // an instrument may be silent as long as it likes; who reads the status sees it
+constexpr std::chrono::hours silence_limit{24 * 365}; // between frames; the status tells of it
+constexpr std::size_t chunk_bytes = 65536;
 constexpr double min_block_s = 0.02;
 
 static_assert(std::endian::native == std::endian::little,
@@ -156,6 +156,10 @@ Expected<void> SocketAcs::read_session(SampleSink& sink) {
     auto frame = read_frame();
     if (!frame || frame->samples == 0) {
       hand_over();
+      if (!frame && frame.error().code == ErrorCode::timeout) {
+        sink.warn(frame.error().message);
+        return fail(ErrorCode::disconnected, frame.error().message);
+      }
       return frame ? Expected<void>{} : Expected<void>(fail(frame.error()));
     }
     if (frame->first_sample < next_sample) {
@@ -177,9 +181,31 @@ Expected<void> SocketAcs::read_session(SampleSink& sink) {
   }
 }
 
+// A long frame takes as long as it comes.
+Expected<void> SocketAcs::read_rest_of_frame(std::span<char> bytes) {
+  while (!bytes.empty()) {
+    const std::span<char> next = bytes.first(std::min(bytes.size(), chunk_bytes));
+    if (auto read = connection_->read_exactly(next, settings_.frame_limit); !read) {
+      return read.error().code != ErrorCode::timeout
+                 ? read
+                 : fail(ErrorCode::timeout,
+                        settings_.address +
+                            ": the instrument has sent part of a frame and then "
+                            "nothing for " +
+                            std::to_string(settings_.frame_limit.count()) +
+                            " ms; connecting to it again");
+    }
+    bytes = bytes.subspan(next.size());
+  }
+  return {};
+}
+
 Expected<SampleBlock> SocketAcs::read_frame() {
   std::array<char, 16> header{}; // magic, samples, first_sample
-  if (auto read = connection_->read_exactly(header, frame_limit); !read) {
+  const std::span<char> bytes(header);
+  const auto first = connection_->read_exactly(bytes.first(1), silence_limit);
+  if (const auto read = first.and_then([&] { return read_rest_of_frame(bytes.subspan(1)); });
+      !read) {
     return fail(read.error());
   }
   SampleBlock frame;
@@ -192,7 +218,7 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   const std::size_t channels = stream_.scale.size();
   const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);
   payload_.resize(frame.samples * channels * width);
-  if (auto read = connection_->read_exactly(payload_, frame_limit); !read) {
+  if (auto read = read_rest_of_frame(payload_); !read) {
     return fail(read.error());
   }
   frame.values.resize(frame.samples * channels);

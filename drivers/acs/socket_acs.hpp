@@ -4,7 +4,9 @@
 // A frame that holds 20 ms or more becomes a block; shorter frames that follow each other without a
 // gap are joined to one. When the instrument disconnects, run() tries to reach it again every half
 // second until stop(); each return is a new session, because its sample numbers and its clock's
-// origin are new. A sink that blocks makes the instrument wait.
+// origin are new. An instrument that falls silent in the middle of a frame is disconnected and
+// reached anew, for it will not go on where it stopped; between frames it may be silent as long as
+// it likes. A sink that blocks makes the instrument wait.
 //
 // describe() fails with invalid_setting when the settings name a channel that the instrument does
 // not have; an instrument that lacks one after a reconnection is warned of and counted. What cannot
@@ -13,6 +15,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,7 @@ namespace dyncal::drivers::acs {
 struct SocketSettings {
   std::string address;                           // HOST:PORT
   std::chrono::milliseconds connect_limit{5000}; // how long describe() tries
+  std::chrono::milliseconds frame_limit{5000};   // for the next bytes of a frame that has begun
   std::map<std::string, std::string> channels{}; // the instrument's name -> ours
   std::map<std::string, std::string> units{};    // our name -> D-SI
 };
@@ -55,6 +59,7 @@ private:
   Expected<void> name_channels();
   Expected<void> read_session(SampleSink& sink);
   Expected<SampleBlock> read_frame();
+  Expected<void> read_rest_of_frame(std::span<char> bytes);
   void count(SampleSink& sink) const;
   void join(SampleBlock& pending, SampleBlock frame) const;
 

@@ -9,6 +9,9 @@ namespace {
 
 using Json = nlohmann::json;
 
+// Of a name or another text: it is shown in lists and stands in log lines.
+constexpr std::size_t max_text_bytes = 128;
+
 // Reads members of one object; the first that is missing or of the wrong type is remembered.
 class Members {
 public:
@@ -41,6 +44,12 @@ public:
     if (!fits) {
       note(name, "has the wrong type");
       return otherwise;
+    }
+    if constexpr (std::is_same_v<T, std::string>) {
+      if (value.template get_ref<const std::string&>().size() > max_text_bytes) {
+        note(name, "is longer than " + std::to_string(max_text_bytes) + " bytes");
+        return otherwise;
+      }
     }
     return value.get<T>();
   }

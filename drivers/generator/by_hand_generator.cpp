@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include <poll.h>
 #include <termios.h>
@@ -24,7 +25,7 @@ std::string amplitude(double amplitude_v) {
 } // namespace
 
 ByHandGenerator::~ByHandGenerator() {
-  if (on_) {
+  if (on_ && !switching_off_) {
     show_("switch the generator's output off");
   }
 }
@@ -32,8 +33,9 @@ ByHandGenerator::~ByHandGenerator() {
 void ByHandGenerator::ask(const std::string& what) {
   if (isatty(input_) != 0) {
     tcflush(input_, TCIFLUSH);
+    unanswered_ = 0;
   }
-  asked_ = true;
+  ++unanswered_;
   show_(what + ", then press Enter");
 }
 
@@ -45,7 +47,7 @@ Expected<void> ByHandGenerator::set_frequency(const std::string& decimal_hz) {
 Expected<void> ByHandGenerator::set_amplitude_v(double amplitude_v) {
   const bool changed = amplitude_v != amplitude_v_;
   amplitude_v_ = amplitude_v;
-  if (on_ && changed) {
+  if (on_ && !switching_off_ && changed) {
     ask("generator: set " + amplitude(amplitude_v_));
   }
   return {};
@@ -54,17 +56,18 @@ Expected<void> ByHandGenerator::set_amplitude_v(double amplitude_v) {
 Expected<void> ByHandGenerator::set_output(bool on) {
   if (on) {
     on_ = true; // from now on it may be
+    switching_off_ = false;
     ask("generator: with the output off set sine, " + frequency_hz_ + " Hz, " +
         amplitude(amplitude_v_) + "; switch the output on");
-  } else if (on_) {
-    on_ = false;
+  } else if (on_ && !switching_off_) {
+    switching_off_ = true;
     ask("generator: switch the output off");
   }
   return {};
 }
 
 Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit) {
-  if (!asked_) {
+  if (unanswered_ == 0) {
     return true;
   }
   pollfd waiting{input_, POLLIN, 0};
@@ -81,8 +84,8 @@ Expected<bool> ByHandGenerator::wait_for_effect(std::chrono::milliseconds limit)
           ErrorCode::disconnected,
           "generator by hand: standard input has ended, so the settings cannot be confirmed");
     }
-    if (byte == '\n') {
-      asked_ = false;
+    if (byte == '\n' && --unanswered_ == 0) {
+      on_ = on_ && !std::exchange(switching_off_, false);
       return true;
     }
   }

@@ -3,11 +3,12 @@
 // set_frequency() and set_amplitude_v() are remembered. set_output(true) asks for all of it in the
 // order of the work (values first, output last), set_output(false) asks to switch the output off,
 // and a new amplitude while the output is on asks for that alone. Only wait_for_effect() waits for
-// the person, so that the caller can do other things meanwhile.
+// the person, so that the caller can do other things meanwhile. The output counts as on until the
+// person has confirmed that it is off; set_output(false) asks for that once.
 //
 // Confirmations are lines of a descriptor, a terminal or not; on a terminal, what was typed before
-// the question does not count. Bench time is the host's. Destruction asks to switch the output off
-// when it is, or may be, on.
+// the question does not count, elsewhere every question takes a line. Bench time is the host's.
+// Destruction asks to switch the output off when it is, or may be, on and nobody has asked yet.
 //
 // Fails: disconnected (the descriptor has ended). One thread.
 #pragma once
@@ -50,8 +51,9 @@ private:
   std::string identity_ = "set by hand";
   std::string frequency_hz_;
   double amplitude_v_ = 0.0;
-  bool on_ = false;
-  bool asked_ = false; // and not confirmed yet
+  bool on_ = false;            // or may be
+  bool switching_off_ = false; // asked for, and not confirmed yet
+  int unanswered_ = 0;         // questions
 };
 
 } // namespace dyncal::drivers::generator

@@ -31,6 +31,7 @@ public:
   [[nodiscard]] virtual const std::string& identity() const = 0;
   [[nodiscard]] virtual Expected<void> set_frequency(const std::string& decimal_hz) = 0;
   [[nodiscard]] virtual Expected<void> set_amplitude_v(double amplitude_v) = 0;
+  // The output is known to be off when set_output(false) is in effect, see wait_for_effect().
   [[nodiscard]] virtual Expected<void> set_output(bool on) = 0;
   // Returns true once everything that was set is in effect: with an instrument when the call that
   // set it returns, otherwise when the operator has confirmed; waits up to `limit` for that.

@@ -73,7 +73,7 @@ Expected<bool> LevelControl::take(double measured_m_s2) {
   }
   if (measured_m_s2 > limits_.maximum_level_m_s2 * rounding) {
     return fail(
-        ErrorCode::refused,
+        ErrorCode::invalid_setting,
         "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
             " V, above generator.maximum_level_m_s2 = " + number(limits_.maximum_level_m_s2));
   }

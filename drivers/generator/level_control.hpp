@@ -10,10 +10,10 @@
 // known before; where an earlier step has shown it, it is used in full. A voltage above a limit is
 // never returned.
 //
-// Fails: invalid_setting (a limit would be passed), refused (the exciter does not follow: the
-// reference shows more than the maximum level, less than a twentieth of what is expected, or the
-// level is not within the tolerance after `corrections` changes). The caller then switches the
-// output off. Pure arithmetic; one thread.
+// Fails: invalid_setting (a limit would be passed, or is: the reference shows more than the maximum
+// level), refused (the exciter does not follow: the reference shows less than a twentieth of what
+// is expected, or the level is not within the tolerance after `corrections` changes). The caller
+// then switches the output off. Pure arithmetic; one thread.
 #pragma once
 
 #include <limits>

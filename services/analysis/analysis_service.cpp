@@ -12,7 +12,6 @@ namespace {
 
 constexpr const char* all_benches = "*";
 constexpr std::chrono::milliseconds max_wait{100};
-constexpr std::size_t max_followed = 1000; // runs; their messages hold whole recipes
 
 } // namespace
 
@@ -21,7 +20,18 @@ AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity 
     : participant_(std::move(participant)), context_{participant_, clock,
                                                      std::make_shared<bus::WakeUp>(),
                                                      std::move(identity)},
-      others_(context_.identity.service) {}
+      benches_({[this](const std::string& bench) {
+                  return std::any_of(order_.begin(), order_.end(), [&](const RunKey& key) {
+                    return key.first == bench && lives(key);
+                  });
+                },
+                [this](const std::string& bench, const std::string& source) {
+                  return is_used(bench, source);
+                }}),
+      others_(context_.identity.service, [this](const RunKey& key) {
+        const auto known = followed_.find(key);
+        return runs_.contains(key) || (known != followed_.end() && known->second.messages > 1);
+      }) {}
 
 Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Participant participant,
                                                                    AnalysisIdentity identity,
@@ -38,16 +48,25 @@ Expected<void> AnalysisService::open_readers() {
   const auto& bell = context_.wake_up;
   auto measurement = participant_.reader(bus::topics::measurement, all_benches, bell);
   auto excitation = participant_.reader(bus::topics::excitation, all_benches, bell);
-  auto description = participant_.reader(bus::topics::source_description, all_benches, bell);
-  auto status = participant_.reader(bus::topics::source_status, all_benches, bell);
+  auto sources = open_source_readers(all_benches);
   auto analyses = participant_.reader(bus::topics::service_status, all_benches, bell);
-  if (auto error = first_error(measurement, excitation, description, status, analyses)) {
+  if (auto error = first_error(measurement, excitation, sources, analyses)) {
     return fail(*error);
   }
   readers_ = std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation),
-                                               std::move(*description), std::move(*status),
-                                               std::move(*analyses)});
+                                               std::move(*sources), std::move(*analyses)});
   return {};
+}
+
+Expected<AnalysisService::SourceReaders>
+AnalysisService::open_source_readers(const std::string& bench) {
+  const auto& bell = context_.wake_up;
+  auto description = participant_.reader(bus::topics::source_description, bench, bell);
+  auto status = participant_.reader(bus::topics::source_status, bench, bell);
+  if (auto error = first_error(description, status)) {
+    return fail(*error);
+  }
+  return SourceReaders{std::move(*description), std::move(*status)};
 }
 
 void AnalysisService::serve(const std::stop_token& stop,
@@ -62,22 +81,18 @@ void AnalysisService::serve(const std::stop_token& stop,
     take_messages();
     give_way();
     take_over();
+    leave_benches_without_run();
+    say_what_was_left_out();
     const auto began = clock.now();
     for (const RunKey& key : order_) {
-      runs_.at(key)->work(benches_[key.first], run_before(key));
+      runs_.at(key)->work(benches_.sources_of(key.first), run_before(key));
     }
     evaluation_s_ += std::chrono::duration<double>(clock.now() - began).count();
   }
 }
 
 void AnalysisService::take_messages() {
-  readers_->description.take([&](const wire::SourceDescription& description) {
-    benches_[description.bench().to_string()][description.source().to_string()].description =
-        description;
-  });
-  readers_->status.take([&](const wire::SourceStatus& status) {
-    benches_[status.bench().to_string()][status.source().to_string()].status = status;
-  });
+  take_sources(readers_->sources, [](const auto&, const auto&) { return true; });
   readers_->analyses.take(
       [&](const wire::ServiceStatus& status) { others_.add(status, context_.clock.now()); });
   readers_->measurement.take(
@@ -89,6 +104,71 @@ void AnalysisService::take_messages() {
     } else { // perhaps before anything was heard of its run: topics have no order among each other
       followed(key).excitation = excitation;
     }
+  });
+  for (auto& [bench, sources] : again_) { // last, so that nothing new drops them before work()
+    take_sources(sources, [this](const std::string& of, const std::string& source) {
+      return is_used(of, source);
+    });
+  }
+}
+
+void AnalysisService::take_sources(SourceReaders& readers, const Wanted& wanted) {
+  const Instant now = context_.clock.now();
+  // What comes a second time for a bench with a run would let sessions take turns that do not.
+  const bool comes_first = &readers == &readers_->sources;
+  const auto known = [&](const auto& message) {
+    const std::string bench = message.bench().to_string();
+    const std::string source = message.source().to_string();
+    return wanted(bench, source) ? benches_.heard(bench, source, now) : nullptr;
+  };
+  readers.description.take([&](const wire::SourceDescription& description) {
+    KnownSource* source = known(description);
+    if (source == nullptr) {
+      return;
+    }
+    if (source->description && source->description->session() != description.session()) {
+      source->before = std::move(source->description);
+    }
+    source->description = description;
+  });
+  readers.status.take([&](const wire::SourceStatus& status) {
+    if (KnownSource* source = known(status)) {
+      source->status = status;
+      if (comes_first) {
+        watch_for_twins(*source);
+      }
+    }
+  });
+}
+
+// Seen while nothing runs, so that no run begins on them.
+void AnalysisService::watch_for_twins(KnownSource& source) {
+  const bool known = source.twins.twins();
+  source.twins.add(source.status->session());
+  if (!known && source.twins.twins()) {
+    spdlog::warn(two_send_as(source.status->bench().to_string(),
+                             source.status->source().to_string(), service_of(source.before),
+                             service_of(source.description)));
+  }
+}
+
+void AnalysisService::read_sources_again(const std::string& bench) {
+  if (again_.contains(bench)) {
+    return;
+  }
+  auto sources = open_source_readers(bench);
+  if (!sources) {
+    spdlog::error("bench {}: {}", bench, sources.error().message);
+    return;
+  }
+  again_.emplace(bench, std::move(*sources));
+}
+
+void AnalysisService::leave_benches_without_run() {
+  std::erase_if(again_, [this](const auto& one) {
+    return std::none_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+      return run.first.first == one.first && !run.second->finished();
+    });
   });
 }
 
@@ -123,14 +203,19 @@ AnalysisService::FollowedRun& AnalysisService::followed(const RunKey& key) {
   if (const auto known = followed_.find(key); known != followed_.end()) {
     return known->second;
   }
-  if (followed_.size() >= max_followed) {
-    followed_.erase(
+  const Instant now = context_.clock.now();
+  if (followed_.size() >= max_followed) { // their messages hold whole recipes
+    const auto goes =
         std::min_element(followed_.begin(), followed_.end(), [](const auto& a, const auto& b) {
-          return a.second.heard < b.second.heard;
-        }));
+          const bool a_repeats = a.second.messages > 1;
+          const bool b_repeats = b.second.messages > 1;
+          return std::pair(a_repeats, a.second.heard) < std::pair(b_repeats, b.second.heard);
+        });
+    runs_left_out_ += now - goes->second.heard <= OtherAnalyses::silence_limit ? 1 : 0;
+    followed_.erase(goes);
   }
   FollowedRun& run = followed_[key];
-  run.since = run.heard = context_.clock.now();
+  run.since = run.heard = now;
   return run;
 }
 
@@ -147,17 +232,30 @@ bool AnalysisService::follows_bench(const std::string& bench) const {
 void AnalysisService::begin_run(const RunKey& key, const wire::Measurement& measurement,
                                 SourceStreams::Begin begin) {
   if (!make_room(key.first)) {
-    spdlog::error("bench {}, run {}: not served, {} runs of this bench have not ended", key.first,
-                  key.second, kept_runs);
+    ++runs_left_out_;
     return;
   }
-  auto session = RunSession::create(context_, measurement, begin);
+  auto session = requests_to(key.first).and_then([&](auto requests) {
+    return RunSession::create(context_, measurement, std::move(requests), begin);
+  });
   if (!session) {
     spdlog::error("bench {}, run {}: {}", key.first, key.second, session.error().message);
     return;
   }
   runs_.emplace(key, std::move(*session));
   order_.push_back(key);
+  if (benches_.left_out().benches > 0 || benches_.left_out().sources > 0) {
+    read_sources_again(key.first);
+  }
+}
+
+Expected<std::shared_ptr<SourceRequests>> AnalysisService::requests_to(const std::string& bench) {
+  for (const auto& [key, session] : runs_) {
+    if (key.first == bench) {
+      return session->requests();
+    }
+  }
+  return SourceRequests::open(participant_, bench, context_.identity.service);
 }
 
 // Runs that another service has begun as well, and leads.
@@ -196,11 +294,14 @@ void AnalysisService::take_over() {
       continue;
     }
     const auto last = others_.last_leader(key);
-    if (last && last->software != software_version()) {
+    // An analysis that was started again does not know who led; the run does.
+    const std::string began_with = last ? last->software : followed.measurement.analysis_software();
+    if (!began_with.empty() && began_with != software_version()) {
       followed.left_alone = true;
       spdlog::error("bench {}, run {}: {} with {} has gone silent; this service has {} and does "
                     "not take the run over: end it, and give all analysis services one version",
-                    key.first, key.second, last->service, last->software, software_version());
+                    key.first, key.second, last ? last->service : "an analysis service", began_with,
+                    software_version());
       ++run;
       continue;
     }
@@ -217,20 +318,62 @@ void AnalysisService::take_over() {
   }
 }
 
+bool AnalysisService::lives(const RunKey& key) const {
+  const RunSession& session = *runs_.at(key);
+  const KnownSources& known = benches_.sources_of(key.first);
+  return session.armed() ||
+         (!session.finished() && std::any_of(known.begin(), known.end(), [&](const auto& source) {
+           return source.second.description && session.uses(source.first);
+         }));
+}
+
+bool AnalysisService::is_used(const std::string& bench, const std::string& source) const {
+  return std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+    return run.first.first == bench && !run.second->finished() && run.second->uses(source);
+  });
+}
+
 bool AnalysisService::make_room(const std::string& bench) {
   const auto of_bench = [&](const RunKey& key) { return key.first == bench; };
   while (static_cast<std::size_t>(std::count_if(order_.begin(), order_.end(), of_bench)) >=
          kept_runs) {
-    const auto oldest = std::find_if(order_.begin(), order_.end(), [&](const RunKey& key) {
-      return of_bench(key) && runs_.at(key)->finished();
-    });
+    if (!drop_oldest(of_bench)) {
+      return false;
+    }
+  }
+  return order_.size() < max_runs || drop_oldest([](const RunKey&) { return true; });
+}
+
+bool AnalysisService::drop_oldest(const std::function<bool(const RunKey&)>& may_go) {
+  auto oldest = std::find_if(order_.begin(), order_.end(), [&](const RunKey& key) {
+    return may_go(key) && runs_.at(key)->finished();
+  });
+  if (oldest == order_.end()) {
+    oldest = std::find_if(order_.begin(), order_.end(),
+                          [&](const RunKey& key) { return may_go(key) && !lives(key); });
     if (oldest == order_.end()) {
       return false;
     }
-    runs_.erase(*oldest);
-    order_.erase(oldest);
+    ++runs_left_out_;
   }
+  runs_.erase(*oldest);
+  order_.erase(oldest);
   return true;
+}
+
+void AnalysisService::say_what_was_left_out() {
+  const auto say = [this](const char* what, std::uint64_t count, std::size_t limit) {
+    if (count > 0 && said_.insert(what).second) {
+      spdlog::warn("more {} on the network than this service keeps ({}): some were left out, or "
+                   "dropped for newer ones; those of living runs stay; it is counted, and not said "
+                   "again",
+                   what, limit);
+    }
+  };
+  say("benches", benches_.left_out().benches, KnownBenches::max_benches);
+  say("sources of a bench", benches_.left_out().sources, KnownBenches::max_sources);
+  say("runs", runs_left_out_, max_runs);
+  say("runs of other analyses", others_.left_out(), OtherAnalyses::max_runs);
 }
 
 AnalysisFigures AnalysisService::figures() const {
@@ -252,6 +395,13 @@ AnalysisFigures AnalysisService::figures() const {
     }
   }
   figures.evaluation_s = evaluation_s_;
+  figures.benches = benches_.benches();
+  figures.sources = benches_.sources();
+  figures.runs_of_others = followed_.size();
+  figures.left_out = {{"benches", benches_.left_out().benches},
+                      {"sources", benches_.left_out().sources},
+                      {"runs", runs_left_out_},
+                      {"runs_of_others", others_.left_out()}};
   figures.malformed_messages = participant_.malformed_messages();
   figures.refused_packets = participant_.refused_packets()->count();
   return figures;

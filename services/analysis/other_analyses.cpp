@@ -1,25 +1,37 @@
 #include "services/analysis/other_analyses.hpp"
 
-#include <algorithm>
-
 namespace dyncal::services {
 
 void OtherAnalyses::add(const wire::ServiceStatus& status, Instant now) {
-  if (!status.recording().empty()) {
-    return; // a recorder leads no run
+  if (status.run().to_string().empty()) {
+    return; // a recorder or a guard: they lead no run
   }
   const std::string service = status.service().to_string();
   if (service == own_service_) {
     return;
   }
-  leaders_[{status.bench().to_string(), status.run().to_string()}] = {service, status.software(),
-                                                                      status.arm(), now};
-  if (leaders_.size() > max_runs) {
-    leaders_.erase(
-        std::min_element(leaders_.begin(), leaders_.end(), [](const auto& a, const auto& b) {
-          return a.second.heard < b.second.heard;
-        }));
+  const RunKey run{status.bench().to_string(), status.run().to_string()};
+  if (leaders_.contains(run) || leaders_.size() < max_runs || make_room(now)) {
+    leaders_[run] = {service, status.software(), status.arm(), now};
   }
+}
+
+bool OtherAnalyses::make_room(Instant now) {
+  auto oldest = leaders_.end();
+  for (auto one = leaders_.begin(); one != leaders_.end(); ++one) {
+    const bool is_older = oldest == leaders_.end() || one->second.heard < oldest->second.heard;
+    if (is_older && !in_use_(one->first)) {
+      oldest = one;
+    }
+  }
+  const bool found = oldest != leaders_.end();
+  if (!found || now - oldest->second.heard <= silence_limit) {
+    ++left_out_;
+  }
+  if (found) {
+    leaders_.erase(oldest);
+  }
+  return found;
 }
 
 std::optional<OtherAnalyses::Leader> OtherAnalyses::last_leader(const RunKey& run) const {

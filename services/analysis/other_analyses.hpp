@@ -3,10 +3,12 @@
 // One service leads a run and publishes about it; the others stand by and take it over when nothing
 // was heard of the leader for `silence_limit`. Where two have begun the same run, the one that has
 // armed it leads, else the one whose name sorts first; both come to the same decision. Plain data,
-// one thread; the newest `max_runs` are remembered.
+// one thread; the newest `max_runs` are remembered, and those that are in use stay.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,7 +35,11 @@ public:
     Instant heard;
   };
 
-  explicit OtherAnalyses(std::string own_service) : own_service_(std::move(own_service)) {}
+  using InUse = std::function<bool(const RunKey&)>;
+
+  // `in_use`: of runs that this service serves, or follows as they go on.
+  OtherAnalyses(std::string own_service, InUse in_use)
+      : own_service_(std::move(own_service)), in_use_(std::move(in_use)) {}
 
   void add(const wire::ServiceStatus& status, Instant now);
   // The service of which a status of this run was heard last; nothing if there was none.
@@ -42,9 +48,15 @@ public:
   [[nodiscard]] std::optional<Leader> leader(const RunKey& run, Instant now) const;
   // Whether another service leads a run that this one has begun, too.
   [[nodiscard]] bool must_give_way(const RunKey& run, bool armed, Instant now) const;
+  // Runs that had no room, or were dropped although their leader had not been silent for long.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
 
 private:
+  bool make_room(Instant now);
+
   std::string own_service_;
+  InUse in_use_;
+  std::uint64_t left_out_ = 0;
   std::map<RunKey, Leader> leaders_;
 };
 

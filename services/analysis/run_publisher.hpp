@@ -1,18 +1,16 @@
-// What the analysis service publishes about one run: commands to its sources, its status, and
-// results, with a count of each kind for the status.
+// What the analysis service publishes about one run: its status, and results, with a count of each
+// kind for the status.
 //
 // Results stay readable for late joiners as long as the object lives. A message that the network
-// does not take within its limit is logged and given up: the next status and the next command come
-// anyway, and a result that is missing shows against the counts of the status. Belongs to the run's
-// one thread, which a full writer holds up.
+// does not take within 10 s is logged and given up: the next status comes anyway, and a result that
+// is missing shows against the counts of the status. Belongs to the run's one thread, which a full
+// writer holds up.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 
 #include "idl/dyncal.h"
-#include "services/analysis/stream_follower.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
@@ -41,16 +39,12 @@ public:
                                                    AnalysisIdentity identity, std::string bench,
                                                    std::string run);
 
-  void ask_for_answer(const std::string& source);
-  void ask_to_catch_up(const std::string& source, const std::string& asker, const CatchUp& what);
   void publish(const RunState& state);
   void publish(const Recipe& recipe, const EvaluationOutput& output);
   [[nodiscard]] std::uint64_t results() const { return results_; }
 
 private:
   struct Writers {
-    bus::Writer<wire::Command> command;
-    bus::Writer<wire::CatchUpRequest> catch_up;
     bus::Writer<wire::ServiceStatus> status;
     bus::Writer<wire::CalibrationResult> result;
     bus::Writer<wire::TransferFunction> transfer_function;
@@ -62,7 +56,7 @@ private:
       : clock_(&clock), identity_(std::move(identity)), bench_(std::move(bench)),
         run_(std::move(run)), writers_(std::move(writers)) {}
   template <class Message>
-  void write(bus::Writer<Message>& writer, const Message& message, std::chrono::nanoseconds limit);
+  void write(bus::Writer<Message>& writer, const Message& message);
 
   bus::Clock* clock_;
   AnalysisIdentity identity_;

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto command_interval = 250ms;
+constexpr auto command_interval = 100ms;
 constexpr auto status_interval = 1s;
 constexpr auto max_pause = 1s;              // between two calls of work() of a process that runs
 constexpr std::size_t max_announced = 4096; // one implies that those before it are over
@@ -36,6 +36,7 @@ EvaluationLimits limits_of(const Recipe& recipe) {
 
 Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& context,
                                                          const wire::Measurement& measurement,
+                                                         std::shared_ptr<SourceRequests> requests,
                                                          SourceStreams::Begin begin) {
   auto publisher =
       RunPublisher::open(context.participant, context.clock, context.identity,
@@ -43,19 +44,21 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& 
   if (!publisher) {
     return fail(publisher.error());
   }
-  std::unique_ptr<RunSession> session(new RunSession(context, measurement, std::move(*publisher)));
+  std::unique_ptr<RunSession> session(
+      new RunSession(context, measurement, std::move(requests), std::move(*publisher)));
   session->prepare(measurement, begin);
   return session;
 }
 
 RunSession::RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
-                       RunPublisher publisher)
+                       std::shared_ptr<SourceRequests> requests, RunPublisher publisher)
     : participant_(context.participant), clock_(context.clock), wake_up_(context.wake_up),
       bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
-      conductor_(measurement.conductor()), publisher_(std::move(publisher)),
-      measurement_(measurement), created_(clock_.now()), arms_since_(created_),
-      last_heard_of_run_(created_), last_progress_(created_), worked_(created_),
-      present_since_(created_), next_command_(created_), next_status_(created_ + status_interval) {}
+      conductor_(measurement.conductor()), requests_(std::move(requests)),
+      publisher_(std::move(publisher)), measurement_(measurement), created_(clock_.now()),
+      arms_since_(created_), last_heard_of_run_(created_), last_progress_(created_),
+      worked_(created_), present_since_(created_), next_command_(created_),
+      next_status_(created_ + status_interval) {}
 
 void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Begin begin) {
   auto recipe = parse_recipe(measurement);
@@ -142,7 +145,7 @@ void RunSession::catch_up(Instant now) {
     return;
   }
   for (const SourceStreams::Request& request : *due) {
-    publisher_.ask_to_catch_up(request.source, streams_->asker(), request.what);
+    requests_->ask_to_catch_up(run_, request.source, streams_->asker(), request.what);
   }
   if (lacks_samples(now)) {
     return;
@@ -240,6 +243,9 @@ void RunSession::give_way_to(const std::string& next) {
            fmt::format("nothing was heard of this run for {} s; its bench was given to run '{}'",
                        bench_limit.count(), next));
   }
+  if (died) {
+    evaluator_->stop_checks(); // nobody waits for them, and the bench is wanted
+  }
   evaluator_->end_of_excitation(died);
   evaluator_->finish_now();
   evaluate(clock_.now());
@@ -260,7 +266,7 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
   if (now >= next_command_) {
     next_command_ = now + command_interval;
     for (const std::string& source : streams_->unanswered()) {
-      publisher_.ask_for_answer(source);
+      requests_->ask_for_answer(run_, source);
     }
   }
   const auto missing = streams_->what_is_missing(sources);
@@ -275,8 +281,19 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
     publisher_.publish(status_);
   } else if (missing->is_there && now - arms_since_ <= present_limit) {
     starting_ = missing->is_starting ? now : starting_;
+    say_what_is_missing(missing->sentence, now);
   } else if (now - std::max(arms_since_, starting_) > arm_limit || missing->is_starting) {
     refuse(missing->sentence);
+  } else {
+    say_what_is_missing(missing->sentence, now);
+  }
+}
+
+// Before the run is refused for it: whoever waits may be able to mend it.
+void RunSession::say_what_is_missing(const std::string& sentence, Instant now) {
+  if (now - arms_since_ > notice_after && status_.message != sentence) {
+    status_.message = sentence;
+    publisher_.publish(status_);
   }
 }
 

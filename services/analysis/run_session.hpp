@@ -5,8 +5,9 @@
 // silent, and has answered the ARM command in its own sample stream, so commands arrive there and
 // samples arrive here (idl/README.md, "The run protocol").
 //
-// Limits: a run that is not armed within `arm_limit` is refused with one sentence; a source that is
-// there, but is still starting, or busy with other runs, is waited for up to `present_limit`. A
+// Limits: a run that is not armed within `arm_limit` is refused with one sentence, which its status
+// says from `notice_after` on; a source that is there, but is still starting, or busy with other
+// runs, is waited for up to `present_limit`. A
 // live source that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to
 // `patience`, then FAILED. Once the excitation is over and nothing was published for `quiet_limit`,
 // or nothing was heard of the run for `runner_limit`, it ends with what there is. Time in which
@@ -39,6 +40,7 @@
 
 #include "idl/dyncal.h"
 #include "services/analysis/run_publisher.hpp"
+#include "services/analysis/source_requests.hpp"
 #include "services/analysis/source_streams.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
@@ -56,7 +58,8 @@ struct AnalysisContext {
 
 class RunSession {
 public:
-  static constexpr std::chrono::seconds arm_limit{6};
+  static constexpr std::chrono::seconds arm_limit{10};
+  static constexpr std::chrono::seconds notice_after{2};
   static constexpr std::chrono::seconds present_limit{15};
   static constexpr std::chrono::seconds bench_limit{5};
   static constexpr std::chrono::seconds silence_limit{5};
@@ -65,10 +68,11 @@ public:
   static constexpr std::chrono::seconds announcement_limit{20};
   static constexpr std::chrono::seconds runner_limit{135}; // it may wait for `patience`, too
 
-  // Fails (network) as writers do. A recipe that cannot be evaluated makes a session that is
-  // refused.
+  // Asks its sources by `requests`, which the runs of a bench share. Fails (network) as writers do.
+  // A recipe that cannot be evaluated makes a session that is refused.
   [[nodiscard]] static Expected<std::unique_ptr<RunSession>>
   create(const AnalysisContext& context, const wire::Measurement& measurement,
+         std::shared_ptr<SourceRequests> requests,
          SourceStreams::Begin begin = SourceStreams::Begin::with_answer);
 
   [[nodiscard]] bool armed() const { return status_.arm == wire::ARM_ARMED; }
@@ -78,7 +82,12 @@ public:
     return status_.arm == wire::ARM_FINISHED || status_.arm == wire::ARM_REFUSED;
   }
 
+  [[nodiscard]] const std::shared_ptr<SourceRequests>& requests() const { return requests_; }
   [[nodiscard]] wire::ArmState arm_state() const { return status_.arm; }
+  // Whether its recipe names this source; false once it is finished.
+  [[nodiscard]] bool uses(const std::string& source) const {
+    return streams_ && streams_->contains(source);
+  }
 
   void update(const wire::Measurement& measurement);
   void announce(const wire::Excitation& excitation);
@@ -90,7 +99,7 @@ private:
   using Instant = bus::Clock::Instant;
 
   RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
-             RunPublisher publisher);
+             std::shared_ptr<SourceRequests> requests, RunPublisher publisher);
   void prepare(const wire::Measurement& measurement, SourceStreams::Begin begin);
   void note_own_absence(Instant now);
   void take_samples(const KnownSources& sources, Instant now);
@@ -99,6 +108,7 @@ private:
   // Ends this run for the next one.
   void give_way_to(const std::string& next);
   void arm(const KnownSources& sources, Instant now);
+  void say_what_is_missing(const std::string& sentence, Instant now);
   void watch_sources(Instant now);
   void watch_level();
   [[nodiscard]] std::string taking_over_sentence() const;
@@ -126,6 +136,7 @@ private:
   std::string bench_;
   std::string run_;
   std::string conductor_;
+  std::shared_ptr<SourceRequests> requests_;
   RunPublisher publisher_;
   RunState status_;
   wire::Measurement measurement_;

@@ -41,6 +41,10 @@ SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus:
 Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Instant now) {
   for (auto& [name, stream] : streams_) {
     const auto source = known.find(name);
+    if (source != known.end()) {
+      stream.service = service_of(source->second.description);
+      stream.service_before = service_of(source->second.before);
+    }
     if (source == known.end() || !source->second.description ||
         *source->second.description ==
             (stream.unfit ? stream.unfit->description : stream.description)) {
@@ -198,7 +202,7 @@ void SourceStreams::take_samples(Instant now) {
 template <class Message, class Take>
 void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
   reader.take([&](const Message& message) {
-    // Another bench's block in this bench's partition is not of this bench.
+    // What is given again comes in a partition of this run's own, whoever writes there.
     const auto found =
         message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
     if (found == streams_.end() || !found->second.follower) {
@@ -308,8 +312,8 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
       return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
                                  reason_given_by(source))};
     }
-    if (stream.twins.twins()) {
-      return Missing{two_send_as(name)};
+    if (stream.twins.twins() || source.twins.twins()) {
+      return Missing{two_send_as(bench_, name, stream.service_before, stream.service)};
     }
     if (stream.unfit) {
       return Missing{stream.unfit->why};
@@ -344,18 +348,12 @@ SourceStreams::what_differs(const std::map<std::string, std::string>& settings_o
   return "";
 }
 
-std::string SourceStreams::two_send_as(const std::string& source) const {
-  return fmt::format("two services send as source '{}' of bench '{}'; end one of them, or give it "
-                     "another name",
-                     source, bench_);
-}
-
 std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watched_from,
                                                      std::chrono::seconds silence_limit,
                                                      bool may_not_end) const {
   for (const auto& [name, stream] : streams_) {
     if (stream.twins.twins()) {
-      return LostSource{two_send_as(name), false};
+      return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
     }
     if (stream.unfit) {
       return LostSource{stream.unfit->why};

@@ -62,6 +62,7 @@ public:
   SourceStreams(const SourceStreams&) = delete;
   SourceStreams& operator=(const SourceStreams&) = delete;
 
+  [[nodiscard]] bool contains(const std::string& source) const { return streams_.contains(source); }
   // Hands new descriptions to the evaluator. Fails as RunEvaluator::describe() and readers do.
   [[nodiscard]] Expected<void> take_descriptions(const KnownSources& known, Instant now);
   // Hands what has come of sources that have answered to the evaluator.
@@ -111,13 +112,14 @@ private:
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
     TwinWatch twins;
+    std::string service{}; // that described it last, host and process; empty: not known
+    std::string service_before{};
   };
 
   [[nodiscard]] static bool is_triggered(const Stream& stream);
   [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
   static void replace_unfit(Stream& stream);
-  [[nodiscard]] std::string two_send_as(const std::string& source) const;
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
                                         const wire::SourceDescription& description, Instant now);
   // Why the run cannot go on by this description of a source that it knows; empty: it can.

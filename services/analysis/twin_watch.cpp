@@ -4,8 +4,13 @@ namespace dyncal::services {
 
 void TwinWatch::add(std::uint64_t session) {
   if (session_ == session) {
+    if (++in_a_row_ == alone_) {
+      left_.reset();
+      returns_ = 0;
+    }
     return;
   }
+  in_a_row_ = 1;
   if (left_ == session) {
     ++returns_;
   }

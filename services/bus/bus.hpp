@@ -2,9 +2,10 @@
 //
 // A process has one Participant, kept for as long as it runs; writers and readers keep it alive.
 // They are made from it for one topic, one of the QoS profiles and one partition (the bench; "*"
-// reads all benches). T is a struct of the contract. No vendor's name or type appears here.
+// reads all benches), or two for what belongs to one run. T is a struct of the contract. No
+// vendor's name or type appears here.
 //
-// QoS profiles (idl/README.md has the exact settings), all reliable:
+// QoS profiles (idl/README.md has the exact settings), all but the last reliable:
 //   samples  keep all, transient local with bounded depth: a writer waits for its readers, and a
 //            late joiner gets the newest blocks
 //   live_samples, live_records
@@ -17,6 +18,7 @@
 //   state    transient local, the newest of every key
 //   command  volatile, every one
 //   catch_up every one: what a source sends again to one reader, by a writer of its own
+//   probe    best effort, volatile: what is lost stays lost, so that losses can be counted
 //
 // Threads: a Participant may be used from any thread. Each Writer and each Reader belongs to one
 // thread at a time, except Reader's wake-up, which comes from the vendor's threads and only
@@ -51,7 +53,7 @@ struct ParticipantOptions {
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
   bool watch_discovery = false;   // for discovered()
-  // False, for Fast DDS: packets reach it as they come. To measure what its screen costs, only.
+  // False: packets reach the vendor's library as they come. To measure what its screen costs, only.
   bool screened = true;
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.
@@ -81,7 +83,7 @@ public:
   virtual ~UntypedParticipant() = default;
   virtual services::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
-         const std::string& partition) = 0;
+         const std::vector<std::string>& partitions) = 0;
   virtual services::Expected<std::unique_ptr<UntypedReader>>
   reader(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
@@ -117,17 +119,30 @@ private:
 template <class T>
 class Reader {
 public:
-  explicit Reader(std::unique_ptr<UntypedReader> untyped) : untyped_(std::move(untyped)) {}
-  // Hands over everything that has come, in order, and returns how many that were. That another
-  // tool on the bus has ended an instance is not handed over: dyncal ends none.
+  // `bench`: whose messages are taken; empty: of all.
+  Reader(std::unique_ptr<UntypedReader> untyped, std::string bench)
+      : untyped_(std::move(untyped)), bench_(std::move(bench)) {}
+  // Hands over everything that has come, in order, and returns how many that were. Passed over are
+  // messages that name another bench than the partition they came in (by a writer of another tool
+  // in partition "*", or of two benches), and that somebody has ended an instance: dyncal ends
+  // none.
   template <class Consume>
   std::size_t take(Consume&& consume) {
-    return untyped_->take([&](const void* sample) { consume(*static_cast<const T*>(sample)); });
+    std::size_t taken = 0;
+    untyped_->take([&](const void* sample) {
+      const T& message = *static_cast<const T*>(sample);
+      if (bench_.empty() || message.bench() == bench_ || message.bench() == "") {
+        ++taken;
+        consume(message);
+      }
+    });
+    return taken;
   }
   [[nodiscard]] int matched_writers() const { return untyped_->matched_writers(); }
 
 private:
   std::unique_ptr<UntypedReader> untyped_;
+  std::string bench_;
 };
 
 class Participant {
@@ -149,17 +164,16 @@ public:
         !name) {
       return fail(name.error());
     }
-    return untyped_->writer(type_support<T>(), topic, profile, partition).map([](auto w) {
-      return Writer<T>(std::move(w));
-    });
+    return open_writer<T>(topic, profile, {partition});
   }
   // `wake_up` rings whenever something may have come, and once at the beginning; it may be empty.
   template <class T>
   [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile,
                                                      const std::string& partition,
                                                      const std::shared_ptr<WakeUp>& wake_up) {
-    return untyped_->reader(type_support<T>(), topic, profile, partition, wake_up).map([](auto r) {
-      return Reader<T>(std::move(r));
+    const bool is_bench = profile != Profile::catch_up && check_bench_name(partition).has_value();
+    return untyped_->reader(type_support<T>(), topic, profile, partition, wake_up).map([&](auto r) {
+      return Reader<T>(std::move(r), is_bench ? partition : "");
     });
   }
 
@@ -176,6 +190,26 @@ public:
     return reader<T>(topic.name, topic.profile, partition, wake_up);
   }
 
+  // Of what belongs to one run: everybody who reads the bench gets it, and so does who reads only
+  // this run, and nothing of those before it that are kept for late joiners.
+  template <class T>
+  [[nodiscard]] services::Expected<Writer<T>>
+  writer_of_run(const Topic<T>& topic, const std::string& bench, const std::string& run) {
+    if (const auto name = check_bench_name(bench); !name) {
+      return fail(name.error());
+    }
+    return open_writer<T>(topic.name, topic.profile, {bench, partition_of_run(bench, run)});
+  }
+  template <class T>
+  [[nodiscard]] services::Expected<Reader<T>>
+  reader_of_run(const Topic<T>& topic, const std::string& bench, const std::string& run,
+                const std::shared_ptr<WakeUp>& wake_up) {
+    return untyped_
+        ->reader(type_support<T>(), topic.name, topic.profile, partition_of_run(bench, run),
+                 wake_up)
+        .map([&](auto r) { return Reader<T>(std::move(r), bench); });
+  }
+
   // Messages dropped because they do not match the contract (idl/README.md). Not 0 if there was
   // one; Fast DDS counts some of them twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
@@ -188,6 +222,14 @@ public:
   [[nodiscard]] Discovery discovered() const { return untyped_->discovered(); }
 
 private:
+  template <class T>
+  services::Expected<Writer<T>> open_writer(const std::string& topic, Profile profile,
+                                            const std::vector<std::string>& partitions) {
+    return untyped_->writer(type_support<T>(), topic, profile, partitions).map([](auto w) {
+      return Writer<T>(std::move(w));
+    });
+  }
+
   std::unique_ptr<UntypedParticipant> untyped_;
 };
 

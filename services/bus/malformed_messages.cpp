@@ -12,8 +12,8 @@ void MalformedMessages::add(const std::string& type_name) {
   }
   if (warn_) {
     warn_("dropped a message that is not a " + type_name +
-          " of this contract, and will drop others like it: check the program that sends it "
-          "against idl/README.md");
+          " of this contract, or was changed on its way, and will drop others like it: check the "
+          "program that sends it against idl/README.md, and the network");
   }
 }
 

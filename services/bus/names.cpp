@@ -1,7 +1,12 @@
 #include "services/bus/names.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 namespace dyncal::bus {
 namespace {
+
+constexpr std::string_view pattern_characters = "*?[]";
 
 services::Error bad_name(const std::string& what, const std::string& name, const std::string& why) {
   return {services::ErrorCode::bad_argument, what + " \"" + name + "\" " + why};
@@ -12,7 +17,7 @@ services::Expected<void> check_partition(const std::string& what, const std::str
   if (auto fits = check_name(what, name, longest); !fits) {
     return fits;
   }
-  if (name.find_first_of("*?[]") != std::string::npos) {
+  if (name.find_first_of(pattern_characters) != std::string::npos) {
     return fail(bad_name(
         what, name, "contains one of * ? [ ], which stand for other names in DDS: leave it out"));
   }
@@ -40,6 +45,12 @@ services::Expected<void> check_bench_name(const std::string& name) {
 
 services::Expected<void> check_asker_name(const std::string& name) {
   return check_partition("asker", name, max_asker);
+}
+
+std::string partition_of_run(const std::string& bench, std::string run) {
+  std::ranges::replace_if(
+      run, [](char one) { return pattern_characters.find(one) != std::string_view::npos; }, '_');
+  return bench + "/" + run;
 }
 
 } // namespace dyncal::bus

@@ -1,5 +1,5 @@
 // Names of benches, sources, runs and channels on the bus: keys of bounded length, and the bench is
-// the DDS partition as well.
+// the DDS partition as well. What an analysis says of one run is in a partition of that run, too.
 //
 // Check a name where a user gives it. The key members of the contract's structs truncate a longer
 // text silently, and two long names could become one.
@@ -27,5 +27,8 @@ inline constexpr std::size_t max_asker = 128;   // characters of who catches up
 
 // The name of who catches up, which is a partition as well: likewise, but it may be longer.
 [[nodiscard]] services::Expected<void> check_asker_name(const std::string& name);
+
+// The partition of one run: the bench, "/", and the run with _ in place of * ? [ ].
+[[nodiscard]] std::string partition_of_run(const std::string& bench, std::string run);
 
 } // namespace dyncal::bus

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 
 namespace dyncal::bus {
@@ -16,6 +17,9 @@ class RefusedPackets {
 public:
   // `warn` may be empty; it is called from the vendor's threads.
   explicit RefusedPackets(std::function<void(const std::string&)> warn) : warn_(std::move(warn)) {}
+
+  // From the address in a locator of RTPS (DDSI-RTPS 9.3.2): IPv4 is its end.
+  [[nodiscard]] static std::uint32_t sender_in(std::span<const unsigned char, 16> locator_address);
 
   // `sender` is an IPv4 address, the first byte uppermost; 0 if it is not known.
   void add(std::uint32_t sender);
@@ -28,6 +32,8 @@ public:
   [[nodiscard]] std::string last_sender() const;
 
 private:
+  void count(std::uint32_t sender, const char* kind);
+
   std::function<void(const std::string&)> warn_;
   std::atomic<std::uint64_t> count_{0};
   std::atomic<std::uint64_t> implausible_{0};

@@ -116,4 +116,18 @@ const TypeSupport& type_support<wire::ClockAnswer>() {
   return support;
 }
 
+template <>
+const TypeSupport& type_support<wire::LinkProbe>() {
+  static const TypeSupport support =
+      make_type_support<wire::LinkProbe>("dyncal::wire::LinkProbe", two_names);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::LinkEcho>() {
+  static const TypeSupport support =
+      make_type_support<wire::LinkEcho>("dyncal::wire::LinkEcho", three_names);
+  return support;
+}
+
 } // namespace dyncal::bus

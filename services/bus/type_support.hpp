@@ -5,9 +5,12 @@
 // vendor, so the bytes on the wire are the same by construction. Bytes here mean a whole DDS
 // payload: the 4-byte encapsulation header, then plain CDR (XCDR1).
 //
-// Growth: members may be appended to a type. A message from an older program lacks them;
-// deserialize() then reads zeros, empty strings and empty sequences. A message from a newer program
-// has bytes at its end that are left unread.
+// Growth: members may be appended to a type. A message from an older program lacks those that were
+// appended since the first release; deserialize() then reads zeros, empty strings and empty
+// sequences. A message from a newer program has bytes at its end that are left unread.
+//
+// A message that was changed on its way is refused (payload_checksum.hpp): serialize() sets the
+// member `checksum`, whatever the sample has there, and deserialize() leaves 0 in it.
 //
 // All functions may be called from any thread; a sample belongs to its caller.
 #pragma once
@@ -77,5 +80,9 @@ template <>
 const TypeSupport& type_support<wire::ClockRequest>();
 template <>
 const TypeSupport& type_support<wire::ClockAnswer>();
+template <>
+const TypeSupport& type_support<wire::LinkProbe>();
+template <>
+const TypeSupport& type_support<wire::LinkEcho>();
 
 } // namespace dyncal::bus

@@ -1,6 +1,13 @@
 // Makes the TypeSupport of a struct that fastddsgen generated. Only type_support.cpp and tests with
 // types of their own need it.
 //
+// A struct whose last member is `checksum` gets one when it is written. When it is read, a wrong
+// one is an error; then the member is 0, so that a message is equal to the one that was written.
+//
+// Fast CDR makes room for as many elements as a sequence says, if only that many bytes are left: of
+// structs a hundred times the length of the message, and a changed message would be refused after
+// it. So what is longer than `max_unchecked_bytes` is read only if it ends with its checksum.
+//
 // Errors of Fast CDR, which throws, end here.
 #pragma once
 
@@ -14,9 +21,30 @@
 #include <fastcdr/exceptions/Exception.h>
 
 #include "services/bus/cdr_key.hpp"
+#include "services/bus/payload_checksum.hpp"
+#include "services/bus/qos_profiles.hpp"
 #include "services/bus/type_support.hpp"
 
 namespace dyncal::bus {
+
+template <class T>
+concept HasChecksum = requires(T sample) {
+  sample.checksum();
+};
+
+// Bytes of the members that were appended to a topic's type since its first release, when they are
+// empty: only these may be missing in a message. A type that grows more has one of its own.
+template <class T>
+inline constexpr std::size_t appended_bytes = HasChecksum<T> ? checksum_bytes : 0;
+
+// More than messages of the first release and of other tools need that give no checksum.
+template <class T>
+inline constexpr std::size_t max_unchecked_bytes = std::size_t{256} << 10U;
+// Their sequences are of numbers, of which each takes no more than eight bytes of room.
+template <>
+inline constexpr std::size_t max_unchecked_bytes<wire::SampleBlock> = max_sample_bytes;
+template <>
+inline constexpr std::size_t max_unchecked_bytes<wire::TriggeredRecord> = max_sample_bytes;
 
 template <class T>
 struct Encoder {
@@ -28,10 +56,17 @@ struct Encoder {
   }
 
   static std::size_t serialize(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
+    std::memset(bytes, 0, capacity); // Fast CDR leaves padding as it is
+    const std::size_t count = write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
       cdr.serialize_encapsulation();
       static_cast<const T*>(sample)->serialize(cdr);
     });
+    if constexpr (HasChecksum<T>) {
+      if (count > 0) {
+        set_checksum(bytes, count);
+      }
+    }
+    return count;
   }
 
   static std::size_t serialize_key(const void* sample, char* bytes, std::size_t capacity) {
@@ -42,18 +77,20 @@ struct Encoder {
   }
 
   static std::size_t canonical_key(const void* sample, char* bytes, std::size_t capacity) {
-    std::memset(bytes, 0, capacity); // Fast CDR leaves padding as it is
+    std::memset(bytes, 0, capacity); // as above
     return write(bytes, capacity, Cdr::BIG_ENDIANNESS,
                  [sample](Cdr& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
   }
 
   static bool deserialize(void* sample, const char* bytes, std::size_t count) {
-    if (count < cdr_header_bytes) {
+    if (count < cdr_header_bytes ||
+        (count > max_unchecked_bytes<T> && !ends_with_checksum(bytes, count))) {
       return false;
     }
-    const std::size_t understood = read(sample, bytes, count);
-    if (understood == everything) {
-      return true;
+    auto& members = *static_cast<T*>(sample);
+    const auto [understood, is_whole] = read(members, bytes, count);
+    if (is_whole) {
+      return take_checksum(members, bytes, understood);
     }
     // Fast CDR stops at the beginning of the first member that is not wholly there. Only when the
     // message ends just before it (but for padding to 4 bytes) it comes from a program whose type
@@ -61,18 +98,19 @@ struct Encoder {
     if (count - understood >= 4) {
       return false;
     }
-    // Zeros read as 0, "" and empty; no struct of the contract is longer than this when all its
-    // members are empty.
-    constexpr std::size_t zeros = 1024;
-    std::vector<char> extended(understood + zeros, '\0');
+    // Zeros read as 0, "" and empty.
+    std::vector<char> extended(((understood + 3U) & ~std::size_t{3}) + appended_bytes<T>, '\0');
     std::memcpy(extended.data(), bytes, understood);
-    return read(sample, extended.data(), extended.size()) == everything;
+    return read(members, extended.data(), extended.size()).is_whole;
   }
 
 private:
   using Cdr = eprosima::fastcdr::Cdr;
 
-  static constexpr std::size_t everything = static_cast<std::size_t>(-1);
+  struct Read {
+    std::size_t bytes = 0; // before the first member that could not be read
+    bool is_whole = false;
+  };
 
   template <class Serialize>
   static std::size_t write(char* bytes, std::size_t capacity, Cdr::Endianness byte_order,
@@ -87,17 +125,26 @@ private:
     }
   }
 
-  // Returns `everything`, or the number of bytes before the first member that could not be read.
-  static std::size_t read(void* sample, const char* bytes, std::size_t count) {
+  // Returns false if there is one and it is wrong.
+  static bool take_checksum(T& sample, const char* bytes, std::size_t end) {
+    if constexpr (HasChecksum<T>) {
+      const std::uint32_t given = sample.checksum();
+      sample.checksum(0);
+      return given == 0 || given == payload_checksum(bytes, end - checksum_bytes);
+    }
+    return true;
+  }
+
+  static Read read(T& sample, const char* bytes, std::size_t count) {
     // FastBuffer wants a mutable pointer; nothing is written through it here.
     eprosima::fastcdr::FastBuffer buffer(const_cast<char*>(bytes), count);
     Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
     try {
       cdr.read_encapsulation();
-      static_cast<T*>(sample)->deserialize(cdr);
-      return everything;
+      sample.deserialize(cdr);
+      return {cdr.getSerializedDataLength(), true};
     } catch (const std::exception&) {
-      return cdr.getSerializedDataLength();
+      return {cdr.getSerializedDataLength(), false};
     }
   }
 };

@@ -171,16 +171,8 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   if (!outcome) {
     return fail(outcome.error());
   }
-  if (outcome->output_may_be_on) {
-    return fail(ErrorCode::device,
-                fmt::format("{}; no file was written; {}",
-                            outcome->interrupted ? "interrupted" : outcome->problem,
-                            output_warning()));
-  }
-  if (outcome->interrupted || !outcome->problem.empty()) {
-    return fail(outcome->interrupted ? ErrorCode::interrupted : ErrorCode::no_result,
-                outcome->interrupted ? "interrupted: the excitation is off; no file was written"
-                                     : outcome->problem);
+  if (const auto ended = check_end(*outcome, "no file was written"); !ended) {
+    return fail(ended.error());
   }
   auto measurements = measurements_of(command, pass, *outcome);
   if (!measurements) {

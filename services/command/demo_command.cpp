@@ -205,8 +205,7 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
     return fail(port.error());
   }
   std::filesystem::remove(demo.folder / "ports.json");
-  if (const auto started =
-          start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port));
+  if (auto started = start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port));
       !started) {
     return started;
   }
@@ -236,8 +235,8 @@ Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
 Expected<void> start_services(Demo& demo) {
   const std::string bench_file = demo.folder / "bench.toml";
   const std::string domain = std::to_string(demo.domain);
-  std::vector<std::pair<std::string, std::string>> services{{"dyncal-analysis", "analysis"},
-                                                            {"dyncal-acs", "acs"}};
+  std::vector<std::pair<std::string, std::string>> services{
+      {"dyncal-analysis", "analysis"}, {"dyncal-guard", "acs"}, {"dyncal-acs", "acs"}};
   if (demo.preset.triggered) {
     services.emplace_back("dyncal-dso", "dau");
   } else if (demo.preset.can != DemoPreset::CanLink::none) {

@@ -19,7 +19,6 @@
 namespace dyncal::services {
 namespace {
 
-using doctor::Finding;
 using doctor::Findings;
 using doctor::Severity;
 
@@ -80,22 +79,29 @@ std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& 
   return std::move(*listener);
 }
 
+// Nothing was looked at: neither a warning nor a problem.
+int could_not_look(const Error& error) {
+  constexpr int unknown = 3;
+  const int status = report_error(error);
+  return status == 1 ? unknown : status;
+}
+
 } // namespace
 
 int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
   NetworkOptions network = command.network;
   const auto bench = read_bench(command, network);
   if (!bench) {
-    return report_error(bench.error());
+    return could_not_look(bench.error());
   }
   auto participant = join_network(network, "dyncal-doctor", {.watch_discovery = true});
   if (!participant) {
-    return report_error(participant.error());
+    return could_not_look(participant.error());
   }
   const auto own = this_program("dyncal-doctor", software_version(), network.dds);
   auto watch = doctor::LaboratoryWatch::open(*participant, own, bus::system_clock());
   if (!watch) {
-    return report_error(watch.error());
+    return could_not_look(watch.error());
   }
   Findings about_listener;
   auto listener = open_listener(network, about_listener);
@@ -107,10 +113,12 @@ int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
 
   Findings findings = doctor::check_programs(view);
   append(findings, doctor::check_sources(view, *bench));
+  append(findings, doctor::check_guards(view, *bench));
   append(findings, doctor::check_endpoints(view, *bench ? std::vector{(*bench)->bench}
                                                         : std::vector<std::string>()));
   append(findings, about_listener);
   append(findings, doctor::check_network(view));
+  append(findings, doctor::check_loss(view));
   append(findings, doctor::check_host(host, network.domain));
   fmt::print("{}", command.json ? json_text(doctor::as_json(findings, view), 2) + "\n"
                                 : doctor::as_text(findings));

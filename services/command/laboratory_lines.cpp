@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "services/command/clock_offset_text.hpp"
 #include "services/command/harmless_text.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/report/rounding.hpp"
@@ -120,6 +121,10 @@ void add_bench(const live::Bench& bench, Lines& lines) {
                     fmt::format("{}: recorded in {}, {} messages stored, {} not{}", bench.name,
                                 service.recording, service.messages_stored,
                                 service.messages_not_stored, problem));
+    } else if (service.is_guard()) {
+      lines.emplace(fmt::format("2 {} {}", bench.name, name),
+                    fmt::format("{}: exciter guarded by {}{}", bench.name, name,
+                                service.message.empty() ? "" : ": " + service.message));
     }
   }
   for (const auto& [name, run] : bench.runs) {
@@ -133,14 +138,10 @@ std::map<std::string, std::string> laboratory_lines(const live::Laboratory& labo
   Lines lines;
   for (const auto& [name, bench] : laboratory.benches()) {
     add_bench(bench, lines);
-    for (const auto& [source_name, source] : bench.sources) {
-      if (const auto clock = laboratory.clock_of(source.host)) {
-        // To what is known of it: a clock that has not moved beyond that keeps its line.
-        const RoundedValue offset = round_by_uncertainty(clock->offset_s, clock->bound_s);
-        lines.emplace("0 " + source.host, fmt::format("clock of {}: {} s from ours (within {} s)",
-                                                      source.host, offset.value, offset.u));
-      }
-    }
+  }
+  for (const HostClock& host : laboratory.clocks()) {
+    lines.emplace("0 " + host.host,
+                  fmt::format("clock of {}: {}", host.host, clock_offset_text(host.clock)));
   }
   for (auto& [key, line] : lines) {
     line = harmless(line);

@@ -13,8 +13,8 @@ void add_watch(CLI::App& app, WatchCommand& watch) {
   command->add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--all", watch.all,
-                    "also runs that are over, channels that do not respond, and benches that are "
-                    "gone");
+                    "also runs that are over, channels that do not respond, benches that are gone, "
+                    "and the clock of every host");
   command->add_flag("--flags", watch.flags,
                     "in the table every flag of a channel, and below what each of them means");
   command->add_flag("--json", watch.json, "print every change as a line of JSON");
@@ -42,7 +42,8 @@ void add_doctor(CLI::App& app, DoctorCommand& doctor) {
       ->capture_default_str();
   command->add_flag("--json", doctor.json, "print JSON");
   command->footer(
-      "Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line.");
+      "Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line, "
+      "3 the bench file or the network cannot be used.");
   add_network_options(*command, doctor.network);
 }
 

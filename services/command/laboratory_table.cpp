@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "services/command/clock_offset_text.hpp"
 #include "services/command/harmless_text.hpp"
 #include "services/contract/unit.hpp"
 #include "services/report/rounding.hpp"
@@ -31,6 +32,10 @@ struct Line {
   Severity severity = Severity::ok;
   std::string text;
 };
+
+std::string shortened(const std::string& text, std::size_t columns) {
+  return columns_of(text) > columns ? in_columns(text, columns) : text;
+}
 
 Rank rank_of(Severity severity, Rank otherwise) {
   return severity >= Severity::warning ? Rank::wrong : otherwise;
@@ -273,6 +278,27 @@ void add_bench(const Bench& bench, Table& table) {
   }
 }
 
+// What a long name of a host leaves no room for is the name, not the offset.
+Line clock_line(const HostClock& host, std::size_t columns) {
+  constexpr std::size_t min_name = 8;
+  const std::string begin = "clock of ";
+  const std::string offset = ": " + clock_offset_text(host.clock);
+  const std::size_t others = columns_of(begin) + columns_of(offset);
+  const std::size_t room = std::max(columns, others + min_name) - others;
+  std::string text = begin + shortened(harmless(host.host), room) + offset;
+  return is_notable(host.clock) ? Line{Rank::wrong, Severity::warning, std::move(text)}
+                                : Line{Rank::source, Severity::ok, std::move(text)};
+}
+
+// Of hosts whose clock is off, with `all` of each that is not ours.
+void add_clocks(const live::Laboratory& laboratory, Table& table) {
+  for (const HostClock& host : laboratory.clocks()) {
+    if (table.layout.all || is_notable(host.clock)) {
+      table.lines.push_back(clock_line(host, table.layout.columns));
+    }
+  }
+}
+
 std::string head(const live::Laboratory& laboratory) {
   std::size_t running = 0;
   const Clock::Instant now = laboratory.clock().now();
@@ -298,10 +324,6 @@ const char* colour_of(Severity severity) {
     return "\x1b[2m";
   }
   return "";
-}
-
-std::string shortened(const std::string& text, std::size_t columns) {
-  return columns_of(text) > columns ? in_columns(text, columns) : text;
 }
 
 std::string written(const Line& line, const TableLayout& layout) {
@@ -339,6 +361,7 @@ std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
   for (const auto& [name, bench] : laboratory.benches()) {
     add_bench(bench, found);
   }
+  add_clocks(laboratory, found);
   add_meanings(found);
   std::vector<Line>& lines = found.lines;
   std::vector<std::string> table{shortened(head(laboratory), layout.columns)};

@@ -1,5 +1,6 @@
 // What the bus shows now as a table for people that stays within a terminal: a line a bench, below
-// it a line a source and a line a channel that responds, of current runs only.
+// it a line a source and a line a channel that responds, of current runs only; below all benches a
+// line for each host whose clock is off.
 //
 // Where there is no room for all, what is wrong comes first, then channels and sources of benches
 // that run, then the others; the last line says how many lines were left out. No line is longer
@@ -19,7 +20,8 @@ struct TableLayout {
   std::size_t columns = 80;
   std::size_t rows = 24; // 0: as many as there are
   bool colour = false;
-  bool all = false;   // every channel, also of runs that are over, and benches that are gone
+  bool all = false;   // every channel, also of runs that are over, benches that are gone, and the
+                      // clock of every host
   bool flags = false; // every flag of a channel, and what those that are shown mean
 };
 

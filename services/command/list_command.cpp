@@ -46,8 +46,10 @@ void print_text(const live::Laboratory& laboratory) {
       fmt::print("{}\n", source_text(source));
     }
     for (const auto& [service_name, service] : bench.services) {
-      fmt::print("  {} {}  {}\n", service.is_recorder() ? "recorder" : "analysis",
-                 harmless(service_name), to_string(service.health));
+      const char* kind = service.is_recorder() ? "recorder"
+                         : service.is_guard()  ? "guard"
+                                               : "analysis";
+      fmt::print("  {} {}  {}\n", kind, harmless(service_name), to_string(service.health));
     }
     for (const auto& [run_name, run] : bench.runs) {
       fmt::print("{}\n", run_text(run));

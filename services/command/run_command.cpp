@@ -145,7 +145,7 @@ Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
   }
   Expected<void> done = kept ? std::move(shown) : fail(kept.error());
   if (!done && run.outcome.output_may_be_on) {
-    done.error().message += "; " + output_warning();
+    done.error().message += "; " + output_warning(run.outcome);
   }
   return done;
 }

@@ -19,7 +19,8 @@ enum class Profile {
   results,
   state,
   command,
-  catch_up
+  catch_up,
+  probe
 };
 
 template <class T>
@@ -58,6 +59,8 @@ inline constexpr Topic<wire::SampleBlock> catch_up_samples{"CatchUpSamples", Pro
 inline constexpr Topic<wire::TriggeredRecord> catch_up_records{"CatchUpRecords", Profile::catch_up};
 inline constexpr Topic<wire::ClockRequest> clock_request{"ClockRequest", Profile::command};
 inline constexpr Topic<wire::ClockAnswer> clock_answer{"ClockAnswer", Profile::command};
+inline constexpr Topic<wire::LinkProbe> link_probe{"LinkProbe", Profile::probe};
+inline constexpr Topic<wire::LinkEcho> link_echo{"LinkEcho", Profile::probe};
 
 } // namespace topics
 } // namespace dyncal::bus

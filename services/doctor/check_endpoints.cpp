@@ -4,10 +4,11 @@
 #include <map>
 #include <set>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "services/contract/topics.hpp"
 #include "services/doctor/checks.hpp"
+#include "services/doctor/qos_mismatch.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services::doctor {
@@ -25,7 +26,7 @@ bool is_of_the_contract(const std::string& topic) {
       topics::calibration_result, topics::transfer_function, topics::sample_clock_report,
       topics::service_status,     topics::command,           topics::catch_up_request,
       topics::catch_up_samples,   topics::catch_up_records,  topics::clock_request,
-      topics::clock_answer};
+      topics::clock_answer,       topics::link_probe,        topics::link_echo};
   return names.contains(topic);
 }
 
@@ -71,13 +72,7 @@ std::string mismatch(const DiscoveredEndpoint& writer, const DiscoveredEndpoint&
   if (writer.type != reader.type) {
     return fmt::format("type: the writer has '{}', the reader '{}'", writer.type, reader.type);
   }
-  if (reader.reliable && !writer.reliable) {
-    return "reliability: the reader asks for RELIABLE, the writer offers BEST_EFFORT";
-  }
-  if (reader.transient_local && !writer.transient_local) {
-    return "durability: the reader asks for TRANSIENT_LOCAL, the writer offers VOLATILE";
-  }
-  return "";
+  return fmt::format("{}", fmt::join(qos_mismatches(writer, reader), ", and by their "));
 }
 
 Findings mismatches(const std::vector<DiscoveredEndpoint>& endpoints, const Names& names) {
@@ -108,7 +103,8 @@ Findings lost_partitions(const std::vector<DiscoveredEndpoint>& endpoints,
   std::set<std::string> sentences;
   for (const DiscoveredEndpoint& endpoint : endpoints) {
     const bool known = std::ranges::any_of(endpoint.partitions, [&](const std::string& partition) {
-      return is_pattern(partition) || benches.contains(partition);
+      return is_pattern(partition) || benches.contains(partition) ||
+             benches.contains(partition.substr(0, partition.rfind('/'))); // of a run
     });
     if (known || !is_of_the_contract(endpoint.topic)) {
       continue;

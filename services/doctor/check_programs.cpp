@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -8,8 +8,6 @@
 
 namespace dyncal::services::doctor {
 namespace {
-
-constexpr double notable_offset_s = 1.0; // log lines of two hosts no longer fit together
 
 std::string place_of(const ProgramIdentity& identity) {
   return fmt::format("{}:{} on {}", identity.program, identity.process_id, identity.host);
@@ -72,33 +70,85 @@ Findings check_analysis(const LaboratoryView& view) {
                        analyses > 1 ? "s" : "")}};
 }
 
-// Versions that differ, of all that say theirs.
-Findings check_versions(const LaboratoryView& view) {
-  std::set<std::string> software{view.own.software};
-  std::set<std::uint32_t> contracts{wire::CONTRACT_VERSION};
+// A version of software or contract, and where it runs.
+template <class Version>
+using Places = std::map<Version, std::set<std::string>>;
+
+struct Versions {
+  Places<std::string> software;
+  Places<std::uint32_t> contracts;
+};
+
+// Of all that say theirs. A service that answers also describes sources or reports on runs; that
+// what it says there is another version tells of a second program in its place.
+Versions versions_of(const LaboratoryView& view) {
+  Versions versions;
+  const auto add = [&](const std::string& program, const std::string& host,
+                       const std::string& software, std::uint32_t contract) {
+    const std::string place = fmt::format("{}@{}", program, host);
+    versions.software[software].insert(place);
+    versions.contracts[contract].insert(place);
+  };
+  add(view.own.program, view.own.host, view.own.software, wire::CONTRACT_VERSION);
   for (const HeardProgram& program : view.programs) {
-    software.insert(program.identity.software);
-    contracts.insert(program.contract_version);
+    const ProgramIdentity& identity = program.identity;
+    add(identity.program, identity.host, identity.software, program.contract_version);
   }
+  const auto name_of = [&](const std::string& host, std::uint32_t process_id,
+                           const std::string& otherwise) {
+    const auto program = std::ranges::find_if(view.programs, [&](const HeardProgram& one) {
+      return one.identity.host == host && one.identity.process_id == process_id;
+    });
+    return program == view.programs.end() ? otherwise : program->identity.program;
+  };
   for (const auto& [key, source] : view.sources) {
-    if (source.description) {
-      software.insert(source.description->software());
-      contracts.insert(source.description->contract_version());
+    if (const auto& description = source.description) {
+      const std::string name = fmt::format("the source {}/{}", key.first, key.second);
+      add(name_of(description->host(), description->process_id(), name), description->host(),
+          description->software(), description->contract_version());
     }
   }
-  Findings findings;
-  if (contracts.size() > 1) {
-    findings.push_back({Severity::problem, "versions",
-                        fmt::format("programs speak versions {} of the contract; what a newer one "
-                                    "adds is not seen by the older: install the same version of "
-                                    "dyncal everywhere",
-                                    fmt::join(contracts, " and "))});
+  for (const auto& [service, status] : view.analyses) {
+    add(name_of(status.host(), status.process_id(), service.substr(0, service.find(':'))),
+        status.host(), status.software(), status.contract_version());
   }
-  if (software.size() > 1) {
+  return versions;
+}
+
+// "dyncal 0.1.0 (dyncal-acs@lab-2), dyncal 0.2.0 (dyncal-dau@lab-1, dyncal-doctor@lab-1)"
+template <class Version>
+std::string text_of(const Places<Version>& versions) {
+  constexpr std::size_t max_named = 8; // of each
+  std::vector<std::string> texts;
+  for (const auto& [version, places] : versions) {
+    std::vector<std::string> named;
+    for (const std::string& place : places) {
+      if (named.size() == max_named) {
+        named.push_back(fmt::format("{} more", places.size() - max_named));
+        break;
+      }
+      named.push_back(place);
+    }
+    texts.push_back(fmt::format("{} ({})", version, fmt::join(named, ", ")));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+Findings check_versions(const LaboratoryView& view) {
+  const Versions versions = versions_of(view);
+  Findings findings;
+  if (versions.contracts.size() > 1) {
+    findings.push_back({Severity::problem, "versions",
+                        fmt::format("programs speak different versions of the contract: {}; what a "
+                                    "newer one adds is not seen by the older: install the same "
+                                    "version of dyncal everywhere",
+                                    text_of(versions.contracts))});
+  }
+  if (versions.software.size() > 1) {
     findings.push_back(
         {Severity::warning, "versions",
          fmt::format("programs are of different versions: {}; install the same everywhere",
-                     fmt::join(software, ", "))});
+                     text_of(versions.software))});
   }
   if (findings.empty()) {
     findings.push_back(
@@ -110,7 +160,7 @@ Findings check_versions(const LaboratoryView& view) {
 Findings check_clocks(const LaboratoryView& view) {
   Findings findings;
   for (const HostClock& host : view.clocks) {
-    const bool far = std::abs(host.clock.offset_s) - host.clock.bound_s > notable_offset_s;
+    const bool far = is_notable(host.clock);
     findings.push_back(
         {far ? Severity::warning : Severity::ok, "clocks",
          fmt::format("the clock of {} is {:+.6f} s from ours, within {:.6f} s{}", host.host,

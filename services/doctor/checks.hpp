@@ -21,14 +21,22 @@ namespace dyncal::services::doctor {
 [[nodiscard]] Findings check_sources(const LaboratoryView& view,
                                      const std::optional<BenchFile>& bench);
 
+// The guards of exciters: whether one is there that has the address of the generator of `bench`,
+// if one is given, and whether an output may be on that a guard cannot switch off.
+[[nodiscard]] Findings check_guards(const LaboratoryView& view,
+                                    const std::optional<BenchFile>& bench);
+
 // Writers and readers of the contract's topics that have one another's topic and do not match, and
-// why: type, reliability, durability, partition.
+// why: type, QoS (qos_mismatch.hpp), partition.
 [[nodiscard]] Findings check_endpoints(const LaboratoryView& view,
                                        const std::vector<std::string>& benches);
 
 // What the network between the hosts lets through, as far as it shows: multicast, unicast of
 // discovery, samples.
 [[nodiscard]] Findings check_network(const LaboratoryView& view);
+
+// What is lost on the way to every program that answers, and back.
+[[nodiscard]] Findings check_loss(const LaboratoryView& view);
 
 // This host: buffers, MTU, sockets, room for results.
 [[nodiscard]] Findings check_host(const HostView& host, int domain);

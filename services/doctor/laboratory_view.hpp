@@ -13,6 +13,7 @@
 #include "idl/dyncal.h"
 #include "services/bus/discovery.hpp"
 #include "services/host_clocks/clock_asker.hpp"
+#include "services/host_clocks/link_loss.hpp"
 
 namespace dyncal::services::doctor {
 
@@ -33,8 +34,10 @@ struct LaboratoryView {
   ProgramIdentity own;  // the doctor
   std::map<SourceKey, SeenSource> sources;
   std::map<std::string, wire::ServiceStatus> analyses; // by their names, the newest of each
+  std::map<std::string, wire::ServiceStatus> guards;   // by bench and name, "acc-1 guard@lab-1:7"
   std::vector<HeardProgram> programs;                  // that answer
   std::vector<HostClock> clocks;
+  std::vector<LinkLoss> losses; // one of each of the programs
   bus::Discovery discovery;
   // Participants whose multicast announcements came; nothing: it could not be listened for.
   std::optional<std::set<std::string>> announced_by_multicast;

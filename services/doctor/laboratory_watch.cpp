@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/analysis/known_sources.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services::doctor {
@@ -15,10 +16,6 @@ LaboratoryView::SourceKey key_of(const Message& message) {
   return {message.bench().to_string(), message.source().to_string()};
 }
 
-std::string writer_of(const wire::SourceDescription& description) {
-  return description.host() + ":" + std::to_string(description.process_id());
-}
-
 } // namespace
 
 Expected<std::unique_ptr<LaboratoryWatch>> LaboratoryWatch::open(bus::Participant& participant,
@@ -30,27 +27,30 @@ Expected<std::unique_ptr<LaboratoryWatch>> LaboratoryWatch::open(bus::Participan
   auto analyses = participant.reader(bus::topics::service_status, all_benches, wake_up);
   const AskingPace always_quick{.quick_requests = 1'000'000};
   auto asker = ClockAsker::open(participant, own, clock, wake_up, always_quick);
-  if (const auto error = first_error(descriptions, statuses, analyses, asker)) {
+  auto meter = LinkMeter::open(participant, own, clock, wake_up);
+  if (const auto error = first_error(descriptions, statuses, analyses, asker, meter)) {
     return fail(*error);
   }
   return std::unique_ptr<LaboratoryWatch>(new LaboratoryWatch(
       participant, own, clock, std::move(wake_up),
       Readers{std::move(*descriptions), std::move(*statuses), std::move(*analyses)},
-      std::move(*asker)));
+      std::move(*asker), std::move(*meter)));
 }
 
 void LaboratoryWatch::work() {
-  clock_.wait(*wake_up_, std::min(clock_.now() + max_wait, asker_.next_request()));
+  clock_.wait(*wake_up_,
+              std::min({clock_.now() + max_wait, asker_.next_request(), meter_.next_probe()}));
   take();
   asker_.work();
+  meter_.work(asker_.program_count()); // an answer's echoes came before it
 }
 
 void LaboratoryWatch::take() {
   readers_.descriptions.take([this](const wire::SourceDescription& description) {
     SeenSource& source = view_.sources[key_of(description)];
     source.description = description;
-    if (!description.host().empty()) {
-      source.writers.insert(writer_of(description));
+    if (std::string service = service_of(description); !service.empty()) {
+      source.writers.insert(std::move(service));
     }
   });
   readers_.statuses.take([this](const wire::SourceStatus& status) {
@@ -64,8 +64,12 @@ void LaboratoryWatch::take() {
     source.status = status;
   });
   readers_.analyses.take([this](const wire::ServiceStatus& status) {
-    if (!status.recording().empty()) {
-      return; // of a recorder
+    if (!status.guarded_generator().empty()) {
+      const std::string bench = status.bench().to_string();
+      view_.guards[bench + " " + status.service().to_string()] = status;
+    }
+    if (status.run().to_string().empty()) {
+      return; // of a guard, or a recorder
     }
     view_.analyses[status.service().to_string()] = status;
   });
@@ -75,6 +79,7 @@ LaboratoryView LaboratoryWatch::view() const {
   LaboratoryView view = view_;
   view.programs = asker_.programs();
   view.clocks = asker_.other_hosts();
+  view.losses = meter_.losses(view.programs);
   view.discovery = participant_.discovered();
   view.malformed_messages = participant_.malformed_messages();
   return view;

@@ -1,5 +1,5 @@
 // Listens on the bus and gives what was observed, LaboratoryView. It asks every program for its
-// clock, and writes nothing else. Belongs to one thread.
+// clock and sends it probes, and writes nothing else. Belongs to one thread.
 #pragma once
 
 #include <map>
@@ -12,6 +12,7 @@
 #include "services/doctor/laboratory_view.hpp"
 #include "services/error.hpp"
 #include "services/host_clocks/clock_asker.hpp"
+#include "services/host_clocks/link_meter.hpp"
 
 namespace dyncal::services::doctor {
 
@@ -34,9 +35,10 @@ private:
   };
 
   LaboratoryWatch(bus::Participant& participant, ProgramIdentity own, bus::Clock& clock,
-                  std::shared_ptr<bus::WakeUp> wake_up, Readers readers, ClockAsker asker)
+                  std::shared_ptr<bus::WakeUp> wake_up, Readers readers, ClockAsker asker,
+                  LinkMeter meter)
       : participant_(participant), clock_(clock), wake_up_(std::move(wake_up)),
-        readers_(std::move(readers)), asker_(std::move(asker)) {
+        readers_(std::move(readers)), asker_(std::move(asker)), meter_(std::move(meter)) {
     view_.own = std::move(own);
   }
   void take();
@@ -46,6 +48,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   Readers readers_;
   ClockAsker asker_;
+  LinkMeter meter_;
   LaboratoryView view_;
   std::map<LaboratoryView::SourceKey, TwinWatch> turns_;
 };

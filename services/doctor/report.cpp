@@ -52,6 +52,26 @@ ordered_json clocks_json(const LaboratoryView& view) {
   return clocks;
 }
 
+ordered_json direction_json(const Way& way) {
+  const auto lost = lost_part(way);
+  return {{"sent", way.sent},
+          {"arrived", way.arrived},
+          {"lost_percent", lost ? ordered_json(*lost * 100.0) : ordered_json()}};
+}
+
+ordered_json losses_json(const LaboratoryView& view) {
+  ordered_json losses = ordered_json::array();
+  for (const LinkLoss& loss : view.losses) {
+    losses.push_back({{"program", loss.identity.program},
+                      {"host", loss.identity.host},
+                      {"process_id", loss.identity.process_id},
+                      {"answers_probes", loss.answers_probes},
+                      {"there", direction_json(loss.there)},
+                      {"back", direction_json(loss.back)}});
+  }
+  return losses;
+}
+
 ordered_json sources_json(const LaboratoryView& view) {
   ordered_json sources = ordered_json::array();
   for (const auto& [key, source] : view.sources) {
@@ -146,6 +166,7 @@ ordered_json as_json(const Findings& findings, const LaboratoryView& view) {
           {"findings", std::move(list)},
           {"programs", programs_json(view)},
           {"clocks", clocks_json(view)},
+          {"losses", losses_json(view)},
           {"sources", sources_json(view)},
           {"participants", participants_json(view)}};
 }

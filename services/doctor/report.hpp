@@ -20,7 +20,8 @@ namespace dyncal::services::doctor {
 // One line a finding, in their order, and a last line with what came of all.
 [[nodiscard]] std::string as_text(const Findings& findings);
 
-// "status", "findings", and what was observed: "programs", "clocks", "sources", "participants".
+// "status", "findings", and what was observed: "programs", "clocks", "losses", "sources",
+// "participants".
 [[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings, const LaboratoryView& view);
 
 } // namespace dyncal::services::doctor

@@ -15,6 +15,10 @@ bool is_ready(const std::future<std::vector<StepResult>>& evaluation) {
 
 } // namespace
 
+EvaluationQueue::~EvaluationQueue() {
+  stop();
+}
+
 bool EvaluationQueue::has_room() {
   keep_ready();
   return !in_background() || under_way_.size() < at_once_;
@@ -32,11 +36,11 @@ void EvaluationQueue::make_room() {
 
 void EvaluationQueue::begin(Evaluation evaluation) {
   if (!in_background()) {
-    keep(evaluation());
+    keep(evaluation(stop_.get_token()));
     return;
   }
   make_room();
-  under_way_.push_back(std::async(std::launch::async, std::move(evaluation)));
+  under_way_.push_back(std::async(std::launch::async, std::move(evaluation), stop_.get_token()));
 }
 
 std::vector<StepResult> EvaluationQueue::take_finished() {

@@ -17,8 +17,8 @@ namespace {
 
 // What the evaluation of a step by itself does not know.
 Evaluation completed(Evaluation evaluation, std::uint32_t attempt, std::optional<double> degc) {
-  return [evaluation = std::move(evaluation), attempt, degc] {
-    std::vector<StepResult> results = evaluation();
+  return [evaluation = std::move(evaluation), attempt, degc](const std::stop_token& stop) {
+    std::vector<StepResult> results = evaluation(stop);
     for (StepResult& result : results) {
       result.attempt = attempt;
       result.temperature_degc = degc;
@@ -31,8 +31,8 @@ Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
   if (!count) {
     return evaluation;
   }
-  return [evaluation = std::move(evaluation), count] {
-    std::vector<StepResult> results = evaluation();
+  return [evaluation = std::move(evaluation), count](const std::stop_token& stop) {
+    std::vector<StepResult> results = evaluation(stop);
     count->add_done();
     return results;
   };
@@ -252,7 +252,7 @@ Evaluation RunEvaluator::evaluation_of_next_step() {
   auto ahead = std::exchange(ahead_, std::nullopt);
   if (ahead && ahead->inputs.step() == next_step_ && ahead->inputs.still_holds(records_)) {
     ++steps_ready_;
-    return [results = std::move(ahead->results)] { return results; };
+    return [results = std::move(ahead->results)](const std::stop_token&) { return results; };
   }
   return method_->evaluation(next_step_, records_);
 }
@@ -264,8 +264,8 @@ void RunEvaluator::evaluate_ahead() {
     return;
   }
   if (!ahead_ || !ahead_->inputs.still_holds(records_)) {
-    ahead_ =
-        AheadOfEnd{StepSnapshot(records_, next_step_), method_->evaluation(next_step_, records_)()};
+    ahead_ = AheadOfEnd{StepSnapshot(records_, next_step_),
+                        method_->evaluation(next_step_, records_)({})};
   }
 }
 
@@ -299,18 +299,19 @@ Evaluation RunEvaluator::settlement() {
   if (count_) {
     count_->begin("settling", "results", provisional_.size());
   }
-  return [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
-          provisional = std::exchange(provisional_, {}), count = count_] {
-    std::vector<StepResult> settled;
-    for (const StepResult& one : provisional) {
-      settled.push_back(bounds.settled(one));
-      redo_monte_carlo_check(trials, settled.back());
-      if (count) {
-        count->add_done();
-      }
-    }
-    return settled;
-  };
+  return
+      [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
+       provisional = std::exchange(provisional_, {}), count = count_](const std::stop_token& stop) {
+        std::vector<StepResult> settled;
+        for (const StepResult& one : provisional) {
+          settled.push_back(bounds.settled(one));
+          redo_monte_carlo_check(trials, stop, settled.back());
+          if (count) {
+            count->add_done();
+          }
+        }
+        return settled;
+      };
 }
 
 void RunEvaluator::finish(EvaluationOutput& output) {

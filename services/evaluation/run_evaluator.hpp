@@ -121,6 +121,9 @@ public:
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.
   void finish_now();
+  // Monte Carlo checks under way, and those of what is still evaluated, end at once: their results
+  // have a flag instead.
+  void stop_checks() { evaluations_.stop(); }
 
 private:
   [[nodiscard]] Expected<void> check_description(const SourceRecord& source) const;
@@ -164,7 +167,7 @@ private:
   SharedWorkCount count_;
   bool settling_ = false;
   bool finished_ = false;
-  EvaluationQueue evaluations_; // the last member: it waits for those that look at the others
+  EvaluationQueue evaluations_; // the last member: it ends those that look at the others
 };
 
 } // namespace dyncal::services

@@ -2,15 +2,33 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "services/bus/names.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services {
 namespace {
 
 constexpr std::chrono::milliseconds look_interval{100};
-constexpr std::size_t max_runs = 100; // of a bench, which has one at a time
+constexpr std::size_t max_runs = 100;                       // of a bench, which has one at a time
+constexpr std::chrono::milliseconds status_write_limit{50}; // it is repeated
+
+wire::ServiceStatus status_of(const ProgramIdentity& own, const GuardedExciter& exciter) {
+  wire::ServiceStatus status;
+  status.bench(exciter.bench);
+  status.service(fmt::format("guard@{}:{}", own.host, own.process_id).substr(0, bus::max_name));
+  status.arm(wire::ARM_WAITING);
+  status.health(wire::HEALTH_OK);
+  status.software(own.software);
+  status.dds(own.dds);
+  status.host(own.host);
+  status.process_id(own.process_id);
+  status.contract_version(wire::CONTRACT_VERSION);
+  status.guarded_generator(exciter.generator);
+  return status;
+}
 
 bool is_driven(const wire::Excitation& excitation) {
   return excitation.window_end_utc_ns() == 0;
@@ -19,17 +37,18 @@ bool is_driven(const wire::Excitation& excitation) {
 } // namespace
 
 Expected<std::unique_ptr<ExciterGuard>>
-ExciterGuard::create(bus::Participant& participant, std::string bench,
-                     std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
-                     bus::Clock& clock) {
+ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
+                     const GuardedExciter& exciter, std::chrono::milliseconds unattended_limit,
+                     SwitchOff switch_off, bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto excitation = participant.reader(bus::topics::excitation, bench, wake_up);
-  if (!excitation) {
-    return fail(excitation.error());
+  auto excitation = participant.reader(bus::topics::excitation, exciter.bench, wake_up);
+  auto status = participant.writer(bus::topics::service_status, exciter.bench);
+  if (const auto error = first_error(excitation, status)) {
+    return fail(*error);
   }
   return std::unique_ptr<ExciterGuard>(
-      new ExciterGuard(std::move(bench), unattended_limit, std::move(switch_off), clock,
-                       std::move(wake_up), std::move(*excitation)));
+      new ExciterGuard(status_of(own, exciter), unattended_limit, std::move(switch_off), clock,
+                       std::move(wake_up), {std::move(*excitation), std::move(*status)}));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
@@ -47,6 +66,23 @@ void ExciterGuard::work() {
   for (auto& [name, run] : runs_) {
     attend(name, run);
   }
+  if (clock_.now() >= next_status_) {
+    publish();
+  }
+}
+
+void ExciterGuard::set_health(wire::HealthState health, const std::string& message) {
+  if (status_.health() != health || status_.message() != message) {
+    status_.health(health);
+    status_.message(message);
+    publish();
+  }
+}
+
+void ExciterGuard::publish() {
+  status_.published_utc_ns(clock_.utc_now_ns());
+  endpoints_.status.write(status_, status_write_limit);
+  next_status_ = clock_.now() + status_interval;
 }
 
 ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
@@ -62,7 +98,7 @@ ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
 }
 
 void ExciterGuard::take_messages() {
-  excitation_.take([&](const wire::Excitation& excitation) {
+  endpoints_.excitation.take([&](const wire::Excitation& excitation) {
     if (excitation.bench().to_string() != bench_) {
       return;
     }
@@ -71,6 +107,7 @@ void ExciterGuard::take_messages() {
       spdlog::info("bench {}: watching over run {}", bench_, name);
     }
     heard(name).driven = is_driven(excitation);
+    set_health(wire::HEALTH_OK, ""); // whoever drives it has hold of it
   });
 }
 
@@ -86,14 +123,20 @@ void ExciterGuard::attend(const std::string& name, Run& run) {
     spdlog::warn("bench {}: nothing was heard of run {} for {:.1f} s while its exciter was driven; "
                  "the output of the generator was switched off",
                  bench_, name, std::chrono::duration<double>(now - run.heard).count());
+    set_health(wire::HEALTH_OK,
+               fmt::format("nothing was heard of run {} while its exciter was driven; the output "
+                           "of the generator was switched off",
+                           name));
     return;
   }
+  set_health(wire::HEALTH_FAILED,
+             fmt::format("nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE ON: "
+                         "switch it off by hand if you can; trying again until it is off ({})",
+                         name, off.error().message));
   run.next_try = clock_.now() + retry_interval;
   if (clock_.now() >= run.next_report) {
     run.next_report = clock_.now() + report_interval;
-    spdlog::error("bench {}: nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE "
-                  "ON: switch it off by hand if you can; trying again until it is off ({})",
-                  bench_, name, off.error().message);
+    spdlog::error("bench {}: {}", bench_, status_.message());
   }
 }
 

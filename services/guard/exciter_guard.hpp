@@ -8,6 +8,10 @@
 // that is confirmed, or the conductor is heard again. It is done once for each silence: a conductor
 // that comes back finds the output off and repeats the step.
 //
+// It says every second that it is there and which generator it guards (ServiceStatus), and whether
+// an output may be on that it cannot reach: `dyncal run` tells its operator where no guard is
+// heard.
+//
 // `switch_off` returns when the output is known to be off, and may block for seconds; the guard of
 // one bench therefore has a thread of its own, the only one that uses it.
 #pragma once
@@ -21,8 +25,14 @@
 
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/contract/program_identity.hpp"
 
 namespace dyncal::services {
+
+struct GuardedExciter {
+  std::string bench;
+  std::string generator; // its address
+};
 
 class ExciterGuard {
 public:
@@ -31,10 +41,12 @@ public:
 
   static constexpr std::chrono::seconds retry_interval{1};
   static constexpr std::chrono::seconds report_interval{60}; // while it cannot be switched off
+  static constexpr std::chrono::seconds status_interval{1};
 
-  // `clock` outlives the guard. Fails (network) as readers do.
+  // `own`: the program that guards. `clock` outlives the guard. Fails (network) as readers and
+  // writers do.
   [[nodiscard]] static Expected<std::unique_ptr<ExciterGuard>>
-  create(bus::Participant& participant, std::string bench,
+  create(bus::Participant& participant, const ProgramIdentity& own, const GuardedExciter& exciter,
          std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
          bus::Clock& clock = bus::system_clock());
 
@@ -55,23 +67,33 @@ private:
     Instant next_report{};
   };
 
-  ExciterGuard(std::string bench, std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
-               bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
-               bus::Reader<wire::Excitation> excitation)
-      : bench_(std::move(bench)), unattended_limit_(unattended_limit),
+  struct Endpoints {
+    bus::Reader<wire::Excitation> excitation;
+    bus::Writer<wire::ServiceStatus> status;
+  };
+
+  ExciterGuard(wire::ServiceStatus status, std::chrono::milliseconds unattended_limit,
+               SwitchOff switch_off, bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
+               Endpoints endpoints)
+      : bench_(status.bench().to_string()), unattended_limit_(unattended_limit),
         switch_off_(std::move(switch_off)), clock_(clock), wake_up_(std::move(wake_up)),
-        excitation_(std::move(excitation)) {}
+        endpoints_(std::move(endpoints)), status_(std::move(status)) {}
 
   void take_messages();
   Run& heard(const std::string& run);
   void attend(const std::string& name, Run& run);
+  // Says so as soon as it has changed.
+  void set_health(wire::HealthState health, const std::string& message);
+  void publish();
 
   std::string bench_;
   std::chrono::milliseconds unattended_limit_;
   SwitchOff switch_off_;
   bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  bus::Reader<wire::Excitation> excitation_;
+  Endpoints endpoints_;
+  wire::ServiceStatus status_; // as published last
+  Instant next_status_{};
   std::map<std::string, Run> runs_;
   int times_switched_off_ = 0;
 };

@@ -45,9 +45,9 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
                       "' has no generator that a program can switch off ([generator] driver): "
                       "there is nothing to guard");
     }
-    auto guard =
-        ExciterGuard::create(*participant, bench.bench, unattended_limit,
-                             [address = bench.generator.address] { return switch_off(address); });
+    auto guard = ExciterGuard::create(
+        *participant, supervisor.identity(), {bench.bench, bench.generator.address},
+        unattended_limit, [address = bench.generator.address] { return switch_off(address); });
     if (!guard) {
       return fail(guard.error());
     }
@@ -56,6 +56,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
                  bench.generator.address);
   }
   std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
+  threads.reserve(guards.size());
   for (const auto& guard : guards) {
     threads.emplace_back([&] { guard->serve(stop, [&supervisor] { supervisor.turned(); }); });
   }

@@ -76,6 +76,13 @@ void ClockAsker::take(const wire::ClockAnswer& answer) {
   heard.program.identity = identity_of(answer);
   heard.program.contract_version = answer.contract_version();
   take_refused_packets(answer, heard.program);
+  if (heard.program.answers == 0) {
+    heard.program.first_answer = now;
+  }
+  if (request->sent >= heard.program.asked) {
+    heard.program.asked = request->sent;
+    heard.program.probes = probe_counts_of(answer);
+  }
   ++heard.program.answers;
   heard.last_answer = now;
   const auto slew =

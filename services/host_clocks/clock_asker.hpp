@@ -21,6 +21,7 @@
 #include "services/error.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 #include "services/host_clocks/clock_offset.hpp"
+#include "services/host_clocks/link_loss.hpp"
 
 namespace dyncal::services {
 
@@ -39,6 +40,9 @@ struct HeardProgram {
   std::uint64_t packets_refused = 0;     // since its start
   std::uint64_t packets_refused_now = 0; // of these, since its first answer
   std::string packets_refused_from = {}; // the last of them; empty if that is not known
+  bus::Clock::Instant first_answer = {};
+  bus::Clock::Instant asked = {};         // when the request was sent that it answered last
+  std::optional<ProbeCounts> probes = {}; // of this asker, told then; nothing: it answers none
 };
 
 struct HostClock {
@@ -66,6 +70,7 @@ public:
   [[nodiscard]] std::vector<HeardProgram> programs() const;
   // One a host that is not ours: by its program with the best exchange. In alphabetical order.
   [[nodiscard]] std::vector<HostClock> other_hosts() const;
+  [[nodiscard]] std::size_t program_count() const { return heard_.size(); }
   [[nodiscard]] std::uint64_t requests() const { return number_; }
 
 private:

@@ -13,6 +13,10 @@ double difference_s(std::int64_t later_ns, std::int64_t earlier_ns) {
 
 } // namespace
 
+bool is_notable(const ClockOffset& clock) {
+  return std::abs(clock.offset_s) - clock.bound_s > notable_offset_s;
+}
+
 std::optional<ClockOffset> clock_offset(const ClockStamps& stamps) {
   const bool since_1970 = stamps.request_sent_ns >= 0 && stamps.request_received_ns >= 0 &&
                           stamps.answer_sent_ns >= 0 && stamps.answer_received_ns >= 0;

@@ -31,6 +31,12 @@ struct ClockOffset {
   double bound_s = 0.0;  // the offset is within this of the truth
 };
 
+// People compare log lines of two hosts: from here on they no longer fit together.
+inline constexpr double notable_offset_s = 1.0;
+
+// The clocks are further apart than that, whatever the offset's bound.
+[[nodiscard]] bool is_notable(const ClockOffset& clock);
+
 // Nothing if the stamps cannot be of one exchange: one is before 1970, or the time on the way would
 // be negative.
 [[nodiscard]] std::optional<ClockOffset> clock_offset(const ClockStamps& stamps);

@@ -14,12 +14,13 @@ ClockResponder::open(bus::Participant& participant, ProgramIdentity identity, bu
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto answers = participant.writer(bus::topics::clock_answer, all_benches_partition);
   auto requests = participant.reader(bus::topics::clock_request, all_benches_partition, wake_up);
-  if (const auto error = first_error(answers, requests)) {
+  auto links = LinkResponder::open(participant, service_name(identity), clock, wake_up);
+  if (const auto error = first_error(answers, requests, links)) {
     return fail(*error);
   }
   return std::unique_ptr<ClockResponder>(
       new ClockResponder(std::move(identity), clock, std::move(wake_up), std::move(*requests),
-                         std::move(*answers), participant.refused_packets()));
+                         std::move(*answers), std::move(*links), participant.refused_packets()));
 }
 
 Expected<std::unique_ptr<ClockResponder>> ClockResponder::start(bus::Participant& participant,
@@ -44,9 +45,11 @@ void ClockResponder::work() {
   requests_.take([this](const wire::ClockRequest& request) {
     const std::int64_t received_utc_ns = clock_->utc_now_ns();
     if (may_answer()) {
+      links_.work(); // what came before the request counts in its answer
       answer(request, received_utc_ns);
     }
   });
+  links_.work();
 }
 
 bool ClockResponder::may_answer() {
@@ -74,6 +77,13 @@ void ClockResponder::answer(const wire::ClockRequest& request, std::int64_t rece
   answer.contract_version(wire::CONTRACT_VERSION);
   answer.packets_refused(refused_->count());
   answer.packets_refused_from(refused_->last_sender());
+  const ProbeCounts probes = links_.counts(request.asker().to_string());
+  answer.answers_probes(true);
+  answer.probe_series(probes.series);
+  answer.first_probe(probes.first);
+  answer.newest_probe(probes.newest);
+  answer.probes_received(probes.received);
+  answer.probes_echoed(probes.echoed);
   answer.answer_sent_utc_ns(clock_->utc_now_ns());
   // One that does not get through is given up: whoever still wants to know asks again.
   static_cast<void>(answers_.write(answer, std::chrono::nanoseconds(0)));

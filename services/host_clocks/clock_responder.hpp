@@ -1,5 +1,6 @@
 // Answers whoever asks for this host's clock (clock_offset.hpp), and so tells that the program is
-// there.
+// there. An answer also tells what has come of the asker's probes, which it echoes
+// (link_responder.hpp).
 //
 // Bound: `max_answers_per_s`; requests beyond it stay without an answer. A reader that does not
 // take its answers costs one attempt of a write each. Threads: create() starts one of its own,
@@ -14,6 +15,7 @@
 #include "services/bus/clock.hpp"
 #include "services/error.hpp"
 #include "services/host_clocks/clock_messages.hpp"
+#include "services/host_clocks/link_responder.hpp"
 
 namespace dyncal::services {
 
@@ -29,16 +31,16 @@ public:
   [[nodiscard]] static Expected<std::unique_ptr<ClockResponder>>
   start(bus::Participant& participant, ProgramIdentity identity);
 
-  // Answers what has come.
+  // Answers and echoes what has come.
   void work();
 
 private:
   ClockResponder(ProgramIdentity identity, bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
                  bus::Reader<wire::ClockRequest> requests, bus::Writer<wire::ClockAnswer> answers,
-                 std::shared_ptr<const bus::RefusedPackets> refused)
+                 LinkResponder links, std::shared_ptr<const bus::RefusedPackets> refused)
       : identity_(std::move(identity)), name_(service_name(identity_)), clock_(&clock),
         wake_up_(std::move(wake_up)), requests_(std::move(requests)), answers_(std::move(answers)),
-        refused_(std::move(refused)) {}
+        links_(std::move(links)), refused_(std::move(refused)) {}
   void run(const std::stop_token& stop);
   void answer(const wire::ClockRequest& request, std::int64_t received_utc_ns);
   [[nodiscard]] bool may_answer();
@@ -49,6 +51,7 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   bus::Reader<wire::ClockRequest> requests_;
   bus::Writer<wire::ClockAnswer> answers_;
+  LinkResponder links_;
   std::shared_ptr<const bus::RefusedPackets> refused_;
   bus::Clock::Instant second_began_;
   int answers_in_second_ = 0;

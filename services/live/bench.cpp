@@ -1,7 +1,5 @@
 #include "services/live/bench.hpp"
 
-#include <tuple>
-
 #include <fmt/core.h>
 
 namespace dyncal::services::live {
@@ -9,6 +7,25 @@ namespace {
 
 std::int64_t seconds_since(bus::Clock::Instant then, bus::Clock::Instant now) {
   return std::chrono::duration_cast<std::chrono::seconds>(now - then).count();
+}
+
+// One run of a bench before another: what is conducted, then what is newer. Not by when the runs
+// were planned: that is by the clocks of their conductors, which may be two hosts. Of runs that
+// were over before anybody listened messages come in no order; there the clock of the analysis
+// tells, if it is one that reports on both.
+bool leads(const Run& run, const Run& other) {
+  const auto is_conducted = [](const Run& one) {
+    return !one.is_over() && one.conductor_heard.has_value();
+  };
+  if (is_conducted(run) != is_conducted(other)) {
+    return is_conducted(run);
+  }
+  const bool by_one_analysis = !run.conductor_heard && !other.conductor_heard && run.analysis &&
+                               other.analysis && run.analysis->service == other.analysis->service;
+  if (by_one_analysis && run.analysis->published_utc_ns != other.analysis->published_utc_ns) {
+    return run.analysis->published_utc_ns > other.analysis->published_utc_ns;
+  }
+  return run.place > other.place;
 }
 
 void worsen_by_run(const Run& run, bus::Clock::Instant now, Condition& condition) {
@@ -53,6 +70,12 @@ void worsen_by_recorder(const Service& recorder, bus::Clock::Instant now, Condit
   }
 }
 
+void worsen_by_guard(const Service& guard, bus::Clock::Instant now, Condition& condition) {
+  if (guard.health == Health::failed && now - guard.heard <= silence_limit) {
+    condition.worsen(Severity::error, "guard: " + guard.message);
+  }
+}
+
 } // namespace
 
 const char* to_string(BenchState state) {
@@ -79,12 +102,8 @@ const char* to_string(BenchState state) {
 
 const Run* Bench::current_run() const {
   const Run* current = nullptr;
-  const auto rank = [](const Run& run) {
-    const bool is_conducted = !run.is_over() && run.conductor_heard.has_value();
-    return std::make_tuple(is_conducted, run.time_utc_ns(), std::cref(run.name).get());
-  };
   for (const auto& [name_of_run, run] : runs) {
-    if (current == nullptr || rank(*current) < rank(run)) {
+    if (current == nullptr || leads(run, *current)) {
       current = &run;
     }
   }
@@ -103,9 +122,9 @@ const Service* Bench::recorder() const {
 
 bool Bench::is_silent(const Service& service, Instant now) const {
   const auto served = runs.find(service.run);
-  const Run* run = service.is_recorder()  ? current_run()
-                   : served == runs.end() ? nullptr
-                                          : &served->second;
+  const Run* run = service.is_recorder() || service.is_guard() ? current_run()
+                   : served == runs.end()                      ? nullptr
+                                                               : &served->second;
   const bool is_conducted =
       run != nullptr && run->conductor_heard && !run->is_over() && !run->is_left_alone(now);
   return is_conducted && now - service.heard > silence_limit;
@@ -165,6 +184,9 @@ Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
     worsen_by_recorder(*recorder, now, condition);
   }
   for (const auto& [name, service] : bench.services) {
+    if (service.is_guard()) {
+      worsen_by_guard(service, now, condition);
+    }
     if (bench.is_silent(service, now)) {
       condition.worsen(Severity::stale, fmt::format("{} has not been heard for {} s", name,
                                                     seconds_since(service.heard, now)));

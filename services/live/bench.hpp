@@ -15,10 +15,11 @@
 
 namespace dyncal::services::live {
 
-// A program that reports on the bench beside its sources: an analysis, or a recorder.
+// A program that reports on the bench beside its sources: an analysis, a recorder, or the guard of
+// the exciter.
 struct Service {
   std::string name;
-  std::string run; // of its newest report; of a recorder empty
+  std::string run; // of its newest report; of a recorder or guard empty
   Health health = Health::ok;
   std::string message;
   std::string software;
@@ -28,10 +29,12 @@ struct Service {
   std::string recording; // of a recorder, the file it writes
   std::uint64_t messages_stored = 0;
   std::uint64_t messages_not_stored = 0;
+  std::string guarded_generator; // of a guard, its address
   bus::Clock::Instant heard{};
   std::int64_t heard_utc_ns = 0;
 
   [[nodiscard]] bool is_recorder() const { return !recording.empty(); }
+  [[nodiscard]] bool is_guard() const { return !guarded_generator.empty(); }
 };
 
 enum class BenchState { idle, arming, running, paused, done, aborted, silent, gone };
@@ -51,7 +54,7 @@ struct Bench {
   std::uint64_t number = 0; // of the laboratory's state when it changed last
   BenchState state = BenchState::idle;
 
-  // The one that is conducted, else the newest; null: none was heard of.
+  // The one that is conducted, else the one that was first heard of last; null: none was heard of.
   [[nodiscard]] const Run* current_run() const;
   [[nodiscard]] const Service* recorder() const;
   // It should be heard, as the run that it serves is being conducted, and is not.

@@ -74,6 +74,7 @@ Run* Laboratory::run_of(Bench& bench, const std::string& name) {
     }
     found = bench.runs.try_emplace(name).first;
     found->second.name = name;
+    found->second.place = ++runs_heard_;
     results_changed(found->second);
   }
   found->second.heard = clock_.now();
@@ -252,7 +253,7 @@ void Laboratory::take(const wire::ServiceStatus& message) {
     return;
   }
   take_service(*bench, message);
-  if (!message.recording().empty() || message.run().to_string().empty()) {
+  if (message.run().to_string().empty()) { // of a recorder or guard
     return;
   }
   Run* run = run_of(*bench, message.run().to_string());
@@ -286,10 +287,15 @@ void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) 
              .recording = bounded(message.recording()),
              .messages_stored = message.messages_stored(),
              .messages_not_stored = message.messages_not_stored(),
+             .guarded_generator = bounded(message.guarded_generator()),
              .heard = clock_.now(),
              .heard_utc_ns = clock_.utc_now_ns()};
   if (service.is_recorder() && !service.message.empty() && service.message != message_before) {
     note(bench, Severity::error, "recorder: " + service.message);
+  }
+  if (service.is_guard() && !service.message.empty() && service.message != message_before) {
+    note(bench, service.health == Health::failed ? Severity::error : Severity::warning,
+         "guard: " + service.message);
   }
 }
 
@@ -346,11 +352,17 @@ std::optional<ClockOffset> Laboratory::clock_of(const std::string& host) const {
 
 std::optional<ClockOffset> Laboratory::worst_clock(const Bench& bench) const {
   std::optional<ClockOffset> worst;
-  for (const auto& [name, source] : bench.sources) {
-    const auto clock = clock_of(source.host);
+  const auto look_at = [&](const std::string& host) {
+    const auto clock = clock_of(host);
     if (clock && (!worst || std::abs(clock->offset_s) > std::abs(worst->offset_s))) {
       worst = clock;
     }
+  };
+  for (const auto& [name, source] : bench.sources) {
+    look_at(source.host);
+  }
+  for (const auto& [name, service] : bench.services) {
+    look_at(service.host);
   }
   return worst;
 }

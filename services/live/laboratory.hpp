@@ -50,9 +50,11 @@ public:
   // Null: not known.
   [[nodiscard]] const Bench* bench(const std::string& name) const;
   [[nodiscard]] const std::vector<HeardProgram>& programs() const { return programs_; }
+  // One a host that is not ours, in alphabetical order.
+  [[nodiscard]] const std::vector<HostClock>& clocks() const { return clocks_; }
   // Nothing: it is this host, or not known.
   [[nodiscard]] std::optional<ClockOffset> clock_of(const std::string& host) const;
-  // The one that is off most, of the hosts of the bench's sources.
+  // The one that is off most, of the hosts of the bench's sources and services.
   [[nodiscard]] std::optional<ClockOffset> worst_clock(const Bench& bench) const;
   // Of all benches by time, the newest last, at most Limits::events.
   [[nodiscard]] std::vector<Event> events() const;
@@ -83,6 +85,7 @@ private:
   LeftOut left_out_;
   std::uint64_t number_ = 0;
   std::uint64_t results_number_ = 0; // of all runs
+  std::uint64_t runs_heard_ = 0;
 };
 
 } // namespace dyncal::services::live

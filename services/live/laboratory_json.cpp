@@ -272,10 +272,10 @@ Json program_json(const Laboratory& laboratory, const HeardProgram& program, Ins
             {"message", news.message},
             {"last_message_utc_ms", milliseconds(news.heard_utc_ns)},
             {"clock_offset_s", nullptr},
-            {"u_clock_offset_s", nullptr}};
+            {"clock_offset_bound_s", nullptr}};
   if (program.clock) {
     json["clock_offset_s"] = json_number(program.clock->offset_s);
-    json["u_clock_offset_s"] = json_number(program.clock->bound_s);
+    json["clock_offset_bound_s"] = json_number(program.clock->bound_s);
   }
   return json;
 }
@@ -304,7 +304,7 @@ Json bench_tile_json(const Laboratory& laboratory, const Bench& bench) {
             {"worst", condition_json(condition_of(bench, now))},
             {"lost", std::to_string(bench.lost())},
             {"clock_offset_s", nullptr},
-            {"u_clock_offset_s", nullptr},
+            {"clock_offset_bound_s", nullptr},
             {"last_message_utc_ms", milliseconds(bench.heard_utc_ns)},
             {"results", 0},
             {"results_invalid", 0},
@@ -313,7 +313,7 @@ Json bench_tile_json(const Laboratory& laboratory, const Bench& bench) {
             {"last_result", nullptr}};
   if (const auto clock = laboratory.worst_clock(bench)) {
     json["clock_offset_s"] = json_number(clock->offset_s);
-    json["u_clock_offset_s"] = json_number(clock->bound_s);
+    json["clock_offset_bound_s"] = json_number(clock->bound_s);
   }
   if (const Run* run = bench.current_run()) {
     add_run(*run, now, json);

@@ -86,6 +86,7 @@ struct Run {
                                                                            // channel
 
   std::string name;
+  std::uint64_t place = 0; // among all runs, in the order in which they were first heard of
   std::optional<RunState> announced; // by the conductor
   std::string message;               // why it was aborted, or why nothing is excited for now
   std::int64_t planned_utc_ns = 0;   // 0: not known

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/contract_versions.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/recording/recorded_topics.hpp"
@@ -61,6 +62,7 @@ private:
 BenchIntake::BenchIntake(bus::Participant& participant, bus::Clock& clock, std::string bench,
                          std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink)
     : participant_(participant), clock_(clock), bench_(std::move(bench)), only_run_(std::move(run)),
+      reads_results_of_bench_(only_run_.empty()),
       asker_(fmt::format("recorder/{:016x}", services::random_session())),
       wake_up_(std::move(wake_up)), sink_(std::move(sink)) {}
 
@@ -83,18 +85,24 @@ Expected<void> BenchIntake::open_readers() {
   requests_.emplace(std::move(*requests));
   Expected<void> opened;
   for_each_recorded_topic([&]<class T>(const bus::Topic<T>& topic) {
-    if (!opened) {
-      return;
+    if (opened) {
+      opened = open_reader(topic);
     }
-    const auto profile = is_of_source<T> ? bus::Profile::live_samples : topic.profile;
-    auto reader = participant_.reader<T>(topic.name, profile, bench_, wake_up_);
-    if (!reader) {
-      opened = fail(reader.error());
-      return;
-    }
-    readers_.push_back(std::make_unique<ReaderOf<T>>(std::move(*reader), channel_of(topic.name)));
   });
   return opened;
+}
+
+template <class T>
+Expected<void> BenchIntake::open_reader(const bus::Topic<T>& topic) {
+  const auto profile = is_of_source<T> ? bus::Profile::live_samples : topic.profile;
+  auto reader = is_result<T> && !reads_results_of_bench_
+                    ? participant_.reader_of_run(topic, bench_, only_run_, wake_up_)
+                    : participant_.reader<T>(topic.name, profile, bench_, wake_up_);
+  if (!reader) {
+    return fail(reader.error());
+  }
+  readers_.push_back(std::make_unique<ReaderOf<T>>(std::move(*reader), channel_of(topic.name)));
+  return {};
 }
 
 void BenchIntake::take() {
@@ -114,7 +122,8 @@ void BenchIntake::take(const Channel& channel, const T& message) {
     return;
   }
   if constexpr (std::is_same_v<T, wire::Measurement> ||
-                std::is_same_v<T, wire::SourceDescription>) {
+                std::is_same_v<T, wire::SourceDescription> ||
+                std::is_same_v<T, wire::ServiceStatus>) {
     look_at(message);
   }
   if constexpr (is_of_source<T>) {
@@ -197,6 +206,20 @@ void BenchIntake::look_at(const wire::SourceDescription& description) {
       &channel_of(services::sample_topic(services::from_wire(description.kind())));
 }
 
+void BenchIntake::look_at(const wire::ServiceStatus& status) {
+  const bool of_run = status.run() == only_run_;
+  older_analysis_ = older_analysis_ ||
+                    (of_run && status.contract_version() < contract_versions::partitions_of_runs);
+}
+
+// Those of the run have nothing to hear then.
+Expected<void> BenchIntake::read_results_of_bench() {
+  reads_results_of_bench_ = true;
+  Expected<void> opened = open_reader(bus::topics::calibration_result);
+  opened = opened ? open_reader(bus::topics::transfer_function) : opened;
+  return opened ? open_reader(bus::topics::sample_clock_report) : opened;
+}
+
 BenchIntake::Source& BenchIntake::source(const std::string& name) {
   return sources_.try_emplace(name, fmt::format("{} {}", asker_, name)).first->second;
 }
@@ -240,6 +263,11 @@ Expected<void> BenchIntake::open_answer_readers() {
 }
 
 Expected<void> BenchIntake::ask() {
+  if (older_analysis_ && !reads_results_of_bench_) {
+    if (auto opened = read_results_of_bench(); !opened) {
+      return opened;
+    }
+  }
   const Instant now = clock_.now();
   ask_for_beginnings(now);
   for (auto& [name, from] : sources_) {

@@ -1,11 +1,12 @@
 // Everything that is written on one bench's topics, as bytes for a recording, and what its sources
 // are asked for again.
 //
-// What is about another run than the one that is recorded is left out; samples and states of
-// sources belong to every run. A source whose numbers jump, or that answered a run's ARM command
-// before the recorder heard it, is asked for what it has sent (source_gaps.hpp). Readers take at
-// most what a reader holds at once. One thread; no function blocks but for a short write of a
-// request.
+// What is about another run than the one that is recorded is left out, and results of others are
+// not even asked for: an analysis keeps those of some runs, and a slow link would be full of them
+// when a run begins. Samples and states of sources belong to every run. A source whose numbers
+// jump, or that answered a run's ARM command before the recorder heard it, is asked for what it has
+// sent (source_gaps.hpp). Readers take at most what a reader holds at once. One thread; no function
+// blocks but for a short write of a request.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +48,8 @@ public:
 
   // Hands over what has come.
   void take();
-  // Asks sources for what is missing. Fails (network) as readers do.
+  // Asks sources for what is missing, and reads where the analysis writes. Fails (network) as
+  // readers do.
   [[nodiscard]] services::Expected<void> ask();
 
   // By source, as metadata "dyncal.losses" has it.
@@ -89,6 +91,9 @@ private:
               std::shared_ptr<bus::WakeUp> wake_up, Sink sink);
   [[nodiscard]] services::Expected<void> open_readers();
   template <class T>
+  [[nodiscard]] services::Expected<void> open_reader(const bus::Topic<T>& topic);
+  [[nodiscard]] services::Expected<void> read_results_of_bench();
+  template <class T>
   void take(const Channel& channel, const T& message);
   template <class T>
   void take_again(const T& message);
@@ -96,6 +101,7 @@ private:
   void store(const Channel& channel, const T& message);
   void look_at(const wire::Measurement& measurement);
   void look_at(const wire::SourceDescription& description);
+  void look_at(const wire::ServiceStatus& status);
   [[nodiscard]] Source& source(const std::string& name);
   void ask_for_beginnings(Instant now);
   [[nodiscard]] bool beginnings_are_asked_for() const;
@@ -104,7 +110,9 @@ private:
   bus::Participant& participant_;
   bus::Clock& clock_;
   std::string bench_;
-  std::string only_run_; // empty: all
+  std::string only_run_;        // empty: all
+  bool reads_results_of_bench_; // those of all runs
+  bool older_analysis_ = false; // one that writes results for the bench alone evaluates only_run_
   std::string asker_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   Sink sink_;

@@ -54,7 +54,6 @@ private:
       std::is_same_v<T, wire::CalibrationResult>;
 
   struct Session {
-    std::int64_t began_utc_ns = 0;
     std::int64_t min_delay_ns = 0; // from its source's clock to the recorder's
     std::map<std::uint64_t, RecordedPlace> messages;
   };
@@ -131,8 +130,6 @@ private:
     }
     const auto [found, is_new] = source.sessions.try_emplace(message.session());
     Session& session = found->second;
-    session.began_utc_ns = is_new ? message.received_utc_ns()
-                                  : std::min(session.began_utc_ns, message.received_utc_ns());
     const std::int64_t delay_ns =
         static_cast<std::int64_t>(in_file.message.log_time) - message.received_utc_ns();
     session.min_delay_ns = is_new ? delay_ns : std::min(session.min_delay_ns, delay_ns);
@@ -149,9 +146,11 @@ private:
     for (const auto& [session, messages] : source.sessions) {
       one.sessions.push_back(session);
     }
-    std::stable_sort(one.sessions.begin(), one.sessions.end(), [&](auto a, auto b) {
-      return source.sessions.at(a).began_utc_ns < source.sessions.at(b).began_utc_ns;
-    });
+    const auto beginning = [&source](std::uint64_t session) {
+      const RecordedPlace& first = source.sessions.at(session).messages.begin()->second;
+      return std::make_pair(first.chunk, first.position);
+    };
+    std::ranges::sort(one.sessions, {}, beginning);
     for (std::size_t i = 0; i < one.sessions.size(); ++i) {
       const Session& session = source.sessions.at(one.sessions[i]);
       for (auto [number, place] : session.messages) {

@@ -92,12 +92,26 @@ void mark(wire::Measurement& message, const std::string& replay) {
 template <class T>
 void mark(T& /*message*/, const std::string& /*replay*/) {}
 
+// A run would rely on a guard that is not there.
+bool is_left_out(const wire::ServiceStatus& message) {
+  return !message.guarded_generator().empty();
+}
+template <class T>
+bool is_left_out(const T& /*message*/) {
+  return false;
+}
+
+enum class Played {
+  written,
+  not_written, // the network did not take it
+  left_out
+};
+
 class TopicPlayer {
 public:
   virtual ~TopicPlayer() = default;
-  // False: the network did not take it.
-  virtual bool play(std::string_view bytes, const std::string& bench,
-                    const std::string& replay) = 0;
+  virtual Played play(std::string_view bytes, const std::string& bench,
+                      const std::string& replay) = 0;
   virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
 };
 
@@ -105,14 +119,19 @@ template <class T>
 class PlayerOf : public TopicPlayer {
 public:
   explicit PlayerOf(bus::Writer<T> writer) : writer_(std::move(writer)) {}
-  bool play(std::string_view bytes, const std::string& bench, const std::string& replay) override {
+  Played play(std::string_view bytes, const std::string& bench,
+              const std::string& replay) override {
     auto message = recording::decode<T>(bytes);
     if (!message) {
-      return false;
+      return Played::not_written;
+    }
+    if (is_left_out(*message)) {
+      return Played::left_out;
     }
     message->bench(bench);
     mark(*message, replay);
-    return writer_.write(*message) == bus::WriteOutcome::written;
+    return writer_.write(*message) == bus::WriteOutcome::written ? Played::written
+                                                                 : Played::not_written;
   }
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
     return writer_.wait_for_acknowledgments(limit);
@@ -237,9 +256,11 @@ Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
                                       return;
                                     }
                                     pace.wait_for(message.message.log_time, stop);
-                                    const bool written = player->second->play(message.message.data,
-                                                                              wish_.bench, replay);
-                                    ++(written ? figures.written : figures.not_written);
+                                    const Played played = player->second->play(message.message.data,
+                                                                               wish_.bench, replay);
+                                    ++(played == Played::written    ? figures.written
+                                       : played == Played::left_out ? figures.left_out
+                                                                    : figures.not_written);
                                   },
                               .attachment = {},
                               .metadata = {}});

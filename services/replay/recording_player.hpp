@@ -3,8 +3,9 @@
 // What is put back says so: descriptions of sources name the file as their driver, states and runs
 // carry it in their message, the conductor of a run is "replay of FILE". A bench that is live in
 // the domain is refused (no_source): nobody shall take recorded samples for live ones; give another
-// name of the bench, or another domain. Commands and requests are not put back, results and the
-// states of analyses only with `results`; without them an analysis service evaluates the run anew.
+// name of the bench, or another domain. Commands and requests are not put back, nor are the states
+// of guards, which a run would rely on; results and the states of analyses only with `results`:
+// without them an analysis service evaluates the run anew.
 //
 // Samples are written so that readers keep up: with speed 0 as fast as they take them. Fails
 // (bad_file) with what is wrong with the file, (network) as writers do. One thread.
@@ -32,7 +33,7 @@ struct ReplayWish {
 struct ReplayFigures {
   std::uint64_t written = 0;
   std::uint64_t not_written = 0; // the network did not take them
-  std::uint64_t left_out = 0;    // commands, requests, results that are not wanted
+  std::uint64_t left_out = 0;    // commands, requests, guards, results that are not wanted
   recording::ScanReport report;  // of the file
 };
 

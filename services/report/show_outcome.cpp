@@ -93,30 +93,36 @@ Expected<void> show_outcome(const RunOutcome& outcome,
   return {};
 }
 
-std::string output_warning() {
-  return "THE OUTPUT OF THE GENERATOR MAY BE ON: it has not confirmed that it is off; switch it "
-         "off "
-         "by hand. A guard goes on trying for ten minutes";
+std::string output_warning(const RunOutcome& outcome) {
+  return outcome.output_is_guarded
+             ? "THE OUTPUT OF THE GENERATOR MAY BE ON: it has not confirmed that it is off; switch "
+               "it off by hand. A guard goes on trying for ten minutes"
+             : "THE OUTPUT OF THE GENERATOR MAY BE ON: nobody has confirmed that it is off; switch "
+               "it off at the generator";
+}
+
+Expected<void> check_end(const RunOutcome& outcome, const std::string& kept) {
+  const std::string end = outcome.interrupted ? "interrupted" : outcome.problem;
+  if (outcome.output_may_be_on) {
+    return fail(ErrorCode::device, fmt::format("{}{}{}; {}", end, end.empty() ? "" : "; ", kept,
+                                               output_warning(outcome)));
+  }
+  if (outcome.interrupted) {
+    return fail(ErrorCode::interrupted, "interrupted: the excitation is off; " + kept);
+  }
+  if (!outcome.problem.empty()) {
+    return fail(ErrorCode::no_result, fmt::format("{}; {}", outcome.problem, kept));
+  }
+  return {};
 }
 
 Expected<void> check_complete(const RunOutcome& outcome) {
   const std::size_t steps = outcome.planned_steps;
   const std::size_t measured = steps_with_a_result(outcome);
-  if (outcome.output_may_be_on) {
-    return fail(ErrorCode::device,
-                fmt::format("{}; {} of {} steps were measured and kept; {}",
-                            outcome.interrupted ? "interrupted" : outcome.problem, measured, steps,
-                            output_warning()));
-  }
-  if (outcome.interrupted) {
-    return fail(
-        ErrorCode::interrupted,
-        fmt::format("interrupted: the excitation is off; {} of {} steps were measured and kept",
-                    measured, steps));
-  }
-  if (!outcome.problem.empty()) {
-    return fail(ErrorCode::no_result, fmt::format("{}; {} of {} steps were measured and kept",
-                                                  outcome.problem, measured, steps));
+  if (auto ended =
+          check_end(outcome, fmt::format("{} of {} steps were measured and kept", measured, steps));
+      !ended) {
+    return ended;
   }
   if (measured < steps) {
     return fail(ErrorCode::no_result,

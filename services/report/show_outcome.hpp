@@ -27,10 +27,14 @@ namespace dyncal::services {
                                            const std::filesystem::path& path);
 
 // What to say last where RunOutcome::output_may_be_on: what is dangerous, and what to do.
-[[nodiscard]] std::string output_warning();
+[[nodiscard]] std::string output_warning(const RunOutcome& outcome);
 
-// Fails (interrupted, no_result) unless every planned step and every channel under calibration has
-// a valid result, with those that have none; and (device) when the generator's output may be on.
+// Fails when the run has not come to its planned end: device when the generator's output may be on,
+// else interrupted, no_result. `kept` says what has become of its results.
+[[nodiscard]] Expected<void> check_end(const RunOutcome& outcome, const std::string& kept);
+
+// Fails as check_end() does, and (no_result) unless every planned step and every channel under
+// calibration has a valid result, with those that have none.
 [[nodiscard]] Expected<void> check_complete(const RunOutcome& outcome);
 
 } // namespace dyncal::services

@@ -25,6 +25,9 @@ constexpr char farewell = '.';
 // A link that is pulled and put back, an instrument that is switched off and on.
 constexpr std::chrono::minutes try_limit{10};
 constexpr std::chrono::milliseconds pause{500}; // where a connection is refused at once
+// What ends a terminal's programs, a process group or a systemd unit ends the run; its guard is for
+// what comes after that.
+constexpr std::array outlived_signals{SIGTERM, SIGINT, SIGHUP};
 constexpr int quiet_attempts = 5; // the instrument may hold on to the dead program's connection
 
 Error cannot_start(const std::string& why) {
@@ -77,7 +80,14 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
   posix_spawn_file_actions_adddup2(&actions, reading.number(), STDIN_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  // Before the guard ignores them itself.
+  sigset_t outlived;
+  sigemptyset(&outlived);
+  for (const int signal : outlived_signals) {
+    sigaddset(&outlived, signal);
+  }
+  posix_spawnattr_setsigmask(&attributes, &outlived);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
   std::vector<std::string> arguments{(program_folder() / "dyncal").string(), "guard-output",
                                      generator_address};
   std::vector<char*> pointers;
@@ -106,6 +116,9 @@ void OutputGuard::dismiss() {
 int guard_output(const std::string& generator_address, int input) {
   close_range(STDERR_FILENO + 1, ~0U, 0); // sockets of the guarded program, which must end with it
   std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : outlived_signals) {
+    std::signal(signal, SIG_IGN);
+  }
   char byte = 0;
   ssize_t count = 0;
   do {

@@ -5,8 +5,9 @@
 // end only the guarded program holds. When the pipe ends without a farewell the guard connects to
 // the generator and switches its output off, and goes on trying for ten minutes when the generator
 // does not answer; with one it ends and does nothing. It has a session of its own, so that what is
-// sent to the terminal's programs does not reach it. Fails (device) when the guard cannot be
-// started. Belongs to one thread.
+// sent to the terminal's programs does not reach it, and it outlives SIGTERM, SIGINT and SIGHUP:
+// whatever ends the run and all of its processes must not end its guard before the output is known
+// to be off. Fails (device) when the guard cannot be started. Belongs to one thread.
 #pragma once
 
 #include <string>

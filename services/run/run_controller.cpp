@@ -90,7 +90,8 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
     outcome_.problem = collected.error().message;
   }
   if (sequence_ && sequence_->output_may_be_on()) {
-    outcome_.output_may_be_on = !sequence_->switch_off();
+    outcome_.output_may_be_on = !sequence_->switch_off().value_or(false);
+    outcome_.output_is_guarded = bench_.generator.driver == GeneratorDriver::scpi;
   }
   outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
   outcome_.ended_utc_ns = clock_.utc_now_ns();
@@ -154,8 +155,10 @@ RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibr
   add_adc_file(adc_file_of(bench_), measurement);
   measurement.conductor(fmt::format("{}:{}", bus::host_name(), getpid()));
   outcome_ = outcome_of(*recipe);
-  auto watch = RunWatch::open(environment_.participant, clock_, std::move(measurement), wake_up_,
-                              outcome_, show_progress_);
+  const bool is_guarded = bench_.generator.driver == GeneratorDriver::scpi;
+  auto watch = RunWatch::open(environment_.participant, clock_, std::move(measurement),
+                              is_guarded ? bench_.generator.address : "", wake_up_, outcome_,
+                              show_progress_);
   if (!watch) {
     return fail(watch.error());
   }
@@ -302,11 +305,14 @@ void RunController::abort(const std::string& reason) {
 
 Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
   const bool already_stopped = stop.stop_requested();
-  Instant deadline = clock_.now() + results_limit;
+  Instant changed = clock_.now();
+  Instant at_work = changed;
   std::size_t signs_before = watch_->signs_of_work();
+  bool collected_again = false;
   while (!everything_has_come()) {
-    const Instant heard = watch_->analysis_heard();
-    const bool attended = clock_.now() - heard <= attention_limit;
+    const bool has_finished = watch_->analysis()->arm() == wire::ARM_FINISHED;
+    const bool attended =
+        has_finished || clock_.now() - watch_->analysis_heard() <= attention_limit;
     watch_->follow(attended ? "evaluating" : silence_of_analysis());
     if (!already_stopped && stop.stop_requested() &&
         watch_->measurement().state() != wire::MEASUREMENT_ABORTED) {
@@ -322,7 +328,13 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
     const bool may_still_come = is_waited_for || (plays_files() && outlook.kind != Kind::over);
     if (is_at_work || may_still_come) {
       signs_before = watch_->signs_of_work();
-      deadline = clock_.now() + results_limit;
+      changed = clock_.now();
+    }
+    if (is_at_work || (attended && !has_finished)) {
+      at_work = clock_.now();
+    }
+    if (clock_.now() - at_work > missed_limit && !std::exchange(collected_again, true)) {
+      watch_->collect_again();
     }
     if (clock_.now() - watch_->analysis_heard() > analysis_limit) {
       return fail(ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",
@@ -332,7 +344,7 @@ Expected<void> RunController::wait_for_results(const std::stop_token& stop) {
         watch_->analysis()->arm() != wire::ARM_FINISHED) {
       abort(outlook.reason.message);
     }
-    if (clock_.now() > deadline) {
+    if (clock_.now() - changed > results_limit) {
       return fail(ErrorCode::no_result, "the last results have not come from the analysis service");
     }
   }

@@ -43,6 +43,7 @@ public:
   static constexpr std::chrono::seconds armed_limit{36};  // until it has armed or refused the run
   static constexpr std::chrono::seconds analysis_limit = StepSequence::away_limit; // of its silence
   static constexpr std::chrono::seconds results_limit = StepSequence::results_limit;
+  static constexpr std::chrono::seconds missed_limit = StepSequence::missed_limit;
 
   RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
                 ShowProgress show_progress)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/contract/contract_versions.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"
@@ -22,23 +23,50 @@ bool is_over(wire::ExcitationState state) {
 
 Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Clock& clock,
                                         const std::string& bench, std::string run,
+                                        std::string generator,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
   namespace topics = bus::topics;
   auto measurement = participant.writer(topics::measurement, bench);
   auto excitation = participant.writer(topics::excitation, bench);
   auto status = participant.reader(topics::service_status, bench, wake_up);
-  auto results = participant.reader(topics::calibration_result, bench, wake_up);
-  auto transfer = participant.reader(topics::transfer_function, bench, wake_up);
-  auto clocks = participant.reader(topics::sample_clock_report, bench, wake_up);
+  auto published = open_readers(participant, bench, run, wake_up);
   auto sources = participant.reader(topics::source_description, bench, wake_up);
-  if (auto error =
-          first_error(measurement, excitation, status, results, transfer, clocks, sources)) {
+  if (auto error = first_error(measurement, excitation, status, published, sources)) {
     return fail(*error);
   }
-  return RunMessages(clock, bench, std::move(run),
+  return RunMessages(participant, clock, GuardWatch(bench, std::move(generator), clock.now()),
+                     bench, std::move(run), wake_up,
                      Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
-                               std::move(*results), std::move(*transfer), std::move(*clocks),
-                               std::move(*sources)});
+                               std::move(*sources)},
+                     std::move(*published));
+}
+
+Expected<RunMessages::ResultReaders>
+RunMessages::open_readers(bus::Participant& participant, const std::string& bench,
+                          const std::optional<std::string>& run,
+                          const std::shared_ptr<bus::WakeUp>& wake_up) {
+  namespace topics = bus::topics;
+  const auto reader = [&](const auto& topic) {
+    return run ? participant.reader_of_run(topic, bench, *run, wake_up)
+               : participant.reader(topic, bench, wake_up);
+  };
+  auto results = reader(topics::calibration_result);
+  auto transfer = reader(topics::transfer_function);
+  auto clocks = reader(topics::sample_clock_report);
+  if (auto error = first_error(results, transfer, clocks)) {
+    return fail(*error);
+  }
+  return ResultReaders{std::move(*results), std::move(*transfer), std::move(*clocks)};
+}
+
+void RunMessages::collect_again() {
+  const auto run = reads_whole_bench_ ? std::nullopt : std::optional(run_);
+  auto status = participant_->reader(bus::topics::service_status, bench_, wake_up_);
+  auto again = open_readers(*participant_, bench_, run, wake_up_);
+  if (status && again) {
+    endpoints_.status = std::move(*status);
+    published_ = std::move(*again);
+  }
 }
 
 void RunMessages::publish(const wire::Measurement& measurement) {
@@ -93,6 +121,31 @@ namespace {
 bool is_older(const StepResult& result, const StepResult& known) {
   return result.attempt < known.attempt;
 }
+
+// Without channels under calibration all of the recipe's sources are.
+bool has_channel(const Recipe& recipe, const std::string& name) {
+  const std::vector<ChannelName> channels = recipe.channels();
+  const std::vector<std::string> sources = recipe.sources();
+  return std::any_of(channels.begin(), channels.end(),
+                     [&](const ChannelName& channel) { return channel.text() == name; }) ||
+         (recipe.dut().empty() &&
+          std::any_of(sources.begin(), sources.end(),
+                      [&](const std::string& source) { return name.starts_with(source + "/"); }));
+}
+bool is_planned(const StepResult& result, const Recipe& recipe) {
+  return has_channel(recipe, result.channel) &&
+         std::any_of(recipe.steps.begin(), recipe.steps.end(), [&](const RecipeStep& step) {
+           return step.step == result.step && step.repetition == result.repetition;
+         });
+}
+bool is_planned(const TransferFunction& function, const Recipe& recipe) {
+  return has_channel(recipe, function.channel);
+}
+bool is_planned(const ClockReport& report, const Recipe& recipe) {
+  const std::vector<std::string> sources = recipe.sources();
+  return std::find(sources.begin(), sources.end(), report.source) != sources.end();
+}
+
 bool is_of_other_recipe(const wire::CalibrationResult& result, const std::string& sha256) {
   return !result.recipe_sha256().empty() && result.recipe_sha256() != sha256;
 }
@@ -110,15 +163,19 @@ bool is_older(const Result& /*result*/, const Result& /*known*/) {
 
 template <class Message, class Result, class SameKey>
 std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
-                                     SameKey same_key) {
+                                     const std::optional<Recipe>& planned, SameKey same_key) {
   std::size_t taken = 0;
   reader.take([&](const Message& message) {
     if (message.run().to_string() != run_) {
       return;
     }
-    ++taken;
     other_recipe_ = other_recipe_ || is_of_other_recipe(message, recipe_sha256_);
     Result result = from_message(message);
+    if (planned && !is_planned(result, *planned)) {
+      ++unplanned_;
+      return;
+    }
+    ++taken;
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const Result& other) { return same_key(other, result); });
     if (known == all.end()) {
@@ -153,24 +210,27 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 std::size_t RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
   recipe_sha256_ = outcome.recipe_sha256;
-  const std::size_t results =
-      take_newest(endpoints_.results, outcome.results, [](const auto& a, const auto& b) {
+  const std::size_t results = take_newest(
+      published_.results, outcome.results, outcome.recipe, [](const auto& a, const auto& b) {
         return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
       });
   signs_of_work_ += results;
   const std::size_t functions =
-      take_newest(endpoints_.transfer_functions, outcome.transfer_functions,
+      take_newest(published_.transfer_functions, outcome.transfer_functions, outcome.recipe,
                   [](const auto& a, const auto& b) { return a.channel == b.channel; });
   const std::size_t reports =
-      take_newest(endpoints_.clock_reports, outcome.clock_reports,
+      take_newest(published_.clock_reports, outcome.clock_reports, outcome.recipe,
                   [](const auto& a, const auto& b) { return a.source == b.source; });
   take_status(outcome);
   return results + functions + reports;
 }
 
 void RunMessages::take_status(RunOutcome& outcome) {
+  bool is_of_older_contract = false;
   endpoints_.status.take([&](const wire::ServiceStatus& status) {
+    guard_.take(status, clock_->now());
     if (status.run().to_string() == run_ && follows(status)) {
+      is_of_older_contract = status.contract_version() < contract_versions::partitions_of_runs;
       const bool reports_work = !status.message().empty() && status.health() != wire::HEALTH_FAILED;
       const bool is_news = !analysis_ || analysis_->message() != status.message();
       signs_of_work_ += reports_work && is_news ? 1 : 0;
@@ -181,6 +241,10 @@ void RunMessages::take_status(RunOutcome& outcome) {
       outcome.analysis_host = status.host();
     }
   });
+  if (is_of_older_contract && !reads_whole_bench_) {
+    reads_whole_bench_ = true;
+    collect_again();
+  }
 }
 
 bool RunMessages::follows(const wire::ServiceStatus& status) const {

@@ -3,7 +3,10 @@
 //
 // Of everything that comes the newest of every key is kept, but no result of an earlier attempt at
 // its step (an analysis that was restarted publishes them all again); messages of other runs on the
-// bench are left out. Belongs to one thread.
+// bench are left out, and results of them not even asked for: an analysis keeps those of some runs,
+// and a slow link would be full of them when a run begins. So are results of steps, channels and
+// sources that the recipe does not have, which are counted: what is kept is no more than was
+// planned. Belongs to one thread.
 #pragma once
 
 #include <chrono>
@@ -19,14 +22,17 @@
 #include "services/bus/clock.hpp"
 #include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/run/guard_watch.hpp"
 
 namespace dyncal::services {
 
 class RunMessages {
 public:
-  // `clock` outlives the object. Fails (network) as writers and readers do.
+  // `generator`: the address that the run drives, as GuardWatch wants it. `participant` and `clock`
+  // outlive the object. Fails (network) as writers and readers do.
   [[nodiscard]] static Expected<RunMessages> open(bus::Participant& participant, bus::Clock& clock,
                                                   const std::string& bench, std::string run,
+                                                  std::string generator,
                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
   void publish(const wire::Measurement& measurement);
@@ -44,45 +50,73 @@ public:
   // Takes what has come, results and the descriptions of the recipe's sources into `outcome`.
   // Returns how many results have come, transfer functions and reports of clocks among them.
   std::size_t take(RunOutcome& outcome);
+  // Results and the last status of the analysis come once more, to readers that are opened anew.
+  // For what a reader cannot get otherwise: DDS delivers a message to it once, and a packet that
+  // was changed on the way may have taken its place. The readers stay when none can be opened.
+  void collect_again();
   // How many results have come, those that came again too, and how often the analysis has reported
   // something new of its work.
   [[nodiscard]] std::size_t signs_of_work() const { return signs_of_work_; }
   [[nodiscard]] bool has_other_recipe() const { return other_recipe_; }
+  // Results of this run that it did not plan.
+  [[nodiscard]] std::size_t unplanned() const { return unplanned_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
   [[nodiscard]] bus::Clock::Instant analysis_heard() const { return analysis_heard_; }
 
+  // What is to be told of who guards the exciter.
+  [[nodiscard]] std::optional<std::string> notice_of_guard() {
+    return guard_.notice(clock_->now());
+  }
+
 private:
+  struct ResultReaders {
+    bus::Reader<wire::CalibrationResult> results;
+    bus::Reader<wire::TransferFunction> transfer_functions;
+    bus::Reader<wire::SampleClockReport> clock_reports;
+  };
   struct Endpoints {
     bus::Writer<wire::Measurement> measurement;
     bus::Writer<wire::Excitation> excitation;
     bus::Reader<wire::ServiceStatus> status;
-    bus::Reader<wire::CalibrationResult> results;
-    bus::Reader<wire::TransferFunction> transfer_functions;
-    bus::Reader<wire::SampleClockReport> clock_reports;
     bus::Reader<wire::SourceDescription> sources;
   };
 
-  RunMessages(bus::Clock& clock, std::string bench, std::string run, Endpoints endpoints)
-      : clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
-        endpoints_(std::move(endpoints)) {}
+  RunMessages(bus::Participant& participant, bus::Clock& clock, GuardWatch guard, std::string bench,
+              std::string run, std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints,
+              ResultReaders published)
+      : participant_(&participant), clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
+        guard_(std::move(guard)), wake_up_(std::move(wake_up)), endpoints_(std::move(endpoints)),
+        published_(std::move(published)) {}
+  // Without a run: of all of the bench.
+  static Expected<ResultReaders> open_readers(bus::Participant& participant,
+                                              const std::string& bench,
+                                              const std::optional<std::string>& run,
+                                              const std::shared_ptr<bus::WakeUp>& wake_up);
   void take_sources(RunOutcome& outcome);
   void take_status(RunOutcome& outcome);
   [[nodiscard]] bool follows(const wire::ServiceStatus& status) const;
   template <class Message, class Result, class SameKey>
   std::size_t take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
+                          const std::optional<Recipe>& planned,
                           SameKey same_key); // how many came
 
+  bus::Participant* participant_;
   bus::Clock* clock_;
   std::string bench_;
   std::string run_;
+  GuardWatch guard_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
   Endpoints endpoints_;
+  ResultReaders published_;
+  bool reads_whole_bench_ = false; // because of an analysis of an older contract
   std::optional<wire::ServiceStatus> analysis_;
   bus::Clock::Instant analysis_heard_;
   std::size_t signs_of_work_ = 0;
   std::string recipe_sha256_;
-  bool other_recipe_ = false;   // in a result of this run
+  bool other_recipe_ = false; // in a result of this run
+  std::size_t unplanned_ = 0;
   wire::Excitation excitation_; // as announced last
   bus::Clock::Instant announced_{};
 };

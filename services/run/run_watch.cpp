@@ -14,11 +14,12 @@ constexpr auto look_interval = 200ms;
 
 Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant, bus::Clock& clock,
                                                    wire::Measurement measurement,
+                                                   std::string generator,
                                                    const std::shared_ptr<bus::WakeUp>& wake_up,
                                                    RunOutcome& outcome, ShowProgress show) {
   const std::string bench = measurement.bench().to_string();
   const std::string run = measurement.run().to_string();
-  auto messages = RunMessages::open(participant, clock, bench, run, wake_up);
+  auto messages = RunMessages::open(participant, clock, bench, run, std::move(generator), wake_up);
   auto commands = RunCommands::open(participant, clock, bench, run, wake_up);
   if (auto error = first_error(messages, commands)) {
     return fail(*error);
@@ -38,6 +39,10 @@ RunWatch::RunWatch(bus::Clock& clock, wire::Measurement measurement,
 void RunWatch::set_state(wire::MeasurementState state, const std::string& message) {
   measurement_.state(state);
   measurement_.message(message);
+  const bool is_armed = analysis() && analysis()->arm() == wire::ARM_ARMED;
+  if (is_armed && measurement_.analysis_software().empty()) {
+    measurement_.analysis_software(analysis()->software());
+  }
   messages_.publish(measurement_);
   measurement_published_ = clock_.now();
 }
@@ -45,6 +50,15 @@ void RunWatch::set_state(wire::MeasurementState state, const std::string& messag
 void RunWatch::look() {
   if (messages_.take(outcome_) > 0 && new_results_) {
     new_results_(outcome_);
+  }
+  if (messages_.unplanned() > 0 && !std::exchange(unplanned_said_, true)) {
+    notice("results of this run came that it did not plan; they are left out: does another program "
+           "publish as the analysis of this run?");
+  }
+  if (measurement_.state() == wire::MEASUREMENT_RUNNING) {
+    if (const auto sentence = messages_.notice_of_guard()) {
+      notice(*sentence);
+    }
   }
   commands_.take();
   messages_.repeat_announcement();

@@ -37,10 +37,13 @@ class RunWatch {
 public:
   using Instant = bus::Clock::Instant;
 
-  // `outcome` and `clock` outlive the object. Fails (network) as writers and readers do.
+  // `generator`: the address that the run drives, empty where it drives none that could be
+  // switched off over the network. `outcome` and `clock` outlive the object. Fails (network) as
+  // writers and readers do.
   [[nodiscard]] static Expected<std::unique_ptr<RunWatch>>
   open(bus::Participant& participant, bus::Clock& clock, wire::Measurement measurement,
-       const std::shared_ptr<bus::WakeUp>& wake_up, RunOutcome& outcome, ShowProgress show);
+       std::string generator, const std::shared_ptr<bus::WakeUp>& wake_up, RunOutcome& outcome,
+       ShowProgress show);
 
   [[nodiscard]] const wire::Measurement& measurement() const { return measurement_; }
   void set_state(wire::MeasurementState state, const std::string& message = "");
@@ -57,6 +60,9 @@ public:
   void on_new_results(std::function<void(const RunOutcome&)> take) {
     new_results_ = std::move(take);
   }
+
+  // What the analysis has published comes once more, for some of it may have been missed.
+  void collect_again() { messages_.collect_again(); }
 
   // Takes what has come, and repeats the Measurement when it is due.
   void look();
@@ -100,6 +106,7 @@ private:
   std::size_t place_ = 0;
   std::uint32_t attempt_ = 1;
   Instant first_step_began_;
+  bool unplanned_said_ = false;
 };
 
 } // namespace dyncal::services

@@ -115,24 +115,33 @@ void StepExcitation::end() {
 
 Error StepExcitation::reported(const drivers::Error& error) {
   using drivers::ErrorCode;
-  generator_away_ = generator_away_ ||
-                    (bench_.generator.driver == GeneratorDriver::scpi &&
-                     (error.code == ErrorCode::timeout || error.code == ErrorCode::disconnected ||
-                      error.code == ErrorCode::malformed));
-  return device_error(error);
+  if (bench_.generator.driver != GeneratorDriver::scpi) {
+    return device_error(error);
+  }
+  generator_away_ = generator_away_ || error.code == ErrorCode::timeout ||
+                    error.code == ErrorCode::disconnected || error.code == ErrorCode::malformed;
+  return generator_away_ ? device_error(error) : fault_of_step(error.message);
+}
+
+Error StepExcitation::fault_of_step(const std::string& what) {
+  fault_may_pass_ = true;
+  return of_step(step_, ErrorCode::device, what);
 }
 
 Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32_t attempt,
                                       const std::stop_token& stop) {
+  step_ = step;
   attempt_ = attempt;
   stop_ = stop;
   generator_away_ = false;
+  fault_may_pass_ = false;
   auto excited = hold_step(step, stop);
   if (const auto off = switch_off(); !off && excited && !stop.stop_requested()) {
     excited = fail(off.error());
   }
   if (excited && !stop.stop_requested()) {
-    excited = wait_for_effect(stop);
+    excited = wait_for_effect(stop).map(
+        [&](bool in_effect) { output_may_be_on_ = output_may_be_on_ && !in_effect; });
   }
   if (!excited || stop.stop_requested()) {
     announce(step, wire::EXCITATION_ABORTED);
@@ -148,19 +157,21 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32
 
 StepExcitation::~StepExcitation() {
   // Otherwise the guard tries from now on, for longer than anybody would wait here.
-  const bool off = !output_may_be_on_ || (!connection_->guard && switch_off());
+  const bool off = !output_may_be_on_ || (!connection_->guard && switch_off().value_or(false));
   if (off && connection_ && connection_->guard) {
     connection_->guard->dismiss();
   }
 }
 
-Expected<void> StepExcitation::switch_off() {
-  if (const auto off = generator().set_output(false); !off) {
+Expected<bool> StepExcitation::switch_off() {
+  const auto off =
+      generator().set_output(false).and_then([&] { return generator().wait_for_effect(0ms); });
+  if (!off) {
     generator_away_ = bench_.generator.driver == GeneratorDriver::scpi;
     return fail(reported(off.error()));
   }
-  output_may_be_on_ = false;
-  return {};
+  output_may_be_on_ = output_may_be_on_ && !*off;
+  return *off;
 }
 
 Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
@@ -227,13 +238,15 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   }
   double changed_s = *began;
   for (;;) {
-    const auto level = measure_level(step, changed_s, *began + step.settling_s(), stop);
+    const auto level = measure_level(changed_s, *began + step.settling_s(), stop);
     if (!level || !*level) {
       return level.map([&](std::optional<double>) { return *began; });
     }
     const auto reached = loop->take(**level);
     if (!reached) {
-      return fail(of_step(step, ErrorCode::device, reached.error().message));
+      const bool passes_limit = reached.error().code == drivers::ErrorCode::invalid_setting;
+      return fail(passes_limit ? of_step(step, ErrorCode::device, reached.error().message)
+                               : fault_of_step(reached.error().message));
     }
     known_responses_[step.frequency_text_hz()] = loop->level_per_volt();
     if (*reached) {
@@ -250,8 +263,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
 }
 
 // Nothing if a stop was requested.
-Expected<std::optional<double>> StepExcitation::measure_level(const wire::PlannedStep& step,
-                                                              double changed_s, double deadline_s,
+Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
   hooks_.show("setting the level");
   if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
@@ -264,17 +276,15 @@ Expected<std::optional<double>> StepExcitation::measure_level(const wire::Planne
     }
     meter_->take(*now);
     const auto level =
-        meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step),
+        meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step_),
                             0.5 * *bench_.generator.level_tolerance_rel);
     if (level) {
       return level;
     }
     if (*now > deadline_s) {
-      return fail(of_step(
-          step, ErrorCode::device,
-          fmt::format(
-              "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
-              bench_.method.reference.text(), *now - changed_s)));
+      return fail(fault_of_step(fmt::format(
+          "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
+          bench_.method.reference.text(), *now - changed_s)));
     }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
     if (const auto alive = hooks_.keep_alive(); !alive) {
@@ -301,20 +311,20 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
   return {};
 }
 
-Expected<void> StepExcitation::wait_for_effect(const std::stop_token& stop) {
+Expected<bool> StepExcitation::wait_for_effect(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const auto in_effect = generator().wait_for_effect(confirmation_slice);
     if (!in_effect) {
       return fail(reported(in_effect.error()));
     }
     if (*in_effect) {
-      return {};
+      return true;
     }
-    if (auto alive = hooks_.keep_alive(); !alive) {
-      return alive;
+    if (const auto alive = hooks_.keep_alive(); !alive) {
+      return fail(alive.error());
     }
   }
-  return {};
+  return false;
 }
 
 Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_token& stop) {

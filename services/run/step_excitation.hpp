@@ -10,10 +10,10 @@
 // (services/run/level_settling.hpp).
 //
 // The output is off whenever excite() has returned, unless output_may_be_on(): then the generator
-// has not confirmed it, and switch_off() tries again. A guard switches it off when the program is
-// killed, and goes on trying when the object is destroyed before it is known to be off. Fails:
-// bad_argument (a level above a limit, before anything is excited), device (generator, exciter),
-// and as `keep_alive` does. A requested stop is not a failure. Belongs to one thread.
+// or its operator has not confirmed it, and switch_off() tries again. A guard switches it off when
+// the program is killed, and goes on trying when the object is destroyed before it is known to be
+// off. Fails: bad_argument (a level above a limit, before anything is excited), device (generator,
+// exciter), and as `keep_alive` does. A requested stop is not a failure. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -77,8 +77,13 @@ public:
   // The generator did not answer in the last step, or not as it should: a link that is down, an
   // instrument that was switched off. Never of one that is set by hand.
   [[nodiscard]] bool generator_is_away() const { return generator_away_; }
-  // Connects anew where the connection is lost.
-  [[nodiscard]] Expected<void> switch_off();
+  // What failed in the last step was a matter of that step: a setting that the generator refused, a
+  // level that was not reached. Another attempt may be without it. Never so where a limit of the
+  // level would be passed or was, or a person sets the generator.
+  [[nodiscard]] bool fault_may_pass() const { return fault_may_pass_; }
+  // Connects anew where the connection is lost. Returns whether the output is known to be off: one
+  // that is set by hand, not before the operator has confirmed.
+  [[nodiscard]] Expected<bool> switch_off();
 
 private:
   StepExcitation(const RunEnvironment& environment, const BenchFile& bench, std::string run,
@@ -90,16 +95,18 @@ private:
   void announce(const wire::PlannedStep& step, wire::ExcitationState state) {
     hooks_.announce(step, attempt_, state);
   }
-  // What the generator reports; notes whether it is away.
+  // What the generator reports; notes whether it is away, or has a fault that may pass.
   Error reported(const drivers::Error& error);
+  Error fault_of_step(const std::string& what);
   Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
                              const std::stop_token& stop);
   Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
-  Expected<std::optional<double>> measure_level(const wire::PlannedStep& step, double changed_s,
-                                                double deadline_s, const std::stop_token& stop);
+  Expected<std::optional<double>> measure_level(double changed_s, double deadline_s,
+                                                const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
-  Expected<void> wait_for_effect(const std::stop_token& stop);
+  // Returns false if a stop was requested.
+  Expected<bool> wait_for_effect(const std::stop_token& stop);
   // Returns false if a stop was requested.
   Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
   [[nodiscard]] drivers::generator::Generator& generator() { return *connection_->generator; }
@@ -115,6 +122,8 @@ private:
   std::optional<GeneratorConnection> connection_; // from open() on
   bool output_may_be_on_ = false;
   bool generator_away_ = false;
+  bool fault_may_pass_ = false;
+  wire::PlannedStep step_;                        // that is, or was last, excited
   std::uint32_t attempt_ = 1;                     // of the step that is excited
   std::stop_token stop_;                          // likewise
   std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end

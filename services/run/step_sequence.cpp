@@ -81,7 +81,21 @@ Expected<void> StepSequence::excite_all(const std::stop_token& stop) {
     }
   }
   excitation_->end();
-  return excited.and_then([&] { return repeat_steps(stop); });
+  return excited.and_then([&] { return repeat_steps(stop); }).and_then([&] {
+    return stop.stop_requested() ? Expected<void>{} : check_faults();
+  });
+}
+
+Expected<void> StepSequence::check_faults() const {
+  if (faults_.empty()) {
+    return {};
+  }
+  const auto& [step, fault] = *faults_.begin();
+  const std::size_t others = faults_.size() - 1;
+  return fail(
+      fault.code,
+      fmt::format("{} (attempts: {}){}", fault.message, repeats_.attempts_of(step),
+                  others == 0 ? "" : fmt::format("; steps that failed as well: {}", others)));
 }
 
 Expected<void> StepSequence::repeat_steps(const std::stop_token& stop) {
@@ -126,15 +140,23 @@ Expected<void> StepSequence::excite(std::size_t place, const std::stop_token& st
   const std::uint32_t attempt = repeats_.begin(step.step());
   watch_.show_step(place + 1, attempt);
   interrupted_by_.reset();
+  faults_.erase(step.step());
   auto excited = excitation_->excite(step, attempt, stop);
+  bool fault = false;
   if (announced_ != wire::EXCITATION_DONE) {
     repeats_.broken_off(step.step());
     broken_off_ = step.step();
+    fault = !excited && excitation_->fault_may_pass();
+  }
+  if (fault) {
+    faults_.insert_or_assign(step.step(), excited.error());
+    watch_.notice(excited.error().message + "; the step is broken off, the run goes on");
   }
   if (!excited && excitation_->generator_is_away()) {
-    generator_away_ = excited.error();
+    by_generator_ = RunOutlook{Kind::waits, excited.error()};
   }
-  const bool goes_on = generator_away_ || (interrupted_by_ && interrupted_by_->kind != Kind::over);
+  const bool goes_on =
+      fault || by_generator_ || (interrupted_by_ && interrupted_by_->kind != Kind::over);
   return goes_on ? Expected<void>{} : excited; // the next step waits until all is well
 }
 
@@ -154,10 +176,14 @@ Expected<void> StepSequence::keep_alive() {
 
 RunOutlook StepSequence::outlook() const {
   RunOutlook by_others = watch_.outlook();
-  if (by_others.kind == Kind::over || !generator_away_) {
-    return by_others;
+  if (by_others.kind != Kind::over && by_generator_) {
+    return *by_generator_;
   }
-  return {Kind::waits, *generator_away_};
+  if (by_others.kind == Kind::well && excitation_->output_may_be_on()) {
+    return {Kind::paused,
+            {ErrorCode::device, "the operator has to confirm that the output is off"}};
+  }
+  return by_others;
 }
 
 std::string StepSequence::waiting_phase(const RunOutlook& outlook) const {
@@ -231,15 +257,19 @@ Expected<void> StepSequence::wait_for_broken_off(const std::stop_token& stop) {
   return excitation_->begin();
 }
 
-// Connecting anew switches the output off.
+// Connecting anew switches the output off; where a person does it, asks whether that is done.
 void StepSequence::try_generator() {
   const Instant now = watch_.clock().now();
-  if (!generator_away_ || now - generator_tried_ < generator_interval) {
+  if ((!by_generator_ && !excitation_->output_may_be_on()) ||
+      now - generator_tried_ < generator_interval) {
     return;
   }
-  if (const auto off = excitation_->switch_off(); off) {
-    generator_away_.reset();
+  const auto off = excitation_->switch_off();
+  if (off.value_or(false)) {
+    by_generator_.reset();
     watch_.confirm_off();
+  } else if (!off && !excitation_->generator_is_away()) {
+    by_generator_ = RunOutlook{Kind::over, off.error()};
   }
   generator_tried_ = watch_.clock().now();
 }
@@ -254,6 +284,7 @@ void StepSequence::go_on(Instant since) {
 Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
   Instant changed = watch_.clock().now();
   std::size_t signs_before = watch_.signs_of_work();
+  bool collected_again = false;
   while (!stop.stop_requested()) {
     watch_.follow("evaluating");
     for (const std::uint32_t step : watch_.commands().take_repeats()) {
@@ -277,6 +308,9 @@ Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
     const auto quiet = watch_.clock().now() - changed;
     if (quiet > last_result_quiet && repeats_.are_evaluated(watch_.outcome().results)) {
       return true;
+    }
+    if (quiet > missed_limit && !std::exchange(collected_again, true)) {
+      watch_.collect_again();
     }
     if (quiet > results_limit) {
       return false;

@@ -1,11 +1,17 @@
 // Excites all steps of a run, waits out what disturbs it, and repeats what was spoilt.
 //
 // No step is begun unless the analysis attends to the run, its sources are there, nobody has paused
-// it, and the generator answers with its output off. When one of these fails in a step, the output
+// it, and the generator answers with its output off (one that is set by hand: its operator has
+// confirmed that it is off). When one of these fails in a step, the output
 // is switched off and the step is broken off; once all is well again the run goes on with the next.
 // What neither comes back within `away_limit` nor reports that it is at work ends the run;
 // run_outlook.hpp decides what is waited for at all. Pauses are said at once and kept in the
 // outcome.
+//
+// A fault of a device in one step (a setting that the generator refuses, a level that is not
+// reached) breaks off that step alone: the run goes on with the others. A step that still fails
+// after its last attempt ends the run with its results and is named. A level above its maximum ends
+// the run at once.
 //
 // The next step begins only when the result of one that was broken off has come, or none comes: a
 // step of the same frequency could be taken for it.
@@ -20,6 +26,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -35,6 +42,7 @@ public:
   static constexpr std::chrono::seconds away_limit{
       120}; // for the analysis, a source, the generator
   static constexpr std::chrono::seconds results_limit{25}; // from the last result to the next
+  static constexpr std::chrono::seconds missed_limit{8}; // then those that are there come once more
 
   // Connects the generator, its output off. `watch` and what `environment` names outlive the
   // object.
@@ -48,7 +56,7 @@ public:
   [[nodiscard]] Expected<void> excite_all(const std::stop_token& stop);
 
   [[nodiscard]] bool output_may_be_on() const { return excitation_->output_may_be_on(); }
-  [[nodiscard]] Expected<void> switch_off() { return excitation_->switch_off(); }
+  [[nodiscard]] Expected<bool> switch_off() { return excitation_->switch_off(); }
 
 private:
   using Instant = bus::Clock::Instant;
@@ -65,15 +73,18 @@ private:
   [[nodiscard]] std::string waiting_phase(const RunOutlook& outlook) const;
   void try_generator();
   void go_on(Instant since); // after a pause
+  // Fails when there are steps whose last attempt had a fault.
+  [[nodiscard]] Expected<void> check_faults() const;
   [[nodiscard]] std::size_t place_of(std::uint32_t step) const;
 
   RunWatch& watch_;
   StepRepeats repeats_;
   std::unique_ptr<StepExcitation> excitation_;
   std::optional<RunOutlook> interrupted_by_; // the step that is, or was last, excited
-  std::optional<Error> generator_away_;
+  std::optional<RunOutlook> by_generator_;   // nothing: it answers
   Instant generator_tried_;
   wire::ExcitationState announced_ = wire::EXCITATION_DONE; // of the step that was excited last
+  std::map<std::uint32_t, Error> faults_;   // of a device, in the last attempt at a step
   std::optional<std::uint32_t> broken_off_; // and whose result has not been waited for
 };
 

@@ -51,6 +51,8 @@ public:
 
   explicit KeptBlocks(KeptLimits limits);
 
+  [[nodiscard]] const KeptLimits& limits() const { return limits_; }
+
   // The next message of the source. The oldest one in memory is dropped, and counted, when the file
   // is so far behind that memory has reached its bound.
   void keep(KeptMessage message, Instant now);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "drivers/utc_clock.hpp"
 #include "services/contract/topics.hpp"
+#include "services/source/kept_span.hpp"
 
 namespace dyncal::services {
 
@@ -77,6 +80,7 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
   if (auto changed = publisher_->take_changed_description()) {
     description_ = std::move(changed);
     description_due_ = true;
+    say_what_can_be_kept();
   }
   if (!description_due_) {
     return true;
@@ -88,6 +92,20 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
   }
   description_due_ = false;
   return true;
+}
+
+void SourceChannel::say_what_can_be_kept() {
+  const SourceOptions& options = publisher_->options();
+  const auto span = kept_span(options.kind, *description_, kept_->limits());
+  if (!span || span->sentence == said_of_kept_) {
+    return;
+  }
+  said_of_kept_ = span->sentence;
+  if (span->is_short) {
+    publisher_->warn(span->sentence);
+  } else {
+    spdlog::info("{}/{}: {}", options.bench, options.source, span->sentence);
+  }
 }
 
 void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {

@@ -76,6 +76,7 @@ private:
   void begin_session(std::uint64_t session);
   void write_status(Clock::time_point now, std::chrono::nanoseconds limit);
   void add_what_is_kept(dyncal::wire::SourceStatus& message);
+  void say_what_can_be_kept();
   [[nodiscard]] bool may_write();
   [[nodiscard]] dyncal::wire::SourceState state(const SourcePublisher::Snapshot& snapshot,
                                                 Clock::time_point now) const;
@@ -87,6 +88,7 @@ private:
   SourceWriters writers_;
   WritePace pace_;
   bool warned_of_kept_ = false;
+  std::string said_of_kept_; // the newest sentence
 
   std::optional<drivers::SourceDescription> description_;
   bool description_due_ = false;

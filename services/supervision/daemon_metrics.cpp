@@ -46,6 +46,15 @@ constexpr MetricFamily evaluation{"dyncal_analysis_evaluation_seconds_total",
                                   "Time that the main loop of the analysis has spent with runs.",
                                   counter};
 
+constexpr MetricFamily held{"dyncal_analysis_held",
+                            "What the analysis keeps of the network beside its runs, by what it "
+                            "is.",
+                            gauge};
+constexpr MetricFamily left_out{"dyncal_analysis_left_out_total",
+                                "What had no room, or was dropped for something newer, by what "
+                                "it is.",
+                                counter};
+
 constexpr MetricFamily stored{"dyncal_recorder_messages_stored_total",
                               "Messages that are in the recordings.", counter};
 constexpr MetricFamily not_stored{"dyncal_recorder_messages_not_stored_total",
@@ -151,6 +160,12 @@ void report(const AnalysisFigures& figures, MetricStore& store) {
   store.set(runs, {{"state", "refused"}}, number(figures.runs_refused));
   store.set(runs, {{"state", "finished"}}, number(figures.runs_finished));
   store.set(evaluation, {}, figures.evaluation_s);
+  store.set(held, {{"what", "benches"}}, number(figures.benches));
+  store.set(held, {{"what", "sources"}}, number(figures.sources));
+  store.set(held, {{"what", "runs_of_others"}}, number(figures.runs_of_others));
+  for (const auto& [what, count] : figures.left_out) {
+    store.set(left_out, {{"what", what}}, number(count));
+  }
   report_malformed_messages(figures.malformed_messages, store);
   report_refused_packets(figures.refused_packets, store);
 }

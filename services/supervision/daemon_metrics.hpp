@@ -23,6 +23,10 @@ struct AnalysisFigures {
   std::uint64_t runs_refused = 0; // of those that are kept
   std::uint64_t runs_finished = 0;
   double evaluation_s = 0.0; // that its loop has spent with runs
+  std::uint64_t benches = 0; // that it knows
+  std::uint64_t sources = 0;
+  std::uint64_t runs_of_others = 0;                            // that it follows
+  std::vector<std::pair<std::string, std::uint64_t>> left_out; // had no room, by what it was
   std::uint64_t malformed_messages = 0;
   std::uint64_t refused_packets = 0;
 };

@@ -88,7 +88,7 @@ CanCalibration::CanCalibration(const std::string& test, const Bus& bus)
       {"--preset", "mpu9250-ptb"},
       {"--can", "vcan0"},
       {"--can-bus", bus.name},
-      {"--can-load", "0.15"},
+      {"--can-load", "0.05"},
       {"--acs-rate", "5000"},
       {"--frequencies", "10,40,104"},
       {"--levels", "10,30,100"},

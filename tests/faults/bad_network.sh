@@ -3,12 +3,15 @@
 # otherwise the test ends with 77 (skipped) and one line. Nothing is left behind.
 #
 #   make_hosts SUBJECT NAME...    SUBJECT: what is not tested when it is skipped
-#   disturb LOSS_PERCENT          each host loses so many of the UDP packets that come to it; unless
-#                                 it is 0, 3 % come twice and 5 % later than those behind them
+#   disturb LOSS_PERCENT [LOST]   each host loses so many of the packets that come to it, those of
+#                                 UDP or of the protocols LOST ("udp, tcp"); unless it is 0, 3 %
+#                                 come twice and 5 % later than those behind them
 #   limit MBIT_PER_S              each host's link, both ways; 0: unlimited
 #   on HOST COMMAND...            a command there (in a subshell, it becomes the command)
 #
-# Sets $folder, removed at the end, and the associative array address.
+# Sets $folder, removed at the end, and the associative array address. disturb and limit also serve
+# who has made hosts otherwise (hosts.py), and has set hosts, address and prefix, with which the
+# names of their namespaces begin.
 skip() {
   echo "SKIPPED: $subject is not tested: $1"
   exit 77
@@ -16,17 +19,18 @@ skip() {
 
 remove_hosts() {
   for host in "${hosts[@]}" switch; do
-    ip netns pids "bad-$$-$host" 2>/dev/null | xargs -r kill -9 2>/dev/null || true
-    ip netns delete "bad-$$-$host" 2>/dev/null || true
+    ip netns pids "$prefix-$host" 2>/dev/null | xargs -r kill -9 2>/dev/null || true
+    ip netns delete "$prefix-$host" 2>/dev/null || true
   done
   rm -rf "$folder"
 }
 
-on() { exec ip netns exec "bad-$$-$1" "${@:2}"; }
-run_on() { ip netns exec "bad-$$-$1" "${@:2}"; }
+on() { exec ip netns exec "$prefix-$1" "${@:2}"; }
+run_on() { ip netns exec "$prefix-$1" "${@:2}"; }
 
 make_hosts() {
   subject=$1
+  prefix=bad-$$
   shift
   hosts=("$@")
   [[ $(id -u) == 0 ]] || skip "it needs root"
@@ -37,32 +41,32 @@ make_hosts() {
   trap remove_hosts EXIT
   local host last=1
   for host in "${hosts[@]}" switch; do
-    ip netns add "bad-$$-$host" 2>/dev/null || skip "this machine makes no network namespaces"
-    ip -n "bad-$$-$host" link set lo up
+    ip netns add "$prefix-$host" 2>/dev/null || skip "this machine makes no network namespaces"
+    ip -n "$prefix-$host" link set lo up
   done
-  ip -n "bad-$$-switch" link add switch type bridge || skip "this machine makes no bridges"
-  ip -n "bad-$$-switch" link set switch up
+  ip -n "$prefix-switch" link add switch type bridge || skip "this machine makes no bridges"
+  ip -n "$prefix-switch" link set switch up
   for host in "${hosts[@]}"; do
     address[$host]=10.98.0.$last
     last=$((last + 1))
-    ip -n "bad-$$-$host" link add lab type veth peer name "to-$host" netns "bad-$$-switch" ||
+    ip -n "$prefix-$host" link add lab type veth peer name "to-$host" netns "$prefix-switch" ||
       skip "this machine makes no veth interfaces"
-    ip -n "bad-$$-switch" link set "to-$host" master switch up
-    ip -n "bad-$$-$host" address add "${address[$host]}/24" dev lab
-    ip -n "bad-$$-$host" link set lab up
+    ip -n "$prefix-switch" link set "to-$host" master switch up
+    ip -n "$prefix-$host" address add "${address[$host]}/24" dev lab
+    ip -n "$prefix-$host" link set lab up
   done
   # A participant uses the interfaces that are up when it is made.
   local i
   for host in "${hosts[@]}"; do
     for ((i = 0; i < 1200; i++)); do
-      ip -n "bad-$$-$host" -br link show lab | grep -q LOWER_UP && break
+      ip -n "$prefix-$host" -br link show lab | grep -q LOWER_UP && break
       sleep 0.05
     done
   done
 }
 
 disturb() {
-  local host other repeats
+  local host other repeats lost=${2:-udp}
   for host in "${hosts[@]}"; do
     run_on "$host" nft flush ruleset
     run_on switch nft "flush ruleset"
@@ -73,7 +77,7 @@ disturb() {
     run_on "$host" nft "table ip bad {
       chain input {
         type filter hook input priority 0;
-        iifname lab meta l4proto udp numgen random mod 100 < $1 counter drop
+        iifname lab meta l4proto { $lost } numgen random mod 100 < $1 counter drop
       };
       chain output {
         type route hook output priority 0;

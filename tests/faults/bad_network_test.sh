@@ -13,7 +13,8 @@
 #     --takeover SECONDS after the start of a run another analysis is started, and the one that
 #                        serves the run is killed (0: not)
 #     --garbage KIND     5000 malformed packets a second to the bench's and the analysis' host each
-#                        (rtps_garbage.py): no service may end or grow by 100 MB
+#                        (rtps_garbage.py): each service must refuse some, and none may end or grow
+#                        by 100 MB
 #
 # The long form, 960 runs (two readers of Fast DDS, the analysis and what records the run, each get
 # the samples by themselves: real time is what fits 10 Mbit/s):
@@ -115,33 +116,46 @@ replace_analysis() {
   wait "$old" 2>/dev/null || true
 }
 
+senders=() # of garbage
 begin_garbage() {
   [[ -n $garbage ]] || return 0
   (on bench "$here/rtps_garbage.py" "${address[analysis]}" 46 "$garbage" 5000) &
+  senders=("$!")
   (on analysis "$here/rtps_garbage.py" "${address[bench]}" 46 "$garbage" 5000) &
+  senders+=("$!")
 }
 resident_mb() { awk '/VmRSS/ {printf "%d", $2 / 1024}' "/proc/$1/status" 2>/dev/null || true; }
 check_services() {
   [[ -n $garbage ]] || return 0
-  local service now
+  local service sender now
   for service in dyncal-analysis dyncal-acs; do
     now=$(resident_mb "${services[$service]}")
     echo "  $service: ${before[$service]} MB before $garbage packets, ${now:-ended} MB after"
     ((${now:-100000} < before[$service] + 100)) || failed=$((failed + 1))
+    grep -q "refused a packet" "$folder/$service.log" || {
+      echo "  FAILED: $service has refused no packet" && failed=$((failed + 1))
+    }
+  done
+  for sender in "${senders[@]}"; do
+    kill -0 "$sender" 2>/dev/null || {
+      echo "  FAILED: a sender of $garbage packets has ended" && failed=$((failed + 1))
+    }
   done
 }
 
-# One line: what is not as it must be; nothing if all is.
+# One line: what is not as it must be; nothing if all is. Fails when it cannot tell.
 compare() {
   python3 - "$folder/expected.json" "$folder/run.json" <<'PYTHON'
 import json, sys
 expected, found = (json.load(open(path)) for path in sys.argv[1:])
-assert len(expected["points"]) == 18 and expected["transfer_function"]
-if found["points"] != expected["points"]:
-    bad = [p for p, q in zip(found["points"], expected["points"]) if p != q]
-    lost = sum(p["lost"] for p in found["points"])
-    print(f"{len(found['points'])} points, {len(bad)} differ, {lost} samples lost;",
-          bad[0].get("problem", ""), bad[0].get("flags", "") if bad else "")
+points = expected["points"]
+if len(points) != 18 or not expected["transfer_function"]:
+    sys.exit("nothing to compare with")
+bad = [one for one, other in zip(found["points"], points) if one != other]
+if len(found["points"]) != len(points) or bad:
+    lost = sum(one["lost"] for one in found["points"])
+    what = [bad[0].get("problem", ""), bad[0].get("flags", "")] if bad else []
+    print(f"{len(found['points'])} points, {len(bad)} differ, {lost} samples lost;", *what)
 elif found["transfer_function"] != expected["transfer_function"]:
     print("the transfer function differs")
 PYTHON
@@ -161,12 +175,16 @@ one_run() {
     replace_analysis
   fi
   wait "$run" || status=$?
-  [[ ! -s $folder/run.json ]] || difference=$(compare)
+  if [[ ! -s $folder/run.json ]]; then
+    difference="no result"
+  elif ! difference=$(compare); then
+    difference="the results cannot be compared"
+  fi
   began=$((began + 1))
   if [[ $takeover != 0 ]] && ! grep -q "taken over" "$folder/dyncal-analysis.log"; then
     difference+=" the run was not taken over"
   fi
-  if [[ $status != 0 || -n $difference || ! -s $folder/run.json ]]; then
+  if [[ $status != 0 || -n $difference ]]; then
     echo "  FAILED: exit status $status; $difference"
     grep -v "^$" "$folder/run.log" | tail -3 | cut -c 1-300
     failed=$((failed + 1))

@@ -109,7 +109,7 @@ class BenchLaboratory:
     """Virtual bench, source services, analysis and guard; `vendors` a key of VENDORS.
 
     Several on one DDS domain: give the `domain` of another, names of their own, and `services`
-    without the analysis to all but one.
+    without the analysis to all but one. `environments`: variables of a program, by its name.
     """
 
     preset = "mpu9250-ptb"  # of the virtual bench
@@ -127,6 +127,7 @@ class BenchLaboratory:
         domain=None,
         services=SERVICES,
         acs_rate_hz=20000,
+        environments=None,
     ):
         self.programs = pathlib.Path(programs)
         self.folder = pathlib.Path(folder)
@@ -135,6 +136,7 @@ class BenchLaboratory:
         self.frequencies = frequencies
         self.name = name
         self.acs_rate_hz = acs_rate_hz
+        self.environments = environments or {}
         self.domain, self.keeper = (domain, None) if domain else reserve_dds_domain()
         self.started = []
         self.services = {}
@@ -199,6 +201,7 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
         place.mkdir(exist_ok=True)
         command = [*on_host, str(self.programs / program), *map(str, arguments)]
         environment = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+        environment.update(self.environments.get(program, {}))
         self.started.append(Program(command, place / "log.txt", environment))
         return self.started[-1]
 

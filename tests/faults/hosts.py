@@ -49,8 +49,9 @@ class Hosts:
 
     def connect(self, name, address):
         here, switch = self.namespace(name), self.namespace(SWITCH)
-        ip("-n", here, "link", "add", "lab", "type", "veth", "peer", "name", name, "netns", switch)
-        ip("-n", switch, "link", "set", name, "master", "bridge", "up")
+        port = self.port(name)
+        ip("-n", here, "link", "add", "lab", "type", "veth", "peer", "name", port, "netns", switch)
+        ip("-n", switch, "link", "set", port, "master", "bridge", "up")
         ip("-n", here, "address", "add", f"{address}/24", "dev", "lab")
         self.set_link(name, "lab", "up")
         self.address[name] = address
@@ -60,7 +61,27 @@ class Hosts:
 
     def set_cable(self, name, state):
         """At the switch, so that the host sees what it sees when a cable is pulled."""
-        self.set_link(SWITCH, name, state)
+        self.set_link(SWITCH, self.port(name), state)
+
+    @staticmethod
+    def port(name):
+        """Of the switch."""
+        return f"to-{name}"
+
+    def disturb(self, loss_percent, mbit_per_s=0, lost="udp"):
+        """As bad_network.sh has it; 0: no loss, unlimited. `lost`: "udp" or "udp, tcp"."""
+        address = " ".join(f"[{name}]={place}" for name, place in self.address.items())
+        script = pathlib.Path(__file__).with_name("bad_network.sh")
+        commands = (
+            f". {script}; subject=; prefix={self.prefix}; hosts=({' '.join(self.names)}); "
+            f"declare -A address=({address}); limit {mbit_per_s}; "
+            f"disturb {loss_percent} '{lost}'"
+        )
+        done = subprocess.run(
+            ["bash", "-e", "-c", commands], check=False, capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            raise OSError(f"bad_network.sh: {done.stdout}{done.stderr}")
 
     def command(self, name):
         return ["ip", "netns", "exec", self.namespace(name)]

@@ -17,7 +17,7 @@ more than two seconds while its conductor is dead. Who only looks on, the record
 disturbs no step; the recording of a recorder that is there again before the run ends gives the
 run's values to the last bit, that of another says what it lacks. A run that missed the
 analysis or a source at its start, and said so before anything was excited, counts as refused. Exit
-status 1 if a draw did not hold.
+status 1 if a draw did not hold, or if all draws of a cell were refused.
 """
 
 import argparse
@@ -216,14 +216,15 @@ def campaign(arguments, case, vendors, pool, undisturbed):
     )
     held = sum(not one["problem"] for one in draws)
     repeated = sum(one["repeated"] > 0 for one in draws)
+    refused = sum(one["refused"] for one in draws)
     longest_s = max(one["took_s"] for one in draws)
     print(
         f"{case:22} {vendors:11} {held:4} of {len(draws)} hold, "
-        f"{repeated} with a repeated step, {sum(one['refused'] for one in draws)} refused, "
+        f"{repeated} with a repeated step, {refused} refused, "
         f"longest {longest_s:.0f} s",
         flush=True,
     )
-    return held == len(draws)
+    return held == len(draws) > refused
 
 
 def main():

@@ -35,9 +35,9 @@ HOST_OF = {"dyncal-analysis": "analysis", "dyncal": "operator"}
 class SpreadLaboratory(BenchLaboratory):
     """A live bench whose programs are on hosts of their own."""
 
-    def __init__(self, programs, folder, vendors):
+    def __init__(self, programs, folder, vendors, **options):
         self.hosts = hosts.Hosts(HOSTS)
-        super().__init__(programs, folder, vendors)
+        super().__init__(programs, folder, vendors, **options)
 
     def start_program(self, program, arguments):
         host = HOST_OF.get(program, "bench")

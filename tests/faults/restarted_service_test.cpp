@@ -1,5 +1,6 @@
 // A service that dies in the middle of a run and is started again, as systemd does: the run waits,
 // loses nothing that can be had, repeats what cannot, and ends as an undisturbed one.
+#include <algorithm>
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -12,6 +13,7 @@ namespace dyncal::tests {
 namespace {
 
 constexpr const char* in_the_middle = "step 2 of 3";
+constexpr auto npos = std::string::npos;
 
 LiveBenchSettings three_steps(const std::string& dds) {
   LiveBenchSettings settings;
@@ -128,6 +130,25 @@ TEST_P(LostAnalysis, AnotherOneTakesOverWithTheSameBits) {
   expect_bits_of_an_undisturbed_run();
 }
 
+// Both hear of the run when it is planned: one leads it, and its death is all that the other has
+// waited for.
+TEST_P(LostAnalysis, OneThatStoodByFromTheBeginningTakesOverWithTheSameBits) {
+  std::vector<ProgramRun*> analyses{&start("dyncal-analysis", {}), &start("dyncal-analysis", {})};
+  start("dyncal-acs", {bench_});
+  ProgramRun& watch = start("dyncal", {"watch"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
+  const auto leads = [](ProgramRun* one) { return one->errors().find(": armed") != npos; };
+  ASSERT_EQ(std::ranges::count_if(analyses, leads), 1);
+  std::partition(analyses.begin(), analyses.end(), leads);
+  analyses[0]->send(SIGKILL);
+  const auto status = run.wait(patience);
+  ASSERT_TRUE(status) << run.errors();
+  EXPECT_EQ(*status, 0) << run.errors();
+  EXPECT_TRUE(analyses[1]->wait_for_error_text("taken over", patience)) << analyses[1]->errors();
+  expect_bits_of_an_undisturbed_run();
+}
+
 TEST_P(LostAnalysis, StoppedForAWhileItGivesTheSameBits) {
   ProgramRun& analysis = start("dyncal-analysis", {});
   start("dyncal-acs", {bench_});
@@ -137,6 +158,27 @@ TEST_P(LostAnalysis, StoppedForAWhileItGivesTheSameBits) {
   analysis.send(SIGSTOP);
   EXPECT_FALSE(run.wait(std::chrono::seconds(8))) << run.errors(); // longer than every lease
   analysis.send(SIGCONT);
+  const auto status = run.wait(patience);
+  ASSERT_TRUE(status) << run.errors();
+  EXPECT_EQ(*status, 0) << run.errors();
+  expect_bits_of_an_undisturbed_run();
+}
+
+// A source that plays files has the rest of them to send when its run is gone.
+class InterruptedRun : public LostAnalysis {};
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, InterruptedRun, testing::Values("fastdds", "cyclonedds"),
+                         [](const auto& vendor) { return vendor.param; });
+
+TEST_P(InterruptedRun, LeavesNothingToTheNextOne) {
+  start("dyncal-analysis", {});
+  start("dyncal-acs", {bench_});
+  ProgramRun& watch = start("dyncal", {"watch"});
+  ProgramRun& first = start("dyncal", {"run", bench_});
+  ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
+  first.send(SIGINT);
+  ASSERT_TRUE(first.wait(patience)) << first.errors();
+  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
   const auto status = run.wait(patience);
   ASSERT_TRUE(status) << run.errors();
   EXPECT_EQ(*status, 0) << run.errors();

@@ -12,16 +12,20 @@ namespace {
 
 using testing::HasSubstr;
 
-class UnattendedExciter : public testing::TestWithParam<std::string> {};
-
-TEST_P(UnattendedExciter, IsSwitchedOffByTheGuardOfTheBench) {
+LiveBenchSettings long_steps(const std::string& dds) {
   LiveBenchSettings settings;
   settings.bench_arguments = {"--frequencies", "40,80", "--levels", "20"};
   settings.excitation = "frequencies_hz = [\"40\", \"80\"]\nlevel = 20.0\n"
                         "settling_s = 0.5\nduration_s = 300.0\n";
   settings.rest = "adc_delay_s = 1e-6\n";
-  settings.dds = GetParam();
-  LiveBench bench(fresh_folder("unattended_exciter_" + GetParam()), settings);
+  settings.dds = dds;
+  return settings;
+}
+
+class UnattendedExciter : public testing::TestWithParam<std::string> {};
+
+TEST_P(UnattendedExciter, IsSwitchedOffByTheGuardOfTheBench) {
+  LiveBench bench(fresh_folder("unattended_exciter_" + GetParam()), long_steps(GetParam()));
   ProgramRun& guard = bench.start_service("dyncal-guard");
   ProgramRun& run = bench.start({"run", bench.bench_file()});
   ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
@@ -33,6 +37,21 @@ TEST_P(UnattendedExciter, IsSwitchedOffByTheGuardOfTheBench) {
   EXPECT_TRUE(guard.wait_for_error_text("the output of the generator was switched off", patience));
   EXPECT_THAT(guard.errors(), HasSubstr("bench live: nothing was heard of run "));
   run.send(SIGCONT);
+  run.send(SIGINT);
+  EXPECT_TRUE(run.wait(patience)) << run.errors();
+}
+
+TEST_P(UnattendedExciter, IsToldOfWhereThereIsNoGuard) {
+  LiveBench bench(fresh_folder("unguarded_exciter_" + GetParam()), long_steps(GetParam()));
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("no dyncal-guard watches over the exciter of bench 'live'",
+                                      patience));
+  ProgramRun& guard = bench.start_service("dyncal-guard");
+  ASSERT_TRUE(run.wait_for_error_text("a dyncal-guard watches over the exciter of bench 'live' now",
+                                      patience));
+  guard.send(SIGSTOP);
+  EXPECT_TRUE(run.wait_for_error_text("has gone silent: should this program", patience));
+  guard.send(SIGCONT);
   run.send(SIGINT);
   EXPECT_TRUE(run.wait(patience)) << run.errors();
 }

@@ -11,9 +11,12 @@ set(DYNCAL_FUZZ_SECONDS 20 CACHE STRING "How long each fuzzer runs in ctest")
 #   LIBRARIES   of the linker
 #   SEEDS       folder with files to begin with
 #   CORPUS      program that writes such a folder, given its name
+#   BUILT       target that has to be built before
 #   MAX_LENGTH  of what is tried, in bytes; 8192 where nothing is said
+#   MAX_ALLOCATION_MB  of one allocation; 1024 where nothing is said
 function(dyncal_fuzzer name)
-  cmake_parse_arguments(FUZZ "" "TEST;SEEDS;CORPUS;MAX_LENGTH" "SOURCES;OPTIONS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(FUZZ "" "TEST;SEEDS;CORPUS;BUILT;MAX_LENGTH;MAX_ALLOCATION_MB"
+    "SOURCES;OPTIONS;LIBRARIES" ${ARGN})
   set(work ${CMAKE_CURRENT_BINARY_DIR}/${name})
   file(MAKE_DIRECTORY ${work}/found)
   set(sanitizers -fsanitize=fuzzer,address,undefined)
@@ -25,7 +28,7 @@ function(dyncal_fuzzer name)
       COMMAND ${DYNCAL_FUZZ_CXX} -std=c++20 -O1 -g1 ${sanitizers} -fno-sanitize-recover=undefined
         ${FUZZ_OPTIONS} -I ${PROJECT_SOURCE_DIR} -MD -MF ${object}.d -MT ${object}
         -c ${PROJECT_SOURCE_DIR}/${source} -o ${object}
-      DEPENDS ${PROJECT_SOURCE_DIR}/${source}
+      DEPENDS ${PROJECT_SOURCE_DIR}/${source} ${FUZZ_BUILT}
       DEPFILE ${object}.d
       COMMENT "Compiling ${source} for ${name}"
       VERBATIM)
@@ -48,10 +51,13 @@ function(dyncal_fuzzer name)
   if(NOT FUZZ_MAX_LENGTH)
     set(FUZZ_MAX_LENGTH 8192)
   endif()
+  if(NOT FUZZ_MAX_ALLOCATION_MB)
+    set(FUZZ_MAX_ALLOCATION_MB 1024)
+  endif()
   add_test(NAME ${test}
     COMMAND ${program} -max_total_time=${DYNCAL_FUZZ_SECONDS} -max_len=${FUZZ_MAX_LENGTH}
-      -rss_limit_mb=1024 -timeout=10 -print_final_stats=1 -artifact_prefix=${work}/ ${work}/found
-      ${FUZZ_SEEDS})
+      -rss_limit_mb=1024 -malloc_limit_mb=${FUZZ_MAX_ALLOCATION_MB} -timeout=10
+      -print_final_stats=1 -artifact_prefix=${work}/ ${work}/found ${FUZZ_SEEDS})
   math(EXPR limit "${DYNCAL_FUZZ_SECONDS} + 120")
   set_tests_properties(${test}
     PROPERTIES LABELS fuzz TIMEOUT ${limit} FIXTURES_REQUIRED "${FUZZ_CORPUS}")

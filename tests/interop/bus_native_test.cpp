@@ -1,6 +1,8 @@
 // The bus and programs that know the contract from its IDL file and its page alone, one made with
 // each vendor's own tools. They write back what they read, so that equal samples show both ways to
 // work.
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <gtest/gtest.h>
 #include <limits>
@@ -46,6 +48,7 @@ public:
     std::vector<std::string> words{native.program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) {
       argv.push_back(word.data());
     }
@@ -94,6 +97,7 @@ protected:
     options.vendor = std::get<1>(GetParam());
     options.domain = domain_;
     options.name = "native test";
+    options.watch_discovery = true;
     return Participant::create(options).value();
   }
 
@@ -101,7 +105,7 @@ protected:
 
   template <class T>
   std::vector<T> echoes_of(const std::vector<T>& samples, const char* topic, Profile profile) {
-    auto reader = participant_.reader<T>(topic, profile, from_native_, bell_).value();
+    auto reader = participant_.reader<T>(topic, profile, from_native_ + "*", bell_).value();
     auto writer = participant_.writer<T>(topic, profile, to_native_).value();
     for (const T& sample : samples) {
       EXPECT_EQ(writer.write(sample), WriteOutcome::written);
@@ -215,11 +219,45 @@ TEST_P(BusNative, ExchangesCalibrationResults) {
   EXPECT_EQ(echoes, results);
 }
 
+TEST_P(BusNative, TellsTheQosOfItsReaders) {
+  const auto reader_of = [this](const std::string& topic) -> std::optional<DiscoveredEndpoint> {
+    const auto give_up = Clock::now() + tests::patience;
+    while (Clock::now() < give_up) {
+      for (const DiscoveredEndpoint& endpoint : participant_.discovered().endpoints) {
+        if (endpoint.topic == topic && endpoint.kind == EndpointKind::reader) {
+          return endpoint;
+        }
+      }
+      bell_->wait_until(Clock::now() + 50ms);
+    }
+    return std::nullopt;
+  };
+  const auto more = reader_of(topics::excitation);
+  ASSERT_TRUE(more);
+  EXPECT_TRUE(more->exclusive_ownership);
+  EXPECT_DOUBLE_EQ(more->deadline_s, 1.0);
+  EXPECT_EQ(more->liveliness, Liveliness::manual_by_topic);
+  EXPECT_DOUBLE_EQ(more->lease_s, 2.0);
+  const auto usual = reader_of(topics::dau_samples);
+  ASSERT_TRUE(usual);
+  EXPECT_FALSE(usual->exclusive_ownership);
+  EXPECT_TRUE(std::isinf(usual->deadline_s));
+  EXPECT_EQ(usual->latency_budget_s, 0.0);
+  EXPECT_EQ(usual->liveliness, Liveliness::automatic);
+  EXPECT_TRUE(std::isinf(usual->lease_s));
+  EXPECT_EQ(usual->access_scope, AccessScope::instance);
+  EXPECT_FALSE(usual->coherent_access || usual->ordered_access);
+  EXPECT_EQ(usual->destination_order, DestinationOrder::by_reception);
+  constexpr int xcdr1 = 0;
+  const std::vector<int>& taken = usual->representations;
+  EXPECT_TRUE(taken.empty() || std::ranges::find(taken, xcdr1) != taken.end());
+}
+
 // As a later version of the contract could have it. idl/README.md tells what each tool makes of it.
 TEST_P(BusNative, GoesOnAfterAnEnumValueOfALaterVersion) {
   auto reader =
       participant_
-          .reader<wire::Measurement>(topics::measurement, Profile::state, from_native_, bell_)
+          .reader<wire::Measurement>(topics::measurement, Profile::state, from_native_ + "*", bell_)
           .value();
   auto writer =
       participant_.writer<wire::Measurement>(topics::measurement, Profile::state, to_native_)

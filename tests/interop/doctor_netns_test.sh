@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # `dyncal doctor` on one host, an analysis and a source on another (network namespaces with host
 # names of their own), for every pair of vendors: a sound network, a network without multicast, a
-# firewall that lets discovery through but no messages, and a bench file that differs.
+# firewall that lets discovery through but no messages, a bench file that differs, and losses in one
+# direction.
 #
 #   doctor_netns_test.sh FOLDER_OF_PROGRAMS [VENDOR...]
 #
-# Needs root, ip, nft and unshare; exits with 77 (skipped) and one line otherwise. Leaves no
-# namespace behind.
+# Needs root, ip, nft, unshare and python3; exits with 77 (skipped) and one line otherwise. Leaves
+# no namespace behind.
 set -euo pipefail
 
 programs=$1
@@ -62,6 +63,27 @@ drop() { # rule
   ip netns exec "$reading" nft "table ip doctor { chain input {
     type filter hook input priority 0; $1 drop; }; }"
 }
+lose() { # namespace that receives; a tenth of the packets to it
+  ip netns exec "$1" nft "table ip doctor { chain input {
+    type filter hook input priority 0;
+    iifname lab meta l4proto udp numgen random mod 100 < 10 counter drop; }; }"
+}
+let_through_to() { ip netns exec "$1" nft delete table ip doctor; }
+# Both services have percentages of losses in these ranges, of 100 packets or more.
+losses() { # there: least, most; back: least, most
+  python3 - "$folder/report" "$@" <<'PYTHON' || wrong "other losses than $*"
+import json, sys
+
+ranges = [float(one) for one in sys.argv[2:]]
+losses = json.load(open(sys.argv[1], encoding="utf-8"))["losses"]
+right = len(losses) == 2
+for loss in losses:
+    for way, least, most in zip((loss["there"], loss["back"]), ranges[::2], ranges[1::2]):
+        print("   ", loss["program"], way)
+        right &= way["sent"] >= 100 and least <= way["lost_percent"] <= most
+sys.exit(not right)
+PYTHON
+}
 let_through() { ip netns exec "$reading" nft delete table ip doctor; }
 
 for from in "${vendors[@]}"; do
@@ -83,6 +105,16 @@ for from in "${vendors[@]}"; do
     drop "iifname lab udp dport { 18661, 18663, 18665, 18667, 18669, 18671 }"
     doctor "a firewall before the messages" 2 "must let UDP 18650 to 18723 through" --seconds 4
     let_through
+    doctor "no losses" 1 '"losses"' --seconds 5 --json
+    losses 0 0 0 0
+    lose "$writing"
+    doctor "losses on the way there" 1 '"losses"' --seconds 10 --json
+    losses 5 16 0 0
+    let_through_to "$writing"
+    lose "$reading"
+    doctor "losses on the way back" 1 '"losses"' --seconds 10 --json
+    losses 0 0 5 16
+    let_through_to "$reading"
     drop "iifname lo udp dport 18650-18723" # as own firewalls do that forget loopback
     doctor "a firewall before the own packets" 1 "all sources\|the clock of lab-2" \
       "$folder/bench.toml" --seconds 4

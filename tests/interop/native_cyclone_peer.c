@@ -4,7 +4,8 @@
  *   native_cyclone_peer DOMAIN FROM_PARTITION TO_PARTITION
  *
  * Reads three topics in one partition and writes what it reads into another, unchanged; an instance
- * that ends there ends here. Runs until it is killed.
+ * that ends there ends here. A reader of a fourth topic asks for what dyncal offers to nobody. Runs
+ * until it is killed.
  */
 #include <dds/dds.h>
 #include <stdbool.h>
@@ -54,6 +55,18 @@ static void open_echo(struct echo* echo, dds_entity_t participant, const char* f
   dds_delete_qos(writing);
 }
 
+static void ask_for_more(dds_entity_t participant, const char* partition) {
+  const dds_entity_t topic =
+      checked(dds_create_topic(participant, &dyncal_wire_Excitation_desc, "Excitation", NULL, NULL),
+              "Excitation");
+  dds_qos_t* qos = make_qos(false, partition);
+  dds_qset_ownership(qos, DDS_OWNERSHIP_EXCLUSIVE);
+  dds_qset_deadline(qos, DDS_SECS(1));
+  dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_SECS(2));
+  checked(dds_create_reader(participant, topic, qos, NULL), "reader");
+  dds_delete_qos(qos);
+}
+
 static void run_echo(const struct echo* echo) {
   void* samples[most_taken] = {NULL};
   dds_sample_info_t infos[most_taken];
@@ -90,6 +103,7 @@ int main(int argc, char** argv) {
         dds_waitset_attach(waitset, dds_create_readcondition(echoes[i].reader, DDS_ANY_STATE), 0),
         "attach");
   }
+  ask_for_more(participant, argv[2]);
   for (;;) {
     checked(dds_waitset_wait(waitset, NULL, 0, DDS_SECS(1)), "wait");
     for (size_t i = 0; i < count; ++i) {

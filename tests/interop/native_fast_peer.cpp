@@ -3,8 +3,8 @@
 //
 //   native_fast_peer DOMAIN FROM_PARTITION TO_PARTITION
 //
-// Reads three topics in one partition and writes what it reads into another, unchanged. Runs until
-// it is killed.
+// Reads three topics in one partition and writes what it reads into another, unchanged. A reader of
+// a fourth topic asks for what dyncal offers to nobody. Runs until it is killed.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -52,18 +52,37 @@ Qos make_qos(History history) {
   return qos;
 }
 
+template <class PubSubType>
+Topic* make_topic(DomainParticipant* participant, const char* topic_name) {
+  auto* type = new PubSubType;
+  type->auto_fill_type_information(false);
+  type->auto_fill_type_object(false);
+  TypeSupport support(type);
+  support.register_type(participant);
+  return checked(participant->create_topic(topic_name, support.get_type_name(), TOPIC_QOS_DEFAULT),
+                 "topic");
+}
+
+void ask_for_more(DomainParticipant* participant, const char* partition) {
+  Topic* topic = make_topic<dyncal::wire::ExcitationPubSubType>(participant, "Excitation");
+  SubscriberQos reading;
+  reading.partition().push_back(partition);
+  Subscriber* subscriber = checked(participant->create_subscriber(reading), "subscriber");
+  auto qos = make_qos<DataReaderQos>(History::keep_last);
+  qos.ownership().kind = EXCLUSIVE_OWNERSHIP_QOS;
+  qos.deadline().period = {1, 0};
+  qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS;
+  qos.liveliness().lease_duration = {2, 0};
+  qos.liveliness().announcement_period = {1, 0};
+  checked(subscriber->create_datareader(topic, qos), "reader");
+}
+
 template <class Sample, class PubSubType>
 class Echo {
 public:
   Echo(DomainParticipant* participant, const char* topic_name, History history, const char* from,
        const char* to) {
-    auto* type = new PubSubType;
-    type->auto_fill_type_information(false);
-    type->auto_fill_type_object(false);
-    TypeSupport support(type);
-    support.register_type(participant);
-    Topic* topic = checked(
-        participant->create_topic(topic_name, support.get_type_name(), TOPIC_QOS_DEFAULT), "topic");
+    Topic* topic = make_topic<PubSubType>(participant, topic_name);
 
     SubscriberQos reading;
     reading.partition().push_back(from);
@@ -121,6 +140,7 @@ int main(int argc, char** argv) {
       participant, "Measurement", History::keep_last, argv[2], argv[3]);
   Echo<dyncal::wire::CalibrationResult, dyncal::wire::CalibrationResultPubSubType> results(
       participant, "CalibrationResult", History::keep_last, argv[2], argv[3]);
+  ask_for_more(participant, argv[2]);
   while (true) {
     blocks.run();
     measurements.run();

@@ -89,6 +89,25 @@ TEST(Excitation, AnExciterThatIsTooLivelyIsSwitchedOff) {
   EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
 }
 
+// The amplifier is off as far as the reference shows: nothing is in danger, so the step has another
+// attempt, and the run ends with a line that names it.
+TEST(Excitation, ALevelThatIsNotReachedIsTriedAgainAndThenNamed) {
+  const auto folder = fresh_folder("excitation-not-reached");
+  LiveBenchSettings settings =
+      settings_with("level_per_volt = 5000.0\nlevel_tolerance_rel = 0.01\n");
+  settings.excitation = "frequencies_hz = [\"40\"]\nlevel = 20.0\nsettling_s = 0.4\n"
+                        "duration_s = 1.5\nattempts = 2\n";
+  LiveBench bench(folder, settings);
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  EXPECT_EQ(run.wait(patience).value_or(0), 1);
+  EXPECT_THAT(run.errors(), HasSubstr("step 1 is excited again, attempt 2: its excitation was "
+                                      "broken off"));
+  EXPECT_THAT(run.errors(),
+              testing::ContainsRegex("step 1, 40 Hz: the reference shows .*is the "
+                                     "amplifier on.*\\(attempts: 2\\); 0 of 1 steps"));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+}
+
 // Without a level tolerance and without any limit in the bench file.
 TEST(Excitation, AnAmplifierThatIsTurnedUpStopsTheRunWithinTheFirstStep) {
   const auto folder = fresh_folder("excitation-turned-up");
@@ -150,6 +169,12 @@ TEST_P(LinkDown, IsSaidAndTheGuardSwitchesOffWhenTheLinkIsBack) {
   ASSERT_TRUE(run.wait(patience));
   EXPECT_TRUE(run.wait_for_error_text("MAY BE ON", patience)) << run.errors();
   EXPECT_THAT(run.errors(), testing::Not(HasSubstr("the excitation is off")));
+  if (GetParam() == SIGINT) { // a run that is killed says nothing, only its guard does
+    EXPECT_THAT(run.errors(),
+                testing::ContainsRegex("interrupted; 0 of 4 steps were measured and kept; THE "
+                                       "OUTPUT OF THE GENERATOR MAY BE ON: .*; switch it off by "
+                                       "hand. A guard goes on trying"));
+  }
   bench.signal_bench(SIGCONT);
   EXPECT_TRUE(bench.wait_for_output("OFF"));
 }
@@ -158,6 +183,26 @@ INSTANTIATE_TEST_SUITE_P(Signals, LinkDown, testing::Values(SIGINT, SIGKILL),
                          [](const auto& signal) {
                            return "Signal" + std::to_string(signal.param);
                          });
+
+// As when a process group or a systemd unit is ended while the generator cannot be reached.
+TEST(Excitation, TheGuardOutlivesWhatEndsTheRunAndAllOfItsProcesses) {
+  const auto folder = fresh_folder("excitation-group-ended");
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 4", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
+  bench.signal_bench(SIGSTOP);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+    EXPECT_TRUE(run.send_to_child("dyncal", signal));
+  }
+  run.send(SIGKILL);
+  ASSERT_TRUE(run.wait(patience));
+  EXPECT_TRUE(
+      run.wait_for_error_text("the run has ended and the output of the generator", patience))
+      << run.errors();
+  bench.signal_bench(SIGCONT);
+  EXPECT_TRUE(bench.wait_for_output("OFF"));
+}
 
 // Standard input of the programs that a test starts.
 class OperatorLine {
@@ -174,7 +219,9 @@ public:
   }
   OperatorLine(const OperatorLine&) = delete;
   OperatorLine& operator=(const OperatorLine&) = delete;
-  void confirm() const { EXPECT_EQ(write(ends_[1], "\n", 1), 1); }
+  void confirm(int times = 1) const {
+    EXPECT_EQ(write(ends_[1], "\n\n", static_cast<std::size_t>(times)), times);
+  }
 
 private:
   int before_;
@@ -208,7 +255,12 @@ TEST(Excitation, ByHandFollowsTheOperator) {
   EXPECT_EQ(read_json(folder / "result.json")["points"].size(), 3U);
 }
 
-TEST(Excitation, ByHandEndsCleanlyWhenInterrupted) {
+std::string last_line(const std::string& text) {
+  const auto end = text.find_last_not_of('\n');
+  return text.substr(text.rfind('\n', end) + 1, end - text.rfind('\n', end));
+}
+
+TEST(Excitation, ByHandSaysThatTheOutputMayBeOnUntilTheOperatorHasConfirmed) {
   const auto folder = fresh_folder("excitation-by-hand-interrupted");
   LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
   const OperatorLine operator_line;
@@ -216,8 +268,27 @@ TEST(Excitation, ByHandEndsCleanlyWhenInterrupted) {
       {"run", bench.changed_bench_file("hand.toml", "driver = \"scpi\"", "driver = \"by-hand\"")});
   ASSERT_TRUE(run.wait_for_error_text("switch the output on", patience)) << run.errors();
   run.send(SIGINT);
+  EXPECT_EQ(run.wait(patience), 1) << run.errors();
+  EXPECT_THAT(run.errors(), HasSubstr("generator: switch the output off, then press Enter"));
+  EXPECT_THAT(last_line(run.errors()),
+              testing::EndsWith("interrupted; 0 of 4 steps were measured and kept; THE OUTPUT OF "
+                                "THE GENERATOR MAY BE ON: nobody has confirmed that it is off; "
+                                "switch it off at the generator"));
+}
+
+TEST(Excitation, ByHandEndsCleanlyWhenTheOperatorConfirmsAfterAnInterruption) {
+  const auto folder = fresh_folder("excitation-by-hand-confirmed");
+  LiveBench bench(folder, settings_with("level_per_volt = 50.0\n", "1"));
+  const OperatorLine operator_line;
+  ProgramRun& run = bench.start(
+      {"run", bench.changed_bench_file("hand.toml", "driver = \"scpi\"", "driver = \"by-hand\"")});
+  ASSERT_TRUE(run.wait_for_error_text("switch the output on", patience)) << run.errors();
+  run.send(SIGINT);
+  // That it was switched on after all, and that it is off.
+  operator_line.confirm(2);
   EXPECT_EQ(run.wait(patience), 130) << run.errors();
-  EXPECT_THAT(run.errors(), HasSubstr("switch the output off"));
+  EXPECT_THAT(last_line(run.errors()), testing::EndsWith("interrupted: the excitation is off; 0 of "
+                                                         "4 steps were measured and kept"));
 }
 
 } // namespace

@@ -26,8 +26,8 @@ struct LiveBenchSettings {
   std::string excitation;                   // lines of the bench file's tables
   std::string generator = "level_per_volt = 50.0\n";
   std::string source_dau = R"(time_base = "utc")";
-  std::string rest;            // further tables
-  std::string dds = "fastdds"; // of all programs
+  std::string rest;               // further tables
+  std::string dds = "cyclonedds"; // of all programs; as without --dds
 };
 
 class LiveBench {

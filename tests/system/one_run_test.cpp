@@ -1,10 +1,14 @@
 // One bench, one run: a second run is refused while the first lives, and gets the bench of one that
 // was killed, whose results hold nothing of what the second excites.
+#include <algorithm>
 #include <csignal>
+#include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/bus/bus.hpp"
+#include "services/contract/topics.hpp"
 #include "tests/system/live_bench.hpp"
 
 namespace dyncal::tests {
@@ -13,8 +17,9 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-LiveBenchSettings three_steps() {
+LiveBenchSettings three_steps(const std::string& dds) {
   LiveBenchSettings settings;
+  settings.dds = dds;
   settings.bench_arguments = {"--frequencies", "40,80,125", "--levels", "20"};
   settings.excitation = "frequencies_hz = [\"40\", \"80\", \"125\"]\nlevel = 20.0\n"
                         "settling_s = 0.5\nduration_s = 1.5\n";
@@ -22,9 +27,11 @@ LiveBenchSettings three_steps() {
   return settings;
 }
 
-TEST(OneRun, ASecondRunIsRefusedAndDoesNotTouchTheFirst) {
-  const auto folder = fresh_folder("second_run");
-  LiveBench bench(folder, three_steps());
+class OneRun : public testing::TestWithParam<std::string> {}; // of DDS
+
+TEST_P(OneRun, ASecondRunIsRefusedAndDoesNotTouchTheFirst) {
+  const auto folder = fresh_folder("second_run_" + GetParam());
+  LiveBench bench(folder, three_steps(GetParam()));
   ProgramRun& first =
       bench.start({"run", bench.bench_file(), "--run", "first", "--json", folder / "first.json"});
   ASSERT_TRUE(first.wait_for_error_text("step 1 of 3", patience)) << first.errors();
@@ -45,12 +52,59 @@ TEST(OneRun, ASecondRunIsRefusedAndDoesNotTouchTheFirst) {
   }
 }
 
-TEST(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
-  const auto folder = fresh_folder("killed_run");
-  LiveBench bench(folder, three_steps());
+bus::Participant participant(const std::string& dds) {
+  bus::ParticipantOptions options;
+  options.vendor = bus::parse_vendor(dds).value();
+  options.domain = own_dds_domain();
+  options.name = "test";
+  return bus::Participant::create(options).value();
+}
+
+// What is published of the runs of a bench from now on, the newest of each value.
+class PublishedResults {
+public:
+  explicit PublishedResults(const std::string& dds)
+      : participant_(participant(dds)),
+        reader_(participant_.reader(bus::topics::calibration_result, "live", nullptr).value()) {}
+
+  std::vector<wire::CalibrationResult> of_run(const std::string& run) {
+    reader_.take([this](const wire::CalibrationResult& result) { all_.push_back(result); });
+    std::vector<wire::CalibrationResult> found;
+    std::copy_if(all_.begin(), all_.end(), std::back_inserter(found),
+                 [&](const wire::CalibrationResult& result) { return result.run() == run; });
+    return found;
+  }
+
+private:
+  bus::Participant participant_;
+  bus::Reader<wire::CalibrationResult> reader_;
+  std::vector<wire::CalibrationResult> all_;
+};
+
+// It is killed in its second step, whose excitation ends then.
+void expect_nothing_of_other_excitation(const std::vector<wire::CalibrationResult>& of_killed) {
+  std::size_t of_first_step = 0;
+  for (const wire::CalibrationResult& result : of_killed) {
+    of_first_step += result.step() == 1 ? 1 : 0;
+    if (result.step() == 1) {
+      EXPECT_TRUE(result.valid()) << result.problem();
+    } else {
+      EXPECT_FALSE(result.valid() && result.flags().empty())
+          << "step " << result.step() << " has the value " << result.magnitude();
+      EXPECT_FALSE(result.valid() && result.step() > 2) << "step 3 had not begun";
+    }
+  }
+  EXPECT_EQ(of_first_step, 3U);
+}
+
+TEST_P(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
+  const auto folder = fresh_folder("killed_run_" + GetParam());
+  LiveBench bench(folder, three_steps(GetParam()));
+  PublishedResults published(GetParam());
   ProgramRun& killed = bench.start({"run", bench.bench_file(), "--run", "killed"});
   ASSERT_TRUE(killed.wait_for_error_text("step 2 of 3", patience)) << killed.errors();
   killed.send(SIGKILL);
+  EXPECT_TRUE(killed.wait(patience));
   ProgramRun& watch = bench.start({"watch"});
   ProgramRun& next =
       bench.start({"run", bench.bench_file(), "--run", "next", "--json", folder / "next.json"});
@@ -66,7 +120,11 @@ TEST(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
   EXPECT_TRUE(watch.wait_for_output_text("its bench was given to run 'next'", patience))
       << watch.output();
   watch.send(SIGTERM);
+  expect_nothing_of_other_excitation(published.of_run("killed"));
+  EXPECT_EQ(published.of_run("next").size(), 9U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Vendors, OneRun, testing::Values("cyclonedds", "fastdds"));
 
 } // namespace
 } // namespace dyncal::tests

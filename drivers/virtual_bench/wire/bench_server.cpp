@@ -20,10 +20,27 @@ constexpr double max_arrears_s = 0.5; // host time that is made up for after a d
 constexpr double frame_s = 0.05;
 constexpr double max_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
-constexpr std::size_t max_receive_queue = 64U * 1024U; // of the 208 KiB that hosts allow at least
-constexpr std::chrono::microseconds queue_look_interval{2000}; // a look costs about 30 us
+constexpr std::size_t max_receive_queue =
+    std::size_t{64} * 1024; // of the 208 KiB that hosts allow at least
+// Between two looks at a receive buffer: the kernel walks over the table of all its sockets for
+// one.
+constexpr std::chrono::microseconds min_look_interval{2000};
+constexpr std::chrono::microseconds real_time_look_interval{20'000};
 constexpr milliseconds idle_wait{4};
 constexpr milliseconds blocked_wait{20};
+
+// A buffer fills as much faster as the bench is faster than real time.
+std::chrono::microseconds look_interval(const ServerSettings& settings, bool follows_utc) {
+  if (follows_utc) {
+    return real_time_look_interval;
+  }
+  if (settings.speed <= 0.0) {
+    return min_look_interval;
+  }
+  const auto in_proportion = std::chrono::duration_cast<std::chrono::microseconds>(
+      real_time_look_interval / settings.speed);
+  return std::clamp(in_proportion, min_look_interval, real_time_look_interval);
+}
 
 } // namespace
 
@@ -32,7 +49,8 @@ BenchServer::BenchServer(VirtualBench& bench, const ServerSettings& settings)
       packer_(settings.sensor_id, bench.settings().preset.sensor_name, settings.with_ticks),
       path_(bench.settings().seed, settings.path,
             [this](const std::string& datagram) { send_datagram(datagram); }),
-      receiver_on_this_host_(is_loopback(settings.dau.host)) {
+      receiver_on_this_host_(is_loopback(settings.dau.host)),
+      queue_look_interval_(look_interval(settings, bench.settings().utc_origin_ns.has_value())) {
   if (settings.triggered) {
     triggered_.emplace(*settings.triggered);
   }
@@ -132,7 +150,7 @@ bool BenchServer::consumers_keep_up() {
 
 bool BenchServer::datagrams_are_taken() {
   const auto now = Clock::now();
-  if (receiver_on_this_host_ && now - queue_looked_at_ >= queue_look_interval) {
+  if (receiver_on_this_host_ && now - queue_looked_at_ >= queue_look_interval_) {
     queue_looked_at_ = now;
     queue_full_ = udp_receive_queue(settings_.dau.port) > max_receive_queue;
   }

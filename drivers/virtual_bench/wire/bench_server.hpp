@@ -93,6 +93,7 @@ private:
   double datagram_credit_ = 0.0;
   Clock::time_point credit_at_;
   bool receiver_on_this_host_ = false;
+  std::chrono::microseconds queue_look_interval_;
   Clock::time_point queue_looked_at_;
   bool queue_full_ = false;
 };

@@ -87,22 +87,27 @@ struct QosDeleter {
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-Qos common_qos(const EndpointQos& wanted, const std::string& partition) {
+Qos common_qos(const EndpointQos& wanted, const std::vector<std::string>& partitions) {
   Qos qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE,
+  dds_qset_reliability(qos.get(),
+                       wanted.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        std::chrono::nanoseconds(write_attempt).count());
   dds_qset_durability(qos.get(), wanted.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                         : DDS_DURABILITY_VOLATILE);
   // A writer that keeps the last samples is never held back, by however many bytes it is ahead.
   dds_qset_history(qos.get(), wanted.keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST,
                    wanted.keep_all ? 1 : wanted.samples_per_key);
-  const char* name = partition.c_str();
-  dds_qset_partition(qos.get(), 1, &name);
+  std::vector<const char*> names;
+  names.reserve(partitions.size());
+  for (const std::string& partition : partitions) {
+    names.push_back(partition.c_str());
+  }
+  dds_qset_partition(qos.get(), static_cast<std::uint32_t>(names.size()), names.data());
   return qos;
 }
 
-Qos writer_qos(const EndpointQos& wanted, const std::string& partition) {
-  Qos qos = common_qos(wanted, partition);
+Qos writer_qos(const EndpointQos& wanted, const std::vector<std::string>& partitions) {
+  Qos qos = common_qos(wanted, partitions);
   if (wanted.transient_local) {
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, wanted.for_late_joiners,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
@@ -113,7 +118,7 @@ Qos writer_qos(const EndpointQos& wanted, const std::string& partition) {
 }
 
 Qos reader_qos(const EndpointQos& wanted, const std::string& partition) {
-  Qos qos = common_qos(wanted, partition);
+  Qos qos = common_qos(wanted, {partition});
   if (wanted.keep_all) {
     dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
                              wanted.samples_per_key);
@@ -168,14 +173,13 @@ public:
     ddsi_serdata* serdata = nullptr;
     dds_sample_info_t info;
     while (dds_takecdr(reader_.get(), &serdata, 1, &info, DDS_ANY_STATE) > 0) {
-      const bool read = read_cyclone_serdata(type_, serdata, sample_.get());
+      const bool read = info.valid_data && read_cyclone_serdata(type_, serdata, sample_.get());
       release_cyclone_serdata(serdata);
-      if (!read) {
-        participant_->malformed->add(type_.name);
-      }
-      if (read && info.valid_data) {
+      if (read) {
         ++taken;
         consume(sample_.get());
+      } else if (info.valid_data) { // otherwise it is the end of an instance
+        participant_->malformed->add(type_.name);
       }
     }
     return taken;
@@ -198,18 +202,17 @@ private:
 
 class CycloneParticipant : public UntypedParticipant {
 public:
-  explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant)
-      : participant_(std::move(participant)) {}
+  CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant, bool screened)
+      : participant_(std::move(participant)), screened_(screened) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type,
-                                                            const std::string& topic,
-                                                            Profile profile,
-                                                            const std::string& partition) override {
+  services::Expected<std::unique_ptr<UntypedWriter>>
+  writer(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::vector<std::string>& partitions) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = writer_qos(qos_of_writer(profile), partition);
+    const Qos qos = writer_qos(qos_of_writer(profile), partitions);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
@@ -264,13 +267,14 @@ private:
                                                         &sertype, nullptr, nullptr, nullptr);
     if (topic < 0) {
       release_cyclone_sertype(sertype);
-    } else {
+    } else if (screened_) {
       participant_->domain->screen.install(domain_of(*sertype));
     }
     return topic;
   }
 
   std::shared_ptr<CycloneParticipantHandle> participant_;
+  bool screened_;
 };
 
 } // namespace
@@ -300,10 +304,11 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
     return fail(cyclone_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
                               participant));
   }
-  return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
-      new CycloneParticipantHandle{std::move(*domain), Entity(participant),
-                                   std::make_shared<MalformedMessages>(options.warn),
-                                   std::move(refused)}));
+  return std::make_unique<CycloneParticipant>(
+      std::shared_ptr<CycloneParticipantHandle>(new CycloneParticipantHandle{
+          std::move(*domain), Entity(participant),
+          std::make_shared<MalformedMessages>(options.warn), std::move(refused)}),
+      options.screened);
 }
 
 } // namespace dyncal::bus

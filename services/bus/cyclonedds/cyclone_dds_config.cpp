@@ -51,6 +51,7 @@ std::string internal() {
                      "ms</HeartbeatInterval>" +
                      element("NackDelay", "10 ms") + element("PreEmptiveAckDelay", "10 ms") +
                      element("AckDelay", "5 ms") +
+                     element("MaxSampleSize", std::to_string(max_sample_bytes) + "B") +
                      // As much as the host allows: with a minimum it would refuse to start.
                      "<SocketReceiveBufferSize min=\"default\" max=\"" +
                      std::to_string(wanted_receive_buffer_bytes) + "B\"/>");

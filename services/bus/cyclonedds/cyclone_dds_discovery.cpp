@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 
 namespace dyncal::bus {
 namespace {
@@ -63,6 +64,50 @@ std::vector<std::string> partitions_of(const dds_qos_t* qos) {
   return partitions;
 }
 
+double seconds(dds_duration_t duration) {
+  return duration == DDS_INFINITY ? std::numeric_limits<double>::infinity()
+                                  : static_cast<double>(duration) * 1e-9;
+}
+
+// What an endpoint does not say has the default.
+void add_times(const dds_qos_t* qos, DiscoveredEndpoint& endpoint) {
+  dds_duration_t duration = 0;
+  if (dds_qget_deadline(qos, &duration)) {
+    endpoint.deadline_s = seconds(duration);
+  }
+  if (dds_qget_latency_budget(qos, &duration)) {
+    endpoint.latency_budget_s = seconds(duration);
+  }
+  dds_liveliness_kind_t liveliness = DDS_LIVELINESS_AUTOMATIC;
+  if (dds_qget_liveliness(qos, &liveliness, &duration)) {
+    endpoint.liveliness = static_cast<Liveliness>(liveliness);
+    endpoint.lease_s = seconds(duration);
+  }
+}
+
+void add_order(const dds_qos_t* qos, DiscoveredEndpoint& endpoint) {
+  dds_ownership_kind_t ownership = DDS_OWNERSHIP_SHARED;
+  endpoint.exclusive_ownership =
+      dds_qget_ownership(qos, &ownership) && ownership == DDS_OWNERSHIP_EXCLUSIVE;
+  dds_presentation_access_scope_kind_t scope = DDS_PRESENTATION_INSTANCE;
+  if (dds_qget_presentation(qos, &scope, &endpoint.coherent_access, &endpoint.ordered_access)) {
+    endpoint.access_scope = static_cast<AccessScope>(scope);
+  }
+  dds_destination_order_kind_t order = DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP;
+  if (dds_qget_destination_order(qos, &order)) {
+    endpoint.destination_order = static_cast<DestinationOrder>(order);
+  }
+}
+
+void add_representations(const dds_qos_t* qos, DiscoveredEndpoint& endpoint) {
+  std::uint32_t count = 0;
+  dds_data_representation_id_t* representations = nullptr;
+  if (dds_qget_data_representation(qos, &count, &representations)) {
+    endpoint.representations.assign(representations, representations + count);
+    dds_free(representations);
+  }
+}
+
 DiscoveredEndpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, EndpointKind kind) {
   DiscoveredEndpoint endpoint{.participant = prefix_of(sample.participant_key),
                               .kind = kind,
@@ -75,6 +120,9 @@ DiscoveredEndpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, Endpoi
   dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
   endpoint.transient_local =
       dds_qget_durability(sample.qos, &durability) && durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
+  add_times(sample.qos, endpoint);
+  add_order(sample.qos, endpoint);
+  add_representations(sample.qos, endpoint);
   return endpoint;
 }
 

@@ -47,16 +47,6 @@ ScreenedConnections& screened_connections() {
   return *connections;
 }
 
-// From a socket address of IPv4, the first byte uppermost.
-std::uint32_t address_of(const ddsi_locator_t* source) {
-  if (source == nullptr) {
-    return 0;
-  }
-  const unsigned char* ipv4 = source->address + 12;
-  return std::uint32_t{ipv4[0]} << 24U | std::uint32_t{ipv4[1]} << 16U |
-         std::uint32_t{ipv4[2]} << 8U | std::uint32_t{ipv4[3]};
-}
-
 extern "C" ssize_t read_and_check(ddsi_tran_conn* connection, unsigned char* buffer,
                                   std::size_t length, bool allow_spurious, ddsi_locator_t* source) {
   const Screened screened = screened_connections().of(connection);
@@ -65,7 +55,8 @@ extern "C" ssize_t read_and_check(ddsi_tran_conn* connection, unsigned char* buf
       screened.check->accepts({buffer, std::min(static_cast<std::size_t>(count), length)})) {
     return count;
   }
-  screened.refused->add_implausible(address_of(source));
+  screened.refused->add_implausible(source == nullptr ? 0
+                                                      : RefusedPackets::sender_in(source->address));
   return 0; // nothing has come
 }
 

@@ -180,11 +180,6 @@ void to_ser_unref(ddsi_serdata* serdata, const ddsrt_iovec_t* /*part*/) {
 }
 
 bool decode(const TypeSupport& type, const SerData& serdata, void* sample) {
-  // Key samples that Cyclone DDS keeps for itself have no payload.
-  if (serdata.payload.empty()) {
-    const std::string payload = key_payload(serdata.key, ByteOrder::little);
-    return type.deserialize(sample, payload.data(), payload.size());
-  }
   return type.deserialize(sample, serdata.payload.data(), serdata.size);
 }
 

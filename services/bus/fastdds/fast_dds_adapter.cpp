@@ -39,7 +39,8 @@ fastrtps::Duration_t duration(std::chrono::duration<Rep, Period> time) {
 
 template <class Qos>
 void set_common(const EndpointQos& wanted, Qos& qos) {
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.reliability().kind =
+      wanted.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind =
       wanted.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = wanted.keep_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
@@ -256,21 +257,22 @@ public:
   explicit FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant)
       : participant_(std::move(participant)) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type,
-                                                            const std::string& topic,
-                                                            Profile profile,
-                                                            const std::string& partition) override {
+  services::Expected<std::unique_ptr<UntypedWriter>>
+  writer(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::vector<std::string>& partitions) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
       return fail(services::ErrorCode::network,
                   "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::PublisherQos publisher_qos;
-    publisher_qos.partition().push_back(partition.c_str());
+    for (const std::string& partition : partitions) {
+      publisher_qos.partition().push_back(partition.c_str());
+    }
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);
     if (publisher == nullptr) {
       return fail(services::ErrorCode::network,
-                  "Fast DDS refuses to publish in partition " + partition);
+                  "Fast DDS refuses to publish in partition " + partitions.front());
     }
     dds::DataWriter* fast_writer =
         publisher->create_datawriter(fast_topic, writer_qos(qos_of_writer(profile)));
@@ -326,8 +328,9 @@ private:
 
 services::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options) {
-  auto refused = std::make_shared<RefusedPackets>(options.warn);
-  auto qos = fast_dds_participant_qos(options, refused);
+  auto transports =
+      std::make_shared<TransportState>(std::make_shared<RefusedPackets>(options.warn));
+  auto qos = fast_dds_participant_qos(options, transports);
   if (!qos) {
     return fail(qos.error());
   }
@@ -343,9 +346,10 @@ create_fast_dds_participant(const ParticipantOptions& options) {
                 "Fast DDS cannot join domain " + std::to_string(options.domain) +
                     ": see its messages above, and check the profiles file if you set one");
   }
+  transports->listens = true;
   return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
       std::move(number), std::move(discovery), participant,
-      std::make_shared<MalformedMessages>(options.warn), std::move(refused)));
+      std::make_shared<MalformedMessages>(options.warn), transports->refused));
 }
 
 } // namespace dyncal::bus

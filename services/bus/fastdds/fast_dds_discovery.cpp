@@ -1,5 +1,7 @@
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
 
+#include <limits>
+
 namespace dyncal::bus {
 namespace {
 
@@ -14,6 +16,12 @@ std::string key_of(const rtps::GUID_t& guid) {
   return prefix_of(guid) + hexadecimal(guid.entityId.value, rtps::EntityId_t::size);
 }
 
+double seconds(const eprosima::fastrtps::Duration_t& duration) {
+  return duration.seconds == eprosima::fastrtps::c_TimeInfinite.seconds
+             ? std::numeric_limits<double>::infinity()
+             : duration.seconds + 1e-9 * duration.nanosec;
+}
+
 template <class Data>
 DiscoveredEndpoint endpoint_of(const Data& data, EndpointKind kind) {
   DiscoveredEndpoint endpoint{
@@ -23,7 +31,18 @@ DiscoveredEndpoint endpoint_of(const Data& data, EndpointKind kind) {
       .type = data.typeName().to_string(),
       .partitions = data.m_qos.m_partition.getNames(),
       .reliable = data.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
-      .transient_local = data.m_qos.m_durability.kind >= dds::TRANSIENT_LOCAL_DURABILITY_QOS};
+      .transient_local = data.m_qos.m_durability.kind >= dds::TRANSIENT_LOCAL_DURABILITY_QOS,
+      .exclusive_ownership = data.m_qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS,
+      .deadline_s = seconds(data.m_qos.m_deadline.period),
+      .latency_budget_s = seconds(data.m_qos.m_latencyBudget.duration),
+      .liveliness = static_cast<Liveliness>(data.m_qos.m_liveliness.kind),
+      .lease_s = seconds(data.m_qos.m_liveliness.lease_duration),
+      .access_scope = static_cast<AccessScope>(data.m_qos.m_presentation.access_scope),
+      .coherent_access = data.m_qos.m_presentation.coherent_access,
+      .ordered_access = data.m_qos.m_presentation.ordered_access,
+      .destination_order = static_cast<DestinationOrder>(data.m_qos.m_destinationOrder.kind)};
+  endpoint.representations.assign(data.m_qos.representation.m_value.begin(),
+                                  data.m_qos.representation.m_value.end());
   if (endpoint.partitions.empty()) {
     endpoint.partitions.emplace_back();
   }

@@ -7,7 +7,6 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
-#include "services/bus/fastdds/screened_transport.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 
@@ -56,7 +55,7 @@ void deliver_through_sockets_only() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-void set_transport(const std::string& address, const std::shared_ptr<RefusedPackets>& refused,
+void set_transport(const std::string& address, const std::shared_ptr<TransportState>& state,
                    dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = wanted_receive_buffer_bytes;
@@ -71,8 +70,8 @@ void set_transport(const std::string& address, const std::shared_ptr<RefusedPack
   }
   qos.transport().use_builtin_transports =
       false; // no shared memory: it throttles blocks and leaves files behind
-  if (refused) {
-    qos.transport().user_transports.push_back(screened(udp, refused));
+  if (state) {
+    qos.transport().user_transports.push_back(screened(udp, state));
   } else {
     qos.transport().user_transports.push_back(udp);
   }
@@ -105,7 +104,8 @@ void set_discovery(int domain, bool multicast, const std::string& own_address,
   builtin.discovery_config.leaseDuration = {static_cast<std::int32_t>(lease.count()), 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {
       static_cast<std::int32_t>(lease_announcement.count()), 0};
-  builtin.discovery_config.initial_announcements = {5, {0, 200'000'000}};
+  // The first is not sent (see screened_transport.hpp), and some get lost.
+  builtin.discovery_config.initial_announcements = {10, {0, 50'000'000}};
   if (multicast) {
     builtin.initialPeersList.push_back(locator(discovery_group, discovery_port(domain)));
   }
@@ -121,7 +121,7 @@ void set_discovery(int domain, bool multicast, const std::string& own_address,
 
 services::Expected<dds::DomainParticipantQos>
 fast_dds_participant_qos(const ParticipantOptions& options,
-                         const std::shared_ptr<RefusedPackets>& refused) {
+                         const std::shared_ptr<TransportState>& state) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   log_to_standard_error();
   factory->load_profiles();
@@ -136,7 +136,7 @@ fast_dds_participant_qos(const ParticipantOptions& options,
                    "multicast and interface are taken from there");
     }
     for (auto& transport : qos.transport().user_transports) {
-      transport = screened(transport, refused);
+      transport = screened(transport, state);
     }
     return qos;
   }
@@ -154,7 +154,7 @@ fast_dds_participant_qos(const ParticipantOptions& options,
     return fail(peers.error());
   }
 
-  set_transport(address, options.screened ? refused : nullptr, qos);
+  set_transport(address, options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
   set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, *peers, qos);

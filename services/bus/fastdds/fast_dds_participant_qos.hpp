@@ -11,13 +11,14 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "services/bus/bus.hpp"
+#include "services/bus/fastdds/screened_transport.hpp"
 
 namespace dyncal::bus {
 
-// `refused` counts the packets that its transports refuse. Fails (network) on an interface or peer
-// that does not exist.
+// `state` is shared by its transports, which send nothing before it says that the participant
+// listens. Fails (network) on an interface or peer that does not exist.
 [[nodiscard]] services::Expected<eprosima::fastdds::dds::DomainParticipantQos>
 fast_dds_participant_qos(const ParticipantOptions& options,
-                         const std::shared_ptr<RefusedPackets>& refused);
+                         const std::shared_ptr<TransportState>& state);
 
 } // namespace dyncal::bus

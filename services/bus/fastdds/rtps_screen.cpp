@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "services/bus/qos_profiles.hpp"
 #include "services/bus/rtps/rtps_format.hpp"
 
 namespace dyncal::bus {
@@ -56,22 +57,10 @@ Bytes RtpsScreen::pass(Bytes datagram) {
     return {};
   }
   begin(datagram.first(header_bytes));
-  for (std::size_t at = header_bytes; at + submessage_header_bytes <= datagram.size();) {
-    const unsigned char id = datagram[at];
-    const unsigned char flags = datagram[at + 1];
-    std::size_t length = number_at<std::uint16_t>(datagram, at + 2, flags);
-    at += submessage_header_bytes;
-    if (length == 0 && id != info_timestamp && id != pad) {
-      length = datagram.size() - at; // the last one
-    }
-    if (length > datagram.size() - at || used_ > max_message_bytes ||
-        !pass_submessage(id, flags, datagram.subspan(at, length))) {
-      return {};
-    }
-    at += (length + 3U) & ~std::size_t{3};
-  }
-  refused_ = false;
-  return used_ > header_bytes ? Bytes(buffer_.data(), used_) : Bytes();
+  refused_ = !visit_submessages(datagram, [this](const Submessage& one) {
+    return used_ <= max_message_bytes && pass_submessage(one.id, one.flags, one.body);
+  });
+  return !refused_ && used_ > header_bytes ? Bytes(buffer_.data(), used_) : Bytes();
 }
 
 void RtpsScreen::begin(Bytes header) {

@@ -35,9 +35,6 @@ namespace dyncal::bus {
 
 class RtpsScreen {
 public:
-  // No message of the contract is longer.
-  static constexpr std::uint32_t max_sample_bytes = 64U << 20;
-
   // `stamps` is that of the participant, and outlives the object.
   explicit RtpsScreen(SampleStamps& stamps) : stamps_(&stamps) {}
 

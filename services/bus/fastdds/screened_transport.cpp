@@ -1,9 +1,20 @@
 #include "services/bus/fastdds/screened_transport.hpp"
 
+#include <fastdds/rtps/common/LocatorList.hpp>
+#include <fastdds/rtps/common/LocatorsIterator.hpp>
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "services/bus/fastdds/discovery_heartbeats.hpp"
+#include "services/bus/fastdds/fragment_repairs.hpp"
 #include "services/bus/fastdds/rtps_screen.hpp"
 #include "services/bus/rtps/message_check.hpp"
 
@@ -13,18 +24,50 @@ namespace {
 namespace vendor = eprosima::fastdds::rtps;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// Of IPv4, the first byte uppermost.
-std::uint32_t address_of(const rtps::Locator_t& locator) {
-  const rtps::octet* ipv4 = locator.address + 12;
-  return std::uint32_t{ipv4[0]} << 24U | std::uint32_t{ipv4[1]} << 16U |
-         std::uint32_t{ipv4[2]} << 8U | std::uint32_t{ipv4[3]};
+// The vendor's interface has a destructor that is not virtual; nobody destroys these through it.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
+// Hands on the destinations of another, which can be visited only once, and notes them.
+class NotedDestinations : public vendor::LocatorsIterator {
+public:
+  NotedDestinations(vendor::LocatorsIterator& destinations, std::vector<rtps::Locator_t>& noted)
+      : destinations_(destinations), noted_(noted) {}
+
+  LocatorsIterator& operator++() override {
+    ++destinations_;
+    return *this;
+  }
+  bool operator==(const LocatorsIterator& other) const override {
+    return destinations_ == static_cast<const NotedDestinations&>(other).destinations_;
+  }
+  bool operator!=(const LocatorsIterator& other) const override { return !(*this == other); }
+  const rtps::Locator_t& operator*() const override {
+    const rtps::Locator_t& one = *destinations_;
+    if (noted_.empty() || noted_.back() != one) {
+      noted_.push_back(one);
+    }
+    return one;
+  }
+
+private:
+  vendor::LocatorsIterator& destinations_;
+  std::vector<rtps::Locator_t>& noted_;
+};
+#pragma GCC diagnostic pop
+
+std::size_t hash_of(const rtps::SenderResource* below, const rtps::Locator_t& locator) {
+  const std::string_view bytes(reinterpret_cast<const char*>(&locator), sizeof locator); // unpadded
+  return std::hash<std::string_view>{}(bytes) ^ std::hash<const void*>{}(below);
 }
+
+// Those of discovery come alone or with a few of their kind. One that is missed costs a repeat.
+constexpr std::uint32_t max_acknack_bytes = 256;
 
 class ScreenedTransport : public vendor::ChainingTransport {
 public:
   ScreenedTransport(const vendor::ChainingTransportDescriptor& descriptor,
-                    std::shared_ptr<RefusedPackets> refused)
-      : vendor::ChainingTransport(descriptor), refused_(std::move(refused)) {}
+                    std::shared_ptr<TransportState> state)
+      : vendor::ChainingTransport(descriptor), state_(std::move(state)) {}
 
   vendor::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
@@ -35,7 +78,31 @@ public:
             vendor::LocatorsIterator* destinations_begin,
             vendor::LocatorsIterator* destinations_end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return below->send(bytes, count, destinations_begin, destinations_end, timeout);
+    if (!state_->listens || *destinations_begin == *destinations_end) {
+      return true;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    const auto due = due_heartbeats(now);
+    for (const auto& [way, datagram] : due) {
+      send_to(way, datagram, timeout);
+    }
+    std::optional<DiscoveryHeartbeats::Datagram> counted;
+    {
+      const std::lock_guard lock(tables_);
+      if (repairs_.went_lately({bytes, count}, hash_of(below, **destinations_begin), now)) {
+        return true;
+      }
+      counted = heartbeats_.counted({bytes, count});
+    }
+    if (!counted) {
+      return below->send(bytes, count, destinations_begin, destinations_end, timeout);
+    }
+    std::vector<rtps::Locator_t> noted;
+    NotedDestinations begin(*destinations_begin, noted);
+    NotedDestinations end(*destinations_end, noted);
+    const bool sent = below->send(counted->data(), count, &begin, &end, timeout);
+    note_sent(below, *counted, noted, now);
+    return sent;
   }
 
   // Each socket has a thread, which ends with it.
@@ -43,42 +110,90 @@ public:
                std::uint32_t count, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     if (!check_.accepts({bytes, count})) {
-      refused_->add_implausible(address_of(remote));
+      state_->refused->add_implausible(RefusedPackets::sender_in(remote.address));
       return;
+    }
+    if (count <= max_acknack_bytes) {
+      const std::lock_guard lock(tables_);
+      heartbeats_.received({bytes, count});
     }
     thread_local RtpsScreen screen(stamps_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
     } else if (screen.refused()) {
-      refused_->add(address_of(remote));
+      state_->refused->add(RefusedPackets::sender_in(remote.address));
     }
   }
 
 private:
-  std::shared_ptr<RefusedPackets> refused_;
+  struct Way {
+    rtps::SenderResource* below;
+    rtps::Locator_t destination;
+  };
+
+  using Instant = std::chrono::steady_clock::time_point;
+
+  std::vector<std::pair<Way, DiscoveryHeartbeats::Datagram>> due_heartbeats(Instant now) {
+    std::vector<std::pair<Way, DiscoveryHeartbeats::Datagram>> due;
+    const std::lock_guard lock(tables_);
+    for (auto& [destination, datagram] : heartbeats_.due(now)) {
+      due.emplace_back(ways_.at(destination), std::move(datagram));
+    }
+    return due;
+  }
+
+  void note_sent(rtps::SenderResource* below, const DiscoveryHeartbeats::Datagram& datagram,
+                 const std::vector<rtps::Locator_t>& destinations, Instant now) {
+    const std::lock_guard lock(tables_);
+    for (const rtps::Locator_t& destination : destinations) {
+      const std::size_t way = hash_of(below, destination);
+      if (ways_.size() < DiscoveryHeartbeats::max_destinations) {
+        ways_.try_emplace(way, Way{below, destination});
+      }
+      if (ways_.contains(way)) {
+        heartbeats_.sent(datagram, way, now);
+      }
+    }
+  }
+
+  static void send_to(const Way& way, const DiscoveryHeartbeats::Datagram& datagram,
+                      const std::chrono::steady_clock::time_point& timeout) {
+    rtps::LocatorList_t destination;
+    destination.push_back(way.destination);
+    vendor::Locators begin(destination.begin());
+    vendor::Locators end(destination.end());
+    way.below->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &begin, &end,
+                    timeout); // lost like any other where it cannot be sent
+  }
+
+  std::shared_ptr<TransportState> state_;
   MessageCheck check_;
   SampleStamps stamps_;
+  std::mutex tables_; // what follows; not held while anything is sent, which may take time
+  FragmentRepairs repairs_;
+  DiscoveryHeartbeats heartbeats_;
+  std::map<std::size_t, Way> ways_; // of heartbeats
 };
 
 struct ScreenedTransportDescriptor : vendor::ChainingTransportDescriptor {
   ScreenedTransportDescriptor(std::shared_ptr<vendor::TransportDescriptorInterface> below,
-                              std::shared_ptr<RefusedPackets> counter)
-      : vendor::ChainingTransportDescriptor(std::move(below)), refused(std::move(counter)) {}
+                              std::shared_ptr<TransportState> of_participant)
+      : vendor::ChainingTransportDescriptor(std::move(below)), state(std::move(of_participant)) {}
 
   [[nodiscard]] vendor::TransportInterface* create_transport() const override {
-    return new ScreenedTransport(*this, refused);
+    return new ScreenedTransport(*this, state);
   }
 
-  std::shared_ptr<RefusedPackets> refused;
+  std::shared_ptr<TransportState> state;
 };
 
 } // namespace
 
 std::shared_ptr<vendor::TransportDescriptorInterface>
 screened(std::shared_ptr<vendor::TransportDescriptorInterface> transport,
-         std::shared_ptr<RefusedPackets> refused) {
-  return std::make_shared<ScreenedTransportDescriptor>(std::move(transport), std::move(refused));
+         std::shared_ptr<TransportState> state) {
+  return std::make_shared<ScreenedTransportDescriptor>(std::move(transport), std::move(state));
 }
 
 } // namespace dyncal::bus

@@ -7,14 +7,16 @@
 namespace dyncal::bus {
 namespace {
 
-bool is_in(const std::string& partition, const std::string& pattern) {
-  return fnmatch(pattern.c_str(), partition.c_str(), FNM_NOESCAPE) == 0;
+bool is_in(const std::vector<std::string>& partitions, const MemoryEndpoint& reader) {
+  return std::ranges::any_of(partitions, [&](const std::string& partition) {
+    return fnmatch(reader.partitions.front().c_str(), partition.c_str(), FNM_NOESCAPE) == 0;
+  });
 }
 
 bool matches(const MemoryEndpoint& writer, const MemoryEndpoint& reader) {
   return writer.topic == reader.topic && writer.type_name == reader.type_name &&
          (writer.qos.transient_local || !reader.qos.transient_local) &&
-         is_in(writer.partition, reader.partition);
+         (writer.qos.reliable || !reader.qos.reliable) && is_in(writer.partitions, reader);
 }
 
 void ring(const MemoryEndpoint& endpoint) {
@@ -136,7 +138,7 @@ void MemoryExchange::forget(MemoryWriterState& writer, const std::string& key) {
 
 void MemoryExchange::send(MemoryWriterState& writer, MemoryLink& link,
                           const MemoryMessagePointer& message) {
-  const MessageInTransit transit{writer.topic,       writer.partition,
+  const MessageInTransit transit{writer.topic,       writer.partitions.front(),
                                  writer.participant, link.reader->participant,
                                  message->number,    message->payload};
   if (lost_ && lost_(transit)) {
@@ -183,11 +185,13 @@ bool MemoryExchange::accepts(const MemoryReaderState& reader, const MemoryMessag
 }
 
 void MemoryExchange::accept(MemoryReaderState& reader, const MemoryMessagePointer& message) {
-  if (reader.qos.keep_all) {
-    ++reader.untaken[message->key];
-  } else {
-    std::erase_if(reader.queue,
-                  [&](const MemoryMessagePointer& other) { return other->key == message->key; });
+  int& untaken = reader.untaken[message->key];
+  if (untaken < reader.qos.samples_per_key) {
+    ++untaken;
+  } else if (!reader.qos.keep_all) {
+    reader.queue.erase(std::ranges::find(
+        reader.queue, message->key,
+        [](const MemoryMessagePointer& one) -> auto& { return one->key; }));
   }
   reader.queue.push_back(message);
 }
@@ -295,7 +299,7 @@ void MemoryExchange::inject(const std::string& topic, const std::string& partiti
   message.payload = std::move(payload);
   const auto sent = std::make_shared<MemoryMessage>(std::move(message));
   for (const auto& reader : readers_) {
-    if (reader->topic == topic && is_in(partition, reader->partition)) {
+    if (reader->topic == topic && is_in({partition}, *reader)) {
       accept(*reader, sent);
       ring(*reader);
     }

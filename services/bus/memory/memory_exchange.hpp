@@ -37,7 +37,7 @@ using MemoryMessagePointer = std::shared_ptr<MemoryMessage>;
 struct MemoryEndpoint {
   std::string topic;
   std::string type_name;
-  std::string partition; // of a reader: a pattern
+  std::vector<std::string> partitions; // of a reader: one pattern
   std::string participant;
   EndpointQos qos{};
   std::shared_ptr<WakeUp> wake_up; // of a writer: rings when there may be room; never empty
@@ -45,7 +45,7 @@ struct MemoryEndpoint {
 
 struct MemoryReaderState : MemoryEndpoint {
   std::deque<MemoryMessagePointer> queue;
-  std::map<std::string, int> untaken; // of each key, where all are kept
+  std::map<std::string, int> untaken; // of each key
 };
 
 struct MemoryLink {

@@ -108,13 +108,12 @@ public:
       : exchange_(std::move(exchange)), name_(std::move(name)),
         malformed_(std::make_shared<MalformedMessages>(std::move(warn))) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>> writer(const TypeSupport& type,
-                                                            const std::string& topic,
-                                                            Profile profile,
-                                                            const std::string& partition) override {
+  services::Expected<std::unique_ptr<UntypedWriter>>
+  writer(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::vector<std::string>& partitions) override {
     return std::make_unique<MemoryWriter>(
         exchange_, type,
-        endpoint(type, topic, qos_of_writer(profile), partition, std::make_shared<WakeUp>()));
+        endpoint(type, topic, qos_of_writer(profile), partitions, std::make_shared<WakeUp>()));
   }
 
   services::Expected<std::unique_ptr<UntypedReader>>
@@ -122,18 +121,18 @@ public:
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
     return std::make_unique<MemoryReader>(
         exchange_, type,
-        endpoint(type, topic, qos_of_reader(profile), partition, std::move(wake_up)), malformed_);
+        endpoint(type, topic, qos_of_reader(profile), {partition}, std::move(wake_up)), malformed_);
   }
 
   [[nodiscard]] std::uint64_t malformed_messages() const override { return malformed_->count(); }
 
 private:
   [[nodiscard]] MemoryEndpoint endpoint(const TypeSupport& type, const std::string& topic,
-                                        const EndpointQos& qos, const std::string& partition,
+                                        const EndpointQos& qos, std::vector<std::string> partitions,
                                         std::shared_ptr<WakeUp> wake_up) const {
     return {.topic = topic,
             .type_name = type.name,
-            .partition = partition,
+            .partitions = std::move(partitions),
             .participant = name_,
             .qos = qos,
             .wake_up = std::move(wake_up)};

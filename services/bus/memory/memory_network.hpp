@@ -29,10 +29,10 @@ class MemoryExchange;
 // A message between a writer and one of its readers.
 struct MessageInTransit {
   const std::string& topic;
-  const std::string& partition;
-  const std::string& sender;   // name of the participant
-  const std::string& receiver; // name of the participant
-  std::uint64_t number;        // of the writer, counted from 0
+  const std::string& partition; // the first of its writer's
+  const std::string& sender;    // name of the participant
+  const std::string& receiver;  // name of the participant
+  std::uint64_t number;         // of the writer, counted from 0
   std::string_view payload;
 
   // The message as a struct of the contract; zeros where it is malformed.

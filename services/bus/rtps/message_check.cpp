@@ -6,7 +6,8 @@ namespace dyncal::bus {
 
 using namespace rtps_format;
 
-bool MessageCheck::accepts(Bytes datagram) {
+bool MessageCheck::accepts(Bytes datagram, Instant now) {
+  forget_the_gone(now);
   if (datagram.size() < header_bytes || std::memcmp(datagram.data(), "RTPS", 4) != 0) {
     return true;
   }
@@ -14,28 +15,30 @@ bool MessageCheck::accepts(Bytes datagram) {
   std::ranges::copy(datagram.subspan(header_bytes - prefix_bytes, prefix_bytes), way.from.begin());
   bool accepted = true;
   // To the end: a heartbeat says which numbers are plausible from now on.
-  for (std::size_t at = header_bytes; at + submessage_header_bytes <= datagram.size();) {
-    const unsigned char id = datagram[at];
-    const unsigned char flags = datagram[at + 1];
-    std::size_t length = number_at<std::uint16_t>(datagram, at + 2, flags);
-    at += submessage_header_bytes;
-    if (length == 0 && id != info_timestamp && id != pad) {
-      length = datagram.size() - at; // the last one
+  visit_submessages(datagram, [&](const Submessage& one) {
+    if (one.id == info_source && one.body.size() >= header_bytes) {
+      std::ranges::copy(one.body.last(prefix_bytes), way.from.begin());
+    } else if (one.id == info_destination && one.body.size() >= prefix_bytes) {
+      std::ranges::copy(one.body.first(prefix_bytes), way.to.begin());
     }
-    if (length > datagram.size() - at) {
-      return accepted;
-    }
-    const Bytes body = datagram.subspan(at, length);
-    if (id == info_source && body.size() >= header_bytes) {
-      std::ranges::copy(body.last(prefix_bytes), way.from.begin());
-    } else if (id == info_destination && body.size() >= prefix_bytes) {
-      std::ranges::copy(body.first(prefix_bytes), way.to.begin());
-    }
-    accepted = numbers_.accepts(way, id, flags, body) &&
-               (id != data || announcements_.accepts(way.from, flags, body)) && accepted;
-    at += (length + 3U) & ~std::size_t{3};
-  }
+    accepted = numbers_.accepts(way, one.id, one.flags, one.body) &&
+               (one.id != data || announcements_.accepts(way.from, one.flags, one.body, now)) &&
+               accepted;
+    return true;
+  });
   return accepted;
+}
+
+void MessageCheck::forget_the_gone(Instant now) {
+  const auto time = now.time_since_epoch().count();
+  auto due = next_forgetting_.load();
+  const auto next = time + Instant::duration(forget_interval).count();
+  if (time < due || !next_forgetting_.compare_exchange_strong(due, next)) {
+    return; // another thread does it
+  }
+  if (const auto gone = announcements_.forget_the_gone(now); !gone.empty()) {
+    numbers_.forget(gone);
+  }
 }
 
 } // namespace dyncal::bus

@@ -67,7 +67,8 @@ bool is_of(const std::optional<Bytes>& guid, const Prefix& prefix, bool is_parti
 
 } // namespace
 
-bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, Bytes body) {
+bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, Bytes body,
+                                       Instant now) {
   constexpr std::size_t writer_at = 8;
   const auto begin = qos_begin(body, data_bytes_before_qos, flags);
   const auto qos = begin ? inline_qos(body, *begin, flags) : std::nullopt;
@@ -93,7 +94,7 @@ bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, 
     return false;
   }
   if (is_participant) {
-    return accepts_announcement(from, announced->lasting_fields);
+    return accepts_announcement(from, announced->lasting_fields, now);
   }
   const auto number = sequence_at(body, writer_at + entity_bytes, flags);
   return number && (!announced->guid || accepts_endpoint(*announced->guid, *number));
@@ -122,13 +123,28 @@ bool ParticipantAnnouncements::accepts_goodbye(const Prefix& from) {
 }
 
 bool ParticipantAnnouncements::accepts_announcement(const Prefix& from,
-                                                    const std::string& announced) {
+                                                    const std::string& announced, Instant now) {
   const std::lock_guard lock(mutex_);
   if (known_.size() >= max_participants && !known_.contains(from)) {
     known_.clear();
   }
-  return known_.try_emplace(from, Known{.fields = {.value = announced}})
-      .first->second.fields.accepts(announced);
+  Known& known = known_.try_emplace(from, Known{.fields = {.value = announced}}).first->second;
+  known.heard = now;
+  return known.fields.accepts(announced);
+}
+
+std::set<Prefix> ParticipantAnnouncements::forget_the_gone(Instant now) {
+  std::set<Prefix> gone;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(known_, [&](const auto& one) {
+    return now - one.second.heard > silence_limit && gone.insert(one.first).second;
+  });
+  std::erase_if(endpoints_, [&](const auto& one) {
+    Prefix prefix{};
+    std::copy_n(one.first.begin(), prefix.size(), prefix.begin());
+    return gone.contains(prefix);
+  });
+  return gone;
 }
 
 bool ParticipantAnnouncements::accepts_endpoint(Bytes guid, std::int64_t number) {

@@ -20,14 +20,17 @@
 // row, as whoever misses it asks for it.
 //
 // Fields that are not known here may change. What is no list of parameters is refused.
-// Bound: max_participants and max_endpoints; when there are more, all are forgotten. Any thread.
+// Bound: max_participants and max_endpoints; when there are more, all are forgotten. Whoever has
+// not announced itself for silence_limit is gone, and forgotten with what it had. Any thread.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "services/bus/rtps/rtps_format.hpp"
@@ -36,13 +39,18 @@ namespace dyncal::bus {
 
 class ParticipantAnnouncements {
 public:
+  using Instant = std::chrono::steady_clock::time_point;
+
   static constexpr int sure_after = 3;
+  static constexpr std::chrono::seconds silence_limit{60}; // announcements come every second
   static constexpr std::size_t max_participants = 4096;
   static constexpr std::size_t max_endpoints = 16'384;
 
   // Of a DATA submessage, whatever it is about.
   [[nodiscard]] bool accepts(const rtps_format::Prefix& from, unsigned char flags,
-                             rtps_format::Bytes body);
+                             rtps_format::Bytes body, Instant now);
+  // Returns who is gone.
+  std::set<rtps_format::Prefix> forget_the_gone(Instant now);
 
 private:
   // What somebody stays with until another value has come often enough.
@@ -56,13 +64,15 @@ private:
   };
   struct Known {
     Lasting<std::string> fields;
+    Instant heard{};
     bool has_left = false;
   };
   using EndpointGuid = std::array<unsigned char, rtps_format::prefix_bytes + 4>;
 
   bool accepts_endpoint(rtps_format::Bytes guid, std::int64_t number);
   bool accepts_goodbye(const rtps_format::Prefix& from);
-  bool accepts_announcement(const rtps_format::Prefix& from, const std::string& announced);
+  bool accepts_announcement(const rtps_format::Prefix& from, const std::string& announced,
+                            Instant now);
 
   std::mutex mutex_;
   std::map<rtps_format::Prefix, Known> known_;

@@ -54,6 +54,25 @@ bool PlausibleNumbers::accepts(const Way& way, unsigned char id, unsigned char f
   }
 }
 
+void PlausibleNumbers::forget(const std::set<Prefix>& participants) {
+  const auto is_of_one = [&](const auto& number) {
+    const Key& key = number.first;
+    Prefix from{};
+    Prefix to{};
+    std::copy_n(key.begin(), prefix_bytes, from.begin());
+    std::copy_n(key.begin() + prefix_bytes + entities_bytes, prefix_bytes, to.begin());
+    return participants.contains(from) || participants.contains(to);
+  };
+  const std::lock_guard lock(mutex_);
+  std::erase_if(newcomers_, is_of_one);
+  std::erase_if(known_, is_of_one);
+}
+
+std::size_t PlausibleNumbers::known() const {
+  const std::lock_guard lock(mutex_);
+  return known_.size() + newcomers_.size();
+}
+
 GrowingNumber::Kind PlausibleNumbers::judge(const Key& key, std::int64_t number,
                                             std::int64_t max_step) {
   if (const auto known = known_.find(key); known != known_.end()) {

@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <set>
 #include <unordered_map>
 
 #include "services/bus/rtps/growing_number.hpp"
@@ -52,6 +53,9 @@ public:
 
   [[nodiscard]] bool accepts(const Way& way, unsigned char id, unsigned char flags,
                              rtps_format::Bytes body);
+  // What these participants have sent, and what was sent to them.
+  void forget(const std::set<rtps_format::Prefix>& participants);
+  [[nodiscard]] std::size_t known() const;
 
 private:
   enum class Numbered : unsigned char { samples, heartbeats, heartbeat_frags, acks, base, nacks };
@@ -72,7 +76,7 @@ private:
   bool accepts_acknack(const Way& way, unsigned char flags, rtps_format::Bytes body);
   bool accepts_nack_frag(const Way& way, unsigned char flags, rtps_format::Bytes body);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   Numbers newcomers_;
   Numbers known_;
 };

@@ -61,7 +61,7 @@ constexpr std::int64_t max_sequence = std::int64_t{1} << 48;
 
 using Prefix = std::array<unsigned char, prefix_bytes>;
 
-// REQUIRES for these two: the bytes are there.
+// REQUIRES for this and sequence_at(): the bytes are there.
 template <class Number>
 [[nodiscard]] Number number_at(Bytes bytes, std::size_t at, unsigned char flags) {
   Number value{};
@@ -75,6 +75,36 @@ template <class Number>
     return static_cast<Number>(__builtin_bswap32(value));
   }
 }
+
+struct Submessage {
+  unsigned char id = 0;
+  unsigned char flags = 0;
+  Bytes body;
+};
+
+// Calls `visit` with each submessage behind the header until it returns false. Returns whether it
+// was called with all: false too where one is longer than the datagram.
+template <class Visit>
+bool visit_submessages(Bytes datagram, Visit&& visit) {
+  for (std::size_t at = header_bytes; at + submessage_header_bytes <= datagram.size();) {
+    Submessage one{.id = datagram[at], .flags = datagram[at + 1], .body = {}};
+    std::size_t length = number_at<std::uint16_t>(datagram, at + 2, one.flags);
+    at += submessage_header_bytes;
+    if (length == 0 && one.id != info_timestamp && one.id != pad) {
+      length = datagram.size() - at; // the last one
+    }
+    if (length > datagram.size() - at) {
+      return false;
+    }
+    one.body = datagram.subspan(at, length);
+    if (!visit(one)) {
+      return false;
+    }
+    at += (length + 3U) & ~std::size_t{3};
+  }
+  return true;
+}
+
 // Nothing where it is not one that a writer can have.
 [[nodiscard]] std::optional<std::int64_t> sequence_at(Bytes bytes, std::size_t at,
                                                       unsigned char flags);

@@ -102,18 +102,18 @@ bool AbsoluteTime::is_complete(std::size_t step, const RunRecords& records) cons
 Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records) {
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return [results = results_without_value(
-                records.planned(step), roles_.dut,
-                no_sine(records, records.planned(step), roles_.excitation))] { return results; };
+    return [results =
+                results_without_value(records.planned(step), roles_.dut,
+                                      no_sine(records, records.planned(step), roles_.excitation))](
+               const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);
   std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);
   std::vector<SourceInterval> all{acs};
   all.insert(all.end(), sensors.begin(), sensors.end());
   StepTask task = make_step_task(recipe_, step, records.excitation(), all);
-  return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)] {
-    return evaluate(task, acs, sensors);
-  };
+  return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)](
+             const std::stop_token& stop) { return evaluate(task.until(stop), acs, sensors); };
 }
 
 } // namespace dyncal::services

@@ -77,13 +77,16 @@ std::vector<SearchedChannel> Analogue::searches() const {
 Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return [results = results_without_value(
-                records.planned(step), roles_.dut,
-                no_sine(records, records.planned(step), roles_.excitation))] { return results; };
+    return [results =
+                results_without_value(records.planned(step), roles_.dut,
+                                      no_sine(records, records.planned(step), roles_.excitation))](
+               const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);
   StepTask task = make_step_task(recipe_, step, records.excitation(), {acs});
-  return [task = std::move(task), acs = std::move(acs)] { return evaluate(task, acs); };
+  return [task = std::move(task), acs = std::move(acs)](const std::stop_token& stop) {
+    return evaluate(task.until(stop), acs);
+  };
 }
 
 } // namespace dyncal::services

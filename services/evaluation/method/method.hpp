@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@
 
 namespace dyncal::services {
 
-using Evaluation = std::function<std::vector<StepResult>()>;
+// Asked to stop, one ends soon, with results that nobody should state as they are: their check by
+// Monte Carlo is missing.
+using Evaluation = std::function<std::vector<StepResult>(const std::stop_token& stop)>;
 
 class Method {
 public:

@@ -7,11 +7,12 @@
 namespace dyncal::services {
 
 void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoint& point,
-                           std::span<const analysis::ChannelFit> link, StepResult& result) {
+                           std::span<const analysis::ChannelFit> link, const std::stop_token& stop,
+                           StepResult& result) {
   if (max_trials == 0) {
     return;
   }
-  auto drawn = analysis::check_transfer(point, link, {.max_trials = max_trials});
+  auto drawn = analysis::check_transfer(point, link, {.max_trials = max_trials, .stop = stop});
   if (!drawn) {
     result.flags.push_back(
         flag_with_reason(ResultFlag::no_monte_carlo_check, drawn.error().message));
@@ -20,7 +21,8 @@ void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoi
   result.monte_carlo = *drawn;
 }
 
-void redo_monte_carlo_check(std::uint64_t max_trials, StepResult& result) {
+void redo_monte_carlo_check(std::uint64_t max_trials, const std::stop_token& stop,
+                            StepResult& result) {
   if (!result.monte_carlo) {
     return;
   }
@@ -35,7 +37,7 @@ void redo_monte_carlo_check(std::uint64_t max_trials, StepResult& result) {
                          .u_phase_rad = result.u_phase_rad,
                          .budget = result.budget,
                          .dut = fits.back()},
-                        fits.first(fits.size() - 1), result);
+                        fits.first(fits.size() - 1), stop, result);
 }
 
 } // namespace dyncal::services

@@ -110,9 +110,8 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   if (!of_acs || !of_dau) {
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
     return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(records, records.planned(step), sync))] {
-      return results;
-    };
+                                            no_sine(records, records.planned(step), sync))](
+               const std::stop_token&) { return results; };
   }
   StepSources sources{records.samples(roles_.sync_acs.source, *of_acs),
                       records.samples(roles_.sync_dau.source, *of_dau),
@@ -120,7 +119,9 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   std::vector<SourceInterval> all{sources.acs, sources.dau};
   all.insert(all.end(), sources.sensors.begin(), sources.sensors.end());
   StepTask task = make_step_task(recipe_, step, records.excitation(), all);
-  return [task = std::move(task), sources = std::move(sources)] { return evaluate(task, sources); };
+  return [task = std::move(task), sources = std::move(sources)](const std::stop_token& stop) {
+    return evaluate(task.until(stop), sources);
+  };
 }
 
 } // namespace dyncal::services

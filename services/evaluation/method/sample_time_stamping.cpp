@@ -104,16 +104,14 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
     const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_dau.source));
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
     return [results = results_without_value(records.planned(step), dut,
-                                            no_sine(records, records.planned(step), sync))] {
-      return results;
-    };
+                                            no_sine(records, records.planned(step), sync))](
+               const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
   SourceInterval dau = records.samples(roles_.sync_dau.source, *of_dau);
   StepTask task = make_step_task(recipe_, step, records.excitation(), {acs, dau});
-  return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)] {
-    return evaluate(task, acs, dau);
-  };
+  return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
+             const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
 }
 
 } // namespace dyncal::services

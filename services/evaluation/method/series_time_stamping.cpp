@@ -35,7 +35,7 @@ bool SeriesTimeStamping::is_complete(std::size_t step, const RunRecords& records
 }
 
 Evaluation SeriesTimeStamping::evaluation(std::size_t step, const RunRecords& records) {
-  return [results = evaluate(step, records)] { return results; };
+  return [results = evaluate(step, records)](const std::stop_token&) { return results; };
 }
 
 std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const RunRecords& records) {

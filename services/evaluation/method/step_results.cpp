@@ -133,7 +133,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     add_lines(std::move(lines), result);
     if (result.valid) {
       add_monte_carlo_check(task.recipe->monte_carlo_trials, step->points[i], step->common_fits,
-                            result);
+                            task.stop, result);
     }
   }
   return results;

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/evaluation/recipe/recipe.hpp"
@@ -17,8 +19,12 @@ struct StepTask {
   std::shared_ptr<const Recipe> recipe;
   std::size_t index = 0; // among the recipe's steps
   std::vector<Flag> flags{};
+  std::stop_token stop{}; // of its evaluation
 
   [[nodiscard]] const RecipeStep& step() const { return recipe->steps[index]; }
+  [[nodiscard]] StepTask until(std::stop_token asked) const {
+    return {recipe, index, flags, std::move(asked)};
+  }
 };
 
 // With the flags that every method has: samples lost, step shorter than planned, excitation broken

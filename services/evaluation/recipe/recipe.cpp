@@ -9,6 +9,9 @@
 namespace dyncal::services {
 namespace {
 
+// Of a value; all of them are held while it is drawn, 16 bytes each.
+constexpr std::uint64_t most_monte_carlo_trials = 100'000'000;
+
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     names.push_back(name);
@@ -158,6 +161,12 @@ Expected<void> check_recipe(const Recipe& recipe) {
       (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
     return refuse("series time stamping has neither settling = \"from-data\" nor "
                   "monte_carlo_trials; leave them out of the bench file");
+  }
+  if (recipe.monte_carlo_trials > most_monte_carlo_trials) {
+    return refuse(
+        fmt::format("the recipe asks for {} Monte Carlo trials of a value, and at most {} "
+                    "can be drawn: lower uncertainty.monte_carlo_trials",
+                    recipe.monte_carlo_trials, most_monte_carlo_trials));
   }
   if (own_clocks && recipe.settling_from_data) {
     return refuse("sensors with stamps of their own are evaluated without settling = "

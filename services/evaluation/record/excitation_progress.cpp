@@ -57,6 +57,10 @@ std::size_t ExcitationProgress::steps_expected() const {
   return aborted_ ? steps_announced_ : order_.size();
 }
 
+std::size_t ExcitationProgress::steps_begun() const {
+  return is_conducted_ && !ended_ && !cut_short_ ? steps_announced_ : steps_expected();
+}
+
 std::optional<std::size_t> ExcitationProgress::excited_step() const {
   if (steps_announced_ == 0 || ended_ || is_announced_over(steps_announced_ - 1)) {
     return std::nullopt;

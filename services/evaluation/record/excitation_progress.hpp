@@ -54,6 +54,10 @@ public:
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] bool is_cut_short() const { return cut_short_; }
   [[nodiscard]] std::size_t steps_expected() const;
+  // Steps that samples may show by now. Where somebody conducts the run, a sine of a step that was
+  // not announced is somebody else's: of a conductor in another domain, or made by hand after this
+  // one has died.
+  [[nodiscard]] std::size_t steps_begun() const;
   [[nodiscard]] bool is_announced_over(std::size_t step) const { return over_.contains(step); }
   // The step that is excited now, by what was announced.
   [[nodiscard]] std::optional<std::size_t> excited_step() const;

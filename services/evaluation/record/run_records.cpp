@@ -7,7 +7,7 @@ namespace dyncal::services {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity, bool behind)
-    : excitation_(recipe) {
+    : excitation_(recipe), behind_(behind) {
   for (const std::string& source : recipe.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }
@@ -98,7 +98,8 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
 
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
-  const std::size_t expected = std::min(excitation_.steps_expected(), end_step);
+  const std::size_t expected =
+      std::min(behind_ ? excitation_.steps_expected() : excitation_.steps_begun(), end_step);
   for (std::size_t i = 0; i < searches_.size() && expected > 0; ++i) {
     StepSearch& steps = searches_[i].steps;
     const std::string& source = searches_[i].source;

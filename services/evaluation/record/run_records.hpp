@@ -72,8 +72,9 @@ public:
   // evaluated yet, from `next_step` on.
   [[nodiscard]] bool end_session(const std::string& source, std::size_t next_step);
 
-  // Searches the samples that have come since the last call for steps before `end_step`; passes
-  // over steps that are over in the source and show nothing.
+  // Searches the samples that have come since the last call for steps before `end_step`, in a
+  // conducted run for those that were announced; passes over steps that are over in the source and
+  // show nothing.
   void search(std::size_t end_step = std::numeric_limits<std::size_t>::max());
   // Every search has passed the step.
   [[nodiscard]] bool is_searched(std::size_t step) const;
@@ -106,6 +107,7 @@ private:
   void follow_restarts();
 
   ExcitationProgress excitation_;
+  bool behind_; // samples come before what was announced about them
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   // By source and step: its newest stamp when the step was announced to be over.
   std::map<std::string, std::map<std::size_t, std::int64_t>> newest_when_over_ns_;

@@ -24,10 +24,11 @@ constexpr std::array rows{
     Row{ResultFlag::stamps_not_trusted, "stamps_not_trusted",
         "samples left out, their stamps are not trusted",
         "the device or the check of its stamps does not trust some of them, and their samples are "
-        "left out; check the clock and the GPS reception of the unit"},
+        "left out; check the clock and the GPS reception of the unit",
+        true},
     Row{ResultFlag::values_not_measured, "values_not_measured",
         "samples left out, they were not measured",
-        "the device sent samples without a value, which are left out; check its settings"},
+        "the device sent samples without a value, which are left out; check its settings", true},
     Row{ResultFlag::shorter_than_planned, "shorter_than_planned", "shorter than planned",
         "less of the steady sine was recorded than the plan asks for, so the noise in u is larger "
         "than planned; repeat the step, or lengthen what the generator plays",

@@ -52,8 +52,9 @@ enum class ResultFlag {
 [[nodiscard]] std::string_view explanation_of(ResultFlag flag);
 
 // Another attempt at the step may be without it: what came of the network, of an instrument that
-// was away or of an excitation that ended early. What the set-up makes of a signal (range, level,
-// distortion, clocks) comes again.
+// was away or of an excitation that ended early, and single samples that the device itself did not
+// trust or measure (a gap in GPS reception, a clock that was set, a disturbed bus). What the set-up
+// makes of a signal (range, level, distortion, clocks) comes again.
 [[nodiscard]] bool may_be_cured(ResultFlag flag);
 
 struct Flag {

@@ -53,8 +53,9 @@ struct RunOutcome {
   std::vector<ClockReport> clock_reports;
   std::vector<RunPause> pauses;
   bool interrupted = false;
-  bool output_may_be_on = false; // the generator has not confirmed that its output is off
-  std::string problem;           // why the run ended early; empty when it did not
+  bool output_may_be_on = false;  // nobody has confirmed that the generator's output is off
+  bool output_is_guarded = false; // and a guard goes on trying to switch it off
+  std::string problem;            // why the run ended early; empty when it did not
 };
 
 // What Measurement::message says of a run that the user ended.

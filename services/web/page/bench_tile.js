@@ -135,13 +135,13 @@ function results_text({ results, results_invalid, results_flagged }) {
     `${count_text(results_flagged)} flagged`;
 }
 
-function clock_text({ clock_offset_s, u_clock_offset_s }) {
+function clock_text({ clock_offset_s, clock_offset_bound_s }) {
   if (!is_number(clock_offset_s)) {
     return ["not compared", null];
   }
-  return [`${short_time(clock_offset_s)} off, u ${short_time(u_clock_offset_s, 2)}`,
-          `${full(clock_offset_s, "s")}, u ${full(u_clock_offset_s, "s")}: the host whose clock is ` +
-          "farthest from the daemon's"];
+  return [`${short_time(clock_offset_s)} off, within ${short_time(clock_offset_bound_s, 2)}`,
+          `${full(clock_offset_s, "s")}, within ${full(clock_offset_bound_s, "s")}: the host whose ` +
+          "clock is farthest from the daemon's"];
 }
 
 function recording_text(recording) {

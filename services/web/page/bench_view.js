@@ -132,7 +132,7 @@ export class BenchView {
 
   show(data) {
     this.show_head(data);
-    this.plan.update(data.plan, data.now, this.page.clock);
+    this.plan.update(data.plan, data.now);
     this.sources.update(data.sources ?? []);
     this.signals.offer(data.sources ?? []);
     this.step.show_now(data);
@@ -160,7 +160,6 @@ export class BenchView {
     set_text(this.age, this.page.clock.age_text(this.bench.last_message_utc_ms));
     this.root.classList.toggle("is-stale",
                                this.page.clock.is_stale(this.bench.last_message_utc_ms));
-    this.plan.tick();
     this.sources.tick();
     this.signals.tick();
   }

@@ -22,9 +22,8 @@ export class PlanBand {
     set_shown(this.root, false);
   }
 
-  update(plan, now, clock) {
+  update(plan, now) {
     this.now = now;
-    this.clock = clock;
     set_shown(this.root, Boolean(plan));
     if (!plan) {
       return;
@@ -34,22 +33,19 @@ export class PlanBand {
     set_name(this.method, `${plan.method ?? ""}; reference ${plan.reference ?? "not known"}; ` +
       `device under test ${(plan.dut ?? []).join(", ") || "all channels of the sensor"}`, 200);
     set_text(this.summary, summary_of(this.steps));
-    this.tick();
+    this.show_now();
   }
 
-  tick() {
+  show_now() {
     const { now, steps = [] } = this;
     const step = steps.find((one) => one.step === now?.step);
     set_shown(this.now_text, Boolean(step));
     if (!step) {
       return;
     }
-    const end = this.now.end_utc_ms;
-    const here = this.clock?.now_utc_ms();
-    const left = is_number(end) && is_number(here) && end > here
-      ? (end - here) / 1000 : this.now.time_left_s;
-    set_text(this.now_text, `${sign_of(this.now.state)} step ${step.step}: ${step_text(step)}, ` +
-      `${word_of(this.now.state)}${is_number(left) ? `, ${duration_text(left)} left` : ""}`);
+    const left = now.time_left_s; // its times UTC are by the conductor's clock, not the server's
+    set_text(this.now_text, `${sign_of(now.state)} step ${step.step}: ${step_text(step)}, ` +
+      `${word_of(now.state)}${is_number(left) ? `, ${duration_text(left)} left` : ""}`);
   }
 }
 

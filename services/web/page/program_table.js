@@ -59,10 +59,10 @@ class ProgramRow {
     for (const [key, node] of this.names) {
       set_name(node, program[key] ?? "", key === "message" ? 120 : 36);
     }
-    const { clock_offset_s, u_clock_offset_s } = program;
+    const { clock_offset_s, clock_offset_bound_s } = program;
     set_text(this.offset, is_number(clock_offset_s)
-      ? `${short_time(clock_offset_s)}, u ${short_time(u_clock_offset_s, 2)}` : UNKNOWN);
-    this.offset.title = `${full(clock_offset_s, "s")}, u ${full(u_clock_offset_s, "s")}`;
+      ? `${short_time(clock_offset_s)}, within ${short_time(clock_offset_bound_s, 2)}` : UNKNOWN);
+    this.offset.title = `${full(clock_offset_s, "s")}, within ${full(clock_offset_bound_s, "s")}`;
     this.tick();
   }
 

@@ -13,6 +13,7 @@ import { quantity_in, unit_text } from "./unit_text.js";
 
 const SPECTRUM_EVERY_MS = 2000;
 const MAX_COLUMNS = 1000;
+const OLD_AFTER_MS = 3000;
 const SECONDS = ["1", "2", "5", "10", "30", "60"];
 
 export class SignalPanel {
@@ -96,6 +97,9 @@ export class SignalPanel {
     if (this.is_frozen || !this.is_chosen(signal)) {
       return;
     }
+    if (signal.begin_utc_ms !== this.signal?.begin_utc_ms) {
+      this.newer_ms = performance.now(); // not by its UTC, which is by the clock of the source's host
+    }
     this.signal = signal;
     // A browser that cannot keep up draws the newest and leaves out those before.
     cancelAnimationFrame(this.frame);
@@ -157,12 +161,11 @@ export class SignalPanel {
   }
 
   tick() {
-    const begin = this.signal?.begin_utc_ms;
-    const age = this.page.clock.age_ms(begin);
-    const is_old = age !== null && age > 3000 + 1000 * Number(this.seconds.value);
+    const age = this.signal === null ? 0 : performance.now() - this.newer_ms;
+    const is_old = age > OLD_AFTER_MS;
     this.trace.root.classList.toggle("is-stale", is_old && !this.is_frozen);
     set_shown(this.meter.root, this.signal !== null);
-    set_text(this.freeze, this.is_frozen ? `Back to live (frozen ${short_time((age ?? 0) / 1000, 2)} ago)`
+    set_text(this.freeze, this.is_frozen ? `Back to live (frozen ${short_time(age / 1000, 2)} ago)`
                                          : "Freeze");
   }
 

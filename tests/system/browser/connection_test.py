@@ -7,7 +7,7 @@ import time
 from page_case import PageCase, connection_is, run, text_of
 
 MAX_P95_MS = 300
-ATTEMPTS = 5
+ATTEMPTS = 10
 FAILED = ["ERR_CONNECTION_REFUSED", "ERR_INCOMPLETE_CHUNKED_ENCODING", "ERR_EMPTY_RESPONSE",
           "ERR_CONNECTION_RESET", "503"]
 
@@ -95,18 +95,10 @@ class Connection(PageCase):
         page.wait_for("states.includes('lost')", 12)
 
     def test_a_changed_state_is_on_the_page_in_time(self):
-        self.laboratory.add_bench("acc-1")
         self.laboratory.stream_gap_s = 1
-        page = self.open("run/acc-1")
-        page.value(
-            "window.late = []; window.rows = new Set(); new MutationObserver(() => { for (const r "
-            "of document.querySelectorAll('[data-step]')) if (!rows.has(r.dataset.step)) { "
-            "rows.add(r.dataset.step); late.push([r.dataset.step, Date.now()]); } })"
-            ".observe(document.querySelector('[data-panel=table]'), "
-            "{childList: true, subtree: true, attributes: true})")
         # Others use this machine, too: one run in time shows that the page can do it.
         for attempt in range(1, ATTEMPTS + 1):
-            late = self.measure_a_run(page)
+            late = self.measure_a_run(f"acc-{attempt}")
             p95 = late[int(0.95 * len(late))]
             print(f"\nfrom state to page, run {attempt}: median {late[25]:.0f} ms, 95 % {p95:.0f} "
                   f"ms, largest {late[-1]:.0f} ms")
@@ -114,20 +106,27 @@ class Connection(PageCase):
                 return
         self.fail(f"no run of {ATTEMPTS} in time")
 
-    def measure_a_run(self, page):
-        """Sorted delays in ms from a change of the state to the row of its result."""
-        self.laboratory.points["acc-1"] = []
+    def measure_a_run(self, bench):
+        """Sorted delays in ms from a change of the state to the row of its result. On a bench of
+        its own: results of a run never become fewer, and a page may ask for their figures late."""
+        self.laboratory.add_bench(bench)
         self.laboratory.changed()
-        page.wait_for("document.querySelectorAll('[data-step]').length === 0")
-        page.value("rows.clear(); late.length = 0")
+        page = self.open(f"run/{bench}")
+        page.value(
+            "window.late = []; window.rows = new Set(); new MutationObserver(() => { for (const r "
+            "of document.querySelectorAll('[data-step]')) if (!rows.has(r.dataset.step)) { "
+            "rows.add(r.dataset.step); late.push([r.dataset.step, Date.now()]); } })"
+            ".observe(document.querySelector('[data-panel=table]'), "
+            "{childList: true, subtree: true, attributes: true})")
         sent = {}
         for step in range(1, 52):
-            self.laboratory.measure("acc-1", step)
+            self.laboratory.measure(bench, step)
             sent[str(step)] = time.time() * 1000
             self.laboratory.changed()
             page.wait_for(f"rows.has('{step}')")
         late = sorted(at - sent[step] for step, at in page.value("late"))
         self.assertEqual(len(late), 51)
+        self.close(page)
         return late
 
 

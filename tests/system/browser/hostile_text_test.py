@@ -44,7 +44,7 @@ class HostileText(PageCase):
             self.laboratory.programs.append({
                 "name": text, "kind": text, "bench": text, "host": text, "process_id": 1,
                 "version": text, "vendor": text, "health": text, "message": text,
-                "clock_offset_s": None, "u_clock_offset_s": None})
+                "clock_offset_s": None, "clock_offset_bound_s": None})
             self.laboratory.events.append({"utc_ms": now, "bench": text, "severity": text,
                                            "text": text})
         bench = self.laboratory.benches[IMAGE]

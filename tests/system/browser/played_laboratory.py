@@ -21,6 +21,7 @@ JAVASCRIPT = pathlib.Path("/usr/share/javascript")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript",
          ".svg": "image/svg+xml", ".json": "application/json"}
 TOKEN = "let me"
+HOUR_MS = 3_600_000  # the clocks of conductors are ahead by it, those of sources behind
 CSP = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:"
 
 
@@ -64,7 +65,7 @@ class Laboratory:
             "sample-timestamping", "step": 1, "step_count": steps, "repetition": 1,
             "frequency_text_hz": "10", "level_m_s2": 2.5, "excitation": "steady",
             "time_left_s": 612.0, "worst": {"severity": "ok", "what": ""}, "lost": "0",
-            "clock_offset_s": 3.1e-5, "u_clock_offset_s": 1.2e-5, "results": 0,
+            "clock_offset_s": 3.1e-5, "clock_offset_bound_s": 1.2e-5, "results": 0,
             "results_invalid": 0, "results_flagged": 0, "recording": None, "last_result": None,
             **members}
         self.points[name] = []
@@ -130,8 +131,9 @@ class Laboratory:
                      tile["method"], "reference": "acs/reference", "sync_acs": "acs/sync",
                      "sync_dau": "dau/sync", "sync_dso": "", "dut": [state.CHANNEL],
                      "recipe": "", "recipe_sha256": "", "conductor": "dyncal run", "steps": steps},
-            "now": {"step": step_now, "state": tile["excitation"], "begin_utc_ms": now - 3000,
-                    "end_utc_ms": now + 7000, "time_left_s": 7.0},
+            "now": {"step": step_now, "state": tile["excitation"],
+                    "begin_utc_ms": now + HOUR_MS - 3000, "end_utc_ms": now + HOUR_MS + 7000,
+                    "time_left_s": 7.0},
             "messages": [e for e in self.events if e["bench"] == name]})
 
     def run(self, name, run=None):
@@ -159,9 +161,10 @@ class Laboratory:
 
     def signal(self, name, source, channel, seconds, columns):
         amplitude = 9.2 if channel == "x_acceleration" else 0.5
-        return {**state.signal(float(seconds), int(columns), self.now_ms(), self.number,
-                               amplitude),
-                "source": source, "channel": channel, **self.signal_changes}
+        return {**state.signal(float(seconds), int(columns), self.now_ms() - HOUR_MS,
+                               self.number, amplitude),
+                "source": source, "channel": channel, "now_utc_ms": self.now_ms(),
+                **self.signal_changes}
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
@@ -367,7 +370,7 @@ def example():
                 "name": f"dyncal-{kind}", "kind": kind, "bench": bench, "host": host,
                 "process_id": 4711 + len(lab.programs), "version": "1.4.0", "message": "",
                 "vendor": "cyclonedds" if kind == "acs" else "fastdds", "health": "ok",
-                "clock_offset_s": 3.1e-5, "u_clock_offset_s": 1.2e-5})
+                "clock_offset_s": 3.1e-5, "clock_offset_bound_s": 1.2e-5})
     lab.programs.append({**lab.programs[0], "bench": "gyro", "name": "dyncal-analysis",
                          "health": "silent", "message": "last heard before it stopped",
                          "last_message_utc_ms": lab.last_message_ms["gyro"]})

@@ -61,6 +61,8 @@ class Views(PageCase):
                          24)
         self.assertEqual(page.value(text_of('[data-source="dau"] [data-field="received"]')),
                          "1\u202f234\u202f567")
+        self.assertRegex(page.value(text_of("[data-field=now]")), "steady, 7 s left$")
+        self.assertEqual(page.value("document.querySelectorAll('.is-stale').length"), 0)
         # Beyond 2^53, where a number of JavaScript has lost its last digit.
         self.assertEqual(page.value(text_of('[data-source="acs"] [data-field="received"]')),
                          "9\u202f007\u202f199\u202f254\u202f740\u202f993")
@@ -86,6 +88,8 @@ class Views(PageCase):
         self.laboratory.signal_changes = {"level_peak": 39.1}
         page.value("new Promise(done => setTimeout(done, 700))")
         self.assertEqual(page.value(text_of("[data-field=level]")), before)
+        page.wait_for(r"/frozen (\d{1,3} ms|\d{1,2}(\.\d)? s) ago/.test("
+                      "document.querySelector('[aria-pressed=true]').textContent)")
         page.value("document.querySelector('[aria-pressed=true]').click()")
         page.wait_for(f"{text_of('[data-field=level]')}.includes('overload')")
 
@@ -125,7 +129,7 @@ class Views(PageCase):
         self.assertEqual(page.value(texts_of("[data-panel=files] li a")),
                          ["result.json", "transfer_function.svg"])
         self.assertIn("612\u202f345 intervals", page.value(text_of("[data-field=clock_report]")))
-        self.assertEqual(page.value("document.querySelectorAll('.canvas').length"), 8)
+        page.wait_for("document.querySelectorAll('.canvas').length === 8")  # fetched by themselves
         for i in range(8):
             page.wait_for(f"{drawn_pixels(i)} > 200")
 

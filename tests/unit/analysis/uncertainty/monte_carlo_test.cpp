@@ -72,6 +72,23 @@ TEST(MonteCarlo, SameSeedGivesTheSameNumbers) {
   EXPECT_EQ(a->trials, 20'000u);
 }
 
+TEST(MonteCarlo, EndsSoonAfterItWasAskedToStop) {
+  const std::vector<InputQuantity> inputs{{.name = "x", .u = 9.9}};
+  std::stop_source stop;
+  int trials = 0;
+  const auto stopped = draw(inputs, {},
+                            [&](std::span<const double> drawn) {
+                              if (++trials == 5000) {
+                                stop.request_stop();
+                              }
+                              return drawn[0];
+                            },
+                            {.stop = stop.get_token()});
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::not_converged);
+  EXPECT_EQ(trials, 10'000); // the batch is drawn to its end
+}
+
 TEST(MonteCarlo, OutputsShareTheirDraws) {
   const std::array inputs{InputQuantity{.name = "a", .u = 1.0}};
   const auto results = propagate_distributions(inputs, {}, 2,

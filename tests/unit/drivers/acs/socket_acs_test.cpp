@@ -189,14 +189,34 @@ TEST(SocketAcs, BeginsANewSessionWhenTheInstrumentIsBack) {
   EXPECT_EQ(sink.blocks[1].first_sample, 0U);
 }
 
+TEST(SocketAcs, LeavesAnInstrumentThatFallsSilentWithinAFrame) {
+  for (const std::size_t sent : {std::size_t{7}, std::size_t{40}}) {
+    const ScriptedInstrument instrument([&](int turn, ScriptedInstrument::Client& client) {
+      const std::string whole = frame<std::int32_t>(0, 10);
+      client.say(description("int32", 1000) +
+                 (turn == 0 ? whole + frame<std::int32_t>(10, 10).substr(0, sent)
+                            : whole + end_of_stream));
+      static_cast<void>(client.hear());
+    });
+    SocketAcs acs({.address = instrument.address(), .frame_limit = std::chrono::milliseconds(50)});
+    ASSERT_TRUE(acs.describe());
+    CollectingSink sink;
+    ASSERT_TRUE(acs.run(sink));
+    EXPECT_EQ(sink.sessions_begun_at.size(), 2U) << sent;
+    EXPECT_EQ(sink.blocks.size(), 2U) << sent;
+    ASSERT_EQ(sink.warnings.size(), 1U) << sent;
+    EXPECT_THAT(sink.warnings[0], HasSubstr("has sent part of a frame and then nothing for 50 ms"));
+  }
+}
+
 TEST(SocketAcs, EndsWithASentenceWhenTheStreamCannotBeUnderstood) {
   const std::pair<std::string, const char*> cases[] = {
       {"this is no frame at all", "is not a frame"},
       {frame<std::int32_t>(100, 30) + frame<std::int32_t>(50, 30), "go back from 130 to 50"},
   };
   for (const auto& [bytes, message] : cases) {
-    const ScriptedInstrument instrument([&bytes](int, ScriptedInstrument::Client& client) {
-      client.say(description("int32", 1000) + bytes);
+    const ScriptedInstrument instrument([&sent = bytes](int, ScriptedInstrument::Client& client) {
+      client.say(description("int32", 1000) + sent);
       static_cast<void>(client.hear());
     });
     SocketAcs acs({instrument.address()});

@@ -45,6 +45,8 @@ TEST(StreamDescription, NamesTheMemberThatIsWrong) {
       {with(R"("scale":0.5,)", ""), "'channels[0].scale' is missing"},
       {with("0.5", "-0.5"), "'channels[0].scale' must be above 0"},
       {with(R"("name":"reference",)", ""), "'channels[0].name' is missing"},
+      {with(R"("name":"reference")", R"("name":")" + std::string(129, 'r') + '"'),
+       "'channels[0].name' is longer than 128 bytes"},
       {with(R"({"name":"reference","unit":"\\volt","scale":0.5,"minimum":-1,"maximum":1})", ""),
        "'channels' must list 1 to 64"},
   };

@@ -93,6 +93,33 @@ TEST_F(ByHand, AsksForTheOutputToBeSwitchedOffWhenItGoesAway) {
   EXPECT_THAT(shown_.back(), HasSubstr("switch the generator's output off"));
 }
 
+TEST_F(ByHand, AsksOnceForTheOutputToBeSwitchedOffAndTakesOnlyAConfirmationForIt) {
+  set("10", 0.1);
+  type("\n");
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(generator_->set_output(false));
+    EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(0)));
+  }
+  EXPECT_EQ(shown_.size(), 2U);
+  EXPECT_THAT(shown_.back(), HasSubstr("switch the output off, then press Enter"));
+  type("\n");
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
+  EXPECT_TRUE(generator_->set_output(false));
+  EXPECT_TRUE(*generator_->wait_for_effect(milliseconds(0)));
+  generator_.reset();
+  EXPECT_EQ(shown_.size(), 2U);
+}
+
+TEST_F(ByHand, TheAnswerToAnEarlierQuestionDoesNotConfirmThatTheOutputIsOff) {
+  set("10", 0.1);
+  EXPECT_TRUE(generator_->set_output(false));
+  type("\n"); // the output is on
+  EXPECT_FALSE(*generator_->wait_for_effect(milliseconds(1)));
+  type("\n");
+  EXPECT_TRUE(*generator_->wait_for_effect(tests::patience));
+}
+
 TEST_F(ByHand, SaysNothingWhenTheOutputWasNeverOn) {
   EXPECT_TRUE(generator_->set_output(false));
   generator_.reset();

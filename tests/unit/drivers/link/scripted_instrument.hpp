@@ -9,6 +9,8 @@
 #include <thread>
 #include <unistd.h>
 
+#include <gtest/gtest.h>
+
 #include "drivers/link/file_descriptor.hpp"
 
 namespace dyncal::drivers {
@@ -51,8 +53,10 @@ public:
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    bind(listener_.number(), reinterpret_cast<sockaddr*>(&address), sizeof(address));
-    listen(listener_.number(), 4);
+    const bool listens =
+        ::bind(listener_.number(), reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0 &&
+        ::listen(listener_.number(), 4) == 0;
+    EXPECT_TRUE(listens) << "port of a scripted instrument";
     socklen_t size = sizeof(address);
     getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &size);
     port_ = ntohs(address.sin_port);

@@ -1,9 +1,12 @@
 // The analysis service as a bench meets it, on the memory bus and in stepped time.
 #include "services/analysis/analysis_service.hpp"
 
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/version.hpp"
 #include "tests/unit/services/analysis/played_sources.hpp"
 
 namespace dyncal::services {
@@ -27,6 +30,7 @@ protected:
                               {.service = "analysis@test:1", .host = "test", .dds = "memory"},
                               clock_)
           .value();
+  AnalysisFigures figures_; // the newest
 
   bus::Writer<wire::Measurement> measurement_writer(const std::string& bench) {
     return runner_.writer<wire::Measurement>(bus::topics::measurement, bus::Profile::state, bench)
@@ -45,7 +49,8 @@ protected:
   void serve_for(std::chrono::nanoseconds time) {
     std::stop_source stop;
     clock_.at(clock_.elapsed() + time, [&] { stop.request_stop(); });
-    service_->serve(stop.get_token());
+    service_->serve(stop.get_token(),
+                    [this](const AnalysisFigures& figures) { figures_ = figures; });
   }
   // Sources that are there, answer, and send without end.
   void play_sources() {
@@ -162,10 +167,10 @@ TEST_F(AnalysisServiceTest, EndsARunWhoseRunnerIsLost) {
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
 }
 
-TEST_F(AnalysisServiceTest, KeepsTheNewestTenRunsOfABenchForLateJoiners) {
+TEST_F(AnalysisServiceTest, KeepsTheNewestRunsOfABenchForLateJoiners) {
   wire::Measurement without_steps = measurement("", wire::MEASUREMENT_PLANNED);
   without_steps.steps().clear(); // refused at once
-  for (int run = 1; run <= 12; ++run) {
+  for (int run = 1; run <= 5; ++run) {
     without_steps.run("run-" + std::to_string(run));
     measurements_.write(without_steps);
     serve_for(200ms);
@@ -176,11 +181,8 @@ TEST_F(AnalysisServiceTest, KeepsTheNewestTenRunsOfABenchForLateJoiners) {
     EXPECT_EQ(status.arm(), wire::ARM_REFUSED);
     runs.insert(status.run().to_string());
   }
+  EXPECT_EQ(runs, (std::set<std::string>{"run-3", "run-4", "run-5"}));
   EXPECT_EQ(runs.size(), AnalysisService::kept_runs);
-  EXPECT_FALSE(runs.contains("run-1"));
-  EXPECT_FALSE(runs.contains("run-2"));
-  EXPECT_TRUE(runs.contains("run-3"));
-  EXPECT_TRUE(runs.contains("run-12"));
 }
 
 TEST_F(AnalysisServiceTest, SurvivesAMalformedMessage) {
@@ -243,6 +245,112 @@ TEST_F(AnalysisServiceTest, LetsARunThatIsOverFinishBeforeTheNextOneOfItsBench) 
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
   EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
   EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+}
+
+// Of what it keeps by name, whatever names there are.
+class FloodedAnalysis : public AnalysisServiceTest {
+protected:
+  bus::Participant stranger_ = network_.join("stranger");
+  int floods_ = 0;
+
+  template <class Message>
+  void write(const bus::Topic<Message>& topic, const std::string& bench, Message message) {
+    message.bench(bench);
+    stranger_.writer(topic, bench)->write(message);
+  }
+  // A run, a source and an analysis of each of many benches.
+  void flood(std::size_t names) {
+    ++floods_;
+    wire::Measurement planned = measurement("foreign", wire::MEASUREMENT_PLANNED);
+    wire::SourceDescription description = synthetic_.acs_description();
+    wire::ServiceStatus status;
+    status.service("analysis@stranger:1");
+    for (std::size_t i = 0; i < names; ++i) {
+      const std::string bench = "foreign-" + std::to_string(floods_) + "-" + std::to_string(i);
+      status.run("led-" + std::to_string(i));
+      write(bus::topics::measurement, bench, planned);
+      write(bus::topics::service_status, bench, status);
+      description.source("foreign-" + std::to_string(i));
+      write(bus::topics::source_description, bench, description);
+      write(bus::topics::source_description, tests::played_bench, description);
+      if (i % 500 == 0) {
+        serve_for(1ms);
+      }
+    }
+    serve_for(200ms);
+  }
+  void expect_limits(std::size_t names) {
+    EXPECT_EQ(figures_.benches, KnownBenches::max_benches);
+    EXPECT_LE(figures_.sources, KnownBenches::max_benches * KnownBenches::max_sources);
+    EXPECT_EQ(figures_.runs_waiting + figures_.runs_armed + figures_.runs_refused +
+                  figures_.runs_finished,
+              AnalysisService::max_runs);
+    EXPECT_LE(figures_.runs_of_others, AnalysisService::max_followed);
+    EXPECT_THAT(left_out("benches"), testing::Gt(names - 2 * KnownBenches::max_benches));
+    EXPECT_THAT(left_out("sources"), testing::Gt(names - 2 * KnownBenches::max_benches));
+    EXPECT_THAT(left_out("runs"), testing::Gt(names - 2 * AnalysisService::max_runs));
+    EXPECT_THAT(left_out("runs_of_others"), testing::Gt(names - 2 * OtherAnalyses::max_runs));
+  }
+  std::uint64_t left_out(const std::string& what) {
+    for (const auto& [name, count] : figures_.left_out) {
+      if (name == what) {
+        return count;
+      }
+    }
+    return 0;
+  }
+  void play_to_the_end() {
+    publish("r1", wire::MEASUREMENT_RUNNING);
+    acs_.send(synthetic_.acs_blocks());
+    dau_.send(synthetic_.dau_blocks());
+    serve_for(1s);
+    publish("r1", wire::MEASUREMENT_DONE);
+    serve_for(RunSession::quiet_limit + 1s);
+    EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
+    EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
+    EXPECT_EQ(published_.results().size(), 1U);
+  }
+};
+
+// Its sources have described themselves once, and before all others.
+TEST_F(FloodedAnalysis, KeepsToItsLimitsAndServesARunAfterwards) {
+  play_sources();
+  serve_for(100ms);
+  flood(10'000);
+  expect_limits(10'000);
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  ASSERT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  play_to_the_end();
+}
+
+TEST_F(FloodedAnalysis, DropsNothingOfARunThatLives) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  ASSERT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  flood(3000);
+  expect_limits(3000);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  play_to_the_end();
+}
+
+TEST_F(AnalysisServiceTest, GoesOnWithARunUnderManyMoreOfItsBench) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  for (int run = 0; run <= static_cast<int>(AnalysisService::kept_runs); ++run) {
+    publish("foreign-" + std::to_string(run), wire::MEASUREMENT_PLANNED);
+  }
+  for (int seconds = 0; seconds < 10; seconds += 2) {
+    publish("r1", wire::MEASUREMENT_RUNNING);
+    serve_for(2s);
+  }
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
+  EXPECT_EQ(newest_status_of("r1").message(), "");
+  EXPECT_EQ(newest_status_of("foreign-0").arm(), wire::ARM_REFUSED);
+  EXPECT_EQ(figures_.runs_armed, 1U);
 }
 
 // Two services on one network, in turns of 100 ms.
@@ -345,6 +453,33 @@ TEST_F(AnalysisServiceTest, DoesNotTakeARunOverFromOtherSoftware) {
   clock_.every(2s, [this] { publish("r1", wire::MEASUREMENT_RUNNING); });
   serve_for(20s);
   EXPECT_EQ(newest_status_of("r1").service().to_string(), "analysis@other:5");
+}
+
+// The host was updated in the run: the service that begins now has heard of no other.
+TEST_F(AnalysisServiceTest, DoesNotTakeARunOverThatBeganWithOtherSoftware) {
+  acs_.answer("r1"); // to a service that has died
+  dau_.answer("r1");
+  play_sources();
+  clock_.every(2s, [this] {
+    wire::Measurement running = measurement("r1", wire::MEASUREMENT_RUNNING);
+    running.analysis_software("dyncal 0.0.1");
+    measurements_.write(running);
+  });
+  serve_for(20s);
+  EXPECT_TRUE(published_.statuses().empty());
+}
+
+TEST_F(AnalysisServiceTest, TakesARunOverThatBeganWithItsOwnSoftware) {
+  acs_.answer("r1"); // to a service that has died
+  dau_.answer("r1");
+  play_sources();
+  clock_.every(2s, [this] {
+    wire::Measurement running = measurement("r1", wire::MEASUREMENT_RUNNING);
+    running.analysis_software(software_version());
+    measurements_.write(running);
+  });
+  serve_for(20s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
 }
 
 } // namespace

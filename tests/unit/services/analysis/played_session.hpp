@@ -26,12 +26,13 @@ protected:
   tests::PublishedByAnalysis published_{network_};
   std::unique_ptr<RunSession> session_ = create(synthetic_.measurement());
 
-  std::unique_ptr<RunSession> create(const wire::Measurement& measurement) {
-    const AnalysisContext context{participant_,
-                                  clock_,
-                                  wake_up_,
-                                  {.service = "analysis@test:1", .host = "test", .dds = "memory"}};
-    return RunSession::create(context, measurement).value();
+  std::unique_ptr<RunSession>
+  create(const wire::Measurement& measurement, const std::string& service = "analysis@test:1",
+         SourceStreams::Begin begin = SourceStreams::Begin::with_answer) {
+    const AnalysisContext context{
+        participant_, clock_, wake_up_, {.service = service, .host = "test", .dds = "memory"}};
+    auto requests = SourceRequests::open(participant_, tests::played_bench, service);
+    return RunSession::create(context, measurement, requests.value(), begin).value();
   }
 
   void describe(const tests::PlayedSource& source) {

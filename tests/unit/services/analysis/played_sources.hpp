@@ -29,24 +29,24 @@ public:
       : description_(description), participant_(network.join(host)),
         descriptions_(participant_
                           .writer<wire::SourceDescription>(bus::topics::source_description,
-                                                           bus::Profile::state, played_bench)
+                                                           bus::Profile::state, bench())
                           .value()),
         statuses_(participant_
                       .writer<wire::SourceStatus>(bus::topics::source_status, bus::Profile::state,
-                                                  played_bench)
+                                                  bench())
                       .value()),
         samples_(participant_
                      .writer<wire::SampleBlock>(
                          services::sample_topic(services::from_wire(description.kind())),
-                         bus::Profile::samples, played_bench)
+                         bus::Profile::samples, bench())
                      .value()),
         commands_(participant_
-                      .reader<wire::Command>(bus::topics::command, bus::Profile::command,
-                                             played_bench, nullptr)
+                      .reader<wire::Command>(bus::topics::command, bus::Profile::command, bench(),
+                                             nullptr)
                       .value()),
-        requests_(
-            participant_.reader(bus::topics::catch_up_request, played_bench, nullptr).value()) {}
+        requests_(participant_.reader(bus::topics::catch_up_request, bench(), nullptr).value()) {}
 
+  [[nodiscard]] std::string bench() const { return description_.bench().to_string(); }
   [[nodiscard]] std::string name() const { return description_.source().to_string(); }
   [[nodiscard]] const wire::SourceDescription& description() const { return description_; }
 
@@ -123,7 +123,7 @@ private:
   [[nodiscard]] wire::SourceStatus status(wire::SourceState state,
                                           const std::string& message) const {
     wire::SourceStatus status;
-    status.bench(played_bench);
+    status.bench(bench());
     status.source(name());
     status.state(state);
     status.message(message);
@@ -131,7 +131,7 @@ private:
   }
   wire::SampleBlock empty_block() {
     wire::SampleBlock block;
-    block.bench(played_bench);
+    block.bench(bench());
     block.source(name());
     block.session(description_.session());
     block.block(number_++);
@@ -179,8 +179,9 @@ private:
 // What an analysis service publishes about runs, in the order in which it came.
 class PublishedByAnalysis {
 public:
-  explicit PublishedByAnalysis(bus::MemoryNetwork& network, const std::string& name = "runner")
-      : participant_(network.join(name)) {}
+  explicit PublishedByAnalysis(bus::MemoryNetwork& network, const std::string& name = "runner",
+                               std::string bench = played_bench)
+      : bench_(std::move(bench)), participant_(network.join(name)) {}
 
   [[nodiscard]] const std::vector<wire::ServiceStatus>& statuses() {
     take(status_reader_, statuses_);
@@ -201,13 +202,14 @@ public:
 private:
   template <class T>
   bus::Reader<T> reader(const char* topic, bus::Profile profile) {
-    return participant_.reader<T>(topic, profile, played_bench, nullptr).value();
+    return participant_.reader<T>(topic, profile, bench_, nullptr).value();
   }
   template <class T>
   static void take(bus::Reader<T>& reader, std::vector<T>& all) {
     reader.take([&](const T& message) { all.push_back(message); });
   }
 
+  std::string bench_;
   bus::Participant participant_;
   bus::Reader<wire::ServiceStatus> status_reader_ =
       reader<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state);

@@ -43,11 +43,7 @@ protected:
   void begin_behind() {
     wire::Measurement running = synthetic_plan_;
     running.state(wire::MEASUREMENT_RUNNING);
-    const AnalysisContext context{participant_,
-                                  clock_,
-                                  wake_up_,
-                                  {.service = "analysis@test:2", .host = "test", .dds = "memory"}};
-    session_ = RunSession::create(context, running, SourceStreams::Begin::behind).value();
+    session_ = create(running, "analysis@test:2", SourceStreams::Begin::behind);
   }
   // All of the plan has been sent when this service takes the run over, and is sent again.
   void take_over_behind_the_last_step() {

@@ -31,12 +31,12 @@ TEST_F(RunSessionTest, ArmsWhenEverySourceHasAnsweredInItsStream) {
   EXPECT_EQ(published_.newest_status().dds(), "memory");
 }
 
-TEST_F(RunSessionTest, RepeatsItsCommandEvery250MillisecondsUntilItIsAnswered) {
+TEST_F(RunSessionTest, RepeatsItsCommandEvery100MillisecondsUntilItIsAnswered) {
   describe(acs_);
   describe(dau_);
   work();
   EXPECT_EQ(acs_.answer_commands(), 2U);
-  clock_.advance(250ms - 1ns);
+  clock_.advance(100ms - 1ns);
   work();
   EXPECT_EQ(dau_.answer_commands(), 2U);
   clock_.advance(1ns);
@@ -109,8 +109,11 @@ TEST_P(RunSessionArming, IsRefusedJustAfterItsLimitWithTheCause) {
   }
   work();
   acs_.answer_commands();
-  pass(one.limit);
+  pass(RunSession::notice_after);
+  EXPECT_EQ(published_.newest_status().message(), "");
+  pass(one.limit - RunSession::notice_after);
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
+  EXPECT_THAT(published_.newest_status().message(), testing::StartsWith(one.sentence));
   EXPECT_FALSE(session_->finished());
   clock_.advance(1ns);
   work();
@@ -288,15 +291,25 @@ TEST_F(RunSessionTest, FailsARunWhoseSourceHasATwin) {
 TEST_F(RunSessionTest, DoesNotTakeBlocksThatNameAnotherBench) {
   arm_and_run();
   run_for(1s, {&acs_, &dau_});
-  std::vector<wire::SampleBlock> foreign(1);
-  foreign[0].bench("b3");
-  foreign[0].source("dau");
-  foreign[0].session(dau_.description().session());
-  foreign[0].end_of_stream(true);
   session_->announce({});
-  dau_.send(foreign);
-  run_for(1s, {&acs_, &dau_});
+  bus::Participant other = network_.join("other");
+  auto writer = other
+                    .writer<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::samples,
+                                               tests::played_bench)
+                    .value();
+  wire::SampleBlock last;
+  last.bench("b3");
+  last.source("dau");
+  last.session(dau_.description().session());
+  last.block(11); // behind the answer and ten empty blocks
+  last.end_of_stream(true);
+  writer.write(last);
+  work();
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  last.bench(tests::played_bench);
+  writer.write(last);
+  work();
+  EXPECT_NE(published_.newest_status().health(), wire::HEALTH_OK) << "else nothing was tried";
 }
 
 TEST_F(RunSessionTest, DoesNotWatchSourcesBeforeTheRunBegins) {

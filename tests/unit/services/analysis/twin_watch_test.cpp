@@ -32,5 +32,17 @@ TEST(TwinWatch, SeesATwinOfASourceThatHasRestarted) {
   EXPECT_TRUE(watch({7, 8, 7, 9, 7, 9, 7}).twins());
 }
 
+TEST(TwinWatch, ForgetsATwinWhenTheOtherHasComeAloneForLong) {
+  TwinWatch twins(4);
+  for (const std::uint64_t session : {7U, 8U, 7U, 8U, 8U, 8U}) {
+    twins.add(session);
+  }
+  EXPECT_TRUE(twins.twins());
+  twins.add(8);
+  EXPECT_FALSE(twins.twins());
+  twins.add(7); // not a return: a restart may come at any time
+  EXPECT_FALSE(twins.twins());
+}
+
 } // namespace
 } // namespace dyncal::services

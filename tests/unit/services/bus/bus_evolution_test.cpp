@@ -1,4 +1,6 @@
 // Programs of different versions, and programs that do not keep to the contract, on one bus.
+#include <string_view>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,22 +11,25 @@
 namespace dyncal::bus {
 namespace {
 
-// Command as a later version could have it: two members more.
+// Command as a later version could have it: two members more, and their checksum.
 struct NewerCommand : wire::Command {
   double at_utc_s = 0.0;
   std::string reason;
+  std::uint32_t newer_checksum = 0;
 
+  [[nodiscard]] std::uint32_t checksum() const { return newer_checksum; }
+  void checksum(std::uint32_t value) { newer_checksum = value; }
   static std::size_t getCdrSerializedSize(const NewerCommand& sample) {
     return Command::getCdrSerializedSize(sample) + 8 + sizeof(double) + 4 + sample.reason.size() +
-           1;
+           1 + 3 + checksum_bytes;
   }
   void serialize(eprosima::fastcdr::Cdr& cdr) const {
     Command::serialize(cdr);
-    cdr << at_utc_s << reason;
+    cdr << at_utc_s << reason << newer_checksum;
   }
   void deserialize(eprosima::fastcdr::Cdr& cdr) {
     Command::deserialize(cdr);
-    cdr >> at_utc_s >> reason;
+    cdr >> at_utc_s >> reason >> newer_checksum;
   }
 };
 
@@ -34,6 +39,9 @@ struct BrokenCommand : wire::Command {
     cdr << std::string("bench") << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
   }
 };
+
+// A byte of `sender` is changed on the way.
+struct ChangedCommand : wire::Command {};
 
 // Its key is longer than the contract allows.
 struct LongKeyCommand : wire::Command {
@@ -52,6 +60,9 @@ struct LongKeyCommand : wire::Command {
 } // namespace
 
 template <>
+inline constexpr std::size_t appended_bytes<NewerCommand> = 64;
+
+template <>
 const TypeSupport& type_support<NewerCommand>() {
   static const TypeSupport support =
       make_type_support<NewerCommand>("dyncal::wire::Command", KeyLayout{{64, 64}, 0});
@@ -61,6 +72,21 @@ template <>
 const TypeSupport& type_support<BrokenCommand>() {
   static const TypeSupport support =
       make_type_support<BrokenCommand>("dyncal::wire::Command", KeyLayout{{64, 64}, 0});
+  return support;
+}
+template <>
+const TypeSupport& type_support<ChangedCommand>() {
+  static const TypeSupport support = [] {
+    TypeSupport changing =
+        make_type_support<ChangedCommand>("dyncal::wire::Command", KeyLayout{{64, 64}, 0});
+    changing.serialize = [](const void* sample, char* bytes, std::size_t capacity) {
+      const std::size_t count = Encoder<ChangedCommand>::serialize(sample, bytes, capacity);
+      const std::size_t at = std::string_view(bytes, count).find("test");
+      bytes[at] = 'b';
+      return count;
+    };
+    return changing;
+  }();
   return support;
 }
 template <>
@@ -75,8 +101,9 @@ namespace {
 class BusEvolution : public BusPair {
 protected:
   template <class T>
-  static T filled() {
+  T filled() const {
     T command;
+    command.bench(bench_);
     command.target("dau");
     command.run("run-7");
     command.sender("test");
@@ -101,6 +128,10 @@ protected:
     }));
     return samples;
   }
+
+  // Of two writers.
+  template <class Bad>
+  void expect_only_the_bad_one_dropped();
 
   // Two writers have no order between them: the malformed message may come after the good one.
   [[nodiscard]] bool comes_to_be_counted(Reader<wire::Command>& reader) {
@@ -151,14 +182,15 @@ TEST_P(BusEvolution, ReadsAnEnumValueThatALaterVersionAppended) {
   EXPECT_EQ(take_until_last(reader), std::vector<wire::Command>{command});
 }
 
-TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
-  auto broken_writer = this->writer<BrokenCommand>(topics::command, Profile::state);
+template <class Bad>
+void BusEvolution::expect_only_the_bad_one_dropped() {
+  auto bad_writer = this->writer<Bad>(topics::command, Profile::state);
   auto reader = this->reader<wire::Command>(topics::command, Profile::state);
-  ASSERT_EQ(broken_writer.write(filled<BrokenCommand>()), WriteOutcome::written);
+  ASSERT_EQ(bad_writer.write(filled<Bad>()), WriteOutcome::written);
   Participant third = join(GetParam().writer);
   auto writer = third.writer<wire::Command>(topics::command, Profile::state, bench_).value();
   ASSERT_TRUE(wait_for([&] { return reader.matched_writers() == 2; }));
-  broken_writer.wait_for_acknowledgments(std::chrono::seconds(1));
+  bad_writer.wait_for_acknowledgments(std::chrono::seconds(1));
   auto command = filled<wire::Command>();
   ASSERT_EQ(writer.write(command), WriteOutcome::written);
   command.target("last");
@@ -166,6 +198,14 @@ TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
   EXPECT_EQ(take_until_last(reader), std::vector<wire::Command>{filled<wire::Command>()});
   EXPECT_TRUE(comes_to_be_counted(reader));
   EXPECT_THAT(warnings_, testing::Contains(testing::HasSubstr("dyncal::wire::Command")).Times(1));
+}
+
+TEST_P(BusEvolution, DropsABrokenMessageAndNothingElse) {
+  expect_only_the_bad_one_dropped<BrokenCommand>();
+}
+
+TEST_P(BusEvolution, DropsAMessageThatWasChangedOnItsWayAndNothingElse) {
+  expect_only_the_bad_one_dropped<ChangedCommand>();
 }
 
 TEST_P(BusEvolution, DropsAMessageWhoseKeyIsTooLongInsteadOfCuttingIt) {

@@ -107,6 +107,14 @@ TEST(BusVendor, IsNamedAsInThisBuild) {
   }
 }
 
+// The default of every program: Fast DDS of Debian 12 ends at packets that Cyclone DDS survives.
+TEST(BusVendor, IsCycloneDdsWhereNoneIsChosen) {
+  const auto built = vendors_in_this_build();
+  if (std::find(built.begin(), built.end(), Vendor::cyclone_dds) != built.end()) {
+    EXPECT_EQ(built.front(), Vendor::cyclone_dds);
+  }
+}
+
 TEST(BusVendor, IsNeverTheBusOfUnitTests) {
   const auto memory = parse_vendor("memory");
   ASSERT_FALSE(memory);

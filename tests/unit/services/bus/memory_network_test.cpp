@@ -127,6 +127,18 @@ TEST_F(MemoryNetworkTest, KeepsTheNewestStateForAStoppedReader) {
   EXPECT_THAT(take(reader), ElementsAre(5000U));
 }
 
+TEST_F(MemoryNetworkTest, KeepsTheNewestProbesForAReaderThatDoesNotTakeThem) {
+  auto writer = this->writer(Profile::probe);
+  auto reader = this->reader(Profile::probe);
+  for (std::uint32_t step = 1; step <= 500; ++step) {
+    ASSERT_EQ(writer.write(command(step), 0s), WriteOutcome::written) << "it waits for nobody";
+  }
+  const auto taken = take(reader);
+  ASSERT_EQ(taken.size(), 200U);
+  EXPECT_EQ(taken.front(), 301U);
+  EXPECT_EQ(taken.back(), 500U);
+}
+
 TEST_F(MemoryNetworkTest, TimesAFullWriterOut) {
   auto writer = this->writer();
   auto reader = this->reader();

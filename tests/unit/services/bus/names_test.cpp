@@ -38,5 +38,10 @@ TEST(Names, OfWhoCatchesUpAreLongerAndNoPatterns) {
   EXPECT_FALSE(check_asker_name("analysis-*"));
 }
 
+TEST(Names, OfRunsMakeAPartitionThatIsNoPattern) {
+  EXPECT_EQ(partition_of_run("acc-1", "20261125T080000.000Z"), "acc-1/20261125T080000.000Z");
+  EXPECT_EQ(partition_of_run("acc-1", "a*b?[c]"), "acc-1/a_b__c_");
+}
+
 } // namespace
 } // namespace dyncal::bus

@@ -22,7 +22,8 @@ TEST(RefusedPackets, AreCountedAndSaidOnce) {
   EXPECT_EQ(refused.last_sender(), "") << "of the last one it is not known";
   refused.add(10U << 24U | 255U);
   EXPECT_EQ(refused.last_sender(), "10.0.0.255");
-  EXPECT_THAT(said, ElementsAre(HasSubstr("malformed packet from 192.0.2.7, and will refuse")));
+  EXPECT_THAT(
+      said, ElementsAre(HasSubstr("refused a packet from 192.0.2.7 that is malformed, and will")));
 }
 
 // After a link was down some packets do not go on from those before.
@@ -36,7 +37,7 @@ TEST(RefusedPackets, AreImplausibleInLargeNumbersOnly) {
   EXPECT_THAT(said, testing::IsEmpty());
   refused.add_implausible(10U << 24U | 255U);
   EXPECT_EQ(refused.count(), 1U);
-  EXPECT_THAT(said, ElementsAre(HasSubstr("from 10.0.0.255")));
+  EXPECT_THAT(said, ElementsAre(HasSubstr("a packet from 10.0.0.255 that is implausible")));
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/bus/qos_profiles.hpp"
 #include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
 
 namespace dyncal::bus {
@@ -213,7 +214,7 @@ TEST(RtpsScreen, DropsFragmentsThatAreNotWithinTheirSample) {
     EXPECT_EQ(passed(header() + stamp + fragments(later)).size(),
               header().size() + stamp.size() + (fragments(later).size() + 3) / 4 * 4);
   }
-  const std::uint32_t too_long = RtpsScreen::max_sample_bytes + 1;
+  const std::uint32_t too_long = max_sample_bytes + 1;
   for (const Fragments& wrong :
        {Fragments{.first = 0}, Fragments{.first = 4}, Fragments{.first = 0xffffffff},
         Fragments{.count = 0}, Fragments{.count = 4, .payload = 400}, Fragments{.count = 0xffff},

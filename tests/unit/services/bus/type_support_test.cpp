@@ -1,8 +1,15 @@
 #include "services/bus/type_support.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include "services/bus/cdr_key.hpp"
+#include "services/bus/payload_checksum.hpp"
+#include "services/bus/type_support_of.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -53,15 +60,50 @@ TEST(TypeSupport, ReadsIntoASampleThatHeldAnother) {
   EXPECT_EQ(sample, empty);
 }
 
-TEST(TypeSupport, ReadsAMessageOfAnOlderTypeWithZerosForTheMissingMembers) {
-  const wire::SampleBlock written = example_block();
-  const std::string bytes = bytes_of(written);
+TEST(TypeSupport, ReadsAMessageOfTheFirstReleaseWhichHasNoChecksum) {
+  const std::string bytes = bytes_of(example_block());
   wire::SampleBlock read_back;
-  ASSERT_TRUE(read(
-      read_back, bytes.substr(0, bytes.size() - sizeof(std::int64_t)))); // without received_utc_ns
-  wire::SampleBlock expected = written;
-  expected.received_utc_ns(0);
-  EXPECT_EQ(read_back, expected);
+  ASSERT_TRUE(read(read_back, bytes.substr(0, bytes.size() - checksum_bytes)));
+  EXPECT_EQ(read_back, example_block());
+}
+
+TEST(TypeSupport, RefusesAMessageThatLacksMembersOfTheFirstRelease) {
+  const std::string bytes = bytes_of(example_block());
+  wire::SampleBlock sample; // and received_utc_ns
+  EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - checksum_bytes - sizeof(std::int64_t))));
+}
+
+TEST(TypeSupport, LeavesAMessageUncheckedWhoseWriterGivesNoChecksum) {
+  std::string bytes = bytes_of(example_block());
+  bytes.replace(bytes.size() - checksum_bytes, checksum_bytes, checksum_bytes, '\0');
+  wire::SampleBlock read_back;
+  ASSERT_TRUE(read(read_back, bytes));
+  EXPECT_EQ(read_back, example_block());
+}
+
+// As a foreign program writes it that takes zlib at its word.
+TEST(TypeSupport, HasTheChecksumOfTheContractsPage) {
+  const std::string bytes = bytes_of(example_block());
+  const std::size_t at = bytes.size() - checksum_bytes;
+  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(at));
+  std::uint32_t given = 0;
+  std::memcpy(&given, bytes.data() + at, sizeof given);
+  EXPECT_EQ(given, sum);
+}
+
+TEST(TypeSupport, RefusesAMessageOfWhichAnyByteWasChanged) {
+  const std::string bytes = bytes_of(example_block());
+  wire::SampleBlock sample;
+  std::size_t tried = 0;
+  for (std::size_t i = cdr_header_bytes; i < bytes.size(); ++i) {
+    for (const unsigned change : {0x01U, 0x80U, 0xFFU}) {
+      std::string damaged = bytes;
+      damaged[i] = static_cast<char>(static_cast<unsigned char>(damaged[i]) ^ change);
+      EXPECT_FALSE(read(sample, damaged)) << "byte " << i;
+      ++tried;
+    }
+  }
+  EXPECT_GT(tried, 300U);
 }
 
 TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
@@ -75,9 +117,10 @@ TEST(TypeSupport, LeavesMembersOfANewerTypeUnread) {
 TEST(TypeSupport, RefusesAMessageThatIsCutInsideAMember) {
   const std::string bytes = bytes_of(example_block());
   wire::SampleBlock sample;
-  EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 4))); // in received_utc_ns
-  EXPECT_FALSE(read(sample, bytes.substr(0, bytes.size() - 8 - 3 * sizeof(double)))); // in values
-  EXPECT_FALSE(read(sample, bytes.substr(0, cdr_header_bytes + 6)));                  // in bench
+  const std::size_t count = bytes.size() - checksum_bytes;
+  EXPECT_FALSE(read(sample, bytes.substr(0, count - 4)));                      // received_utc_ns
+  EXPECT_FALSE(read(sample, bytes.substr(0, count - 8 - 3 * sizeof(double)))); // in values
+  EXPECT_FALSE(read(sample, bytes.substr(0, cdr_header_bytes + 6)));           // in bench
   EXPECT_FALSE(read(sample, ""));
 }
 
@@ -96,13 +139,80 @@ TEST(TypeSupport, SurvivesAnyBytesAndReadsTheIntactOnesAfterwards) {
   EXPECT_EQ(sample, example_block());
 }
 
+// Bytes before the count of a plan's steps.
+std::size_t bytes_before_steps() {
+  wire::Measurement one;
+  one.steps().resize(1);
+  const std::string without = bytes_of(wire::Measurement());
+  const std::string with_one = bytes_of(one);
+  const auto differs = std::mismatch(without.begin(), without.end(), with_one.begin());
+  return static_cast<std::size_t>(differs.first - without.begin());
+}
+
+// A plan whose count says that every byte behind it is a step.
+std::string plan_of_as_many_steps_as_bytes(std::size_t steps) {
+  std::string bytes = bytes_of(wire::Measurement()).substr(0, bytes_before_steps());
+  const auto count = static_cast<std::uint32_t>(steps);
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count); // NOLINT: as CDR has it
+  bytes.append(steps, '\0');
+  return bytes;
+}
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) << 10U;
+}
+
+TEST(TypeSupport, MakesNoRoomForWhatACountAloneSays) {
+  constexpr std::size_t little = std::size_t{48} << 20U;
+  wire::Measurement measurement;
+  const std::string long_one = plan_of_as_many_steps_as_bytes(1'000'000);
+  const std::string short_one =
+      plan_of_as_many_steps_as_bytes(max_unchecked_bytes<wire::Measurement> - 1000);
+  const std::size_t before = peak_memory_bytes();
+  EXPECT_FALSE(read(measurement, long_one));
+  EXPECT_FALSE(read(measurement, short_one));
+  EXPECT_LT(peak_memory_bytes() - before, little);
+}
+
+TEST(TypeSupport, ReadsALongMessageWithItsChecksumAndSamplesWithoutAny) {
+  wire::Measurement plan;
+  plan.steps().resize(20'000);
+  ASSERT_GT(bytes_of(plan).size(), max_unchecked_bytes<wire::Measurement>);
+  wire::Measurement read_plan;
+  ASSERT_TRUE(read(read_plan, bytes_of(plan)));
+  EXPECT_EQ(read_plan, plan);
+  EXPECT_FALSE(read(read_plan, bytes_of(plan).substr(0, bytes_of(plan).size() - checksum_bytes)));
+
+  wire::SampleBlock block = example_block();
+  block.values(std::vector<double>(100'000, 1.5));
+  const std::string bytes = bytes_of(block);
+  wire::SampleBlock read_block;
+  ASSERT_TRUE(read(read_block, bytes.substr(0, bytes.size() - checksum_bytes)));
+  EXPECT_EQ(read_block, block);
+}
+
+TEST(TypeSupport, ReadsALongMessageOfANewerTypeWhichEndsWithAChecksumOfItsOwn) {
+  wire::Measurement plan;
+  plan.steps().resize(20'000);
+  std::string bytes = bytes_of(plan);
+  bytes.replace(bytes.size() - checksum_bytes, checksum_bytes, checksum_bytes, '\0');
+  bytes += std::string("more of it, by a later ver") + std::string(2 + checksum_bytes, '\0');
+  set_checksum(bytes.data(), bytes.size());
+  wire::Measurement read_plan;
+  ASSERT_TRUE(read(read_plan, bytes));
+  EXPECT_EQ(read_plan, plan);
+}
+
 template <class T>
 class EveryType : public testing::Test {};
-using Types = testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
-                             wire::TriggeredRecord, wire::Measurement, wire::Excitation,
-                             wire::CalibrationResult, wire::TransferFunction,
-                             wire::SampleClockReport, wire::ServiceStatus, wire::Command,
-                             wire::CatchUpRequest, wire::ClockRequest, wire::ClockAnswer>;
+using Types =
+    testing::Types<wire::SourceDescription, wire::SourceStatus, wire::SampleBlock,
+                   wire::TriggeredRecord, wire::Measurement, wire::Excitation,
+                   wire::CalibrationResult, wire::TransferFunction, wire::SampleClockReport,
+                   wire::ServiceStatus, wire::Command, wire::CatchUpRequest, wire::ClockRequest,
+                   wire::ClockAnswer, wire::LinkProbe, wire::LinkEcho>;
 TYPED_TEST_SUITE(EveryType, Types);
 
 TYPED_TEST(EveryType, IsNamedAsInTheContract) {
@@ -132,8 +242,8 @@ TYPED_TEST(EveryType, WritesTheKeyThatIsHashedAsItIsReadFromAMessage) {
     key.numbers.push_back(static_cast<std::uint32_t>(0x01020304 + i));
   }
   TypeParam sample;
-  ASSERT_TRUE(read(sample, key_payload(key, ByteOrder::little)));
-  std::string canonical(max_key_payload_bytes, '\xFF'); // padding must be written as zeros
+  (void)read(sample, key_payload(key, ByteOrder::little)); // as far as it goes
+  std::string canonical(max_key_payload_bytes, '\xFF');    // padding must be written as zeros
   canonical.resize(type.canonical_key(&sample, canonical.data(), canonical.size()));
   EXPECT_EQ(canonical, canonical_key(key));
   EXPECT_EQ(type.canonical_key(&sample, canonical.data(), canonical.size() - 1), 0U);
@@ -153,8 +263,15 @@ TYPED_TEST(EveryType, AllowsItsLongestKeyAndHasAlwaysTheHashOfAKeyOver16Bytes) {
   EXPECT_LE(TypeParam::getKeyMaxCdrSerializedSize(), payload.size() + cdr_header_bytes * 4);
 }
 
-TYPED_TEST(EveryType, IsShorterThanTheZerosThatStandForMissingMembers) {
-  EXPECT_LT(bytes_of(TypeParam{}).size(), 1000U);
+TYPED_TEST(EveryType, IsReadWithoutItsChecksumButRefusedWithAWrongOne) {
+  TypeParam sample;
+  const std::string bytes = bytes_of(sample);
+  ASSERT_TRUE(read(sample, bytes));
+  EXPECT_EQ(sample.checksum(), 0U);
+  EXPECT_TRUE(read(sample, bytes.substr(0, bytes.size() - checksum_bytes)));
+  std::string damaged = bytes;
+  damaged.back() = static_cast<char>(damaged.back() ^ 1);
+  EXPECT_FALSE(read(sample, damaged));
 }
 
 } // namespace

@@ -157,6 +157,37 @@ TEST_F(LaboratoryTable, ColoursAreForWhatIsNotWell) {
   EXPECT_THAT(table({.colour = true}), HasSubstr("\x1b[31m"));
 }
 
+TEST_F(LaboratoryTable, HostsWhoseClocksAreOffHaveALine) {
+  add_bench("acc-1");
+  laboratory.set_programs({}, {{"lab-2", {.offset_s = -300.0, .bound_s = 0.0012}},
+                               {"lab-3", {.offset_s = 0.02, .bound_s = 0.001}},
+                               {"lab-4", {.offset_s = 3600.0, .bound_s = 3599.5}}});
+  EXPECT_THAT(table(), HasSubstr("\nclock of lab-2: -300.0000 s from ours (within 0.0012 s)\n"));
+  EXPECT_EQ(table().find("lab-3"), std::string::npos) << "not off by as much as a warning needs";
+  EXPECT_EQ(table().find("lab-4"), std::string::npos) << "its bound explains it";
+  EXPECT_THAT(table({.all = true}), HasSubstr("\nclock of lab-3: +0.0200 s from ours (within "));
+  EXPECT_THAT(table({.all = true}), HasSubstr("\nclock of lab-4: +3600 s from ours (within "));
+  EXPECT_THAT(table({.colour = true}), HasSubstr("\x1b[33mclock of lab-2"));
+}
+
+TEST_F(LaboratoryTable, ClocksOfHostsStayInTheWindow) {
+  for (int i = 1; i <= 8; ++i) {
+    add_bench(fmt::format("bench-{}", i));
+  }
+  const std::string host = "\x1b[2J" + std::string(100, 'h');
+  laboratory.set_programs({}, {{host, {.offset_s = -300.0, .bound_s = 0.0012}}});
+  EXPECT_THAT(table(), HasSubstr("hh..: -300.0000 s from ours (within 0.0012 s)\n"))
+      << "what is wrong is not left out, nor is the offset";
+  for (const std::size_t columns : {80U, 40U, 20U, 200U}) {
+    const auto lines = laboratory_table(laboratory, {.columns = columns, .all = true});
+    EXPECT_EQ(lines.size(), 24U);
+    for (const std::string& line : lines) {
+      EXPECT_LE(columns_of(line), columns) << line;
+      EXPECT_EQ(line.find('\x1b'), std::string::npos);
+    }
+  }
+}
+
 TEST_F(LaboratoryTable, NothingYet) {
   EXPECT_THAT(table(), HasSubstr("nothing on this DDS domain yet"));
 }
@@ -171,6 +202,16 @@ TEST_F(LaboratoryTable, LinesForAPipe) {
   EXPECT_THAT(text, HasSubstr("acc-1 r1: step 1, 16 Hz, 10 m/s^2, steady"));
   EXPECT_THAT(text, HasSubstr("acc-1 r1: step 1, 16 Hz, #1, dau/acceleration_z: |H| = 0.98765 (u "
                               "0.00010)"));
+}
+
+TEST_F(LaboratoryTable, LinesForAPipeTellTheClocksOfAllHosts) {
+  add_bench("acc-1");
+  laboratory.set_programs({}, {{"lab-2", {.offset_s = -300.0, .bound_s = 0.0012}},
+                               {"lab-3", {.offset_s = 0.02, .bound_s = 0.001}}});
+  const auto lines = laboratory_lines(laboratory);
+  ASSERT_TRUE(lines.contains("0 lab-2")) << "no source is there: a host of a service";
+  EXPECT_EQ(lines.at("0 lab-2"), "clock of lab-2: -300.0000 s from ours (within 0.0012 s)");
+  ASSERT_TRUE(lines.contains("0 lab-3"));
 }
 
 } // namespace

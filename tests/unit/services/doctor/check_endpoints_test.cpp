@@ -94,6 +94,12 @@ TEST_F(CheckEndpoints, DoesNotMixUpBenches) {
   EXPECT_THAT(warnings(check()), IsEmpty()) << "both are benches of the laboratory";
 }
 
+TEST_F(CheckEndpoints, KnowsTheRunsOfABench) {
+  view_.sources[{"acc-2", "acs"}];
+  reader_.partitions = {"acc-2/20261125T080000.000Z"};
+  EXPECT_THAT(warnings(check()), IsEmpty()) << "its writers may come later";
+}
+
 TEST_F(CheckEndpoints, LeavesOtherTopicsAlone) {
   writer_.topic = reader_.topic = "rt/chatter";
   writer_.reliable = false;

@@ -1,3 +1,4 @@
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 namespace dyncal::services::doctor {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -58,9 +60,50 @@ TEST_F(CheckPrograms, MissesTheAnalysis) {
 TEST_F(CheckPrograms, NamesVersionsThatDiffer) {
   view_.programs[1].identity.software = "dyncal 0.1.0";
   EXPECT_THAT(warnings(check_programs(view_)),
-              ElementsAre(HasSubstr("different versions: dyncal 0.1.0, dyncal 0.2.0")));
+              ElementsAre(HasSubstr("different versions: dyncal 0.1.0 (dyncal-acs@lab-2), dyncal "
+                                    "0.2.0 (dyncal-analysis@lab-1, dyncal-doctor@lab-1);")));
   view_.programs[1].contract_version = wire::CONTRACT_VERSION + 1;
-  EXPECT_THAT(problems(check_programs(view_)), ElementsAre(HasSubstr("of the contract")));
+  EXPECT_THAT(problems(check_programs(view_)),
+              ElementsAre(AllOf(
+                  HasSubstr("of the contract"),
+                  HasSubstr(fmt::format("{} (dyncal-acs@lab-2)", wire::CONTRACT_VERSION + 1)))));
+}
+
+TEST_F(CheckPrograms, NamesTheVersionThatAnAnalysisReports) {
+  wire::ServiceStatus status;
+  status.service("dyncal-analysis:9@lab-3");
+  status.host("lab-3");
+  status.process_id(9);
+  status.software("dyncal 0.1.0");
+  status.contract_version(wire::CONTRACT_VERSION);
+  view_.analyses["dyncal-analysis:9@lab-3"] = status;
+  EXPECT_THAT(warnings(check_programs(view_)),
+              ElementsAre(HasSubstr("different versions: dyncal 0.1.0 (dyncal-analysis@lab-3)")));
+}
+
+TEST_F(CheckPrograms, NamesTheVersionThatASourceDescribes) {
+  wire::SourceDescription description;
+  description.host("lab-3");
+  description.process_id(9);
+  description.software("dyncal 0.1.0");
+  description.contract_version(wire::CONTRACT_VERSION);
+  view_.sources[{"acc-1", "dau"}].description = description;
+  EXPECT_THAT(warnings(check_programs(view_)),
+              ElementsAre(HasSubstr("dyncal 0.1.0 (the source acc-1/dau@lab-3)")));
+  description.host("lab-2"); // of a program that answers
+  description.process_id(3);
+  view_.sources[{"acc-1", "dau"}].description = description;
+  EXPECT_THAT(warnings(check_programs(view_)),
+              ElementsAre(HasSubstr("dyncal 0.1.0 (dyncal-acs@lab-2)")));
+}
+
+TEST_F(CheckPrograms, NamesEightPlacesOfAVersion) {
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    view_.programs.push_back({{fmt::format("dyncal-{:02}", i), "lab-2", i, "dyncal 0.1.0", ""},
+                              wire::CONTRACT_VERSION,
+                              {}});
+  }
+  EXPECT_THAT(warnings(check_programs(view_)), ElementsAre(HasSubstr("dyncal-07@lab-2, 12 more)")));
 }
 
 TEST_F(CheckPrograms, NamesClocksThatAreFarApart) {

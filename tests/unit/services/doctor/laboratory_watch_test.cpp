@@ -62,6 +62,29 @@ TEST_F(LaboratoryWatchTest, KeepsTheFirstAndTheNewestStatusOfASource) {
   EXPECT_FALSE(dau().twins) << "a service that was restarted";
 }
 
+TEST_F(LaboratoryWatchTest, TellsGuardsAndRecordersFromAnalyses) {
+  auto services = there_.writer(bus::topics::service_status, "acc-1").value();
+  wire::ServiceStatus status;
+  status.bench("acc-1");
+  status.service("guard@lab-2:7");
+  status.guarded_generator("192.0.2.7:5025");
+  services.write(status);
+  status.service("recorder@lab-2:8");
+  status.guarded_generator("");
+  status.recording("r1.mcap");
+  services.write(status);
+  status.service("analysis@lab-2:9");
+  status.recording("");
+  status.run("r1");
+  services.write(status);
+  watch_->work();
+  const LaboratoryView view = watch_->view();
+  ASSERT_EQ(view.guards.size(), 1U);
+  EXPECT_EQ(view.guards.begin()->first, "acc-1 guard@lab-2:7");
+  ASSERT_EQ(view.analyses.size(), 1U);
+  EXPECT_EQ(view.analyses.begin()->first, "analysis@lab-2:9");
+}
+
 TEST_F(LaboratoryWatchTest, SeesTwins) {
   write_description(1, "lab-2");
   write_description(2, "lab-3");
@@ -72,18 +95,22 @@ TEST_F(LaboratoryWatchTest, SeesTwins) {
   EXPECT_TRUE(dau().twins);
 }
 
-TEST_F(LaboratoryWatchTest, SeesProgramsAndTheirClocks) {
+TEST_F(LaboratoryWatchTest, SeesProgramsTheirClocksAndWhatIsLost) {
   auto responder = std::move(
       *ClockResponder::open(there_, {"dyncal-acs", "lab-2", 7, "dyncal", "memory"}, clock_));
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     watch_->work();
     responder->work();
-    clock_.advance(10ms);
+    clock_.advance(1ms);
   }
   ASSERT_EQ(watch_->view().programs.size(), 1U);
   EXPECT_EQ(watch_->view().programs[0].identity.program, "dyncal-acs");
   ASSERT_EQ(watch_->view().clocks.size(), 1U);
   EXPECT_NEAR(watch_->view().clocks[0].clock.offset_s, 0.0, watch_->view().clocks[0].clock.bound_s);
+  ASSERT_EQ(watch_->view().losses.size(), 1U);
+  EXPECT_EQ(watch_->view().losses[0].identity.host, "lab-2");
+  EXPECT_EQ(lost_part(watch_->view().losses[0].there), 0.0);
+  EXPECT_EQ(lost_part(watch_->view().losses[0].back), 0.0);
 }
 
 } // namespace

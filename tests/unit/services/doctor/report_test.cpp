@@ -36,6 +36,10 @@ TEST(DoctorReport, HasAllOfItAsJson) {
   view.domain = 7;
   view.programs = {{{"dyncal-acs", "lab-2", 3, "dyncal 0.2.0", "fastdds"}, 1, {}}};
   view.clocks = {{"lab-2", {.offset_s = 0.25, .bound_s = 0.5}}};
+  view.losses = {{.identity = {"dyncal-acs", "lab-2", 3, "", ""},
+                  .answers_probes = true,
+                  .there = {200, 150},
+                  .back = {3, 1}}};
   view.sources[{"acc-1", "dau"}].status.emplace().state(wire::SOURCE_SILENT);
   view.discovery.participants = {{"0110", "dyncal-acs", "Cyclone DDS"}};
   view.announced_by_multicast.emplace();
@@ -47,6 +51,11 @@ TEST(DoctorReport, HasAllOfItAsJson) {
   EXPECT_EQ(json["findings"][0]["check"], "sources");
   EXPECT_EQ(json["programs"][0]["program"], "dyncal-acs");
   EXPECT_EQ(json["clocks"][0]["offset_s"], 0.25);
+  EXPECT_EQ(json["losses"][0]["program"], "dyncal-acs");
+  EXPECT_EQ(json["losses"][0]["there"]["sent"], 200);
+  EXPECT_EQ(json["losses"][0]["there"]["arrived"], 150);
+  EXPECT_EQ(json["losses"][0]["there"]["lost_percent"], 25.0);
+  EXPECT_TRUE(json["losses"][0]["back"]["lost_percent"].is_null()) << "of too few";
   EXPECT_EQ(json["sources"][0]["state"], "silent");
   EXPECT_EQ(json["participants"][0]["by_multicast"], false);
 }

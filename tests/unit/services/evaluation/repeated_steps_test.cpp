@@ -105,6 +105,28 @@ TEST_P(RepeatedSteps, AConductedRunIsNotFinishedBeforeItsExcitationIsOver) {
   EXPECT_EQ(functions_[0].points.size(), 2U);
 }
 
+// The conductor has died in step 1, and somebody makes a sine of the next step's frequency by hand.
+TEST_P(RepeatedSteps, ASineOfAStepThatWasNotAnnouncedIsNotTakenForIt) {
+  play({{"40", 10.0}, {"80", 10.0}, {"40", 0.0}, {"40", 0.0}, {"40", 0.0}});
+  excite(1, 2.3);
+  send_until(9.9);
+  EXPECT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}));
+  evaluator_->end_of_excitation(true);
+  evaluator_->finish_now();
+  take();
+  EXPECT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}));
+  EXPECT_TRUE(evaluator_->finished());
+}
+
+TEST_P(RepeatedSteps, AStepIsFoundWhoseAnnouncementComesBehindItsSamples) {
+  play({{"40", 10.0}, {"80", 10.0}, {"40", 0.0}, {"40", 0.0}, {"40", 0.0}});
+  excite(1, 2.3);
+  send_until(9.9);
+  excite(2, 9.9);
+  EXPECT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}));
+  EXPECT_TRUE(results_.back().valid) << results_.back().problem;
+}
+
 // As where the run is taken over from a service that has died: all samples come before what was
 // announced about them.
 TEST_P(RepeatedSteps, ARepeatIsNotTakenForAStepThatWasNeverFound) {

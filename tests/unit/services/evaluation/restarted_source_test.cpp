@@ -1,5 +1,6 @@
 // A source that restarts right after a step: what it sent of the step before is not thrown away as
 // long as another source is behind.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/evaluation/recipe/recipe_message.hpp"
@@ -37,6 +38,17 @@ protected:
       take();
     }
   }
+  // The blocks from there on are of a new session.
+  void restart_dau(double from) {
+    const auto first = static_cast<std::size_t>(from * static_cast<double>(dau_.size()));
+    const std::uint64_t session = new_session();
+    const std::uint64_t sample = dau_[first].first_sample();
+    for (std::size_t i = first; i < dau_.size(); ++i) {
+      dau_[i].session(session);
+      dau_[i].block(i - first);
+      dau_[i].first_sample(dau_[i].first_sample() - sample);
+    }
+  }
   static StepResult undisturbed(const tests::SyntheticRun& run) {
     RunEvaluator evaluator(*parse_recipe(run.measurement()));
     EXPECT_TRUE(tests::describe(evaluator, run.acs_description()));
@@ -62,6 +74,35 @@ TEST_F(RestartedSource, IsWaitedWithUntilTheOtherSourceHasSentTheStep) {
   ASSERT_EQ(results_.size(), 1U);
   EXPECT_TRUE(evaluator_.is_ready_for("dau", new_session()));
   EXPECT_TRUE(to_message(Recipe{}, results_[0]) == to_message(Recipe{}, undisturbed(run_)));
+}
+
+// What the new session has of the step is evaluated, and the result says that it is not all.
+TEST_F(RestartedSource, InTheMiddleOfAStepMakesItShorterThanPlanned) {
+  feed(acs_, 0.0, 0.5);
+  feed(dau_, 0.0, 0.5);
+  restart_dau(0.52); // what it lacks was never sent
+  feed(dau_, 0.52, 1.0);
+  feed(acs_, 0.5, 1.0);
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_TRUE(results_[0].valid) << results_[0].problem;
+  ASSERT_EQ(results_[0].flags.size(), 1U);
+  EXPECT_EQ(results_[0].flags[0].sentence, "dau: shorter than planned");
+  EXPECT_TRUE(may_be_cured(results_[0].flags[0].kind));
+  const StepResult whole = undisturbed(run_);
+  EXPECT_GT(results_[0].u_magnitude, whole.u_magnitude);
+  EXPECT_NEAR(results_[0].magnitude, whole.magnitude, 5 * results_[0].u_magnitude);
+}
+
+// Too little of it is left to be found: then the restart is the cause that is named.
+TEST_F(RestartedSource, AtTheEndOfAStepIsNamedWhereNothingIsLeft) {
+  feed(acs_, 0.0, 0.5);
+  feed(dau_, 0.0, 0.5);
+  restart_dau(0.9);
+  feed(dau_, 0.9, 1.0);
+  feed(acs_, 0.5, 1.0);
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_FALSE(results_[0].valid);
+  EXPECT_THAT(results_[0].problem, testing::HasSubstr("source 'dau' restarted during the run"));
 }
 
 TEST_F(RestartedSource, IsNotWaitedWithBeforeAStepHasCome) {

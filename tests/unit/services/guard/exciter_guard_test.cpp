@@ -11,6 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+const ProgramIdentity own{"dyncal-guard", "lab-2", 7, "dyncal 1", "memory"};
+
 class ExciterGuardTest : public testing::Test {
 protected:
   bus::SteppedClock clock_;
@@ -23,8 +25,10 @@ protected:
       conductor_.writer(bus::topics::measurement, "b1").value();
   bool reachable_ = true;
   int tries_ = 0;
+  bus::Reader<wire::ServiceStatus> status_ =
+      conductor_.reader(bus::topics::service_status, "b1", nullptr).value();
   std::unique_ptr<ExciterGuard> guard_ = ExciterGuard::create(
-                                             bench_side_, "b1", 2s,
+                                             bench_side_, own, {"b1", "192.0.2.7:5025"}, 2s,
                                              [this]() -> Expected<void> {
                                                ++tries_;
                                                if (!reachable_) {
@@ -139,7 +143,7 @@ TEST_F(ExciterGuardTest, WatchesAgainAfterItHasSwitchedOff) {
 TEST_F(ExciterGuardTest, FindsAnExciterThatWasDrivenBeforeItBegan) {
   announce(wire::EXCITATION_STEADY);
   guard_ = ExciterGuard::create(
-               bench_side_, "b1", 2s,
+               bench_side_, own, {"b1", "192.0.2.7:5025"}, 2s,
                [this]() -> Expected<void> {
                  ++tries_;
                  return {};
@@ -148,6 +152,47 @@ TEST_F(ExciterGuardTest, FindsAnExciterThatWasDrivenBeforeItBegan) {
                .value();
   pass(3s);
   EXPECT_EQ(tries_, 1);
+}
+
+TEST_F(ExciterGuardTest, SaysEverySecondThatItIsThere) {
+  int heard = 0;
+  for (int i = 0; i < 100; ++i) {
+    pass(100ms);
+    status_.take([&](const wire::ServiceStatus& status) {
+      ++heard;
+      EXPECT_EQ(status.service().to_string(), "guard@lab-2:7");
+      EXPECT_EQ(status.run().to_string(), "");
+      EXPECT_EQ(status.guarded_generator(), "192.0.2.7:5025");
+      EXPECT_EQ(status.health(), wire::HEALTH_OK);
+      EXPECT_EQ(status.published_utc_ns(), clock_.utc_now_ns());
+    });
+  }
+  EXPECT_EQ(heard, 10);
+}
+
+TEST_F(ExciterGuardTest, TellsOfAnOutputThatItCannotSwitchOffUntilItIs) {
+  const auto newest = [this] {
+    wire::ServiceStatus last;
+    status_.take([&](const wire::ServiceStatus& one) { last = one; });
+    return last;
+  };
+  reachable_ = false;
+  announce(wire::EXCITATION_STEADY);
+  pass(3s);
+  wire::ServiceStatus status = newest();
+  EXPECT_EQ(status.health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(status.message(), "nothing is heard of run r1, and THE OUTPUT OF THE GENERATOR MAY BE "
+                              "ON: switch it off by hand if you can; trying again until it is off "
+                              "(no route to host)");
+  reachable_ = true;
+  pass(2s);
+  status = newest();
+  EXPECT_EQ(status.health(), wire::HEALTH_OK);
+  EXPECT_EQ(status.message(), "nothing was heard of run r1 while its exciter was driven; the "
+                              "output of the generator was switched off");
+  announce(wire::EXCITATION_SETTLING);
+  pass(100ms);
+  EXPECT_EQ(newest().message(), "");
 }
 
 TEST_F(ExciterGuardTest, DoesNotTakeAnotherBenchsExcitationForItsOwn) {

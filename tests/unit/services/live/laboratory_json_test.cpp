@@ -56,6 +56,10 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
   EXPECT_EQ(programs[0]["bench"], "acc-1");
   EXPECT_EQ(programs[0]["health"], "failed");
   EXPECT_EQ(programs[0]["clock_offset_s"], 0.25);
+  EXPECT_EQ(programs[0]["clock_offset_bound_s"], 0.001);
+  const Json bench = laboratory_json(laboratory)["benches"][0];
+  EXPECT_EQ(bench["clock_offset_s"], 0.25) << "of a service's host, where no source is";
+  EXPECT_EQ(bench["clock_offset_bound_s"], 0.001);
 }
 
 TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {

@@ -215,6 +215,33 @@ TEST_F(LiveLaboratoryTest, ShowsTheRunThatIsConductedBeforeNewerOnes) {
   EXPECT_EQ(bench().current_run()->name, "b");
 }
 
+// The clock of the second one's conductor is an hour behind that of the first one's.
+TEST_F(LiveLaboratoryTest, TheNewestRunIsTheOneHeardOfLastWhateverTheClocksOfConductors) {
+  constexpr std::int64_t hour_ns = 3'600'000'000'000;
+  laboratory_.take(measurement_of("acc-1", "z", wire::MEASUREMENT_DONE, 2 * hour_ns));
+  laboratory_.take(measurement_of("acc-1", "y", wire::MEASUREMENT_RUNNING, hour_ns));
+  EXPECT_EQ(bench().current_run()->name, "y");
+  laboratory_.take(measurement_of("acc-1", "y", wire::MEASUREMENT_DONE, hour_ns));
+  EXPECT_EQ(bench().current_run()->name, "y");
+  wire::ServiceStatus ahead = analysis_of("acc-1", "z", wire::ARM_FINISHED); // of a third clock
+  ahead.published_utc_ns(5 * hour_ns);
+  laboratory_.take(ahead);
+  EXPECT_EQ(bench().current_run()->name, "y");
+}
+
+TEST_F(LiveLaboratoryTest, TakesTheOrderOfRunsThatWereOverFromTheirAnalysis) {
+  wire::ServiceStatus newer = analysis_of("acc-1", "newer", wire::ARM_FINISHED);
+  newer.published_utc_ns(3'000);
+  laboratory_.take(newer);
+  laboratory_.take(analysis_of("acc-1", "older", wire::ARM_FINISHED));
+  EXPECT_EQ(bench().current_run()->name, "newer");
+  wire::ServiceStatus behind = analysis_of("acc-1", "another", wire::ARM_FINISHED);
+  behind.service("dyncal-analysis:1@lab-2");
+  behind.published_utc_ns(1);
+  laboratory_.take(behind);
+  EXPECT_EQ(bench().current_run()->name, "another") << "two hosts: by when it was heard of";
+}
+
 TEST_F(LiveLaboratoryTest, WarnsOfLossesForAWhile) {
   laboratory_.take(status_of("acc-1", "dau", wire::SOURCE_RUNNING, 5));
   EXPECT_EQ(worst().severity, Severity::note) << "lost before we listened";
@@ -240,6 +267,23 @@ TEST_F(LiveLaboratoryTest, ShowsWhatARecorderMisses) {
   EXPECT_EQ(worst().what, "recorder: the disk is full");
   ASSERT_NE(bench().recorder(), nullptr);
   EXPECT_TRUE(bench().runs.empty()) << "a recorder serves no run";
+}
+
+TEST_F(LiveLaboratoryTest, ShowsAGuardThatCannotSwitchOff) {
+  wire::ServiceStatus status;
+  status.bench("acc-1");
+  status.service("guard@lab-2:7");
+  status.guarded_generator("192.0.2.7:5025");
+  laboratory_.take(status);
+  EXPECT_EQ(worst().severity, Severity::ok);
+  status.health(wire::HEALTH_FAILED);
+  status.message("the output may be on");
+  laboratory_.take(status);
+  EXPECT_EQ(worst().severity, Severity::error);
+  EXPECT_EQ(worst().what, "guard: the output may be on");
+  EXPECT_EQ(bench().events.back().text, "guard: the output may be on");
+  EXPECT_TRUE(bench().runs.empty()) << "a guard serves no run";
+  EXPECT_EQ(bench().recorder(), nullptr);
 }
 
 TEST_F(LiveLaboratoryTest, HoldsNoMoreBenchesThanItsLimitWhateverIsWritten) {

@@ -34,6 +34,13 @@ wire::Measurement measurement_of(const std::string& run) {
   return measurement;
 }
 
+wire::CalibrationResult result_of(const std::string& run) {
+  wire::CalibrationResult result;
+  result.bench("acc-1");
+  result.run(run);
+  return result;
+}
+
 class RecorderTest : public testing::Test {
 protected:
   RecorderOptions options(const std::string& run = "") const {
@@ -48,6 +55,7 @@ protected:
   struct Recorded {
     std::vector<std::uint64_t> blocks;
     std::vector<std::string> runs;
+    std::vector<std::string> runs_of_results;
     std::string recipe;
     TextMap losses;
     ScanReport report;
@@ -64,6 +72,12 @@ protected:
                          const auto block = decode<wire::SampleBlock>(one.message.data).value();
                          EXPECT_EQ(block, block_of(block.block()));
                          recorded.blocks.push_back(block.block());
+                       } else if (one.channel.topic == bus::topics::calibration_result.name) {
+                         recorded.runs_of_results.push_back(
+                             decode<wire::CalibrationResult>(one.message.data)
+                                 .value()
+                                 .run()
+                                 .to_string());
                        } else if (one.channel.topic == bus::topics::measurement.name) {
                          recorded.runs.push_back(
                              decode<wire::Measurement>(one.message.data).value().run().to_string());
@@ -119,6 +133,39 @@ TEST_F(RecorderTest, LeavesOutOtherRunsWhenItRecordsOne) {
   }
   ASSERT_TRUE(recorder->stop());
   EXPECT_EQ(read().runs, std::vector<std::string>{"R2"});
+}
+
+TEST_F(RecorderTest, IsSentNoResultsOfOtherRunsWhenItRecordsOne) {
+  auto before = others_.writer_of_run(bus::topics::calibration_result, "acc-1", "R1").value();
+  auto now = others_.writer_of_run(bus::topics::calibration_result, "acc-1", "R2").value();
+  before.write(result_of("R1"));
+  now.write(result_of("R2"));
+  auto recorder = Recorder::start(own_, options("R2")).value();
+  EXPECT_EQ(before.matched_readers(), 0);
+  EXPECT_EQ(now.matched_readers(), 1);
+  ASSERT_TRUE(recorder->stop());
+  EXPECT_EQ(read().runs_of_results, std::vector<std::string>{"R2"});
+}
+
+TEST_F(RecorderTest, HasTheResultsOfAnAnalysisOfContract1) {
+  auto results = others_.writer(bus::topics::calibration_result, "acc-1").value();
+  auto status = others_.writer(bus::topics::service_status, "acc-1").value();
+  results.write(result_of("R1"));
+  results.write(result_of("R2"));
+  wire::ServiceStatus report;
+  report.bench("acc-1");
+  report.run("R2");
+  report.contract_version(1);
+  auto recorder = Recorder::start(own_, options("R2")).value();
+  EXPECT_EQ(results.matched_readers(), 0);
+  status.write(report);
+  const auto deadline = std::chrono::steady_clock::now() + tests::patience;
+  while (results.matched_readers() == 0 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(results.matched_readers(), 1);
+  ASSERT_TRUE(recorder->stop());
+  EXPECT_EQ(read().runs_of_results, std::vector<std::string>{"R2"});
 }
 
 TEST_F(RecorderTest, CountsWhatHasNoRoomInItsQueue) {

@@ -53,7 +53,51 @@ TEST(ShowOutcome, AnInterruptedRunKeepsWhatItMeasured) {
   outcome.interrupted = true;
   const auto checked = check_complete(outcome);
   EXPECT_EQ(checked.error().code, ErrorCode::interrupted);
-  EXPECT_THAT(checked.error().message, HasSubstr("1 of 3 steps were measured and kept"));
+  EXPECT_EQ(checked.error().message,
+            "interrupted: the excitation is off; 1 of 3 steps were measured and kept");
+}
+
+TEST(ShowOutcome, AnOutputThatMayBeOnIsWhatTheLastLineEndsWith) {
+  RunOutcome outcome = outcome_of_steps(3, 1);
+  outcome.output_may_be_on = true;
+  outcome.output_is_guarded = true;
+  outcome.problem = "the instrument does not answer";
+  const std::string by_guard =
+      "1 of 3 steps were measured and kept; THE OUTPUT OF THE GENERATOR MAY BE ON: it has not "
+      "confirmed that it is off; switch it off by hand. A guard goes on trying for ten minutes";
+  EXPECT_EQ(check_complete(outcome).error().code, ErrorCode::device);
+  EXPECT_EQ(check_complete(outcome).error().message, "the instrument does not answer; " + by_guard);
+  outcome.interrupted = true;
+  EXPECT_EQ(check_complete(outcome).error().code, ErrorCode::device);
+  EXPECT_EQ(check_complete(outcome).error().message, "interrupted; " + by_guard);
+}
+
+TEST(ShowOutcome, OfAGeneratorThatAPersonSetsNoGuardIsPromised) {
+  RunOutcome outcome = outcome_of_steps(3, 1);
+  outcome.output_may_be_on = true;
+  const std::string by_hand = "THE OUTPUT OF THE GENERATOR MAY BE ON: nobody has confirmed that it "
+                              "is off; switch it off at the generator";
+  outcome.problem = "ended by a command of 'ada@desk'";
+  EXPECT_EQ(check_complete(outcome).error().message,
+            outcome.problem + "; 1 of 3 steps were measured and kept; " + by_hand);
+  outcome.interrupted = true;
+  EXPECT_EQ(check_complete(outcome).error().message,
+            "interrupted; 1 of 3 steps were measured and kept; " + by_hand);
+}
+
+// As a calibration says it, of which nothing is kept.
+TEST(ShowOutcome, TheEndOfARunSaysWhatHasBecomeOfIt) {
+  RunOutcome outcome = outcome_of_steps(3, 3);
+  EXPECT_TRUE(check_end(outcome, "no file was written"));
+  outcome.problem = "the shaker stopped";
+  EXPECT_EQ(check_end(outcome, "no file was written").error().message,
+            "the shaker stopped; no file was written");
+  outcome.interrupted = true;
+  EXPECT_EQ(check_end(outcome, "no file was written").error().message,
+            "interrupted: the excitation is off; no file was written");
+  outcome.output_may_be_on = true;
+  EXPECT_THAT(check_end(outcome, "no file was written").error().message,
+              testing::StartsWith("interrupted; no file was written; THE OUTPUT"));
 }
 
 TEST(ShowOutcome, WhatEndedARunEarlyComesFirst) {

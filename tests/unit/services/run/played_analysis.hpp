@@ -13,10 +13,12 @@ namespace dyncal::tests {
 
 class PlayedAnalysis {
 public:
+  // Before contract 2 all was written in the partition of the bench alone.
   PlayedAnalysis(bus::MemoryNetwork& network, std::string bench, std::string run,
-                 std::string service = "analysis@test:1")
+                 std::string service = "analysis@test:1",
+                 std::uint32_t contract_version = wire::CONTRACT_VERSION)
       : bench_(std::move(bench)), run_(std::move(run)), service_(std::move(service)),
-        participant_(network.join(service_)) {}
+        contract_version_(contract_version), participant_(network.join(service_)) {}
 
   void report(wire::ArmState arm, const std::string& failure = "") {
     report(arm, failure.empty() ? wire::HEALTH_OK : wire::HEALTH_FAILED, failure);
@@ -30,6 +32,8 @@ public:
     status.health(health);
     status.message(message);
     status.dds("memory");
+    status.software("dyncal of the test");
+    status.contract_version(contract_version_);
     status.results_published(results_);
     status.transfer_functions_published(transfer_functions_);
     status_.write(status);
@@ -40,6 +44,7 @@ public:
     result.run(run_);
     result.channel(channel);
     result.step(step);
+    result.repetition(1);
     result_.write(result);
     ++results_;
   }
@@ -47,6 +52,7 @@ public:
   void publish(wire::CalibrationResult result) {
     result.bench(bench_);
     result.run(run_);
+    result.repetition(1);
     result_.write(result);
     results_ += result.attempt() <= 1 ? 1 : 0;
   }
@@ -57,6 +63,7 @@ public:
     result.run(run_);
     result.channel("dau/acceleration_x");
     result.step(step);
+    result.repetition(1);
     result.provisional(!settled);
     result_.write(result);
     results_ += settled ? 0 : 1;
@@ -88,8 +95,9 @@ private:
     return all;
   }
   template <class T>
-  bus::Writer<T> writer(const char* topic, bus::Profile profile) {
-    return participant_.writer<T>(topic, profile, bench_).value();
+  bus::Writer<T> writer(const bus::Topic<T>& topic) {
+    return contract_version_ < 2 ? participant_.writer(topic, bench_).value()
+                                 : participant_.writer_of_run(topic, bench_, run_).value();
   }
   template <class T>
   bus::Reader<T> reader(const char* topic) {
@@ -99,13 +107,11 @@ private:
   std::string bench_;
   std::string run_;
   std::string service_;
+  std::uint32_t contract_version_;
   bus::Participant participant_;
-  bus::Writer<wire::ServiceStatus> status_ =
-      writer<wire::ServiceStatus>(bus::topics::service_status, bus::Profile::state);
-  bus::Writer<wire::CalibrationResult> result_ =
-      writer<wire::CalibrationResult>(bus::topics::calibration_result, bus::Profile::results);
-  bus::Writer<wire::TransferFunction> transfer_function_ =
-      writer<wire::TransferFunction>(bus::topics::transfer_function, bus::Profile::results);
+  bus::Writer<wire::ServiceStatus> status_ = writer(bus::topics::service_status);
+  bus::Writer<wire::CalibrationResult> result_ = writer(bus::topics::calibration_result);
+  bus::Writer<wire::TransferFunction> transfer_function_ = writer(bus::topics::transfer_function);
   bus::Reader<wire::Measurement> measurement_ = reader<wire::Measurement>(bus::topics::measurement);
   bus::Reader<wire::Excitation> excitation_ = reader<wire::Excitation>(bus::topics::excitation);
   std::uint64_t results_ = 0;

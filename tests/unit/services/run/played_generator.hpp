@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,11 +28,13 @@ struct PlayedInstrument {
   bool connected = false;
   int connections = 0;
   bool confirmed = true; // what was set is in effect
-  // A call that fails, by its name, from its n-th time on.
+  // A call that fails, by its name, from its n-th time on, so often.
   std::string failing_call;
   int failing_from = 1;
+  int failing_times = std::numeric_limits<int>::max();
   int calls_of_failing = 0;
-  bool away = false; // every call fails: it does not answer
+  std::string refused_hz; // a frequency that it does not take
+  bool away = false;      // every call fails: it does not answer
 
   [[nodiscard]] double now_s() const {
     return std::chrono::duration<double>(clock.elapsed()).count();
@@ -54,6 +57,9 @@ public:
 
   [[nodiscard]] const std::string& identity() const override { return identity_; }
   drivers::Expected<void> set_frequency(const std::string& decimal_hz) override {
+    if (decimal_hz == instrument_.refused_hz) {
+      return fail(drivers::ErrorCode::refused, decimal_hz + " Hz was refused");
+    }
     return called("set_frequency").map([&] {
       instrument_.frequency_hz = decimal_hz;
       instrument_.settings.push_back(decimal_hz + " Hz");
@@ -103,7 +109,8 @@ private:
       return fail(drivers::ErrorCode::timeout, "the instrument does not answer");
     }
     if (call == instrument_.failing_call &&
-        ++instrument_.calls_of_failing >= instrument_.failing_from) {
+        ++instrument_.calls_of_failing >= instrument_.failing_from &&
+        instrument_.calls_of_failing - instrument_.failing_from < instrument_.failing_times) {
       return fail(drivers::ErrorCode::refused, call + " was refused");
     }
     return {};

@@ -2,6 +2,10 @@
 // plays. No real time passes.
 #include "services/run/run_controller.hpp"
 
+#include <set>
+#include <string>
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,6 +31,7 @@ protected:
   BenchFile bench_ = bench();
   std::stop_source stop_;
   std::vector<std::string> phases_;
+  std::vector<std::string> notices_;
 
   static BenchFile bench() {
     BenchFile bench;
@@ -40,13 +45,18 @@ protected:
     bench.method.reference = {"acs", "reference"};
     bench.method.sync_acs = {"acs", "sync"};
     bench.method.sync_dau = {"dau", "sync"};
+    bench.method.dut = {{"dau", "acceleration_x"}, {"dau", "acceleration_y"}};
     return bench;
   }
 
   Expected<RunOutcome> conduct() {
-    RunController controller(
-        {participant_, clock_, tests::connect_to(instrument_)}, bench_, run_name,
-        [this](const RunProgress& progress) { phases_.push_back(progress.phase); });
+    RunController controller({participant_, clock_, tests::connect_to(instrument_)}, bench_,
+                             run_name, [this](const RunProgress& progress) {
+                               phases_.push_back(progress.phase);
+                               if (!progress.notice.empty()) {
+                                 notices_.push_back(progress.notice);
+                               }
+                             });
     auto outcome = controller.conduct({}, stop_.get_token());
     EXPECT_FALSE(instrument_.on);
     return outcome;
@@ -96,6 +106,50 @@ TEST_F(RunControllerTest, ExcitesEveryStepAndCollectsWhatIsPublished) {
   EXPECT_EQ(outcome->planned_steps, 2U);
   EXPECT_EQ(published_state(), wire::MEASUREMENT_DONE);
   EXPECT_EQ(std::count(instrument_.settings.begin(), instrument_.settings.end(), "on"), 2);
+}
+
+TEST_F(RunControllerTest, LeavesOutResultsThatItDidNotPlan) {
+  play_analysis();
+  tests::PlayedAnalysis other(network_, bench_name, run_name);
+  clock_.at(8s, [&] {
+    for (std::uint32_t step = 3; step < 1000; ++step) {
+      other.publish_result(step);
+    }
+    other.publish_result(1, "dau/another");
+    other.publish_transfer_function("dau/another");
+    analysis_.publish_result(1);
+    analysis_.publish_result(2);
+    analysis_.publish_transfer_function("dau/acceleration_x");
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 2U);
+  EXPECT_EQ(outcome->transfer_functions.size(), 1U);
+  EXPECT_EQ(std::count_if(notices_.begin(), notices_.end(),
+                          [](const std::string& notice) {
+                            return notice.starts_with("results of this run came that it did not");
+                          }),
+            1);
+}
+
+TEST_F(RunControllerTest, TakesEveryChannelOfItsSourcesWhereAllAreUnderCalibration) {
+  bench_.method.dut.clear();
+  play_analysis();
+  tests::PlayedAnalysis other(network_, bench_name, run_name);
+  clock_.at(8s, [&] {
+    other.publish_result(1, "another/acceleration_x");
+    analysis_.publish_result(1, "dau/whatever");
+    analysis_.publish_transfer_function("dau/whatever");
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  ASSERT_EQ(outcome->results.size(), 1U);
+  EXPECT_EQ(outcome->results[0].channel, "dau/whatever");
+  EXPECT_EQ(outcome->transfer_functions.size(), 1U);
 }
 
 // ---- until the run is armed
@@ -305,14 +359,14 @@ TEST_F(RunControllerTest, SaysThatARunWasRefusedBeforeItsLastResults) {
   EXPECT_LE(clock_.elapsed(), 12s + 2 * look);
 }
 
-TEST_F(RunControllerTest, EndsTheRunWhenTheGeneratorFails) {
+TEST_F(RunControllerTest, NamesTheStepThatTheGeneratorHasRefused) {
   play_analysis();
   instrument_.failing_call = "set_frequency";
   instrument_.failing_from = 2; // at the second step
   clock_.at(8s, [this] { finish(); });
   const auto outcome = conduct();
   ASSERT_TRUE(outcome);
-  EXPECT_EQ(outcome->problem, "set_frequency was refused");
+  EXPECT_EQ(outcome->problem, "step 2, 80 Hz: set_frequency was refused (attempts: 1)");
   EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
 }
 
@@ -401,11 +455,64 @@ TEST_F(RunControllerTest, GivesUpJustAfterItsLimitWhenTheLastResultsDoNotCome) {
   EXPECT_LE(clock_.elapsed() - excitation_done, RunController::results_limit + look);
 }
 
+TEST_F(RunControllerTest, TellsWithWhichSoftwareItWasArmed) {
+  play_analysis();
+  std::set<std::string> before;
+  std::set<std::string> after;
+  clock_.every(50ms, [&] {
+    for (const wire::Measurement& measurement : analysis_.measurements()) {
+      (measurement.state() == wire::MEASUREMENT_PLANNED ? before : after)
+          .insert(measurement.analysis_software());
+    }
+  });
+  clock_.at(7s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_THAT(before, testing::ElementsAre(""));
+  EXPECT_THAT(after, testing::ElementsAre("dyncal of the test"));
+}
+
+// As where a changed packet takes the number of the message that was to come: DDS has delivered it.
+class MissedMessage : public RunControllerTest, public testing::WithParamInterface<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(OfTheAnalysis, MissedMessage,
+                         testing::Values(bus::topics::calibration_result.name,
+                                         bus::topics::transfer_function.name,
+                                         bus::topics::service_status.name),
+                         [](const auto& topic) { return std::string(topic.param); });
+
+TEST_P(MissedMessage, IsCollectedOnceMore) {
+  play_analysis();
+  bool missed = false;
+  network_.lose([&](const bus::MessageInTransit& message) {
+    return clock_.elapsed() >= 7s && message.topic == GetParam() && message.receiver == "runner" &&
+           !std::exchange(missed, true);
+  });
+  clock_.at(7s, [this] {
+    finished_ = true;
+    analysis_.publish_result(1);
+    analysis_.publish_result(2);
+    analysis_.publish_transfer_function("dau/acceleration_x");
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_TRUE(missed);
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 2U);
+  EXPECT_EQ(outcome->transfer_functions.size(), 1U);
+  EXPECT_GE(clock_.elapsed(), 7s + RunController::missed_limit - 50ms);
+  EXPECT_LE(clock_.elapsed(), 7s + RunController::missed_limit + attention_limit + 2 * look);
+}
+
 TEST_F(RunControllerTest, WaitsAnewAfterEveryResult) {
   play_analysis();
-  for (int step = 1; step <= 3; ++step) {
-    clock_.at(6s + step * (RunController::results_limit - look),
-              [this, step] { analysis_.publish_result(static_cast<std::uint32_t>(step)); });
+  const std::vector<std::pair<std::uint32_t, std::string>> results{
+      {1, "dau/acceleration_x"}, {1, "dau/acceleration_y"}, {2, "dau/acceleration_x"}};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    clock_.at(6s + (i + 1) * (RunController::results_limit - look), [this, result = results[i]] {
+      analysis_.publish_result(result.first, result.second);
+    });
   }
   clock_.at(6s + 3 * RunController::results_limit, [this] { finish(); });
   const auto outcome = conduct();
@@ -452,6 +559,44 @@ TEST_F(RunControllerTest, LeavesOutMessagesOfAnotherRunOnTheBench) {
   const auto outcome = conduct();
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_TRUE(outcome->results.empty());
+}
+
+// An analysis keeps the results of past runs: on a slow link they would come before all else.
+TEST_F(RunControllerTest, IsSentNoResultsOfRunsBefore) {
+  tests::PlayedAnalysis before(network_, bench_name, "r0");
+  before.publish_result(1);
+  before.publish_transfer_function("dau/acceleration_x");
+  std::set<std::string> of_runs;
+  network_.lose([&](const bus::MessageInTransit& message) {
+    if (message.receiver == "runner" && message.topic == bus::topics::calibration_result.name) {
+      of_runs.insert(message.as<wire::CalibrationResult>().run().to_string());
+    }
+    return false;
+  });
+  play_analysis();
+  clock_.at(8s, [this] {
+    analysis_.publish_result(1);
+    finish();
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_THAT(of_runs, testing::ElementsAre(run_name));
+}
+
+TEST_F(RunControllerTest, CollectsWhatAnAnalysisOfContract1WritesForTheBenchAlone) {
+  tests::PlayedAnalysis older(network_, bench_name, run_name, "analysis@test:0", 1);
+  clock_.every(1s,
+               [&] { older.report(clock_.elapsed() < 8s ? wire::ARM_ARMED : wire::ARM_FINISHED); });
+  clock_.at(7s, [&] {
+    older.publish_result(1);
+    older.publish_result(2);
+    older.publish_transfer_function("dau/acceleration_x");
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 2U);
+  EXPECT_EQ(outcome->transfer_functions.size(), 1U);
 }
 
 // ---- recorded files in place of an excitation

@@ -33,6 +33,7 @@ protected:
     bench.method.reference = {"acs", "reference"};
     bench.method.sync_acs = {"acs", "sync"};
     bench.method.sync_dau = {"dau", "sync"};
+    bench.method.dut = {{"dau", "acceleration_x"}};
     clock_.at(100ms, [this] { analysis_.report(wire::ARM_ARMED); });
     clock_.every(1s, [this] {
       if (!finished_) {

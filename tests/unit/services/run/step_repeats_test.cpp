@@ -64,14 +64,15 @@ TEST_F(StepRepeatsTest, AStepWithALossIsRepeatedUpToTheLimitAndThenStaysAsItIs) 
 TEST_F(StepRepeatsTest, OnlyWhatAnotherAttemptMayCureIsAReason) {
   for (const ResultFlag flag : {ResultFlag::samples_lost, ResultFlag::shorter_than_planned,
                                 ResultFlag::excitation_broken_off, ResultFlag::shots_missing,
-                                ResultFlag::shots_left_out, ResultFlag::records_lost}) {
+                                ResultFlag::shots_left_out, ResultFlag::records_lost,
+                                ResultFlag::stamps_not_trusted, ResultFlag::values_not_measured}) {
     EXPECT_EQ(next({good(1), with(flag, good(2)), good(3)}), 2U) << to_string(flag);
   }
   for (const ResultFlag flag :
        {ResultFlag::level_off_plan, ResultFlag::over_range, ResultFlag::values_stuck,
         ResultFlag::distorted, ResultFlag::clock_uncertainty_unknown, ResultFlag::start_undecided,
         ResultFlag::adc_not_calibrated, ResultFlag::mains_not_separated,
-        ResultFlag::stamps_not_trusted, ResultFlag::from_message}) {
+        ResultFlag::from_message}) {
     EXPECT_EQ(next({good(1), with(flag, good(2)), good(3)}), 0U) << to_string(flag);
   }
 }

@@ -86,6 +86,10 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
                          .runs_refused = 3,
                          .runs_finished = 4,
                          .evaluation_s = 1.5,
+                         .benches = 8,
+                         .sources = 9,
+                         .runs_of_others = 10,
+                         .left_out = {{"runs", 11}},
                          .malformed_messages = 6,
                          .refused_packets = 7},
          store_);
@@ -95,6 +99,10 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
   EXPECT_EQ(values.at(R"(dyncal_analysis_runs{state="refused"})"), 3);
   EXPECT_EQ(values.at(R"(dyncal_analysis_runs{state="finished"})"), 4);
   EXPECT_EQ(values.at("dyncal_analysis_evaluation_seconds_total"), 1.5);
+  EXPECT_EQ(values.at(R"(dyncal_analysis_held{what="benches"})"), 8);
+  EXPECT_EQ(values.at(R"(dyncal_analysis_held{what="sources"})"), 9);
+  EXPECT_EQ(values.at(R"(dyncal_analysis_held{what="runs_of_others"})"), 10);
+  EXPECT_EQ(values.at(R"(dyncal_analysis_left_out_total{what="runs"})"), 11);
   EXPECT_EQ(values.at("dyncal_malformed_messages_total"), 6);
   EXPECT_EQ(values.at("dyncal_refused_packets_total"), 7);
 }

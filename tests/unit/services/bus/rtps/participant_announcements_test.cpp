@@ -30,6 +30,7 @@ Bytes lease(std::uint32_t seconds) {
 class Announcements : public testing::Test {
 protected:
   ParticipantAnnouncements announcements_;
+  ParticipantAnnouncements::Instant now_{};
   rtps_format::Prefix from_{};
 
   Announcements() { std::ranges::copy(participant, from_.begin()); }
@@ -38,13 +39,15 @@ protected:
                  std::uint64_t number = 1) {
     return announcements_.accepts(from_, flags,
                                   u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(number) +
-                                      Bytes{0, 3, 0, 0} + parameters);
+                                      Bytes{0, 3, 0, 0} + parameters,
+                                  now_);
   }
   bool goodbye(const Bytes& writer) {
     constexpr unsigned char key_and_qos = 0x0b;
     return announcements_.accepts(from_, key_and_qos,
                                   u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(2) +
-                                      parameter(0x71, {0, 0, 0, 3}) + sentinel + Bytes(20, 0));
+                                      parameter(0x71, {0, 0, 0, 3}) + sentinel + Bytes(20, 0),
+                                  now_);
   }
   bool announced(std::uint32_t lease_s, const Bytes& more = {}) {
     return announced(participants, guid_of(participant) + lease(lease_s) + more + sentinel);
@@ -112,6 +115,18 @@ TEST_F(Announcements, OfAWriterKeepTheirNumber) {
   EXPECT_TRUE(of_writer(9)) << "and says so to whoever asks";
 }
 
+TEST_F(Announcements, AreForgottenWithAllOfTheirParticipantOnceItIsSilent) {
+  EXPECT_TRUE(announced(10));
+  const Bytes of_writer = parameter(0x5a, participant + Bytes{0, 0, 1, 2}) + sentinel;
+  EXPECT_TRUE(announced(publications, of_writer, 0x05, 1));
+  now_ += ParticipantAnnouncements::silence_limit;
+  EXPECT_TRUE(announcements_.forget_the_gone(now_).empty());
+  EXPECT_FALSE(announced(publications, of_writer, 0x05, 2)) << "another number";
+  now_ += std::chrono::nanoseconds(1);
+  EXPECT_EQ(announcements_.forget_the_gone(now_).size(), 1U);
+  EXPECT_TRUE(announced(publications, of_writer, 0x05, 2)) << "as of a newcomer";
+}
+
 TEST_F(Announcements, DoNotEndBecauseOfAChangedFlag) {
   EXPECT_TRUE(announced(10));
   constexpr unsigned char key_only = 0x09;
@@ -121,7 +136,7 @@ TEST_F(Announcements, DoNotEndBecauseOfAChangedFlag) {
 
 TEST_F(Announcements, OtherDataIsLeftToOthers) {
   EXPECT_TRUE(announced({0, 0, 1, 2}, Bytes(3, 9)));
-  EXPECT_TRUE(announcements_.accepts(from_, 0x05, Bytes(5, 0))) << "not whole";
+  EXPECT_TRUE(announcements_.accepts(from_, 0x05, Bytes(5, 0), now_)) << "not whole";
 }
 
 } // namespace

@@ -103,6 +103,16 @@ TEST(RecipeMessage, RefusesReferenceAndSyncOfDifferentClocks) {
   EXPECT_THAT(parse_recipe(measurement).error().message, HasSubstr("must share a clock"));
 }
 
+TEST(RecipeMessage, RefusesMoreTrialsThanMemoryHolds) {
+  wire::Measurement measurement = tests::SyntheticRun{}.measurement();
+  measurement.monte_carlo_trials(100'000'000);
+  EXPECT_TRUE(parse_recipe(measurement));
+  measurement.monte_carlo_trials(100'000'001);
+  EXPECT_THAT(
+      parse_recipe(measurement).error().message,
+      HasSubstr("asks for 100000001 Monte Carlo trials of a value, and at most 100000000 "));
+}
+
 TEST(RecipeMessage, RefusesARunWithoutSteps) {
   wire::Measurement measurement = tests::SyntheticRun{}.measurement();
   measurement.steps().clear();

@@ -1,0 +1,73 @@
+#include "services/run/guard_watch.hpp"
+
+#include <fmt/format.h>
+
+#include "services/bench/generator_address.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr const char* consequence = "should this program, its host or its link fail, the exciter "
+                                    "stays on";
+
+} // namespace
+
+void GuardWatch::take(const wire::ServiceStatus& status, Instant now) {
+  const std::string service = status.service().to_string();
+  if (status.guarded_generator().empty() ||
+      (guards_.size() >= max_guards && !guards_.contains(service))) {
+    return;
+  }
+  guards_[service] = {status.host(), status.guarded_generator(),
+                      status.health() == wire::HEALTH_FAILED ? status.message() : "", now};
+}
+
+std::string GuardWatch::lack(Instant now) const {
+  const Guard* newest = nullptr;
+  bool is_watched = false;
+  for (const auto& [service, guard] : guards_) {
+    if (now - guard.heard <= limit && may_be_one_generator(guard.generator, generator_)) {
+      if (!guard.message.empty()) {
+        return fmt::format("dyncal-guard on {}: {}", guard.host, guard.message);
+      }
+      is_watched = true;
+    }
+    if (newest == nullptr || newest->heard < guard.heard) {
+      newest = &guard;
+    }
+  }
+  if (is_watched) {
+    return "";
+  }
+  if (newest == nullptr) {
+    return now - since_ <= limit
+               ? ""
+               : fmt::format("no dyncal-guard watches over the exciter of bench '{}': {}; start "
+                             "dyncal-guard with this bench file on a machine beside the generator",
+                             bench_, consequence);
+  }
+  if (now - newest->heard <= limit) {
+    return fmt::format("the dyncal-guard on {} switches off the generator at {}, and this run "
+                       "drives the one at {}: unless they are one, {}; give both the same bench "
+                       "file",
+                       newest->host, newest->generator, generator_, consequence);
+  }
+  return fmt::format("the dyncal-guard on {} has gone silent: {}; look after it there",
+                     newest->host, consequence);
+}
+
+std::optional<std::string> GuardWatch::notice(Instant now) {
+  if (generator_.empty()) {
+    return std::nullopt;
+  }
+  std::string sentence = lack(now);
+  if (sentence == told_) {
+    return std::nullopt;
+  }
+  told_ = std::move(sentence);
+  return told_.empty()
+             ? fmt::format("a dyncal-guard watches over the exciter of bench '{}' now", bench_)
+             : told_;
+}
+
+} // namespace dyncal::services

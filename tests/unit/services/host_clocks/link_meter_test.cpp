@@ -1,0 +1,204 @@
+// A meter and the programs that echo its probes over the memory bus, which loses what it is told
+// to.
+#include "services/host_clocks/link_meter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/bus/memory/memory_network.hpp"
+#include "services/contract/topics.hpp"
+#include "services/host_clocks/clock_responder.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+namespace topics = bus::topics;
+
+class LinkMeterTest : public testing::Test {
+protected:
+  static ProgramIdentity identity(const std::string& program, std::uint32_t process_id = 4711) {
+    return {program, "there", process_id, "dyncal 9.9.9", "cyclonedds"};
+  }
+  std::unique_ptr<ClockResponder> responder(std::uint32_t process_id = 4711) {
+    return std::move(*ClockResponder::open(there_, identity("dyncal-acs", process_id), time_));
+  }
+  // A doctor: what asks for clocks and sends probes.
+  struct Doctor {
+    ClockAsker asker;
+    LinkMeter meter;
+  };
+  Doctor doctor() {
+    const ProgramIdentity own{"dyncal-doctor", "here", 1, "dyncal 9.9.9", "cyclonedds"};
+    return {std::move(*ClockAsker::open(here_, own, time_, bell_, {.quick_requests = 1'000'000})),
+            std::move(*LinkMeter::open(here_, own, time_, bell_))};
+  }
+  void pass(std::chrono::milliseconds time, Doctor& doctor,
+            const std::vector<ClockResponder*>& responders) {
+    for (auto passed = 0ms; passed < time; passed += 1ms) {
+      time_.advance(1ms);
+      for (ClockResponder* responder : responders) {
+        responder->work();
+      }
+      doctor.asker.work();
+      doctor.meter.work(doctor.asker.program_count());
+    }
+  }
+  static LinkLoss loss(const Doctor& doctor) {
+    const auto losses = doctor.meter.losses(doctor.asker.programs());
+    EXPECT_EQ(losses.size(), 1U);
+    return losses.empty() ? LinkLoss() : losses[0];
+  }
+  template <class Message, class Condition>
+  void lose(const bus::Topic<Message>& topic, Condition condition) {
+    network_.lose([name = std::string(topic), condition](const bus::MessageInTransit& message) {
+      return message.topic == name && condition(message.as<Message>().number());
+    });
+  }
+
+  bus::SteppedClock time_;
+  bus::MemoryNetwork network_{time_};
+  bus::Participant here_ = network_.join("here");
+  bus::Participant there_ = network_.join("there");
+  std::shared_ptr<bus::WakeUp> bell_ = std::make_shared<bus::WakeUp>();
+};
+
+TEST_F(LinkMeterTest, FindsNoLossWhereNothingIsLost) {
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  const LinkLoss found = loss(asking);
+  EXPECT_TRUE(found.answers_probes);
+  EXPECT_EQ(found.identity.program, "dyncal-acs");
+  EXPECT_GT(found.there.sent, 200U);
+  EXPECT_EQ(found.there.arrived, found.there.sent);
+  EXPECT_GT(found.back.sent, 200U);
+  EXPECT_EQ(found.back.arrived, found.back.sent);
+}
+
+TEST_F(LinkMeterTest, CountsWhatIsLostThereExactly) {
+  lose(topics::link_probe, [](std::uint64_t number) { return number % 10 == 3; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  const LinkLoss found = loss(asking);
+  EXPECT_GT(found.there.sent, 200U);
+  EXPECT_EQ(found.there.sent - found.there.arrived, (found.there.sent + 7) / 10);
+  EXPECT_GT(found.back.sent, 180U);
+  EXPECT_EQ(found.back.arrived, found.back.sent);
+}
+
+TEST_F(LinkMeterTest, CountsWhatIsLostOnTheWayBackExactly) {
+  lose(topics::link_echo, [](std::uint64_t number) { return number % 4 == 0; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  const LinkLoss found = loss(asking);
+  EXPECT_GT(found.there.sent, 200U);
+  EXPECT_EQ(found.there.arrived, found.there.sent);
+  EXPECT_GT(found.back.sent, 200U);
+  EXPECT_EQ(found.back.sent - found.back.arrived, found.back.sent / 4);
+}
+
+TEST_F(LinkMeterTest, SeesThatNoProbeArrives) {
+  lose(topics::link_probe, [](std::uint64_t) { return true; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  EXPECT_EQ(lost_part(loss(asking).there), 1.0);
+  EXPECT_GT(loss(asking).there.sent, 180U);
+  EXPECT_FALSE(lost_part(loss(asking).back)) << "nothing was sent back";
+}
+
+TEST_F(LinkMeterTest, SeesThatNoEchoComesBack) {
+  lose(topics::link_echo, [](std::uint64_t) { return true; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  EXPECT_EQ(lost_part(loss(asking).there), 0.0);
+  EXPECT_EQ(lost_part(loss(asking).back), 1.0);
+  EXPECT_GT(loss(asking).back.sent, 200U);
+}
+
+TEST_F(LinkMeterTest, SeesThatNothingArrivesAnyLonger) {
+  lose(topics::link_probe, [](std::uint64_t number) { return number > 100; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(3s, asking, {answering.get()});
+  EXPECT_EQ(loss(asking).there.arrived, 100U);
+  EXPECT_GT(loss(asking).there.sent, 180U);
+  EXPECT_EQ(loss(asking).back.arrived, 100U);
+  EXPECT_EQ(loss(asking).back.sent, 100U);
+}
+
+TEST_F(LinkMeterTest, TakesNothingForLostThatWasSentBeforeAProgramWasThere) {
+  auto asking = doctor();
+  const auto first = responder(1);
+  pass(2s, asking, {first.get()});
+  const auto second = responder(2);
+  pass(2s, asking, {first.get(), second.get()});
+  const auto losses = asking.meter.losses(asking.asker.programs());
+  ASSERT_EQ(losses.size(), 2U);
+  EXPECT_GT(losses[0].there.sent, 300U);
+  EXPECT_GT(losses[1].there.sent, 100U);
+  EXPECT_LT(losses[1].there.sent, 210U);
+  for (const LinkLoss& one : losses) {
+    EXPECT_EQ(lost_part(one.there), 0.0);
+    EXPECT_EQ(lost_part(one.back), 0.0);
+  }
+}
+
+TEST_F(LinkMeterTest, BeginsANewSeriesWhereOneOfItsNameWasBefore) {
+  const auto answering = responder();
+  {
+    auto before = doctor();
+    pass(3s, before, {answering.get()});
+  }
+  lose(topics::link_probe, [](std::uint64_t number) { return number % 2 == 0; });
+  auto asking = doctor();
+  pass(3s, asking, {answering.get()});
+  EXPECT_GT(loss(asking).there.sent, 200U);
+  EXPECT_NEAR(lost_part(loss(asking).there).value_or(0.0), 0.5, 0.01);
+}
+
+TEST_F(LinkMeterTest, DoesNotTakeAProgramThatAnswersNoProbesForALoss) {
+  auto asking = doctor();
+  auto answers = *there_.writer(topics::clock_answer, all_benches_partition);
+  pass(10ms, asking, {});
+  wire::ClockAnswer answer; // of an older version
+  answer.bench(all_benches_partition);
+  answer.asker("dyncal-doctor:1@here");
+  answer.service("dyncal-acs:4711@there");
+  answer.number(1);
+  EXPECT_EQ(answers.write(answer), bus::WriteOutcome::written);
+  pass(3s, asking, {});
+  EXPECT_GT(asking.meter.probes(), 200U);
+  EXPECT_FALSE(loss(asking).answers_probes);
+  EXPECT_FALSE(lost_part(loss(asking).there));
+  EXPECT_FALSE(lost_part(loss(asking).back));
+}
+
+TEST_F(LinkMeterTest, SendsNothingBeforeAProgramAnswersAndEndsInTime) {
+  auto asking = doctor();
+  pass(2s, asking, {});
+  EXPECT_EQ(asking.meter.probes(), 0U);
+  const auto answering = responder();
+  pass(30s, asking, {answering.get()});
+  EXPECT_EQ(asking.meter.probes(), LinkMeter::max_probes);
+  EXPECT_EQ(asking.meter.next_probe(), LinkMeter::Instant::max());
+}
+
+TEST_F(LinkMeterTest, SendsMoreSlowlyToManyPrograms) {
+  auto asking = doctor();
+  std::vector<std::unique_ptr<ClockResponder>> answering;
+  std::vector<ClockResponder*> responders;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    responders.push_back(answering.emplace_back(responder(100 + i)).get());
+  }
+  pass(4s, asking, responders);
+  EXPECT_GT(asking.meter.probes(), 80U);
+  EXPECT_LT(asking.meter.probes(), 100U) << "one every 40 ms";
+  EXPECT_EQ(asking.meter.losses(asking.asker.programs()).size(), 20U);
+}
+
+} // namespace
+} // namespace dyncal::services
