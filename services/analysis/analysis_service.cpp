@@ -21,8 +21,8 @@ AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity 
                                                      std::make_shared<bus::WakeUp>(),
                                                      std::move(identity)},
       benches_({[this](const std::string& bench) {
-                  return std::any_of(order_.begin(), order_.end(), [&](const RunKey& key) {
-                    return key.first == bench && lives(key);
+                  return std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+                    return run.first.first == bench && lives(run);
                   });
                 },
                 [this](const std::string& bench, const std::string& source) {
@@ -84,10 +84,24 @@ void AnalysisService::serve(const std::stop_token& stop,
     leave_benches_without_run();
     say_what_was_left_out();
     const auto began = clock.now();
-    for (const RunKey& key : order_) {
-      runs_.at(key)->work(benches_.sources_of(key.first), run_before(key));
-    }
+    work();
     evaluation_s_ += std::chrono::duration<double>(clock.now() - began).count();
+  }
+}
+
+void AnalysisService::work() {
+  std::map<std::string, RunSession*> first_that_goes_on; // of each bench, up to the one at work
+  for (const auto& run : order_) {
+    const std::string& bench = run->first.first;
+    RunSession& session = *run->second;
+    if (session.finished()) {
+      continue;
+    }
+    RunSession*& before = first_that_goes_on[bench];
+    session.work(benches_.sources_of(bench), before);
+    if (before == nullptr || before->finished()) {
+      before = session.finished() ? nullptr : &session;
+    }
   }
 }
 
@@ -242,8 +256,7 @@ void AnalysisService::begin_run(const RunKey& key, const wire::Measurement& meas
     spdlog::error("bench {}, run {}: {}", key.first, key.second, session.error().message);
     return;
   }
-  runs_.emplace(key, std::move(*session));
-  order_.push_back(key);
+  order_.push_back(runs_.emplace(key, std::move(*session)).first);
   if (benches_.left_out().benches > 0 || benches_.left_out().sources > 0) {
     read_sources_again(key.first);
   }
@@ -261,17 +274,17 @@ Expected<std::shared_ptr<SourceRequests>> AnalysisService::requests_to(const std
 // Runs that another service has begun as well, and leads.
 void AnalysisService::give_way() {
   const Instant now = context_.clock.now();
-  for (const RunKey& key : std::vector(order_)) {
-    const RunSession& session = *runs_.at(key);
-    if (session.finished() || !others_.must_give_way(key, session.armed(), now)) {
-      continue;
+  std::erase_if(order_, [&](const Runs::iterator& run) {
+    const auto& [key, session] = *run;
+    if (session->finished() || !others_.must_give_way(key, session->armed(), now)) {
+      return false;
     }
     spdlog::info("bench {}, run {}: led by {}; this service stands by", key.first, key.second,
                  others_.leader(key, now)->service);
-    follow(key, session.measurement());
-    runs_.erase(key);
-    std::erase(order_, key);
-  }
+    follow(key, session->measurement());
+    runs_.erase(run);
+    return true;
+  });
 }
 
 // Heard of more than once: the last word of a run that has ended stays readable for a while.
@@ -318,13 +331,14 @@ void AnalysisService::take_over() {
   }
 }
 
-bool AnalysisService::lives(const RunKey& key) const {
-  const RunSession& session = *runs_.at(key);
+bool AnalysisService::lives(const Runs::value_type& run) const {
+  const auto& [key, session] = run;
   const KnownSources& known = benches_.sources_of(key.first);
-  return session.armed() ||
-         (!session.finished() && std::any_of(known.begin(), known.end(), [&](const auto& source) {
-           return source.second.description && session.uses(source.first);
-         }));
+  const auto is_its_source = [&session = *session](const auto& source) {
+    return source.second.description && session.uses(source.first);
+  };
+  return session->armed() ||
+         (!session->finished() && std::any_of(known.begin(), known.end(), is_its_source));
 }
 
 bool AnalysisService::is_used(const std::string& bench, const std::string& source) const {
@@ -335,8 +349,11 @@ bool AnalysisService::is_used(const std::string& bench, const std::string& sourc
 
 bool AnalysisService::make_room(const std::string& bench) {
   const auto of_bench = [&](const RunKey& key) { return key.first == bench; };
-  while (static_cast<std::size_t>(std::count_if(order_.begin(), order_.end(), of_bench)) >=
-         kept_runs) {
+  const auto kept = [&] {
+    return static_cast<std::size_t>(std::count_if(
+        runs_.begin(), runs_.end(), [&](const auto& run) { return of_bench(run.first); }));
+  };
+  while (kept() >= kept_runs) {
     if (!drop_oldest(of_bench)) {
       return false;
     }
@@ -345,12 +362,13 @@ bool AnalysisService::make_room(const std::string& bench) {
 }
 
 bool AnalysisService::drop_oldest(const std::function<bool(const RunKey&)>& may_go) {
-  auto oldest = std::find_if(order_.begin(), order_.end(), [&](const RunKey& key) {
-    return may_go(key) && runs_.at(key)->finished();
+  auto oldest = std::find_if(order_.begin(), order_.end(), [&](const Runs::iterator& run) {
+    return may_go(run->first) && run->second->finished();
   });
   if (oldest == order_.end()) {
-    oldest = std::find_if(order_.begin(), order_.end(),
-                          [&](const RunKey& key) { return may_go(key) && !lives(key); });
+    oldest = std::find_if(order_.begin(), order_.end(), [&](const Runs::iterator& run) {
+      return may_go(run->first) && !lives(*run);
+    });
     if (oldest == order_.end()) {
       return false;
     }
@@ -405,19 +423,6 @@ AnalysisFigures AnalysisService::figures() const {
   figures.malformed_messages = participant_.malformed_messages();
   figures.refused_packets = participant_.refused_packets()->count();
   return figures;
-}
-
-RunSession* AnalysisService::run_before(const RunKey& key) {
-  for (const RunKey& earlier : order_) {
-    if (earlier == key) {
-      break;
-    }
-    RunSession& session = *runs_.at(earlier);
-    if (earlier.first == key.first && !session.finished()) {
-      return &session;
-    }
-  }
-  return nullptr;
 }
 
 } // namespace dyncal::services

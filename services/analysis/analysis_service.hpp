@@ -65,6 +65,7 @@ private:
   };
   using Instant = bus::Clock::Instant;
   using Wanted = std::function<bool(const std::string& bench, const std::string& source)>;
+  using Runs = std::map<RunKey, std::unique_ptr<RunSession>>;
 
   // A run that another service leads, or whose leader is not known yet.
   struct FollowedRun {
@@ -96,8 +97,10 @@ private:
   void give_way();
   void take_over();
   [[nodiscard]] bool is_deserted(const RunKey& key, const FollowedRun& run, Instant now) const;
+  // One turn of each run that goes on.
+  void work();
   // Armed, or with a source that is there.
-  [[nodiscard]] bool lives(const RunKey& key) const;
+  [[nodiscard]] bool lives(const Runs::value_type& run) const;
   // Some run that has not ended is to be evaluated from this source.
   [[nodiscard]] bool is_used(const std::string& bench, const std::string& source) const;
   // False: all runs of the bench, or all of them, live.
@@ -105,8 +108,6 @@ private:
   // The oldest of those that have finished, else of those that do not live.
   bool drop_oldest(const std::function<bool(const RunKey&)>& may_go);
   void say_what_was_left_out();
-  // Null if none of the runs of this bench that began earlier goes on.
-  [[nodiscard]] RunSession* run_before(const RunKey& key);
   [[nodiscard]] AnalysisFigures figures() const;
 
   bus::Participant participant_;
@@ -114,8 +115,8 @@ private:
   std::unique_ptr<Readers> readers_;
   KnownBenches benches_;
   std::map<std::string, SourceReaders> again_; // of benches with a run
-  std::map<RunKey, std::unique_ptr<RunSession>> runs_;
-  std::vector<RunKey> order_; // of runs_, oldest first
+  Runs runs_;
+  std::vector<Runs::iterator> order_; // oldest first
   OtherAnalyses others_;
   std::map<RunKey, FollowedRun> followed_;
   std::uint64_t runs_left_out_ = 0;
