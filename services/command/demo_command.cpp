@@ -46,22 +46,30 @@ struct Demo {
   std::vector<ChildProcess> processes;
 };
 
-// A UDP port that is free now; the unit sends to it, so it must be known before the receiver opens
-// it.
-Expected<std::uint16_t> free_udp_port() {
+bool is_free_udp_port(std::uint16_t port) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
+  address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
   void* raw = &address;
-  const bool found = probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), size) == 0 &&
-                     getsockname(probe, static_cast<sockaddr*>(raw), &size) == 0;
+  const bool is_free = probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), sizeof address) == 0;
   close(probe);
-  if (!found) {
-    return fail(ErrorCode::network, "this machine has no free UDP port on 127.0.0.1");
+  return is_free;
+}
+
+// The unit sends to it, so it must be known before the receiver opens it. Linux does not give ports
+// from 61000 on to clients, such as the DDS programs that start meanwhile.
+Expected<std::uint16_t> free_udp_port() {
+  constexpr int first = 61'000;
+  constexpr int ports = 65'536 - first;
+  for (int i = 0; i < ports; ++i) {
+    const auto port = static_cast<std::uint16_t>(first + (getpid() + i) % ports);
+    if (is_free_udp_port(port)) {
+      return port;
+    }
   }
-  return ntohs(address.sin_port);
+  return fail(ErrorCode::network, "this machine has no free UDP port on 127.0.0.1");
 }
 
 Error cannot_write(const std::filesystem::path& path) {

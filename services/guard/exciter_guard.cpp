@@ -71,6 +71,12 @@ void ExciterGuard::work() {
   }
 }
 
+GuardFigures ExciterGuard::figures() const {
+  return {.bench = bench_,
+          .switched_off = times_switched_off_,
+          .may_be_on = status_.health() == wire::HEALTH_FAILED};
+}
+
 void ExciterGuard::set_health(wire::HealthState health, const std::string& message) {
   if (status_.health() != health || status_.message() != message) {
     status_.health(health);

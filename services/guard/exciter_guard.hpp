@@ -26,6 +26,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/contract/program_identity.hpp"
+#include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 
@@ -56,7 +57,7 @@ public:
   // What is due now.
   void work();
 
-  [[nodiscard]] int times_switched_off() const { return times_switched_off_; }
+  [[nodiscard]] GuardFigures figures() const;
 
 private:
   struct Run {
@@ -95,7 +96,7 @@ private:
   wire::ServiceStatus status_; // as published last
   Instant next_status_{};
   std::map<std::string, Run> runs_;
-  int times_switched_off_ = 0;
+  std::uint64_t times_switched_off_ = 0;
 };
 
 } // namespace dyncal::services

@@ -58,7 +58,14 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
   threads.reserve(guards.size());
   for (const auto& guard : guards) {
-    threads.emplace_back([&] { guard->serve(stop, [&supervisor] { supervisor.turned(); }); });
+    threads.emplace_back([&] {
+      guard->serve(stop, [&] {
+        supervisor.turned();
+        supervisor.report(guard->figures());
+        supervisor.report_malformed_messages(participant->malformed_messages());
+        supervisor.report_refused_packets(participant->refused_packets()->count());
+      });
+    });
   }
   supervisor.serving();
   return {};

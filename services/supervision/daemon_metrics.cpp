@@ -66,6 +66,13 @@ constexpr MetricFamily file_size{"dyncal_recorder_file_bytes", "Size of the reco
 constexpr MetricFamily disk{"dyncal_recorder_disk_free_bytes", "Room left on its disk.", gauge};
 constexpr MetricFamily records{"dyncal_recorder_recording", "1 while it records the bench.", gauge};
 
+constexpr MetricFamily switched_off{"dyncal_guard_outputs_switched_off_total",
+                                    "Times that the output of the generator was switched off.",
+                                    counter};
+constexpr MetricFamily may_be_on{"dyncal_guard_output_may_be_on",
+                                 "1 while nobody attends an output that cannot be switched off.",
+                                 gauge};
+
 constexpr MetricFamily visitors{"dyncal_web_visitors", "Visitors that listen to events.", gauge};
 constexpr MetricFamily requests{"dyncal_web_requests_total", "Requests that came.", counter};
 constexpr MetricFamily refused{"dyncal_web_requests_refused_total",
@@ -152,6 +159,12 @@ void report(const RecorderFigures& figures, MetricStore& store) {
   store.set(file_size, labels, number(figures.file_bytes));
   store.set(disk, labels, number(figures.free_bytes));
   store.set(records, labels, figures.records ? 1.0 : 0.0);
+}
+
+void report(const GuardFigures& figures, MetricStore& store) {
+  const MetricLabels labels{{"bench", figures.bench}};
+  store.set(switched_off, labels, number(figures.switched_off));
+  store.set(may_be_on, labels, figures.may_be_on ? 1.0 : 0.0);
 }
 
 void report(const AnalysisFigures& figures, MetricStore& store) {

@@ -42,6 +42,13 @@ struct RecorderFigures {
   bool records = false;
 };
 
+// What a guard does for one bench, since it was started.
+struct GuardFigures {
+  std::string bench;
+  std::uint64_t switched_off = 0; // times that it has switched the output off
+  bool may_be_on = false;         // the output, which nobody attends and it cannot switch off
+};
+
 // What dyncal-web does.
 struct WebFigures {
   int visitors = 0; // that listen to events now
@@ -56,6 +63,7 @@ void report(const ProgramIdentity& program, MetricStore& store);
 void report(const wire::SourceStatus& status, std::uint64_t messages_written, MetricStore& store);
 void report(const AnalysisFigures& figures, MetricStore& store);
 void report(const RecorderFigures& figures, MetricStore& store);
+void report(const GuardFigures& figures, MetricStore& store);
 void report(const WebFigures& figures, MetricStore& store);
 void report_malformed_messages(std::uint64_t count, MetricStore& store);
 void report_refused_packets(std::uint64_t count, MetricStore& store);

@@ -39,6 +39,7 @@ public:
   }
   void report(const AnalysisFigures& figures) { services::report(figures, store_); }
   void report(const RecorderFigures& figures) { services::report(figures, store_); }
+  void report(const GuardFigures& figures) { services::report(figures, store_); }
   void report(const WebFigures& figures) { services::report(figures, store_); }
   void report_malformed_messages(std::uint64_t count) {
     services::report_malformed_messages(count, store_);

@@ -121,6 +121,7 @@ void WebService::Parts::report() {
   });
   supervisor->report(figures);
   supervisor->report_malformed_messages(participant.malformed_messages());
+  supervisor->report_refused_packets(participant.refused_packets()->count());
 }
 
 WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

@@ -7,6 +7,7 @@ what was started. Programs are those of a build tree or of an installation.
 import json
 import os
 import pathlib
+import random
 import signal
 import socket
 import subprocess
@@ -51,10 +52,19 @@ def wait_until(condition, what, patience_s=PATIENCE_S, interval_s=0.02):
         time.sleep(interval_s)  # between two looks at the condition
 
 
+# Linux does not give these ports to clients, of which a laboratory starts many before it listens.
+ports_for_units = iter(random.sample(range(61_000, 65_536), 4_536))
+
+
 def free_udp_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+    for port in ports_for_units:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue
+    raise Failure("no free UDP port is left")
 
 
 class Program:

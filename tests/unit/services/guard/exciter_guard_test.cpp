@@ -79,7 +79,7 @@ TEST_F(ExciterGuardTest, SwitchesOffJustAfterItsLimitAndOnce) {
   clock_.advance(1ns);
   guard_->work();
   EXPECT_EQ(tries_, 1);
-  EXPECT_EQ(guard_->times_switched_off(), 1);
+  EXPECT_EQ(guard_->figures().switched_off, 1U);
   pass(60s);
   EXPECT_EQ(tries_, 1);
 }
@@ -116,10 +116,13 @@ TEST_F(ExciterGuardTest, GoesOnTryingUntilTheGeneratorAnswers) {
   pass(12s);
   EXPECT_GE(tries_, 9);
   EXPECT_LE(tries_, 11);
-  EXPECT_EQ(guard_->times_switched_off(), 0);
+  EXPECT_EQ(guard_->figures().switched_off, 0U);
+  EXPECT_TRUE(guard_->figures().may_be_on);
   reachable_ = true;
   pass(2s);
-  EXPECT_EQ(guard_->times_switched_off(), 1);
+  EXPECT_EQ(guard_->figures().switched_off, 1U);
+  EXPECT_FALSE(guard_->figures().may_be_on);
+  EXPECT_EQ(guard_->figures().bench, "b1");
 }
 
 TEST_F(ExciterGuardTest, StopsTryingWhenTheConductorIsBack) {

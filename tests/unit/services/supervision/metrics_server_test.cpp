@@ -107,6 +107,16 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
   EXPECT_EQ(values.at("dyncal_refused_packets_total"), 7);
 }
 
+TEST_F(MetricsTest, ServesWhatAGuardDoes) {
+  report(GuardFigures{.bench = "acc-1", .switched_off = 3, .may_be_on = true}, store_);
+  report(GuardFigures{.bench = "acc-2"}, store_);
+  const auto values = scrape();
+  EXPECT_EQ(values.at(R"(dyncal_guard_outputs_switched_off_total{bench="acc-1"})"), 3);
+  EXPECT_EQ(values.at(R"(dyncal_guard_output_may_be_on{bench="acc-1"})"), 1);
+  EXPECT_EQ(values.at(R"(dyncal_guard_outputs_switched_off_total{bench="acc-2"})"), 0);
+  EXPECT_EQ(values.at(R"(dyncal_guard_output_may_be_on{bench="acc-2"})"), 0);
+}
+
 TEST_F(MetricsTest, ServesWhatEveryProcessHas) {
   const auto values = scrape();
   EXPECT_GT(values.at("process_resident_memory_bytes"), 1e6);
