@@ -22,13 +22,22 @@ AcknackCounts::Counts& AcknackCounts::of(const Pair& pair) {
   return newcomers_[pair];
 }
 
-std::uint32_t AcknackCounts::continued(const Pair& pair, std::uint32_t count, Instant now) {
+AcknackCounts::Passed AcknackCounts::continued(const Pair& pair, const Acknack& acknack,
+                                               Instant now) {
   Counts& counts = of(pair);
-  const std::uint32_t passed = count + counts.begun_anew;
-  if (count > counts.newest) {
+  Passed passed{.count = acknack.count + counts.begun_anew};
+  if (acknack.count > counts.newest) {
+    passed.begins_anew = acknack.asks && acknack.base < counts.acknowledged &&
+                         !(counts.began && now - *counts.began < min_interval);
     const bool is_known = counts.went_on || counts.began;
-    counts.newest = count;
+    counts.newest = acknack.count;
     counts.went_on = now;
+    if (passed.begins_anew) {
+      counts.began = now;
+      counts.acknowledged = acknack.base;
+    } else {
+      counts.acknowledged = std::max(counts.acknowledged, acknack.base);
+    }
     if (auto newcomer = is_known ? newcomers_.extract(pair) : AllCounts::node_type()) {
       if (known_.size() >= max_known) {
         known_.clear();
@@ -46,6 +55,7 @@ std::optional<std::uint32_t> AcknackCounts::begin_anew(const Pair& pair, Instant
     return std::nullopt;
   }
   counts.began = now;
+  counts.acknowledged = 0;
   return counts.newest + ++counts.begun_anew;
 }
 

@@ -1,5 +1,6 @@
-// The counts of ACKNACKs as Fast DDS is given them: greater with each new one of a reader to a
-// writer, also where the reader's own count began anew.
+// Which ACKNACKs Fast DDS is to take for those of a reader that begins anew, and the counts of all
+// as it is given them: greater with each new one of a reader to a writer, also where the reader's
+// own count began anew.
 //
 //   passed = the reader's count + how often it has begun anew
 //
@@ -9,6 +10,11 @@
 // that). Where it had not forgotten the reader meanwhile, it therefore sent nothing of what the
 // reader lacked: not even which writers and readers it has, and the two were silent to each other
 // for ever.
+//
+// A reader in Fast DDS goes on counting, and its first ACKNACK is for sample 0; but where a
+// heartbeat of the writer comes before that, it goes without, and asks for what it lacks. The
+// writer sends nothing that it holds for acknowledged. So a reader that asks for what it has
+// acknowledged before begins anew as well.
 //
 // A copy of such an ACKNACK can come at any time. A reader begins anew after a silence, so it is
 // believed where its pair has been silent for min_silence, and every min_interval: before that
@@ -44,14 +50,23 @@ public:
   [[nodiscard]] static Pair pair(std::span<const unsigned char> source,
                                  std::span<const unsigned char> entities);
 
-  // Of an ACKNACK with this count.
-  [[nodiscard]] std::uint32_t continued(const Pair& pair, std::uint32_t count, Instant now);
-  // Of one by which the reader begins anew; nothing where that is not believed.
+  struct Acknack {
+    std::int64_t base = 0; // the reader has all before it
+    bool asks = false;     // for some from there on
+    std::uint32_t count = 0;
+  };
+  struct Passed {
+    std::uint32_t count = 0;
+    bool begins_anew = false;
+  };
+  [[nodiscard]] Passed continued(const Pair& pair, const Acknack& acknack, Instant now);
+  // The count of one by which the reader begins anew; nothing where that is not believed.
   [[nodiscard]] std::optional<std::uint32_t> begin_anew(const Pair& pair, Instant now);
 
 private:
   struct Counts {
-    std::uint32_t newest = 0; // as the reader counts
+    std::uint32_t newest = 0;      // as the reader counts
+    std::int64_t acknowledged = 0; // before this sample
     std::uint32_t begun_anew = 0;
     std::optional<Instant> went_on;
     std::optional<Instant> began;

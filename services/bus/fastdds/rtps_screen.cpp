@@ -143,18 +143,30 @@ bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
   }
   const std::size_t count_at = bits_at + 4 + 4 * *words;
   const auto count = number_at<std::uint32_t>(body, count_at, flags);
-  const bool begins_anew = *base == 1 && *words == 0 && count == 0 && (flags & final_flag) == 0;
+  const bool begins_count = *base == 1 && count == 0 && (flags & final_flag) == 0;
   const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
   const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
-  unsigned char* passed = append_submessage(acknack, flags, body);
   const auto now = std::chrono::steady_clock::now();
-  if (const auto anew = begins_anew ? acknack_counts_.begin_anew(pair, now) : std::nullopt) {
-    std::memset(passed + entities_bytes, 0, sequence_bytes);
-    put_number(passed + count_at, *anew, flags);
+  if (const auto anew = begins_count ? acknack_counts_.begin_anew(pair, now) : std::nullopt) {
+    append_beginning(flags, body.first(entities_bytes), *anew);
+    return true;
+  }
+  const auto passed = acknack_counts_.continued(pair, {*base, *words > 0, count}, now);
+  if (passed.begins_anew) {
+    append_beginning(flags, body.first(entities_bytes), passed.count);
   } else {
-    put_number(passed + count_at, acknack_counts_.continued(pair, count, now), flags);
+    put_number(append_submessage(acknack, flags, body) + count_at, passed.count, flags);
   }
   return true;
+}
+
+// The ACKNACK of a reader in Fast DDS that has nothing and does not know of anything.
+void RtpsScreen::append_beginning(unsigned char flags, Bytes entities, std::uint32_t count) {
+  flags &= little_endian_flag;
+  unsigned char body[entities_bytes + sequence_bytes + 4 + 4] = {}; // of sample 0, without a list
+  std::copy(entities.begin(), entities.end(), body);
+  put_number(body + entities_bytes + sequence_bytes + 4, count, flags);
+  append_submessage(acknack, flags, body);
 }
 
 bool RtpsScreen::pass_data(unsigned char flags, Bytes body) {

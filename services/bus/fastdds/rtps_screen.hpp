@@ -12,7 +12,7 @@
 // So a fragment without a stamp gets that of its sample, and is left out while the first fragment
 // has not come: the writer sends both again.
 //
-// Where a reader in Cyclone DDS begins anew, it takes no notice (acknack_counts.hpp). So
+// Where a reader begins anew, it may take no notice (acknack_counts.hpp). So
 //   ACKNACK    of that kind becomes one for sample 0 with a new count
 //
 // What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a
@@ -57,6 +57,8 @@ private:
   void append_gap(std::span<const unsigned char> entities, std::int64_t first, std::int64_t end);
   bool pass_submessage(unsigned char id, unsigned char flags, std::span<const unsigned char> body);
   bool pass_acknack(unsigned char flags, std::span<const unsigned char> body);
+  void append_beginning(unsigned char flags, std::span<const unsigned char> entities,
+                        std::uint32_t count);
   bool pass_data(unsigned char flags, std::span<const unsigned char> body);
   bool pass_fragments(unsigned char flags, std::span<const unsigned char> body);
   bool pass_gap(unsigned char flags, std::span<const unsigned char> body);

@@ -21,7 +21,15 @@ protected:
   AcknackCounts::Instant now_;
 
   std::uint32_t continued(std::uint32_t pair, std::uint32_t count) {
-    return counts_.continued(pair_of(pair), count, now_);
+    const auto passed = counts_.continued(pair_of(pair), {.base = 1, .count = count}, now_);
+    EXPECT_FALSE(passed.begins_anew);
+    return passed.count;
+  }
+  bool asking_begins_anew(std::int64_t base, std::uint32_t count) {
+    const auto passed =
+        counts_.continued(pair_of(1), {.base = base, .asks = true, .count = count}, now_);
+    EXPECT_EQ(passed.count, count);
+    return passed.begins_anew;
   }
   std::optional<std::uint32_t> begin_anew(std::uint32_t pair) {
     return counts_.begin_anew(pair_of(pair), now_);
@@ -60,6 +68,26 @@ TEST_F(AcknackCountsTest, DoNotBelieveThatAReaderBeginsAnewWhileItGoesOn) {
   EXPECT_EQ(continued(1, 1), 2U) << "an old one is no sign of life";
   wait(AcknackCounts::min_silence / 2);
   EXPECT_EQ(begin_anew(1), 4U);
+}
+
+TEST_F(AcknackCountsTest, TakeAReaderThatAsksForWhatItHadForOneThatBeginsAnew) {
+  EXPECT_FALSE(asking_begins_anew(1, 1));
+  EXPECT_FALSE(asking_begins_anew(5, 2));
+  EXPECT_FALSE(asking_begins_anew(5, 3)) << "still the same";
+  EXPECT_FALSE(asking_begins_anew(4, 2)) << "overtaken by the others";
+  EXPECT_TRUE(asking_begins_anew(1, 4));
+  EXPECT_FALSE(asking_begins_anew(1, 5)) << "told once: it gets them now";
+  EXPECT_FALSE(asking_begins_anew(7, 6));
+  EXPECT_FALSE(asking_begins_anew(1, 7)) << "too soon again";
+  wait(AcknackCounts::min_interval);
+  EXPECT_TRUE(asking_begins_anew(1, 8));
+}
+
+TEST_F(AcknackCountsTest, LetAReaderAskForWhatItNeverHad) {
+  EXPECT_EQ(continued(1, 1), 1U);
+  EXPECT_FALSE(asking_begins_anew(1, 2));
+  EXPECT_FALSE(asking_begins_anew(3, 3));
+  EXPECT_FALSE(asking_begins_anew(3, 4));
 }
 
 // Each packet with a changed sender is one.

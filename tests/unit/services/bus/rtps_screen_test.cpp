@@ -91,6 +91,23 @@ TEST(RtpsScreen, MakesAReaderThatBeginsAnewOneThatFastDdsTakesNoticeOf) {
   expect_passed(head + body, head + begun);
 }
 
+// As one in Fast DDS does that has forgotten its writer and heard a heartbeat before it said so.
+TEST(RtpsScreen, MakesAReaderThatAsksForWhatItHadOneThatBeginsAnew) {
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
+  const auto asking = [](std::uint64_t base, std::uint32_t count) {
+    return submessage(0x06, 0x01,
+                      entities + sequence(base) + u32(9) + u32(0xff800000) + u32(count));
+  };
+  const auto expect_passed = [&screen](const Bytes& message, const Bytes& expected) {
+    const auto bytes = screen.pass(header() + message);
+    EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), header() + expected);
+  };
+  expect_passed(acknack(0x03, 12, 5), acknack(0x03, 12, 5));
+  expect_passed(asking(1, 6), acknack(0x01, 0, 6));
+  expect_passed(asking(1, 7), asking(1, 7));
+}
+
 TEST(RtpsScreen, TakesTheKeyHashOutOfFragments) {
   Bytes expected = header() + fragments({});
   const std::size_t key_hash_at = header().size() + 4 + 32;
