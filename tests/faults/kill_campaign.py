@@ -12,12 +12,13 @@ dyncal-dso has a bench of its own, with a sensor that it triggers; the recorder 
 started for their own draws alone.
 
 Held: the run ends with 0, has every value, valid, without loss and without flag (but for the start
-of a series, which a run of few shots may leave undecided), within five standard uncertainties of the undisturbed run's; the output is off in the end, and is never on for
-more than two seconds while its conductor is dead. Who only looks on, the recorder and the web page,
-disturbs no step; the recording of a recorder that is there again before the run ends gives the
-run's values to the last bit, that of another says what it lacks. A run that missed the
-analysis or a source at its start, and said so before anything was excited, counts as refused. Exit
-status 1 if a draw did not hold, or if all draws of a cell were refused.
+of a series, which a run of few shots may leave undecided), within five standard uncertainties of
+the undisturbed run's; the output is off in the end, and is never on for more than two seconds while
+its conductor is dead. Who only looks on, the recorder and the web page, disturbs no step; the
+recording of a recorder that is there again before the run ends gives the run's values to the last
+bit, that of another says what it lacks. A run that missed the analysis or a source at its start,
+and said so before anything was excited, counts as refused. Exit status 1 if a draw did not hold, or
+if all draws of a cell were refused.
 """
 
 import argparse

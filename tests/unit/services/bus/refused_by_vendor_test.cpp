@@ -93,7 +93,7 @@ TEST_P(RefusedByVendor, PacketsThatJumpAreCountedWhenThereAreMany) {
         return data(sent % 100 < 2 ? 1 + sent % 100 : 1'000'000'000 - sent); // none goes on
       },
       100));
-  EXPECT_GT(sent, RefusedPackets::many_implausible);
+  EXPECT_GT(sent, RefusedPackets::many_implausible / 2) << "real ones of others count as well";
   EXPECT_EQ(participant.refused_packets()->last_sender(), "127.0.0.1");
 }
 
