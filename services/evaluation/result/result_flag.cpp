@@ -104,6 +104,53 @@ constexpr std::array rows{
     Row{ResultFlag::signal_not_judged, "signal_not_judged", "signal not judged",
         "end stops, stuck values and distortion could not be looked for in this channel for the "
         "reason given, so look at its record; the value and its u stand without that check"},
+    Row{ResultFlag::peaks_bent, "peaks_bent", "its peaks are bent",
+        "the tops of the sine are flatter or sharper than those of the reference, at one end "
+        "or both, as at an end stop before a filter; lower the level, or choose a wider range"},
+    Row{ResultFlag::changed_within_step, "changed_within_step", "changed within the step",
+        "sensitivity or delay of the channel changed while the step was recorded, or samples "
+        "were dropped or repeated without a trace; look at the record, then at filters, "
+        "buffers and clock",
+        true},
+    Row{ResultFlag::disturbance_cut_out, "disturbance_cut_out", "a disturbance was cut out",
+        "for a short time the channel showed something far beside the sine, and these samples "
+        "are left out; find the knock, or repeat the step",
+        true},
+    Row{ResultFlag::clock_stepped, "clock_stepped", "its clock stepped within the step",
+        "the stamps of this source jump within the step and the value mixes two time scales; "
+        "check its synchronisation, and repeat the step",
+        true},
+    Row{ResultFlag::stamps_scatter, "stamps_scatter", "its stamps scatter",
+        "stamps are off by so much that the sine is visibly shortened, which was corrected "
+        "with what their intervals show, and u allows for it; take the stamps closer to the "
+        "sensor"},
+    Row{ResultFlag::values_off_stamps, "values_off_stamps",
+        "values are not of the instants of their stamps",
+        "values are held, exchanged, interleaved, polled or read in batches, so that the "
+        "stamps do not say when they were measured; check how the sensor is read"},
+    Row{ResultFlag::too_short_for_noise, "too_short_for_noise", "too short to know its noise",
+        "the noise is slow beside the few periods of the record, so that the record cannot "
+        "show how large it is; record more periods, or repeat the step"},
+    Row{ResultFlag::shots_disagree, "shots_disagree", "shots disagree",
+        "shots differ by more than their noise, or a series changes within itself, as when "
+        "samples are lost or the sensor's clock wanders; check the sensor's sampling, and "
+        "record the step again",
+        true},
+    Row{ResultFlag::trigger_delay_not_stated, "trigger_delay_not_stated",
+        "the delay of the oscilloscope's trigger is not stated",
+        "phase and its u hold without it; measure it with dyncal calibrate dso-delay, and name "
+        "it as corrections.dso_delay"},
+    Row{ResultFlag::acs_delay_not_stated, "acs_delay_not_stated",
+        "the delay between the channels of the ACS is not stated",
+        "u of the phase holds without it; state uncertainty.acs_delay_s, or "
+        "corrections.reference_delay with its uncertainty"},
+    Row{ResultFlag::group_delay_ambiguous, "group_delay_ambiguous", "the group delay is ambiguous",
+        "the frequencies are too far apart to tell it from others that differ by a whole "
+        "number of periods; add a step close to another one"},
+    Row{ResultFlag::group_delay_not_constant, "group_delay_not_constant",
+        "the group delay is not constant",
+        "the phases do not lie on one line over frequency, so that no single delay describes "
+        "the sensor; use the phases, or a model"},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

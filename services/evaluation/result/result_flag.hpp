@@ -37,6 +37,18 @@ enum class ResultFlag {
   mains_not_separated,
   harmonic_not_separated,
   signal_not_judged,
+  peaks_bent,
+  changed_within_step,
+  disturbance_cut_out,
+  clock_stepped,
+  stamps_scatter,
+  values_off_stamps,
+  too_short_for_noise,
+  shots_disagree,
+  trigger_delay_not_stated,
+  acs_delay_not_stated,
+  group_delay_ambiguous,
+  group_delay_not_constant,
   from_message // read from the bus, and not known to this version
 };
 
