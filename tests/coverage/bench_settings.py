@@ -1,7 +1,10 @@
 """What a simulated bench is like, and which faults it has."""
 
+import collections.abc
 import dataclasses
 import math
+
+from faults.fault import Fault
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +63,9 @@ class BenchSettings:
     sync_hum_rel: float = 0.0
     mains_hz: float = 50.0
     sensor_harmonics_rel: tuple = ()  # second, third ... of the sensor's own, aliased as they come
+
+    # More than a setting: makes the fault of one calibration (faults/fault.py).
+    fault: collections.abc.Callable = Fault
 
     # Series time stamping.
     shots: int = 12

@@ -33,6 +33,7 @@ ADC_GAIN, ADC_DELAY_S, ADC_STEP_V = 0.16625, 0.468e-6, 20.0 / 4096
 DSO_DELAY_S, U_DSO_DELAY_S = 236e-9, 1e-9
 STANDARD_GRAVITY = 9.80665
 RAMP_S = 0.02
+FAULT_SEED = 77
 
 
 @dataclasses.dataclass
@@ -94,6 +95,8 @@ class Calibration:
         self.steps = self._plan()
         self.end_s = self.steps[-1].end_s + settings.pause_s
         self.lost = collections.Counter()
+        # Drawn apart, so that a class draws the same calibrations with and without its fault.
+        self.fault = settings.fault(self, np.random.default_rng([FAULT_SEED, *np.atleast_1d(seed)]))
 
     def real_frequency_hz(self, text):
         """A generator is never exactly where it was told to be."""
@@ -157,7 +160,7 @@ class Calibration:
         for harmonics in (self.settings.harmonics_rel, more_harmonics):
             for number, part in enumerate(harmonics, 2):
                 signal = signal + part * np.sin(number * (turn - lag_rad) + 0.4 * number)
-        return self._envelope(step, times_s) * signal
+        return self.fault.exciter(step, times_s, self._envelope(step, times_s) * signal)
 
     def reference_response(self, frequency_hz):
         """What its channel reads over what is: magnitude, phase as lead."""
@@ -181,7 +184,7 @@ class Calibration:
         if s.reference_not_measured_rel:
             values = disturbances.not_measured(values, s.reference_not_measured_rel, self.rng)
             self._count_lost(times_s, np.isfinite(values))
-        return values
+        return self.fault.reference(times_s, values)
 
     def _sync(self, times_s, volts, lag_s=0.0):
         s = self.settings
@@ -193,7 +196,7 @@ class Calibration:
             angular = 2.0 * np.pi * step.frequency_hz
             turn = angular * (times_s[part] - step.begin_s - lag_s) + step.sync_phase_rad
             values[part] += volts * self._envelope(step, times_s[part]) * np.sin(turn)
-        return values
+        return self.fault.sync(times_s, values, volts)
 
     def _sensor(self, times_s):
         s = self.settings
@@ -208,14 +211,21 @@ class Calibration:
             values[part] = self._sensor_in_step(step, times_s[part], values[part])
         if s.resolution_rel:
             values = disturbances.resolved(values, s.resolution_rel * level)
-        return values
+        return self.fault.sensor(times_s, values)
+
+    def sensor_signal(self, step, times_s):
+        """What the sensor should say, without noise and offset, in its unit."""
+        return self.settings.sensor_sign * step.amplitude * step.magnitude * self._excitation(
+            step,
+            times_s,
+            step.delay_rad + self.fault.sensor_lag_rad(step, times_s),
+            self.settings.sensor_harmonics_rel,
+        )
 
     def _sensor_in_step(self, step, times_s, quiet):
         s = self.settings
         amplitude = step.amplitude * step.magnitude
-        values = quiet + s.sensor_sign * amplitude * self._excitation(
-            step, times_s, step.delay_rad, s.sensor_harmonics_rel
-        )
+        values = quiet + self.sensor_signal(step, times_s)
         if s.drift_rel:
             of_step = (step.end_s - step.begin_s) / s.duration_s
             values += disturbances.slow_drift(times_s, of_step * s.drift_rel * amplitude, self.rng)
@@ -242,7 +252,7 @@ class Calibration:
             columns["dut"] = self._sensor(times_s)
         elif s.method != "absolute-time":
             columns["sync"] = self._sync(times_s, 5.0)
-        bench_files.write_record(folder / "acs.npy", columns)
+        bench_files.write_record(folder / "acs.npy", self.fault.acs_record(times_s, columns))
 
     def _sensor_instants(self):
         """True time of each sample: intervals scatter by 20 ns about their mean."""
@@ -277,6 +287,7 @@ class Calibration:
         if s.disordered_stamps:
             faults = s.disordered_stamps * len(self.steps)
             columns["t_ns"] = disturbances.disordered_stamps(columns["t_ns"], faults, self.rng)
+        columns = self.fault.dau_record(times_s[kept], columns)
         bench_files.write_record(folder / "dau.npy", columns)
 
     def _count_lost(self, times_s, arrives):
@@ -305,7 +316,8 @@ class Calibration:
         interval_s = max(2.0 / step.frequency_hz, 0.04) / samples
         first_s = -samples // 10 * interval_s
         times_s = (first_s + interval_s * np.arange(samples)) * dso_rate
-        values = 5.0 * np.sin(2.0 * np.pi * step.frequency_hz * times_s + sync_rad)
+        turn = 2.0 * np.pi * step.frequency_hz * times_s + sync_rad
+        values = self.fault.trace(5.0 * np.sin(turn), turn)
         values += s.trace_noise_v * self.rng.standard_normal(samples)
         values = disturbances.resolved(values, s.trace_step_v)
         bench_files.write_shot(path, "CH1", r"\volt", values, 1.0 / interval_s, first_s)
@@ -316,11 +328,13 @@ class Calibration:
         if s.start == "free-running":
             start_s += self.rng.uniform(0.0, 1.0 / self.sensor_rate_hz)
         times_s = start_s + np.arange(s.series_samples) / self.sensor_rate_hz
+        times_s = self.fault.series_instants(step, times_s)
         behind_sync = step.phase_rad - step.sync_phase_rad
         turn = 2.0 * np.pi * step.frequency_hz * times_s + sync_rad + behind_sync - step.delay_rad
         amplitude = step.amplitude * step.magnitude
         noise = s.sensor_noise_rel * self.rng.standard_normal(s.series_samples)
         values = amplitude * (np.sin(turn) + noise + s.sensor_offset_rel)
+        values = self.fault.series(step, times_s, values)
         unit = r"\metre\second\tothe{-2}"
         bench_files.write_shot(path, "z", unit, values, 1000.0)
 
@@ -402,6 +416,7 @@ class Calibration:
         if s.stated_u_adc_delay_s:
             uncertainty["adc_delay_s"] = s.stated_u_adc_delay_s
         tables["uncertainty"] = uncertainty
+        tables = self.fault.bench_tables(tables)
         bench_files.write_bench_file(folder / "bench.toml", tables)
 
     def write(self, folder):

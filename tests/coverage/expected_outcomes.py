@@ -5,8 +5,9 @@ a point of the issue "No silent wrong number" or a finding: such a row must fail
 stays true. Who mends it takes `fails_at` out.
 """
 
-import dataclasses
-
+import fault_classes  # noqa: F401, collects the kinds of faults
+import faults
+from expected_row import LOSSES, MAGNITUDE, MEAN, PHASE, RATE, VALUE, Row
 from judgement import (
     COVERED,
     COVERED_NO_FLAG,
@@ -14,22 +15,6 @@ from judgement import (
     COVERED_OR_FLAGGED,
     FLAGGED,
 )
-
-VALUE = ("magnitude", "phase")
-MAGNITUDE = ("magnitude",)
-PHASE = ("phase",)
-MEAN = ("mean magnitude", "mean phase")
-RATE = ("rate",)
-LOSSES = ("losses",)
-
-
-@dataclasses.dataclass(frozen=True)
-class Row:
-    fault_class: str
-    judged: tuple
-    wanted: str
-    fails_at: str = ""  # empty: holds
-
 
 EXPECTED = [
     Row("clean", VALUE, COVERED_NO_FLAG),
@@ -101,4 +86,5 @@ EXPECTED = [
     Row("the reference in the role of sync", VALUE, FLAGGED),
     Row("steps above half the sample rate", VALUE, FLAGGED),
     Row("series, steps above half the sample rate", VALUE, FLAGGED),
+    *faults.EXPECTED,
 ]

@@ -160,12 +160,12 @@ def at_most(k, n, p):
     return math.fsum(map(math.exp, logs))
 
 
-def too_few(k, n, p):
-    return at_most(k, n, p) < CHANCE
+def too_few(k, n, p, chance=CHANCE):
+    return at_most(k, n, p) < chance
 
 
-def too_many(k, n, p):
-    return at_most(n - k, n, 1.0 - p) < CHANCE
+def too_many(k, n, p, chance=CHANCE):
+    return at_most(n - k, n, 1.0 - p) < chance
 
 
 def least_rms(n):
@@ -200,31 +200,32 @@ class Tally:
         errors = np.array([one.error / usual[one.frequency] for one in self.numbers])
         return 1.0 / max(float(np.sqrt(np.mean(errors**2))), 1e-12)
 
-    def finding(self, wanted):
+    def finding(self, wanted, chance=CHANCE):
         """What is wrong in a sentence; empty when nothing is."""
         n = len(self.claims)
         if n == 0:
             return "no claims at all: nothing was judged"
         if wanted == FLAGGED:
-            enough = not too_few(self.warned, n, FLAGGED_RUNS)
+            enough = not too_few(self.warned, n, FLAGGED_RUNS, chance)
             return "" if enough else f"{n - self.warned} of {n} carry no flag"
         if wanted == COVERED_OR_FLAGGED:
-            return self._wrong_among(self.silent, "without a flag ") or self._too_wide(WIDEST)
-        finding = self._wrong_among(self.claims)
+            silent = self._wrong_among(self.silent, chance, "without a flag ")
+            return silent or self._too_wide(WIDEST)
+        finding = self._wrong_among(self.claims, chance)
         if finding or wanted == COVERED:
             return finding or self._too_wide(WIDEST)
-        if too_many(self.covered, n, PROBABILITY):
+        if too_many(self.covered, n, PROBABILITY, chance):
             return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_NO_MORE:
             return ""
-        if too_few(n - self.warned, n, UNFLAGGED_CLAIMS):
+        if too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance):
             return f"{self.warned} of {n} carry a flag"
         return self._too_wide(2.0 / least_rms(n))
 
-    def _wrong_among(self, claims, which=""):
+    def _wrong_among(self, claims, chance, which=""):
         n, covered = len(claims), sum(one.covered for one in claims)
         far_off = 0 if self.few_repeats else sum(one.far_off for one in claims)
-        if n and too_few(covered, n, PROBABILITY):
+        if n and too_few(covered, n, PROBABILITY, chance):
             return f"{n - covered} of {n} {which}are not covered"
         return f"{far_off} of {n} {which}are off by more than {FAR_OFF:g} U" if far_off else ""
 
