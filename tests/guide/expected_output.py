@@ -38,6 +38,39 @@ def line_matches(shown, printed):
     return bool(found) and all(near(a, b) for a, b in zip(numbers, found.groups()))
 
 
+def brought_up_to_date(shown, printed):
+    """What is shown, with the numbers that were printed: of each line that was printed with others,
+    in their order."""
+    left = printed.splitlines()
+    lines = []
+    for line in shown.splitlines():
+        place = next((i for i, one in enumerate(left) if _is_alike(line, one)), None)
+        if place is not None:
+            line = _with_numbers_of(line, left[place])
+            del left[: place + 1]
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _pattern(shown):
+    parts = []
+    for part in re.split(r"(\.\.\.|" + NUMBER.pattern + ")", " ".join(shown.split())):
+        is_number = bool(NUMBER.fullmatch(part))
+        parts.append(".*" if part == "..." else f"({DECIMAL})" if is_number else re.escape(part))
+    return "".join(parts)
+
+
+def _is_alike(shown, printed):
+    return shown.strip() != "..." and re.fullmatch(_pattern(shown), " ".join(printed.split()))
+
+
+def _with_numbers_of(shown, printed):
+    if "..." not in shown and not RUN.search(shown):
+        return printed.rstrip()
+    numbers = iter(re.fullmatch(_pattern(shown), " ".join(printed.split())).groups())
+    return NUMBER.sub(lambda _: next(numbers), shown)
+
+
 def first_difference(shown, printed):
     """None, or what is shown and was not printed."""
     shown = [line.rstrip() for line in shown.strip("\n").splitlines()]

@@ -3,7 +3,7 @@
 
 import unittest
 
-from expected_output import first_difference
+from expected_output import brought_up_to_date, first_difference
 
 
 class ExpectedOutput(unittest.TestCase):
@@ -37,6 +37,13 @@ class ExpectedOutput(unittest.TestCase):
         shown = "runs/x/20261122T225758.290Z-first"
         self.assertIsNone(first_difference(shown, "runs/x/20270101T000000.001Z-first"))
         self.assertIsNotNone(first_difference(shown, "runs/x/20270101T000000.001Z-second"))
+    def test_a_page_is_brought_up_to_date(self):
+        shown = "f |H| u\n...\n20 1.0169 0.0010\nmean 996.9 us, ... 0 lost\nas it was\n"
+        printed = "f  |H|  u\n10  1.2 0.2\n20  1.0172  0.0009\nmean 997.1 us, sd 3, 0 lost\n"
+        self.assertEqual(
+            brought_up_to_date(shown, printed),
+            "f  |H|  u\n...\n20  1.0172  0.0009\nmean 997.1 us, ... 0 lost\nas it was\n",
+        )
 
 
 if __name__ == "__main__":

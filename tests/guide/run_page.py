@@ -2,7 +2,10 @@
 """Does what a page of the guide says, in a folder of its own: writes its files, runs its command
 lines in one shell, and holds what they print against what the page shows.
 
-    run_page.py PAGE --bin FOLDER --reader READ_TABLES [--keep] [--show]
+    run_page.py PAGE --bin FOLDER --reader READ_TABLES [--keep] [--show] [--write]
+
+--write puts what was printed in the place of what the page shows, and the figures that were made in
+the place of its pictures (pictures.py).
 
 Ports of 127.0.0.1 are replaced by free ones, and DYNCAL_DOMAIN names a DDS domain that no other
 test has. What a page starts and leaves running is ended. Every file that is there in the end must
@@ -25,6 +28,7 @@ import tomllib
 
 import expected_output
 import pages
+import pictures
 import readers
 import toml_text
 
@@ -129,9 +133,10 @@ class Page:
         self.folder = folder
         self.reader = options.reader.resolve()
         self.shows = options.show
+        self.writes = options.write
         self.ports = {}
         self.held = []
-        self.counts = dict.fromkeys(("commands", "outputs", "files"), 0)
+        self.counts = dict.fromkeys(("commands", "outputs", "files", "pictures"), 0)
         domain, held = reserve_dds_domain()
         self.held.append(held)
         self.shell = Shell(
@@ -175,6 +180,19 @@ class Page:
                 raise Failure(f"{block.where}: {failure}") from None
         if self.counts["commands"]:
             self.check_files()
+        self.look_at_pictures()
+
+    def look_at_pictures(self):
+        for picture, pattern in pictures.NAMED.findall(self.path.read_text()):
+            shown = (self.path.parent / picture).resolve()
+            made = list(self.shell.current_folder().glob(pattern))
+            if len(made) != 1:
+                raise Failure(f"{len(made)} files are {pattern}, which {shown.name} is made of")
+            if self.writes:
+                shutil.copy(made[0], shown)
+            elif problem := pictures.difference(shown, made[0]):
+                raise Failure(f"{shown.name} has aged, make it with --write: {problem}")
+            self.counts["pictures"] += 1
 
     def run(self, block, shown):
         *orders, failed = self.shell.run(self.with_own_ports(block.text))
@@ -190,11 +208,19 @@ class Page:
             )
             raise Failure(f"failed: {failed}, expected: {expected}\n{printed}{logs}")
         self.counts["commands"] += command_lines(block.text) if block.language == "sh" else 0
-        if shown:
+        if shown and self.writes:
+            self.put(shown.text, expected_output.brought_up_to_date(shown.text, printed))
+        elif shown:
             differences = [expected_output.first_difference(shown.text, one) for one in orders]
             if all(differences):
                 raise Failure(f"the page shows: {differences[0]}\n--- printed:\n{printed}")
             self.counts["outputs"] += 1
+
+    def put(self, shown, printed):
+        text = self.path.read_text()
+        if text.count(shown) != 1:
+            raise Failure(f"the page shows this more than once: {shown}")
+        self.path.write_text(text.replace(shown, printed))
 
     def write(self, block):
         if not block.words:
@@ -258,6 +284,7 @@ def main():
     parser.add_argument("--reader", required=True, type=pathlib.Path)
     parser.add_argument("--keep", action="store_true", help="leave the folder")
     parser.add_argument("--show", action="store_true", help="print what the commands print")
+    parser.add_argument("--write", action="store_true", help="bring the page up to date")
     options = parser.parse_args()
     path = pages.GUIDE / options.page
     folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-guide-"))
