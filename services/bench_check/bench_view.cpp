@@ -53,6 +53,7 @@ void look_at_can(const SourceSettings& settings, SourceView& view) {
     view.problem = dbc.error().message;
     return;
   }
+  view.warnings = dbc->warnings;
   const auto layout = drivers::can::lay_out(can::stream_settings(settings), *dbc);
   if (!layout) {
     view.problem = layout.error().message;

@@ -31,6 +31,7 @@ struct SourceView {
   std::vector<CanMessage> messages;
   std::optional<std::string> problem; // why its files cannot be used
   std::string problem_key;            // of the source: "path", "dbc"
+  std::vector<std::string> warnings;  // of the same file, which can be used all the same
 };
 
 struct BenchView {

@@ -86,6 +86,10 @@ Findings check_files(const BenchView& view) {
       findings.push_back(view.at(Severity::error, {"sources", source.name, source.problem_key},
                                  "names what cannot be used: " + *source.problem));
     }
+    for (const std::string& warning : source.warnings) {
+      findings.push_back(view.at(Severity::warning, {"sources", source.name, source.problem_key},
+                                 "names a file that is only partly understood: " + warning));
+    }
   }
   return findings;
 }

@@ -2,8 +2,9 @@
 //
 // Reads BU_, BO_, SG_ (simple and extended multiplexing), SIG_VALTYPE_, SG_MUL_VAL_ and of BA_ the
 // attributes VFrameFormat, GenMsgCycleTime, SystemMessageLongSymbol and SystemSignalLongSymbol;
-// knows and skips the other statements of the format. An unknown statement is skipped up to its ';'
-// with a warning. Text that is not UTF-8 is taken for Windows-1252.
+// knows and skips the other statements of the format, and comments behind //. A statement is
+// skipped up to its ';'; where that is missing, up to the line in which the next one begins, with a
+// warning, as is an unknown statement. Text that is not UTF-8 is taken for Windows-1252.
 //
 // Bits are numbered byte * 8 + bit, bit 0 the least significant of its byte; Intel signals start at
 // their least significant bit, Motorola signals at their most significant one.
@@ -12,7 +13,7 @@
 //
 // Fails: not_found, refused (the file cannot be read), malformed: one sentence that begins
 // "FILE:LINE:", where a statement that decides the decoding (BO_, SG_, SIG_VALTYPE_, SG_MUL_VAL_)
-// cannot be understood. Plain data and pure functions; any thread.
+// cannot be understood, or a quotation mark is missing. Plain data and pure functions; any thread.
 #pragma once
 
 #include <cstdint>

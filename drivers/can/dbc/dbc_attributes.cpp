@@ -63,10 +63,13 @@ void DbcParser::attribute_definition() {
   } else if (!name) {
     warn(line, "passed over an attribute definition without a name");
   }
-  scanner_.skip_statement();
+  skip_rest("BA_DEF_", line);
 }
 
 std::optional<std::pair<std::string, bool>> DbcParser::attribute_value() {
+  if (!scanner_.same_line() && scanner_.next_begins_statement()) {
+    return std::nullopt;
+  }
   if (auto text = scanner_.string()) {
     return std::pair(std::move(*text), true);
   }
@@ -77,12 +80,13 @@ std::optional<std::pair<std::string, bool>> DbcParser::attribute_value() {
 }
 
 void DbcParser::attribute_default() {
+  const std::size_t line = scanner_.line();
   const auto name = scanner_.string();
   auto value = name ? attribute_value() : std::nullopt;
   if (name == format_attribute && value) {
     default_format_ = Attribute{*name, "", 0, "", std::move(value->first), value->second};
   }
-  scanner_.skip_statement();
+  skip_rest("BA_DEF_DEF_", line);
 }
 
 void DbcParser::attribute() {
@@ -100,7 +104,7 @@ void DbcParser::attribute() {
       attribute.signal = scanner_.name().value_or("");
     }
   } else if (object == "BU_" || object == "EV_") {
-    scanner_.skip_statement();
+    skip_rest("BA_", line);
     return;
   } else {
     scanner_.go_back(before);
@@ -113,7 +117,7 @@ void DbcParser::attribute() {
     attribute.is_text = value->second;
     attributes_.push_back(std::move(attribute));
   }
-  scanner_.skip_statement();
+  skip_rest("BA_", line);
 }
 
 std::optional<FrameFormat> DbcParser::frame_format(const Attribute& attribute) const {

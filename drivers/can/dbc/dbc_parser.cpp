@@ -1,48 +1,15 @@
 #include "drivers/can/dbc/dbc_parser.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
+
+#include "drivers/can/dbc/dbc_keywords.hpp"
 
 namespace dyncal::drivers::can {
 
 namespace {
 
 constexpr std::uint64_t extended_mark = 0x80000000;
-
-// Statements that say nothing about how a frame is decoded.
-constexpr std::array passed_over = {"VERSION",
-                                    "BS_",
-                                    "VAL_TABLE_",
-                                    "VAL_",
-                                    "CM_",
-                                    "EV_",
-                                    "ENVVAR_DATA_",
-                                    "EV_DATA_",
-                                    "SGTYPE_",
-                                    "SIGTYPE_",
-                                    "SIG_TYPE_REF_",
-                                    "SIG_GROUP_",
-                                    "BO_TX_BU_",
-                                    "BA_DEF_REL_",
-                                    "BA_REL_",
-                                    "BA_DEF_DEF_REL_",
-                                    "BU_SG_REL_",
-                                    "BU_EV_REL_",
-                                    "BU_BO_REL_",
-                                    "CAT_DEF_",
-                                    "CAT_",
-                                    "FILTER",
-                                    "SGTYPE_VAL_",
-                                    "SIGTYPE_VALTYPE_",
-                                    "BA_DEF_SGTYPE_",
-                                    "BA_SGTYPE_",
-                                    "BA_DEF_DEF_SGTYPE_",
-                                    "NS_DESC_"};
-
-bool is_passed_over(const std::string& keyword) {
-  return std::find(passed_over.begin(), passed_over.end(), keyword) != passed_over.end();
-}
 
 } // namespace
 
@@ -72,6 +39,11 @@ Expected<DbcFile> DbcParser::parse() {
     } else if (!scanner_.character(';')) {
       warn(line, "passed over " + scanner_.next_text() + ", which begins no statement");
       scanner_.skip_statement();
+    }
+    if (const auto broken = scanner_.broken_string()) {
+      refuse(*broken, "a quotation mark is missing: the string that begins here " +
+                          std::string(scanner_.at_end() ? "does not end"
+                                                        : "takes other statements with it"));
     }
   }
   if (!problem_ && pending_messages_.empty() && !file_.warnings.empty()) {
@@ -123,7 +95,14 @@ void DbcParser::statement(const std::string& keyword) {
     if (!is_passed_over(keyword)) {
       warn(line, "passed over the unknown statement '" + keyword.substr(0, 40) + "'");
     }
-    scanner_.skip_statement();
+    skip_rest(keyword, line);
+  }
+}
+
+// What is passed over of a statement must not take the next one with it.
+void DbcParser::skip_rest(const std::string& keyword, std::size_t line) {
+  if (scanner_.skip_statement() == DbcScanner::StatementEnd::next_statement) {
+    warn(line, "the statement '" + keyword.substr(0, 40) + "' does not end with ';'");
   }
 }
 
@@ -142,10 +121,25 @@ void DbcParser::new_symbols() {
   }
 }
 
+// The names themselves are not used. Some writers give each a line of its own.
 void DbcParser::nodes() {
   scanner_.character(':');
-  while (scanner_.same_line() && scanner_.name()) {
-    // the names themselves are not used
+  auto line_begin = scanner_.place();
+  bool begins_line = false;
+  while (!scanner_.at_end()) {
+    if (!scanner_.same_line()) {
+      if (scanner_.next_begins_statement()) {
+        return;
+      }
+      line_begin = scanner_.place();
+      begins_line = true;
+    }
+    if (!scanner_.name()) {
+      if (begins_line) { // an unknown statement, not a list of nodes
+        scanner_.go_back(line_begin);
+      }
+      return;
+    }
   }
 }
 

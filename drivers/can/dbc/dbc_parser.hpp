@@ -44,6 +44,7 @@ private:
   };
 
   void statement(const std::string& keyword);
+  void skip_rest(const std::string& keyword, std::size_t line);
   void new_symbols();
   void nodes();
   void message();

@@ -2,7 +2,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
+
+#include "drivers/can/dbc/dbc_keywords.hpp"
 
 namespace dyncal::drivers::can {
 
@@ -21,7 +24,13 @@ bool ends_name(char c) {
 } // namespace
 
 void DbcScanner::skip_space() {
-  for (; at_ < text_.size() && is_space(text_[at_]); ++at_) {
+  for (; at_ < text_.size(); ++at_) {
+    if (text_.substr(at_).starts_with("//")) {
+      skip_line();
+    }
+    if (at_ == text_.size() || !is_space(text_[at_])) {
+      return;
+    }
     if (text_[at_] == '\n') {
       ++line_;
     }
@@ -41,6 +50,11 @@ bool DbcScanner::same_line() {
 bool DbcScanner::next_is(char character) {
   skip_space();
   return at_ < text_.size() && text_[at_] == character;
+}
+
+bool DbcScanner::next_begins_statement() {
+  skip_space();
+  return statement_begins_at(at_);
 }
 
 bool DbcScanner::character(char wanted) {
@@ -100,6 +114,33 @@ std::optional<double> DbcScanner::number() {
   return value;
 }
 
+std::optional<double> DbcScanner::limit() {
+  if (const auto value = number()) {
+    if (at_ < text_.size() && text_[at_] == '#') { // 1.#INF, as a library of C writes it
+      name();
+      return std::numeric_limits<double>::infinity();
+    }
+    return value;
+  }
+  skip_space();
+  const std::size_t begin = at_ + (at_ < text_.size() && text_[at_] == '+' ? 1 : 0);
+  double value = 0.0;
+  const auto [end, error] =
+      std::from_chars(text_.data() + begin, text_.data() + text_.size(), value);
+  if (error == std::errc::invalid_argument) {
+    return std::nullopt;
+  }
+  at_ = static_cast<std::size_t>(end - text_.data());
+  last_line_ = line_;
+  return std::numeric_limits<double>::infinity();
+}
+
+bool DbcScanner::statement_begins_at(std::size_t at) const {
+  constexpr std::size_t longest = 512; // of a keyword with id and names, so that a string of many
+                                       // lines is not read once for each of them
+  return begins_statement(text_.substr(at, longest));
+}
+
 std::optional<std::string> DbcScanner::string() {
   skip_space();
   const Place before = place();
@@ -107,6 +148,7 @@ std::optional<std::string> DbcScanner::string() {
     return std::nullopt;
   }
   std::string content;
+  bool holds_statement = false;
   for (; at_ < text_.size(); ++at_) {
     const char c = text_[at_];
     if (c == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
@@ -125,30 +167,40 @@ std::optional<std::string> DbcScanner::string() {
     if (c == '"') {
       ++at_;
       last_line_ = line_;
+      if (holds_statement && at_ < text_.size() && !is_space(text_[at_]) &&
+          std::string_view(";,|").find(text_[at_]) == std::string_view::npos) {
+        broken_string_ = broken_string_.value_or(before.line);
+      }
       return content;
     }
     if (c == '\n') {
       ++line_;
+      holds_statement = holds_statement || statement_begins_at(at_ + 1);
     }
     content += c;
   }
+  broken_string_ = broken_string_.value_or(before.line);
   go_back(before);
   return std::nullopt;
 }
 
-void DbcScanner::skip_statement() {
+DbcScanner::StatementEnd DbcScanner::skip_statement() {
   while (!at_end()) {
+    if (!same_line() && next_begins_statement()) {
+      return StatementEnd::next_statement;
+    }
     if (next_is('"')) {
       if (!string()) {
-        at_ = text_.size(); // a string that never ends takes the rest of the file with it
+        at_ = text_.size(); // broken_string() tells
       }
       continue;
     }
     last_line_ = line_;
     if (text_[at_++] == ';') {
-      return;
+      return StatementEnd::semicolon;
     }
   }
+  return StatementEnd::file;
 }
 
 void DbcScanner::skip_line() {

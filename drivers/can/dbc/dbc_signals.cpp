@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 namespace dyncal::drivers::can {
@@ -38,6 +39,9 @@ void DbcParser::signal() {
   }
   // The receivers: names with commas, which may go on in the next line behind a comma.
   for (bool comma = false; comma || scanner_.same_line();) {
+    if (!scanner_.same_line() && scanner_.next_begins_statement()) {
+      break;
+    }
     const bool receiver = scanner_.name().has_value();
     comma = scanner_.character(',');
     if (!receiver && !comma) {
@@ -116,9 +120,9 @@ void DbcParser::scaling(DbcSignal& signal) {
   const bool comma = factor && scanner_.character(',');
   const auto offset = comma ? scanner_.number() : std::nullopt;
   const bool closed = offset && scanner_.character(')') && scanner_.character('[');
-  const auto minimum = closed ? scanner_.number() : std::nullopt;
+  const auto minimum = closed ? scanner_.limit() : std::nullopt;
   const bool bar = minimum && scanner_.character('|');
-  const auto maximum = bar ? scanner_.number() : std::nullopt;
+  const auto maximum = bar ? scanner_.limit() : std::nullopt;
   const auto unit = maximum && scanner_.character(']') ? scanner_.string() : std::nullopt;
   if (!unit) {
     refuse(scanner_.line(),
@@ -129,8 +133,10 @@ void DbcParser::scaling(DbcSignal& signal) {
   }
   signal.factor = *factor;
   signal.offset = *offset;
-  signal.minimum = *minimum;
-  signal.maximum = *maximum;
+  if (std::isfinite(*minimum) && std::isfinite(*maximum)) {
+    signal.minimum = *minimum;
+    signal.maximum = *maximum;
+  }
   signal.unit = *unit;
 }
 

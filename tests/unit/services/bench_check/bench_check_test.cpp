@@ -393,6 +393,11 @@ acs_delay_s = 1e-6
               HasSubstr("source 'one' takes 15 samples a second (by its nominal_rate_hz)"));
   folder.write("sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0 [0|0] \"m/s^2\" S\n");
   EXPECT_THAT(all_of(check(text)), HasSubstr("sensor.dbc:2: "));
+  folder.write("sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ x : 0|16@1- (0.01,0) [0|0] \"m/s^2\" S\n"
+                             "CM_ \"no end\"\nBA_ \"Kind\" 1;\n");
+  EXPECT_THAT(all_of(of(check(text), Severity::warning)),
+              AllOf(HasSubstr("sources.two.dbc"),
+                    HasSubstr("sensor.dbc:3: the statement 'CM_' does not end with ';'")));
 }
 
 } // namespace

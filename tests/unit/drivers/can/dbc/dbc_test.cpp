@@ -108,6 +108,75 @@ TEST(Dbc, WarnsOfAnUnknownStatementAndReadsOn) {
               HasSubstr("sensor.dbc:1: passed over the unknown statement 'NEW_THING_'"));
 }
 
+TEST(Dbc, PassesOverCommentLines) {
+  const DbcFile file = parsed("// made by hand; not by a tool\nBO_ 291 A: 8 S // sends\n"
+                              " SG_ x : 0|16@1- (1,0) [0|0] \"m/s^2\" S\n"
+                              " //SG_ old : 16|16@1- (1,0) [0|0] \"m/s^2\" S\n"
+                              " SG_ z : 16|32@1- (1,0) [0|0] \"km//h\" S\n"
+                              "BO_ 292 B: 8 S\n SG_ q : 0|16@1- (1,0) [0|0] \"\" S\n\n"
+                              "// types\nSIG_VALTYPE_ 291 z : 1;\n");
+  EXPECT_THAT(file.warnings, IsEmpty());
+  ASSERT_EQ(file.messages.size(), 2U);
+  ASSERT_EQ(file.messages[0].signals.size(), 2U);
+  EXPECT_EQ(file.messages[0].signals[1].type, RawType::float32);
+  EXPECT_EQ(file.messages[0].signals[1].unit, "km//h");
+}
+
+TEST(Dbc, AStatementWithoutSemicolonEndsWhereTheNextBegins) {
+  const std::string message = "BO_ 291 A: 8 S\n SG_ z : 0|32@1- (1,0) [0|0] \"m/s^2\" S\n SG_ q : "
+                              "32|8@1+ (1,0) [0|0] \"\" S\n";
+  for (const std::string odd :
+       {"CM_ SG_ 291 z \"no end\"", "VAL_ 291 q 0 \"zero\" 1 \"one\"", "FOREIGN_ 1 2 3",
+        "BA_ \"GenMsgCycleTime\" BO_ 291 10", "BA_ \"GenMsgCycleTime\" BO_ 291",
+        "BA_DEF_ BO_ \"Kind\" ENUM \"a\",\"b\"", "BA_DEF_DEF_ \"Kind\" \"a\"", "= garbage ="}) {
+    const DbcFile file = parsed(message + odd + "\nSIG_VALTYPE_ 291 z : 1;\nBO_ 292 B: 8 S\n");
+    ASSERT_EQ(file.messages.size(), 2U) << odd;
+    EXPECT_EQ(file.messages[0].signals[0].type, RawType::float32) << odd;
+    ASSERT_FALSE(file.warnings.empty()) << odd;
+    EXPECT_THAT(file.warnings[0], HasSubstr("sensor.dbc:4: ")) << odd;
+  }
+}
+
+TEST(Dbc, AStatementMayGoOnInTheNextLine) {
+  const DbcFile file =
+      parsed(accelerometer + "CM_\n SG_ 291 x\n \"text\";\nVAL_ 291 x 0 \"a\"\n 1 \"b\"\n;\n"
+                             "BA_ \"GenMsgCycleTime\"\n BO_ 291\n 10;\nCM_ BU_ Host \"x\";\n");
+  EXPECT_THAT(file.warnings, IsEmpty());
+  EXPECT_EQ(file.messages.at(0).cycle_time_s, 0.01);
+}
+
+TEST(Dbc, ReadsNodesAndReceiversOnLinesOfTheirOwn) {
+  const DbcFile file = parsed("BU_:\n\tSensor\n\tHost\n\n"
+                              "BO_ 1 A: 8 S\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" S,\n"
+                              " SG_ b : 8|8@1+ (1,0) [0|0] \"\" S\n");
+  EXPECT_THAT(file.warnings, IsEmpty());
+  EXPECT_EQ(file.messages.at(0).signals.size(), 2U);
+  const DbcFile unknown = parsed("BU_: A\nNEW_THING_ 1 2 \"x\";\nBO_ 1 A: 8 S\n");
+  EXPECT_EQ(unknown.messages.size(), 1U);
+  EXPECT_EQ(unknown.warnings.size(), 1U);
+}
+
+TEST(Dbc, TakesALimitBeyondANumberForNone) {
+  for (const std::string limits :
+       {"[0|1E+481]", "[-1.8e308|1.8e308]", "[-inf|inf]", "[0|1.#INF]"}) {
+    const DbcFile file = parsed("BO_ 1 A: 8 S\n SG_ a : 0|8@1+ (1,0) " + limits + " \"V\" S\n");
+    const DbcSignal& signal = file.messages.at(0).signals.at(0);
+    EXPECT_EQ(signal.minimum, signal.maximum) << limits;
+    EXPECT_EQ(signal.unit, "V") << limits;
+  }
+  EXPECT_THAT(refusal("BO_ 1 A: 8 S\n SG_ a : 0|8@1+ (1E+481,0) [0|1] \"V\" S\n"),
+              HasSubstr("found '1E+481"));
+}
+
+TEST(Dbc, RefusesAFileWhereAQuotationMarkIsMissing) {
+  EXPECT_THAT(refusal(accelerometer + "CM_ \"no end;\n"),
+              HasSubstr("sensor.dbc:15: a quotation mark is missing"));
+  EXPECT_THAT(refusal("CM_ \"no end;\nBO_ 9 B: 8 S\n SG_ s : 0|32@1- (1,0) [0|0] \"m/s^2\" S\n"
+                      "CM_ \"x\";\n" +
+                      accelerometer),
+              HasSubstr("sensor.dbc:1: a quotation mark is missing"));
+}
+
 TEST(Dbc, ReadsSimpleMultiplexingWhereverTheSwitchStands) {
   const DbcFile file = parsed("BO_ 1 A: 8 S\n SG_ a m2 : 8|8@1+ (1,0) [0|0] \"\" S\n SG_ m M : "
                               "0|8@1+ (1,0) [0|0] \"\" S\n");
