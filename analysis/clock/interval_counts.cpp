@@ -57,6 +57,21 @@ double IntervalDistribution::median_absolute_deviation() const {
   return 0.5 * (at_rank((count_ - 1) / 2) + at_rank(count_ / 2));
 }
 
+IntervalDistribution
+IntervalDistribution::without(const std::vector<std::int64_t>& lengths_ns) const {
+  std::vector<Entry> left = entries_;
+  for (const std::int64_t length : lengths_ns) {
+    const auto above = std::lower_bound(left.begin(), left.end(), Entry{length, 0});
+    const auto below = above == left.begin() ? above : std::prev(above);
+    const bool is_above =
+        above != left.end() && (above == below || above->first - length <= length - below->first);
+    Entry& nearest = is_above ? *above : *below;
+    nearest.second -= nearest.second > 0 ? 1 : 0;
+  }
+  std::erase_if(left, [](const Entry& entry) { return entry.second == 0; });
+  return IntervalDistribution(std::move(left));
+}
+
 void IntervalSums::add(std::int64_t interval_ns) {
   if (count == 0) {
     pivot_ns = interval_ns;

@@ -26,6 +26,8 @@ public:
   // REQUIRES (both): not empty; 0 <= probability <= 1.
   [[nodiscard]] double quantile(double probability) const;
   [[nodiscard]] double median_absolute_deviation() const; // about the median, not scaled
+  // Without one interval each of these lengths, where there is one (of the nearest that is kept).
+  [[nodiscard]] IntervalDistribution without(const std::vector<std::int64_t>& lengths_ns) const;
 
 private:
   [[nodiscard]] double order_statistic(std::uint64_t rank) const;

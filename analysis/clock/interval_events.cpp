@@ -104,6 +104,9 @@ IntervalVerdict IntervalEventCollector::judge(const UsualInterval& usual,
     }
     ++result.event_count;
     result.unusual_lengths_ns.push_back(interval.length_ns);
+    if (verdict.missing > 0) {
+      result.gap_lengths_ns.push_back(interval.length_ns);
+    }
     if (result.events.size() < max_events) {
       result.events.push_back({verdict.kind, interval.sample,
                                static_cast<double>(interval.begin_ns - first_stamp_ns) * 1e-9,

@@ -49,6 +49,7 @@ struct IntervalVerdict {
   std::vector<IntervalEvent> events;            // at most as many as were asked for
   std::uint64_t event_count = 0;                // all
   std::vector<std::int64_t> unusual_lengths_ns; // of every interval that is part of an event
+  std::vector<std::int64_t> gap_lengths_ns;     // of these, where samples are missing
   std::uint64_t pair_count = 0;
   double pair_period_samples =
       0.0; // median distance of pairs; 0 with fewer than five, or without regularity (below 0.9)

@@ -134,13 +134,11 @@ void SampleClock::push(std::uint64_t first_sample, std::span<const std::int64_t>
 
 namespace {
 
-void describe_intervals(SampleClockStatistics& result, const IntervalCounts& counts,
+// REQUIRES: at least two intervals.
+void describe_intervals(SampleClockStatistics& result, const IntervalSums& sums,
                         const IntervalDistribution& distribution) {
-  const IntervalSums& sums = counts.sums();
   result.intervals = sums.count;
   result.sd_s = seconds(sums.sd_ns());
-  result.minimum_s = seconds(static_cast<double>(counts.minimum_ns()));
-  result.maximum_s = seconds(static_cast<double>(counts.maximum_ns()));
   result.median_s = seconds(distribution.quantile(0.5));
   result.mad_sd_s = seconds(mad_to_sd * distribution.median_absolute_deviation());
   result.quantile_001_s = seconds(distribution.quantile(0.001));
@@ -148,6 +146,27 @@ void describe_intervals(SampleClockStatistics& result, const IntervalCounts& cou
   result.quantile_50_s = result.median_s;
   result.quantile_99_s = seconds(distribution.quantile(0.99));
   result.quantile_999_s = seconds(distribution.quantile(0.999));
+}
+
+IntervalSums sums_without(IntervalSums sums, const std::vector<std::int64_t>& lengths_ns) {
+  for (const std::int64_t length : lengths_ns) {
+    sums.remove(length);
+  }
+  return sums;
+}
+
+// Where samples are missing although the numbers do not show it, the time between two stamps is
+// not an interval of the clock.
+void leave_out_gaps(SampleClockStatistics& result, IntervalSums& sums,
+                    IntervalDistribution& distribution,
+                    const std::vector<std::int64_t>& gap_lengths_ns) {
+  if (gap_lengths_ns.size() + 2 > sums.count) {
+    return;
+  }
+  sums = sums_without(sums, gap_lengths_ns);
+  distribution = distribution.without(gap_lengths_ns);
+  result.minimum_s = seconds(static_cast<double>(distribution.entries().front().first));
+  result.maximum_s = seconds(static_cast<double>(distribution.entries().back().first));
 }
 
 // Bit for bit the mean of the intervals where nothing is missing between them.
@@ -160,17 +179,19 @@ double mean_interval_s(const IntervalSums& sums, const PeriodCount& periods) {
 double u_mean_interval_s(const SampleClockStatistics& result, const PeriodCount& periods,
                          double u_stamp_s) {
   const auto count = static_cast<double>(std::max(periods.periods(), result.intervals));
-  const double scatter_s =
-      result.core_sd_s > 0.0 ? result.core_sd_s : std::numeric_limits<double>::quiet_NaN();
-  const double ends_s = u_stamp_s > 0.0 ? std::sqrt(2.0) * u_stamp_s : scatter_s;
+  const double made_s = seconds(periods.u_ends_ns());
+  const double spread_s = result.maximum_s - result.minimum_s;
+  const double scatter_s = made_s > 0.0             ? made_s
+                           : result.core_sd_s > 0.0 ? result.core_sd_s
+                           : spread_s > 0.0         ? spread_s
+                                                    : std::numeric_limits<double>::quiet_NaN();
+  const double ends_s = u_stamp_s > 0.0 ? std::max(std::sqrt(2.0) * u_stamp_s, made_s) : scatter_s;
   const auto stretches = static_cast<double>(std::max<std::uint64_t>(1, periods.stretches()));
   return ends_s * std::sqrt(stretches) / count;
 }
 
 void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, IntervalSums core) {
-  for (const std::int64_t length : verdict.unusual_lengths_ns) {
-    core.remove(length);
-  }
+  core = sums_without(core, verdict.unusual_lengths_ns);
   if (core.count > 1) {
     result.core_mean_s = seconds(core.mean_ns());
     result.core_sd_s = seconds(core.sd_ns());
@@ -187,16 +208,24 @@ void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, Int
 
 std::optional<SampleClockStatistics> SampleClock::statistics() const {
   const State& state = *state_;
-  const IntervalSums& sums = state.counts.sums();
-  if (sums.count < 2) {
+  const IntervalSums& all = state.counts.sums();
+  if (all.count < 2) {
     return std::nullopt;
   }
   SampleClockStatistics result;
-  const IntervalDistribution distribution = state.counts.distribution();
+  IntervalDistribution distribution = state.counts.distribution();
+  IntervalVerdict verdict =
+      state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events);
   PeriodCount periods = state.periods;
   periods.finish();
-  describe_intervals(result, state.counts, distribution);
-  result.mean_interval_s = mean_interval_s(sums, periods);
+  result.minimum_s = seconds(static_cast<double>(state.counts.minimum_ns()));
+  result.maximum_s = seconds(static_cast<double>(state.counts.maximum_ns()));
+  IntervalSums sums = all;
+  if (periods.unnumbered() > 0) {
+    leave_out_gaps(result, sums, distribution, verdict.gap_lengths_ns);
+  }
+  describe_intervals(result, sums, distribution);
+  result.mean_interval_s = mean_interval_s(all, periods);
   result.nominal_rate_hz = state.settings.nominal_rate_hz;
   result.mean_rate_hz = result.mean_interval_s > 0.0 ? 1.0 / result.mean_interval_s : 0.0;
   result.tick_s = state.settings.tick_s;
@@ -211,10 +240,9 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
     }
   }
   result.histogram = histogram.bins;
-  describe_events(
-      result,
-      state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events),
-      sums);
+  describe_events(result, std::move(verdict), all);
+  result.left_out_jumps = periods.left_out_jumps();
+  result.largest_jump_s = result.left_out_jumps > 0 ? seconds(periods.largest_jump_ns()) : 0.0;
   result.u_mean_interval_s = u_mean_interval_s(result, periods, state.settings.stamp_uncertainty_s);
 
   result.over_time = state.overview.buckets(*state.first_stamp_ns);

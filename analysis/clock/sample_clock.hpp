@@ -1,11 +1,12 @@
 // The sample clock of a sensor from the stamps of its samples: direct sample interval evaluation,
 // paper sections 3 and 4.2.
 //
-// Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps, an
-// integer in ns; standard deviation (n - 1), median, MAD and quantiles (linear between order
-// statistics) are those of the integers, exactly. The mean goes across what is missing: it is the
-// span of the stamps over the sample periods in it (period_count.hpp). What is usual is known after
-// 64 intervals, and learned again at 128, 256 ...
+// Interval i is t_{i+1} - t_i of two samples with consecutive numbers and trusted stamps between
+// which the stamps show nothing missing, an integer in ns; standard deviation (n - 1), median, MAD
+// and quantiles (linear between order statistics) are those of the integers, exactly. The mean goes
+// across what is missing: it is the span of the stamps over the sample periods in it, without jumps
+// of the clock (period_count.hpp). What is usual is known after 64 intervals, and learned again at
+// 128, 256 ...
 //
 //   histogram, lattice statistic, modes     interval_histogram.hpp
 //   events, their number, period of pairs   interval_events.hpp; core_mean, core_sd leave them out
@@ -49,10 +50,14 @@ struct SampleClockSettings {
 struct SampleClockStatistics {
   std::uint64_t intervals = 0;
   double mean_interval_s = 0.0;
-  // In the clock of the stamps, of n periods: sqrt(2) u(stamp) / n; where that is not stated, the
-  // scatter of the intervals without events over n, which is at least as much when stamps scatter
-  // by chance. NaN when intervals do not scatter: nothing is known.
+  // In the clock of the stamps, of n periods: sqrt(2) u(stamp) / n; where that is not stated, what
+  // ticks and read-outs make of it (PeriodCount::u_ends_ns), else the scatter of the intervals
+  // without events over n, which is at least as much when stamps scatter by chance, else their
+  // spread. NaN when intervals do not scatter: nothing is known.
   double u_mean_interval_s = 0.0;
+  // Jumps of the clock, or pauses too long to count, that the mean leaves out; the largest of them.
+  std::uint64_t left_out_jumps = 0;
+  double largest_jump_s = 0.0;
   double sd_s = 0.0;
   double minimum_s = 0.0;
   double maximum_s = 0.0;

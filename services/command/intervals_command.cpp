@@ -89,6 +89,8 @@ void print_json(const analysis::SampleClockStatistics& clock) {
                   {"lattice_statistic", clock.lattice_statistic},
                   {"modes_s", clock.modes_s},
                   {"lost", clock.lost},
+                  {"left_out_jumps", clock.left_out_jumps},
+                  {"largest_jump_s", clock.largest_jump_s},
                   {"event_count", clock.event_count},
                   {"pair_count", clock.pair_count},
                   {"pair_period_samples", clock.pair_period_samples},
@@ -102,9 +104,14 @@ void print_json(const analysis::SampleClockStatistics& clock) {
   fmt::print("{}\n", json_text(json, 1));
 }
 
+std::string u_text(double u_mean_interval_s) {
+  return std::isfinite(u_mean_interval_s) ? fmt::format("u = {:.2g} us", u_mean_interval_s * 1e6)
+                                          : "u not known";
+}
+
 void print_table(const analysis::SampleClockStatistics& clock) {
-  fmt::print("{} intervals, mean {:.6f} us, rate {:.6f} Hz\n", clock.intervals,
-             clock.mean_interval_s * 1e6, clock.mean_rate_hz);
+  fmt::print("{} intervals, mean {:.6f} us, {}, rate {:.6f} Hz\n", clock.intervals,
+             clock.mean_interval_s * 1e6, u_text(clock.u_mean_interval_s), clock.mean_rate_hz);
   fmt::print("sd {:.2f} ns, robust sd {:.2f} ns, smallest {:.3f} us, median {:.3f} us, largest "
              "{:.3f} us, spread {:.0f} ns\n",
              clock.sd_s * 1e9, clock.mad_sd_s * 1e9, clock.minimum_s * 1e6, clock.median_s * 1e6,
@@ -114,6 +121,12 @@ void print_table(const analysis::SampleClockStatistics& clock) {
                clock.pair_period_samples, clock.pair_period_s);
   }
   fmt::print("{} events, {} samples lost\n", clock.event_count, clock.lost);
+  if (clock.left_out_jumps > 0) {
+    fmt::print(
+        "the mean leaves out {} jump{} of the clock, or pauses too long to count; the largest "
+        "is {:+.6f} s\n",
+        clock.left_out_jumps, clock.left_out_jumps == 1 ? "" : "s", clock.largest_jump_s);
+  }
   for (const analysis::IntervalEvent& event : clock.events) {
     fmt::print("  {:>9} at sample {:>10}, {:>12.6f} s, {:+.0f} ns{}\n", event.kind, event.sample,
                event.time_s, event.size_ns,

@@ -67,6 +67,9 @@ std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
   if (has_own_clock_ || !states_uncertainty_) {
     report.flags.push_back(make_flag(ResultFlag::clock_uncertainty_unknown));
   }
+  if (report.clock.left_out_jumps > 0) {
+    report.flags.push_back(make_flag(ResultFlag::clock_stepped));
+  }
   if (lost > 0) {
     report.flags.push_back(make_flag(ResultFlag::samples_lost));
   }

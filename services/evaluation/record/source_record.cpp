@@ -105,7 +105,12 @@ void SourceRecord::find_unnumbered_gaps(const SourceBlock& block) {
   for (std::size_t i = 0; i < block.samples; i += stride) {
     if (flags[i] == 0) {
       periods_.add(block.first_sample + i, stamps[i]);
+      latest_ns_ = std::max(latest_ns_.value_or(stamps[i]), stamps[i]);
+      set_back_ns_ = std::max(set_back_ns_, *latest_ns_ - stamps[i]);
     }
+  }
+  if (block.end_of_stream) {
+    periods_.finish();
   }
   for (const analysis::UnnumberedGap& gap : periods_.take_gaps()) {
     unnumbered_ += gap.missing;
@@ -165,6 +170,8 @@ void SourceRecord::restart() {
   gaps_.clear();
   overflow_.clear();
   newest_ns_.reset();
+  latest_ns_.reset();
+  set_back_ns_ = 0;
   periods_ = {};
 }
 

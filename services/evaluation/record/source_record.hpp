@@ -104,6 +104,8 @@ public:
   [[nodiscard]] std::uint64_t unusable_blocks() const {
     return continuity_.counts().unusable_blocks;
   }
+  // By how much the trusted stamps of this session have gone back at most: its clock was set back.
+  [[nodiscard]] std::int64_t set_back_ns() const { return set_back_ns_; }
   // Nothing before the first sample of its session.
   [[nodiscard]] std::optional<std::int64_t> newest_stamp_ns() const { return newest_ns_; }
 
@@ -146,6 +148,8 @@ private:
   std::deque<Gap> gaps_;     // samples that did not come, in their order
   std::deque<Gap> overflow_; // samples that the buffer dropped, in their order
   std::optional<std::int64_t> newest_ns_;
+  std::optional<std::int64_t> latest_ns_; // of the trusted stamps
+  std::int64_t set_back_ns_ = 0;
   std::uint64_t forgotten_ = 0;
   std::uint64_t overflowed_ = 0;
   std::uint32_t restarts_ = 0;

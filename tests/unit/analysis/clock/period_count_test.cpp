@@ -45,6 +45,7 @@ TEST(PeriodCount, FindsWhatIsMissingWithoutNumbers) {
     const double noise = i == 0 || i == 9999 ? 0.0 : noise_ns(random);
     periods.add(number++, stamp_of(i) + std::llround(noise));
   }
+  periods.finish();
   EXPECT_EQ(periods.periods(), 9999U);
   EXPECT_NEAR(periods.mean_ns(), period_ns, 1e-4);
   EXPECT_EQ(periods.unnumbered(), missing);
@@ -91,6 +92,119 @@ TEST(PeriodCount, CountsNothingWhereThereIsNoPeriod) {
   }
   EXPECT_FALSE(periods.knows_period());
   EXPECT_EQ(periods.periods(), 0U);
+}
+
+// Steps that come as stamps are made belong to the mean.
+TEST(PeriodCount, GoesAcrossTheStepsOfCoarseTicks) {
+  for (const std::int64_t tick_ns : {250'000, 500'000, 1'000'000}) {
+    for (const double true_ns : {996'939.0, 2'493'765.0}) {
+      PeriodCount periods;
+      std::int64_t before_ns = -1;
+      int last = 0;
+      for (int i = 0; i < 13'000; ++i) {
+        const std::int64_t stamp_ns = std::llround(true_ns * i + 7e6) / tick_ns * tick_ns;
+        if (stamp_ns > before_ns) { // a repeated stamp is not trusted
+          periods.add(static_cast<std::uint64_t>(i), stamp_ns);
+          last = i;
+        }
+        before_ns = stamp_ns;
+      }
+      const double error_ns = periods.mean_ns() - true_ns;
+      EXPECT_LE(std::abs(error_ns), static_cast<double>(tick_ns) / last) << tick_ns;
+      EXPECT_EQ(periods.periods(), static_cast<std::uint64_t>(last)) << tick_ns;
+      EXPECT_EQ(periods.unnumbered(), 0U) << tick_ns;
+      EXPECT_EQ(periods.left_out_jumps(), 0U) << tick_ns;
+      if (tick_ns > 250'000) {
+        EXPECT_NEAR(periods.u_ends_ns(), static_cast<double>(tick_ns) / std::sqrt(6.0), 1.0);
+      }
+    }
+  }
+}
+
+// A FIFO that is read every 200 samples, whose stamps are filled in with the nominal interval.
+TEST(PeriodCount, GoesAcrossTheStepsOfBatches) {
+  constexpr double true_ns = 996'939.0;
+  constexpr int batch = 200;
+  PeriodCount periods;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> latency_ns(0.0, 200e3);
+  for (int first = 0; first < 6000; first += batch) {
+    const std::int64_t read_ns = std::llround(true_ns * (first + batch - 1) + latency_ns(random));
+    for (int i = 0; i < batch; ++i) {
+      periods.add(static_cast<std::uint64_t>(first + i), read_ns - 1'000'000LL * (batch - 1 - i));
+    }
+  }
+  EXPECT_EQ(periods.periods(), 5999U);
+  EXPECT_EQ(periods.left_out_jumps(), 0U);
+  EXPECT_NEAR(periods.mean_ns(), true_ns, 2.0 * periods.u_ends_ns() / 5999.0);
+  EXPECT_LT(periods.u_ends_ns(), 600e3);
+}
+
+TEST(PeriodCount, CountsNothingOfABatchWithStampsSideBySide) {
+  PeriodCount periods;
+  for (int i = 0; i < 8000; ++i) {
+    periods.add(static_cast<std::uint64_t>(i), stamp_of(i / 8 * 8 + 7) + 10 * (i % 8));
+  }
+  EXPECT_FALSE(periods.knows_period());
+  EXPECT_EQ(periods.unnumbered(), 0U);
+}
+
+TEST(PeriodCount, CountsLongGapsAsFarAsThePeriodIsKnown) {
+  for (const int missing : {999, 1000, 1001, 3109, 10'000}) {
+    PeriodCount periods;
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise_ns(0.0, 20.0);
+    std::uint64_t number = 0;
+    for (int i = 0; i < 30'000; ++i) {
+      if (i < 3000 || i >= 3000 + missing) {
+        periods.add(number++, stamp_of(i) + std::llround(noise_ns(random)));
+      }
+    }
+    EXPECT_EQ(periods.unnumbered(), static_cast<std::uint64_t>(missing));
+    EXPECT_EQ(periods.periods(), 29'999U) << missing;
+    EXPECT_NEAR(periods.mean_ns(), period_ns, 0.01) << missing;
+  }
+}
+
+TEST(PeriodCount, LeavesOutPausesThatAreTooLongToCount) {
+  PeriodCount periods;
+  std::uint64_t number = 0;
+  for (int burst = 0; burst < 10; ++burst) {
+    for (int i = 0; i < 2000; ++i) {
+      periods.add(number++, stamp_of(i) + burst * 200'000'123'456LL);
+    }
+  }
+  EXPECT_EQ(periods.left_out_jumps(), 9U);
+  EXPECT_NEAR(periods.mean_ns(), period_ns, 0.01);
+  EXPECT_EQ(periods.unnumbered(), 0U);
+}
+
+TEST(PeriodCount, ASmallStepOfTheClockIsLeftOutAndSaid) {
+  for (const std::int64_t step_ns : {-3'000'000, 300'000, 1'500'000}) {
+    PeriodCount periods;
+    std::mt19937 random(6);
+    std::normal_distribution<double> noise_ns(0.0, 20.0);
+    for (int i = 0; i < 6000; ++i) {
+      periods.add(static_cast<std::uint64_t>(i),
+                  stamp_of(i) + std::llround(noise_ns(random)) + (i < 2500 ? 0 : step_ns));
+    }
+    EXPECT_EQ(periods.left_out_jumps(), 1U) << step_ns;
+    EXPECT_NEAR(periods.largest_jump_ns(), static_cast<double>(step_ns), 200.0);
+    EXPECT_NEAR(periods.mean_ns(), period_ns, 0.02) << step_ns;
+  }
+}
+
+// The samples are complete, two stamps have changed places: nothing is missing.
+TEST(PeriodCount, AStampOutOfPlaceIsNoLoss) {
+  PeriodCount periods;
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 500 != 21) { // is behind the one before, and so not trusted
+      periods.add(static_cast<std::uint64_t>(i), stamp_of(i % 500 == 20 ? i + 1 : i));
+    }
+  }
+  EXPECT_EQ(periods.unnumbered(), 0U);
+  EXPECT_EQ(periods.periods(), 4999U);
+  EXPECT_NEAR(periods.mean_ns(), period_ns, 1e-3);
 }
 
 TEST(PeriodCount, LearnsFromAFewWhenThereAreNoMore) {
