@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/evaluation/method/clock_check.hpp"
 #include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
@@ -49,6 +50,24 @@ std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput&
                                 *input.common[i].selected, input.common[i].index));
   }
   return lines;
+}
+
+// Of every source once.
+std::vector<SteppedClock> stepped_clocks(const StepTask& task, const StepInput& input) {
+  std::vector<const SelectedChannels*> sources;
+  for (const SelectedChannel& channel : input.common) {
+    sources.push_back(channel.selected);
+  }
+  sources.push_back(input.first_dut.selected);
+  std::vector<SteppedClock> stepped;
+  for (auto source = sources.begin(); source != sources.end(); ++source) {
+    if (std::find(sources.begin(), source, *source) == source) {
+      const bool linked_by_sync = std::count(source, sources.end(), *source) > 1;
+      const auto of_source = find_stepped_clock(**source, task.step().frequency, linked_by_sync);
+      stepped.insert(stepped.end(), of_source.begin(), of_source.end());
+    }
+  }
+  return stepped;
 }
 
 } // namespace
@@ -117,12 +136,14 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   }
   const std::vector<SignalCheck> common = check_common(step->common_fits);
   const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
+  const std::vector<SteppedClock> stepped = stepped_clocks(task, input);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size(); ++i) {
     StepResult& result =
         results.emplace_back(point_result(task, input.dut[i], step->points[i], step->common_fits));
     result.unit = input.units[i];
     add_input(task, input, result);
+    add_clock_check(stepped, result);
     for (const SignalCheck& check : common) {
       add_check(check, result);
     }
