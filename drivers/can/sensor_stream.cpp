@@ -310,6 +310,10 @@ bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waitin
     ++counts_.repeated;
     return false;
   }
+  if (reading.step == WrappingCounter::Step::late) { // the number it would have had counts as lost
+    ++counts_.late;
+    return false;
+  }
   if (reading.step == WrappingCounter::Step::restarted) {
     ++counts_.restarts;
     finish(sink);

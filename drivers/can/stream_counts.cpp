@@ -14,6 +14,7 @@ SampleCounts sample_counts(const StreamCounts& stream, const LinkState& link, do
   counts.add_cause("frames dropped by the socket", stream.dropped_frames);
   counts.add_cause("samples of which a frame is missing", stream.incomplete);
   counts.add_cause("frames without counter, SYNC or known rate", stream.rejected);
+  counts.add_cause("samples that came behind later ones", stream.late);
   counts.add_cause("signals beyond the end of a frame", stream.short_frames);
   counts.add_cause("signals not available or in error", stream.no_value);
   counts.add_cause("interruptions of the link", stream.interruptions);

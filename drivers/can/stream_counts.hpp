@@ -18,6 +18,7 @@ struct StreamCounts {
   std::uint64_t dropped_frames = 0; // by the socket
   std::uint64_t incomplete = 0;     // samples of which a frame did not come
   std::uint64_t repeated = 0;       // frames that came twice
+  std::uint64_t late = 0;           // samples that came behind later ones, and are left out
   // Frames too short for their counter or of an unknown rate, samples without SYNC.
   std::uint64_t rejected = 0;
   std::uint64_t short_frames = 0;              // frames that lack a signal; its value is NaN

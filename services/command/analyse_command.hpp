@@ -3,7 +3,7 @@
 //
 // Files are read in threads of their own, a bounded stretch ahead; the evaluation runs in the
 // caller's thread. All have ended when it returns. Fails like `dyncal run`: a file with an error is
-// named with its line, a source that is not a file is refused.
+// named with its line, a source that is neither a file nor a CAN log is refused.
 #pragma once
 
 #include <filesystem>

@@ -4,7 +4,9 @@
 
 #include <fmt/core.h>
 
+#include "drivers/can/log_player.hpp"
 #include "services/acs/played_source.hpp"
+#include "services/can/stream_settings.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -21,6 +23,22 @@ RingEntry entry_of(drivers::SampleBlock block) {
   return entry;
 }
 
+Expected<std::unique_ptr<drivers::SampleSource>> driver_of(const SourceSettings& settings) {
+  if (const auto* sensor = settings.as<CanSourceSettings>(); sensor && !sensor->log.empty()) {
+    return std::make_unique<drivers::can::LogPlayer>(can::stream_settings(settings), sensor->dbc,
+                                                     sensor->log, sensor->interface_name);
+  }
+  if (!settings.is<FileSourceSettings>()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: source '{}' is neither a file nor a CAN log; analyse evaluates "
+                            "files, use 'dyncal run' for live sources",
+                            settings.where, settings.name));
+  }
+  SourceSettings at_once = settings;
+  std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
+  return acs::make_driver(at_once);
+}
+
 } // namespace
 
 FileInput::FileInput(std::string source, std::unique_ptr<drivers::SampleSource> driver)
@@ -32,14 +50,7 @@ FileInput::~FileInput() {
 }
 
 Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& settings) {
-  if (!settings.is<FileSourceSettings>()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: source '{}' is not a file; analyse evaluates "
-                                                 "files, use 'dyncal run' for live sources",
-                                                 settings.where, settings.name));
-  }
-  SourceSettings at_once = settings;
-  std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
-  auto driver = acs::make_driver(at_once);
+  auto driver = driver_of(settings);
   if (!driver) {
     return fail(driver.error());
   }

@@ -1,4 +1,5 @@
-// A recorded file of the bench as a source of blocks, for `dyncal analyse`.
+// A recorded file of the bench, or a log of CAN frames, as a source of blocks, for `dyncal
+// analyse`.
 //
 // The file is read in a thread of its own, a bounded stretch ahead of the taker of its blocks; it
 // waits there for room, so nothing is lost. The thread ends with the file, with a failure, or when
@@ -29,7 +30,8 @@ struct FileBlock {
 
 class FileInput : private drivers::SampleSink {
 public:
-  // Fails (bad_file) when the source is not a file, or with what is wrong with the file.
+  // Fails (bad_file) when the source is neither a file nor a log, or with what is wrong with the
+  // file.
   [[nodiscard]] static Expected<std::unique_ptr<FileInput>> open(const SourceSettings& settings);
   ~FileInput() override;
   FileInput(const FileInput&) = delete;

@@ -14,17 +14,14 @@ constexpr std::size_t batch = 256; // frames given at a time
 } // namespace
 
 Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
-  auto events = read_candump_log(path_, interface_name_);
-  if (!events) {
-    return fail(events.error());
+  const auto log = read_candump_log(path_, interface_name_);
+  if (!log) {
+    return fail(log.error());
   }
-  for (const BusEvent& event : *events) {
-    const auto* frame = std::get_if<CanFrame>(&event);
-    const auto passes = [&](const FrameFilter& filter) {
-      return frame != nullptr && filter.passes(*frame);
-    };
+  for (const CanFrame& frame : log->frames) {
+    const auto passes = [&](const FrameFilter& filter) { return filter.passes(frame); };
     if (std::any_of(filters.begin(), filters.end(), passes)) {
-      frames_.push_back(*frame);
+      frames_.push_back(frame);
     }
   }
   if (frames_.empty()) {
@@ -37,6 +34,14 @@ Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
   link.name = path_.filename().string();
   link.present = link.up = link.carrier = true;
   link.kind = "log";
+  if (log->passed_over > 0) {
+    warning_ =
+        LinkChange{.link = link,
+                   .interrupted = false,
+                   .what = path_.string() + ": " + std::to_string(log->passed_over) +
+                           " lines are not of candump and are passed over, the first is line " +
+                           std::to_string(log->first_passed_over)};
+  }
   return link;
 }
 
@@ -64,6 +69,10 @@ Expected<ReadState> LogSource::read(std::vector<BusEvent>& events,
   const bool something = next_ < frames_.size() && wait_for_next(limit);
   if (stop_.raised()) {
     return ReadState::stopped;
+  }
+  if (warning_) {
+    events.emplace_back(std::move(*warning_));
+    warning_.reset();
   }
   const Clock::time_point now = Clock::now();
   for (std::size_t given = 0; something && given < batch && next_ < frames_.size(); ++given) {

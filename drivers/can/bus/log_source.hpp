@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ private:
   std::string interface_name_;
   double speed_;
   std::vector<CanFrame> frames_;
+  std::optional<LinkChange> warning_; // of lines that were passed over
   std::size_t next_ = 0;
   Clock::time_point begin_{};
 };

@@ -129,6 +129,22 @@ TEST(SensorStream, NumbersEveryLostSampleByTheCounterAcrossItsRange) {
   EXPECT_EQ(numbers.back(), 5999U);
 }
 
+TEST(SensorStream, AFrameThatComesLateIsNoRestart) {
+  const auto stream = stream_of(one_message());
+  Collected collected;
+  ASSERT_TRUE(stream->begin(link(), collected));
+  for (int k = 0; k < 6000; ++k) {
+    const int swapped = k % 700 == 500 ? k + 1 : k % 700 == 501 ? k - 1 : k;
+    ASSERT_TRUE(stream->take(on_time(swapped), collected));
+  }
+  stream->finish(collected);
+  EXPECT_EQ(stream->counts().restarts, 0U);
+  EXPECT_EQ(stream->counts().late, 8U);
+  EXPECT_EQ(stream->counts().lost, 8U); // in the place that they would have had
+  EXPECT_TRUE(collected.sessions_begun_at.empty());
+  EXPECT_EQ(collected.numbers.back(), 5999U);
+}
+
 TEST(SensorStream, LeavesOutWhatFramesWaitForTheBus) {
   const auto stream = stream_of(one_message());
   Collected collected;
@@ -365,15 +381,15 @@ TEST(SensorStream, FindsTheMeansAndTheGapsOfARealLog) {
   if (!std::filesystem::exists(folder / "css-canmod-gps-imu-10hz.log")) {
     GTEST_SKIP() << "no recorded CAN log in " << folder;
   }
-  auto events = read_candump_log(folder / "css-canmod-gps-imu-10hz.log", "can0");
-  ASSERT_TRUE(events) << events.error().message;
+  const auto log = read_candump_log(folder / "css-canmod-gps-imu-10hz.log", "can0");
+  ASSERT_TRUE(log) << log.error().message;
   StreamSettings settings;
   settings.messages = {"0x019"};
   settings.nominal_rate_hz = 1.0 / 0.102;
   settings.bit_rates.nominal_per_s = 500e3;
   const auto stream = SensorStream::create(settings, *read_dbc_file(folder / "css-gnss.dbc"));
   ASSERT_TRUE(stream) << stream.error().message;
-  ScriptedSource source(link(), std::move(*events));
+  ScriptedSource source(link(), {log->frames.begin(), log->frames.end()});
   Collected collected;
   ASSERT_TRUE(source.open((*stream)->filters()));
   ASSERT_TRUE((*stream)->begin(link(), collected));

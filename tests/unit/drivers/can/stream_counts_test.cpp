@@ -18,7 +18,7 @@ TEST(StreamCounts, EveryCountIsInTheCommonAccount) {
   StreamCounts stream;
   for (auto* count :
        {&stream.frames, &stream.samples, &stream.lost, &stream.dropped_frames, &stream.incomplete,
-        &stream.repeated, &stream.rejected, &stream.short_frames, &stream.no_value,
+        &stream.repeated, &stream.late, &stream.rejected, &stream.short_frames, &stream.no_value,
         &stream.not_trusted, &stream.interruptions, &stream.restarts, &stream.clock_restarts,
         &stream.faults["bit error"], &stream.faults["bus-off"]}) {
     set(*count);

@@ -1,5 +1,6 @@
 #include "services/replay/file_input.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -77,12 +78,60 @@ TEST_F(FileInputTest, NamesTheLineThatCannotBeRead) {
   EXPECT_THAT(problem, HasSubstr("50"));
 }
 
+TEST_F(FileInputTest, TakesALogOfCanFrames) {
+  const tests::TemporaryFolder folder;
+  folder.write("sensor.dbc", "BO_ 291 Sample: 8 S\n SG_ z : 0|16@1- (0.5,0) [0|0] \"m/s^2\" S\n"
+                             " SG_ count : 16|16@1+ (1,0) [0|0] \"\" S\n");
+  std::string log;
+  for (int k = 0; k < 2000; ++k) { // frame 700 comes late, 900 is lost, then the sensor restarts
+    const int sent = k == 700 ? 701 : k == 701 ? 700 : k;
+    const int count = sent < 1500 ? sent : sent - 1500;
+    if (k != 900) {
+      char line[80];
+      std::snprintf(line, sizeof(line), "(%d.%03d000) can0 123#0200%02X%02X00000000\n",
+                    5 + k / 1000, k % 1000, count & 0xFF, count >> 8);
+      log += line;
+    }
+  }
+  SourceSettings source;
+  source.name = "can";
+  CanSourceSettings can;
+  can.log = folder.write("drive.log", log);
+  can.dbc = folder.path() / "sensor.dbc";
+  can.messages = {"Sample"};
+  can.counter = "count";
+  can.nominal_rate_hz = 1000.0;
+  can.bit_rate_per_s = 500e3;
+  source.channels = {{"z", "acceleration"}};
+  source.driver = can;
+  const auto input = FileInput::open(source);
+  ASSERT_TRUE(input) << input.error().message;
+  ASSERT_EQ((*input)->description().channels.size(), 1U);
+  EXPECT_EQ((*input)->description().channels[0].name, "acceleration");
+  std::uint64_t samples = 0, next = 0;
+  for (bool ended = false; !ended;) {
+    const auto block = (*input)->next();
+    ASSERT_TRUE(block) << block.error().message;
+    const SourceBlock view = (*input)->view(*block);
+    ended = view.end_of_stream;
+    if (view.samples > 0) {
+      EXPECT_GE(view.first_sample, next); // one session: numbers only rise
+      next = view.first_sample + view.samples;
+      EXPECT_EQ(view.values.front(), 1.0);
+    }
+    samples += view.samples;
+  }
+  EXPECT_EQ(samples, 1998U); // without the late and the lost one
+  EXPECT_EQ(next, 2001U);    // and a gap of one where the sensor restarted
+}
+
 TEST_F(FileInputTest, RefusesALiveSource) {
   SourceSettings live = settings(1);
   live.driver = SocketSourceSettings{};
   const auto input = FileInput::open(live);
   ASSERT_FALSE(input);
-  EXPECT_THAT(input.error().message, HasSubstr("bench.toml:7: source 'acs' is not a file"));
+  EXPECT_THAT(input.error().message,
+              HasSubstr("bench.toml:7: source 'acs' is neither a file nor a CAN log"));
 }
 
 } // namespace
