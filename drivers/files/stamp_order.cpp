@@ -1,9 +1,14 @@
 #include "drivers/files/stamp_order.hpp"
 
+#include <algorithm>
+
 namespace dyncal::drivers::files {
 namespace {
 
 constexpr unsigned rising_before_trust = 8;
+constexpr std::int64_t intervals_ahead = 8;
+constexpr std::size_t looked_at_behind = 64;
+constexpr std::int64_t second_ns = 1'000'000'000;
 
 } // namespace
 
@@ -11,6 +16,7 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
   const bool rises = !last_ns_ || stamp_ns > before_ns_;
   before_ns_ = stamp_ns;
   if (!last_ns_ || stamp_ns > *last_ns_) {
+    interval_ns_ = last_ns_ ? stamp_ns - *last_ns_ : 0;
     last_ns_ = stamp_ns;
     behind_ = 0;
     return 0;
@@ -24,13 +30,43 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
   return stamp_ns == *last_ns_ ? stamp_repeated : stamp_backwards;
 }
 
-void StampOrder::check(SampleBlock& block) {
-  for (std::size_t i = 0; i < block.stamps_ns.size(); ++i) {
-    const std::uint8_t flag = flag_of(block.stamps_ns[i]);
-    if (flag != 0) {
-      block.flags.resize(block.samples, 0);
-      block.flags[i] = flag;
+std::size_t StampOrder::ahead(std::span<const std::int64_t> stamps_ns) const {
+  const std::int64_t most_ns = intervals_ahead * interval_ns_;
+  if (!last_ns_ || interval_ns_ <= 0 || stamps_ns.front() - *last_ns_ <= most_ns) {
+    return 0;
+  }
+  const std::size_t looked_at = std::min(stamps_ns.size(), looked_at_behind + 1);
+  for (std::size_t i = 1; i < looked_at; ++i) {
+    const std::int64_t from_last_ns = stamps_ns[i] - *last_ns_;
+    // It comes back where it would be with as many intervals as samples, and is not a later one of
+    // those that were set back.
+    if (from_last_ns > 0 && from_last_ns <= static_cast<std::int64_t>(i + 1) * 2 * interval_ns_ &&
+        stamps_ns[i] < stamps_ns[i - 1]) {
+      return i;
     }
+  }
+  const bool nothing_behind = stamps_ns.size() == 1;
+  return nothing_behind && stamps_ns.front() - *last_ns_ > second_ns ? 1 : 0;
+}
+
+void StampOrder::check(SampleBlock& block) {
+  const std::span<const std::int64_t> stamps(block.stamps_ns);
+  const auto set = [&block](std::size_t i, std::uint8_t flag) {
+    block.flags.resize(block.samples, 0);
+    block.flags[i] = flag;
+  };
+  for (std::size_t i = 0; i < stamps.size();) {
+    const std::size_t wrong = ahead(stamps.subspan(i));
+    for (std::size_t end = i + wrong; i < end; ++i) {
+      set(i, stamps[i] - *last_ns_ >= second_ns ? stamp_second_slip : stamp_offset_below_second);
+    }
+    if (wrong > 0) {
+      continue;
+    }
+    if (const std::uint8_t flag = flag_of(stamps[i]); flag != 0) {
+      set(i, flag);
+    }
+    ++i;
   }
 }
 

@@ -1,7 +1,10 @@
 #include "services/evaluation/method/step_task.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -17,13 +20,44 @@ double distrusted_part(const SourceRecord& source) {
   return flags.empty() ? 0.0 : distrusted / static_cast<double>(flags.size());
 }
 
-std::string likely_cause(const RunRecords& records, const std::string& name) {
+constexpr double worth_naming_rad = 0.05; // of the sine, by which stamps are off an even rate
+constexpr std::int64_t worth_naming_back_ns = 500'000'000; // a step is not over in less
+constexpr std::size_t max_looked_at = 4096;
+
+// How far the stamps lie off an even rate: what is read in batches, or stamped in
+// coarse ticks, is not even.
+double uneven_ns(const SourceRecord& source) {
+  std::vector<std::int64_t> trusted;
+  const auto stamps = source.stamps_ns();
+  const std::size_t middle =
+      stamps.size() > max_looked_at ? (stamps.size() - max_looked_at) / 2 : 0;
+  for (std::size_t i = middle; i < stamps.size() && trusted.size() < max_looked_at; ++i) {
+    if (source.flags()[i] == 0) {
+      trusted.push_back(stamps[i]);
+    }
+  }
+  double most_ns = 0.0;
+  for (std::size_t i = 1; i + 1 < trusted.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(trusted.size() - 1);
+    const double even_ns = share * static_cast<double>(trusted.back() - trusted.front());
+    most_ns =
+        std::max(most_ns, std::abs(static_cast<double>(trusted[i] - trusted.front()) - even_ns));
+  }
+  return most_ns;
+}
+
+std::string likely_cause(const RunRecords& records, const RecipeStep& step,
+                         const std::string& name) {
   const SourceRecord& source = records.of(name);
   if (source.restarts() > 0) {
     return fmt::format(": source '{}' restarted during the run", name);
   }
   if (!source.newest_stamp_ns()) {
     return fmt::format(": source '{}' sent no samples", name);
+  }
+  if (source.set_back_ns() > worth_naming_back_ns) {
+    return fmt::format(": the clock of source '{}' was set back by {:.6g} s during the run", name,
+                       static_cast<double>(source.set_back_ns()) * 1e-9);
   }
   if (const double part = distrusted_part(source); part > max_distrusted_part) {
     return fmt::format(": {:.0f} % of its time stamps are not trusted; has its clock lost its fix, "
@@ -35,6 +69,12 @@ std::string likely_cause(const RunRecords& records, const std::string& name) {
   }
   if (const std::uint64_t lost = source.lost() + source.overflowed(); lost > 0) {
     return fmt::format(": source '{}' lost {} samples during the run", name, lost);
+  }
+  const double uneven = uneven_ns(source);
+  if (2.0 * std::numbers::pi * step.frequency.hz() * uneven * 1e-9 > worth_naming_rad) {
+    return fmt::format(": the time stamps of source '{}' are up to {:.2g} ms off an even rate; are "
+                       "its samples read in batches, or stamped in coarse ticks?",
+                       name, uneven * 1e-6);
   }
   return "; is the sync signal connected?";
 }
@@ -64,7 +104,7 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
 
 std::string no_sine(const RunRecords& records, const RecipeStep& step, const ChannelName& sync) {
   return fmt::format("no steady sine of {} Hz was found in {}{}", step.frequency_text_hz,
-                     sync.text(), likely_cause(records, sync.source));
+                     sync.text(), likely_cause(records, step, sync.source));
 }
 
 } // namespace dyncal::services

@@ -52,12 +52,26 @@ private:
     return flags_[i] == 0 && (runs_.empty() || stamps_[i] > last_ns_);
   }
 
+  // Behind the last sample in the interval.
+  [[nodiscard]] std::size_t end_inside() const {
+    std::size_t end = stamps_.size();
+    while (end > 0 && !inside(end - 1)) {
+      --end;
+    }
+    return end;
+  }
+
   void find_runs() {
-    for (std::size_t i = 0; i < stamps_.size();) {
+    const std::size_t end_of_all = end_inside();
+    bool begun = false;
+    for (std::size_t i = 0; i < end_of_all;) {
       if (!inside(i)) {
+        // Whatever it says, it was sampled between others of the interval.
+        not_trusted_ += begun && flags_[i] != 0 ? 1 : 0;
         ++i;
         continue;
       }
+      begun = true;
       const std::size_t end = good_until(i);
       if (end == i) {
         ++(has_trusted_stamp(i) ? not_measured_ : not_trusted_);

@@ -1,8 +1,9 @@
 // The samples of one source that belong to a step: selected from its record, cleaned, each sample
 // once.
 //
-// Left out and counted: samples whose stamp is not trusted (flags), does not increase, or that were
-// not measured (NaN) in a column asked for. As a rule nothing must be left out: then these are
+// Left out and counted: samples whose stamp is not trusted (flags; those too whose stamp lies
+// outside, but that came between others of the step), does not increase, or that were not measured
+// (NaN) in a column asked for. As a rule nothing must be left out: then these are
 // views of the record, and nothing is copied.
 //
 // Plain functions, any thread; REQUIRES: the record lives on and does not change as long as they

@@ -46,6 +46,19 @@ TEST(StepSamples, AreEmptyWhereTheRecordHasNone) {
   EXPECT_TRUE(samples.columns[1].empty());
 }
 
+TEST(StepSamples, CountFlaggedStampsThatLieFarAwayFromTheStep) {
+  wire::SampleBlock block = block_of(2000);
+  for (const std::size_t i : {5U, 300U, 301U, 302U, 1990U}) { // two of them outside of the step
+    block.stamps_ns()[i] = i == 302 ? 1'000'000'000 : 0;
+    block.stamp_flags()[i] = 128;
+  }
+  SourceRecord record("dau");
+  tests::feed(record, block);
+  const StepSamples samples = select_samples(record, {1100, 20'000}, {1});
+  EXPECT_EQ(samples.stamps_ns.size(), 1888U);
+  EXPECT_EQ(samples.not_trusted, 3U);
+}
+
 TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
   std::mt19937_64 random(1);
   wire::SampleBlock block = block_of(5000);
