@@ -21,6 +21,8 @@ constexpr double model_error = 0.05;       // of the amplitude, of a sine fitted
 constexpr std::uint64_t min_stuck_run = 4; // samples
 constexpr double fine_resolution = 0.02;   // of the amplitude
 constexpr double worth_modelling = 3.0;    // standard uncertainties of a harmonic
+constexpr double beyond_range = 0.05;      // of half the range: noise behind an end stop is less
+constexpr double min_beyond_part = 0.01;   // of the values: fewer are bumps
 
 // Orders whose folded frequencies are apart from the signal, the mean, half the rate (where only
 // one of sine and cosine is sampled) and each other.
@@ -248,6 +250,16 @@ double shortening(double part) {
   return x * x * x / (3.0 * std::numbers::pi);
 }
 
+// A range that values lie well beyond is not that of the sensor, whoever stated it.
+bool lies_beyond(const Model& model, const SignalExpectation& expected) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double margin = beyond_range * 0.5 * (expected.range_high - expected.range_low);
+  const double low = expected.range_low - margin, high = expected.range_high + margin;
+  const std::uint64_t count = (model.low < low ? count_between(model, -infinity, low) : 0) +
+                              (model.high > high ? count_between(model, high, infinity) : 0);
+  return static_cast<double>(count) > min_beyond_part * static_cast<double>(model.values().size());
+}
+
 // Where steps are fine: a sine of a few steps may well end one step below its range.
 double upper_end(const Model& model, const SignalExpectation& expected) {
   const bool is_fine = expected.resolution < fine_resolution * model.fit().amplitude();
@@ -339,10 +351,12 @@ void measure_runs(const Model& model, const SignalExpectation& expected,
 
 SignalIntegrity measure_integrity(const Frequency& frequency, const PlainChannel& channel,
                                   std::span<const std::int64_t> stamps_ns,
-                                  std::span<const double> values,
-                                  const SignalExpectation& expected) {
+                                  std::span<const double> values, const SignalExpectation& stated) {
   const Model model(frequency, channel, stamps_ns, values);
   SignalIntegrity integrity;
+  integrity.beyond_range = lies_beyond(model, stated);
+  const SignalExpectation expected =
+      integrity.beyond_range ? SignalExpectation{.resolution = stated.resolution} : stated;
   integrity.samples = values.size();
   integrity.amplitude = model.fit().amplitude();
   integrity.residual_sd = model.residual_sd;

@@ -6,7 +6,9 @@
 //                                           half the rate are met where sampling folds them to
 //   THD = sqrt(sum |P_k|^2) / |P|           residual = standard deviation of e
 //
-// At a limit: values within half a resolution of an end of the stated range, where steps are
+// A stated range that more than 1 % of the values lie beyond, by more than a twentieth of half of
+// it, is none (`beyond_range`): only the record's own extremes count. At a limit: values within
+// half a resolution of an end of the stated range, where steps are
 // below 2 % of the amplitude within one and a half of the upper one, for the highest code of many
 // converters is one step below it; and, stated or not, values equal to the record's own extreme
 // where the fitted sine goes on, when they are more than steps q and noise explain. Their parts p
@@ -44,6 +46,7 @@ struct SignalIntegrity {
   std::uint64_t samples = 0;
   double amplitude = 0.0;
   double at_range_part = 0.0;      // of all samples, at an end of the stated range
+  bool beyond_range = false;       // values lie so far beyond it that it cannot be the range
   double clipped_part = 0.0;       // at the record's own extremes, beyond what is natural
   double clipping_rel = 0.0;       // how much of the amplitude these take away, about
   std::uint64_t longest_run = 0;   // of equal values, whatever the signal does

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sndfile.h>
 
 #include "drivers/files/file_channels.hpp"
@@ -9,18 +10,33 @@
 namespace dyncal::drivers::files {
 namespace {
 
-// One step of an integer format on the scale -1..1; 0 for float.
-double resolution_of(int format) {
+// Bits of an integer format, 0 for float. Nothing for what keeps the sound but not the values (MP3,
+// Vorbis, Opus, ADPCM, A-law ...), which the library reads under any name.
+std::optional<int> bits_of(int format) {
   switch (format & SF_FORMAT_SUBMASK) {
+  case SF_FORMAT_PCM_S8:
+  case SF_FORMAT_PCM_U8:
+    return 8;
   case SF_FORMAT_PCM_16:
-    return std::ldexp(1.0, -15);
+    return 16;
   case SF_FORMAT_PCM_24:
-    return std::ldexp(1.0, -23);
+    return 24;
   case SF_FORMAT_PCM_32:
-    return std::ldexp(1.0, -31);
+    return 32;
+  case SF_FORMAT_FLOAT:
+  case SF_FORMAT_DOUBLE:
+    return 0;
   default:
-    return 0.0;
+    return std::nullopt;
   }
+}
+
+std::string name_of_subtype(int format) {
+  SF_FORMAT_INFO info{};
+  info.format = format & SF_FORMAT_SUBMASK;
+  const bool known =
+      sf_command(nullptr, SFC_GET_FORMAT_INFO, &info, sizeof(info)) == 0 && info.name != nullptr;
+  return known ? info.name : "an unknown codec";
 }
 
 } // namespace
@@ -42,6 +58,13 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
     return fail(ErrorCode::malformed,
                 reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")");
   }
+  const std::optional<int> bits = bits_of(info.format);
+  if (!bits) {
+    return fail(ErrorCode::malformed,
+                reader->path_ + ": holds " + name_of_subtype(info.format) +
+                    ", which does not keep every value; write integers of 8 to 32 bits or "
+                    "floating-point numbers");
+  }
   reader->all_samples_ = static_cast<std::uint64_t>(std::max<sf_count_t>(info.frames, 0));
   std::vector<std::string> names;
   for (int channel = 1; channel <= info.channels; ++channel) {
@@ -55,9 +78,11 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   reader->rate_ = settings.sample_rate.value_or(SampleRate{info.samplerate, 1});
   reader->description_.nominal_rate_hz = reader->rate_.hz();
   for (ChannelDescription& channel : reader->description_.channels) {
-    channel.minimum = -1.0;
-    channel.maximum = 1.0;
-    channel.resolution = resolution_of(info.format);
+    if (*bits > 0) { // floating-point numbers have no full scale
+      channel.minimum = -1.0;
+      channel.maximum = 1.0;
+      channel.resolution = std::ldexp(1.0, 1 - *bits);
+    }
   }
   return reader;
 }

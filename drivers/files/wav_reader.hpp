@@ -1,5 +1,6 @@
-// Reads the samples of a WAV file (16, 24, 32 bit or float) through libsndfile; values are -1..1 of
-// full scale.
+// Reads the samples of a WAV file through libsndfile: integers of 8 to 32 bits, whose values are
+// -1..1 of full scale, or floating-point numbers, which have none and are taken as they are. What
+// codecs make of sound (MP3, ADPCM, A-law ...) are not the values that were measured: refused.
 #pragma once
 
 #include <memory>
@@ -14,7 +15,7 @@ namespace dyncal::drivers::files {
 class WavReader : public SampleReader {
 public:
   // Fails (not_found) when there is no such file or channel, (malformed) when libsndfile cannot
-  // read it.
+  // read it, or a codec has changed its values.
   [[nodiscard]] static Expected<std::unique_ptr<WavReader>> open(const FileSettings& settings);
 
   [[nodiscard]] const SourceDescription& description() const override { return description_; }

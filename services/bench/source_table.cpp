@@ -1,6 +1,11 @@
 #include "services/bench/source_table.hpp"
 
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -52,6 +57,44 @@ void read_units(TomlTable& table, SourceSettings& source) {
   }
 }
 
+// "none", or "LOW to HIGH".
+std::optional<StatedRange> range_of(const std::string& text) {
+  constexpr std::string_view word = " to ";
+  const std::size_t place = text.find(word);
+  if (text == "none") {
+    return StatedRange{};
+  }
+  if (place == std::string::npos) {
+    return std::nullopt;
+  }
+  StatedRange range;
+  const auto read = [](std::string_view number, double& value) {
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    return error == std::errc() && end == number.data() + number.size() && std::isfinite(value);
+  };
+  const std::string_view whole = text;
+  return read(whole.substr(0, place), range.minimum) &&
+                 read(whole.substr(place + word.size()), range.maximum) &&
+                 range.minimum < range.maximum
+             ? std::optional(range)
+             : std::nullopt;
+}
+
+void read_ranges(TomlTable& table, SourceSettings& source) {
+  std::size_t entry = 0;
+  for (const auto& [channel, text] : table.text_map("ranges")) {
+    ++entry;
+    if (const auto range = range_of(text)) {
+      source.identity.ranges.emplace(channel, *range);
+    } else {
+      table.refuse_entry("ranges", entry,
+                         fmt::format("gives channel '{}' the range \"{}\", which is neither "
+                                     "\"none\" nor two rising numbers such as \"-20 to 20\"",
+                                     channel, text));
+    }
+  }
+}
+
 SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles& files) {
   SourceSettings source;
   source.name = name;
@@ -70,6 +113,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
     }
   }
   read_units(table, source);
+  read_ranges(table, source);
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc

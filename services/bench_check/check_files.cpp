@@ -46,6 +46,23 @@ bool has_problem(const BenchView& view, const KeyPath& key) {
   });
 }
 
+// A range of a channel that is not there would say nothing.
+void check_ranges(const BenchView& view, const SourceSettings& source, Findings& findings) {
+  const SourceView* const seen = view.source(source.name);
+  if (seen == nullptr || !seen->description) {
+    return;
+  }
+  for (const auto& [channel, range] : source.identity.ranges) {
+    if (std::ranges::find(seen->description->channels, channel,
+                          &drivers::ChannelDescription::name) ==
+        seen->description->channels.end()) {
+      findings.push_back(
+          view.at(Severity::error, {"sources", source.name, "ranges"},
+                  fmt::format("gives a range to '{}', which is no channel of it", channel)));
+    }
+  }
+}
+
 } // namespace
 
 Findings check_files(const BenchView& view) {
@@ -80,6 +97,9 @@ Findings check_files(const BenchView& view) {
   if (view.adc_problem) {
     findings.push_back(
         view.at(Severity::error, {"corrections", "adc", "file"}, "names " + *view.adc_problem));
+  }
+  for (const SourceSettings& source : view.bench.sources) {
+    check_ranges(view, source, findings);
   }
   for (const SourceView& source : view.sources) {
     if (source.problem) {

@@ -13,6 +13,12 @@ drivers::SourceDescription with_identity(drivers::SourceDescription description,
       *member = *stated;
     }
   }
+  for (drivers::ChannelDescription& channel : description.channels) {
+    if (const auto range = identity.ranges.find(channel.name); range != identity.ranges.end()) {
+      channel.minimum = range->second.minimum;
+      channel.maximum = range->second.maximum;
+    }
+  }
   return description;
 }
 

@@ -51,6 +51,12 @@ SignalCheck check_signal(const std::string& channel,
     return check;
   }
   check.signal = signal_of(channel, *integrity);
+  if (integrity->beyond_range) {
+    check.flags.push_back(of_channel(ResultFlag::signal_not_judged, channel,
+                                     "its values lie beyond the range that is stated for it, which "
+                                     "therefore cannot be its range; state it, or none, with the "
+                                     "key 'ranges'"));
+  }
   const analysis::IntegrityFindings findings = analysis::judge_integrity(*integrity);
   if (findings.over_range) {
     check.flags.push_back(of_channel(

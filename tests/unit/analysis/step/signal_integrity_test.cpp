@@ -114,6 +114,30 @@ TEST(SignalIntegrity, CleanSeriesRaiseNoAlarm) {
   EXPECT_LE(alarms, 1 + judged / 1000) << which.str();
 }
 
+// Whoever stated it was wrong: the signal is not at an end of it.
+TEST(SignalIntegrity, ValuesWellBeyondAStatedRangeDisproveIt) {
+  for (const double stated : {1.0, 5.0, 9.0}) {
+    const Sensor sensor{};
+    const auto integrity =
+        integrity_of(sensor, series_of(sensor, 3), {.range_low = -stated, .range_high = stated});
+    EXPECT_TRUE(integrity.beyond_range) << stated;
+    EXPECT_EQ(integrity.at_range_part, 0.0);
+    EXPECT_FALSE(judge_integrity(integrity).any()) << stated;
+  }
+  // A bump is not enough, nor is noise behind the end stop.
+  const Sensor sensor{.limit = 9.5};
+  Series series = series_of(sensor, 4);
+  for (std::size_t i = 700; i < 710; ++i) {
+    series.values[i] = 30.0;
+  }
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    series.values[i] += 0.02 * std::sin(static_cast<double>(i * i));
+  }
+  const auto integrity = integrity_of(sensor, series, {.range_low = -9.5, .range_high = 9.5});
+  EXPECT_FALSE(integrity.beyond_range);
+  EXPECT_TRUE(judge_integrity(integrity).over_range);
+}
+
 TEST(SignalIntegrity, EndStopsAreFoundWithAndWithoutAStatedRange) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const Sensor sensor{.limit = 9.5}; // 0.95 of the amplitude

@@ -45,6 +45,7 @@ void expect_played(int subtype, double resolution) {
   EXPECT_EQ(description->nominal_rate_hz, 48000.0);
   EXPECT_EQ(description->channels[1].name, "sync");
   EXPECT_EQ(description->channels[1].resolution, resolution);
+  EXPECT_EQ(description->channels[1].maximum, subtype == SF_FORMAT_FLOAT ? 0.0 : 1.0);
   CollectingSink sink;
   ASSERT_TRUE(source.run(sink));
   ASSERT_EQ(sink.numbers.size(), static_cast<std::size_t>(frames));
@@ -65,6 +66,25 @@ TEST(WavReader, Plays24Bit) {
 }
 TEST(WavReader, PlaysFloat) {
   expect_played(SF_FORMAT_FLOAT, 0.0);
+}
+
+TEST(WavReader, RefusesWhatACodecHasMadeOfTheValues) {
+  for (const int subtype : {SF_FORMAT_ULAW, SF_FORMAT_ALAW, SF_FORMAT_IMA_ADPCM, SF_FORMAT_MS_ADPCM,
+                            SF_FORMAT_GSM610}) {
+    const TemporaryFile file("coded.wav");
+    SF_INFO info{};
+    info.samplerate = 8000;
+    info.channels = 1;
+    info.format = SF_FORMAT_WAV | subtype;
+    SNDFILE* writer = sf_open(file.path().c_str(), SFM_WRITE, &info);
+    ASSERT_NE(writer, nullptr) << sf_strerror(nullptr);
+    const std::vector<double> values(8000, 0.25);
+    sf_writef_double(writer, values.data(), 8000);
+    sf_close(writer);
+    const auto description = FileSource(settings_for(file)).describe();
+    ASSERT_FALSE(description) << subtype;
+    EXPECT_THAT(description.error().message, testing::HasSubstr("does not keep every value"));
+  }
 }
 
 TEST(WavReader, SaysThatAFileIsNotWav) {

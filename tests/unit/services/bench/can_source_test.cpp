@@ -40,6 +40,22 @@ protected:
   const std::filesystem::path& folder = own.path();
 };
 
+TEST_F(CanKeys, StateRangesOrNone) {
+  const auto file = bench("interface = \"can0\"\ndbc = \"sensor.dbc\"\n"
+                          "ranges = { x = \"none\", y = \"-20 to 2.5e1\" }\n");
+  ASSERT_TRUE(file) << file.error().message;
+  const auto& ranges = file->source("sensor")->identity.ranges;
+  EXPECT_EQ(ranges.at("x"), StatedRange{});
+  EXPECT_EQ(ranges.at("y"), (StatedRange{-20.0, 25.0}));
+  for (const char* wrong : {"wide", "20 to -20", "-20", "a to b", "1 to 1", "-inf to inf"}) {
+    EXPECT_THAT(
+        problem(std::string("interface = \"can0\"\ndbc = \"sensor.dbc\"\nranges = { x = \"") +
+                wrong + "\" }\n"),
+        HasSubstr("ranges' gives channel 'x' the range"))
+        << wrong;
+  }
+}
+
 TEST_F(CanKeys, ReachTheDriverAsTheyStand) {
   const auto file = bench(R"(interface = "can0"
 dbc = "sensor.dbc"

@@ -45,6 +45,17 @@ TEST(SignalCheck, GivesDistortionAndResidualAsNumbers) {
   EXPECT_TRUE(found.flags.empty());
 }
 
+TEST(SignalCheck, SaysThatAStatedRangeCannotBeIt) {
+  const Record made = record(10.0, 0.05);
+  const SignalCheck found = check_signal(
+      "dau/z", analysis::measure_integrity(analysis::Frequency::from_hz(80.0), made.stamps_ns,
+                                           made.values, {.range_low = -1.0, .range_high = 1.0}));
+  EXPECT_EQ(found.refusal, "");
+  ASSERT_EQ(found.flags.size(), 1U);
+  EXPECT_EQ(found.flags[0].kind, ResultFlag::signal_not_judged);
+  EXPECT_THAT(found.flags[0].sentence, testing::HasSubstr("cannot be its range"));
+}
+
 TEST(SignalCheck, HasNoNumbersAndNoFlagWithoutASine) {
   const SignalCheck found = check(record(0.0, 0.05));
   EXPECT_TRUE(std::isnan(found.signal.thd));
