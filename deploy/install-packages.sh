@@ -25,6 +25,7 @@ optional_build_packages=(
   libsystemd-dev     # daemons tell systemd that they are ready
   prometheus-cpp-dev # --metrics of the daemons
   libzstd-dev        # smaller recordings
+  liblz4-dev         # recordings that others have compressed with LZ4
   libpqxx-dev        # results of runs in PostgreSQL
   libhdf5-dev        # recordings as HDF5, files of the SmartUp receiver
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
@@ -34,7 +35,7 @@ optional_build_packages=(
 run_packages=(
   libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
   libssl3 libsndfile1 liblxi1 libtirpc3
-  libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1
+  libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1 liblz4-1
   libsqlite3-0 libpqxx-6.4 libhdf5-103-1
   libxml2 libxmlsec1 libxmlsec1-openssl
   libcpp-httplib0.11 libjs-dygraphs # dyncal-web, and the charts of its page

@@ -21,11 +21,21 @@ void print_findings(const recording::ScanReport& report, const std::filesystem::
     fmt::print("{}\n", to_string(damage, path));
   }
   fmt::print("{}: {} messages in {} chunks can be read; {} places are damaged, {} chunks lost\n",
-             path.string(), report.messages, report.chunks - report.lost_chunks,
-             report.damage_count, report.lost_chunks);
+             path.string(), report.messages,
+             report.chunks - report.lost_chunks - report.unknown_chunks,
+             report.damage_count - report.unknown_chunks, report.lost_chunks);
   if (report.unchecked_chunks > 0) {
     fmt::print("{} chunks have no CRC: nothing shows whether they are sound\n",
                report.unchecked_chunks);
+  }
+  if (report.loose_messages > 0) {
+    fmt::print("{} messages stand outside chunks and have no CRC: nothing shows whether they are "
+               "sound\n",
+               report.loose_messages);
+  }
+  if (report.unknown_chunks > 0) {
+    fmt::print("{} chunks have a compression that this build does not know: they may be sound\n",
+               report.unknown_chunks);
   }
   if (!report.ended_in_order) {
     fmt::print("its recorder did not end it (was it killed?); 'dyncal recording repair' makes a "

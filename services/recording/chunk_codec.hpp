@@ -1,8 +1,7 @@
 // How the records of a chunk are made smaller, and large again: as they are, or zstd where the
-// build has it.
+// build has it. LZ4 frames of others are read where the build has liblz4.
 //
-// LZ4 is read by nobody here; the error says so. `size` comes from the file: it is bounded before
-// memory is taken. Plain functions, any thread.
+// `size` comes from the file: it is bounded before memory is taken. Plain functions, any thread.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +24,9 @@ enum class Compression { none, zstd };
 
 // More than any chunk of ours has; a foreign file with larger ones is not read.
 inline constexpr std::uint64_t max_chunk_bytes = std::uint64_t{256} << 20U;
+
+// Whether this build can uncompress it: where it cannot, nothing is known of the bytes.
+[[nodiscard]] bool knows_compression(const std::string& compression);
 
 // Fails (bad_file) with a part of a sentence: what is wrong with the bytes.
 [[nodiscard]] services::Expected<std::string>

@@ -90,13 +90,14 @@ Expected<std::string> RecordingReader::chunk_records(std::uint64_t offset) const
     return head;
   }
   const std::uint64_t length = number_at(*head, 1, 8);
-  if (static_cast<Opcode>((*head)[0]) != Opcode::chunk || length > size_ - offset - head_bytes ||
-      length > 2 * max_chunk_bytes) {
+  const auto opcode = static_cast<Opcode>((*head)[0]);
+  if ((opcode != Opcode::chunk && opcode != Opcode::message) ||
+      length > size_ - offset - head_bytes || length > 2 * max_chunk_bytes) {
     return fail(ErrorCode::bad_file, where + "there is no chunk");
   }
   const auto content = bytes(offset + head_bytes, length);
-  if (!content) {
-    return content;
+  if (!content || opcode == Opcode::message) {
+    return content ? *head + *content : content;
   }
   const auto chunk = parse_chunk(*content);
   if (!chunk) {

@@ -1,6 +1,6 @@
 // Reads an MCAP recording from its beginning to its end, whatever has happened to the file.
 //
-// Nothing is handed over that its CRC does not vouch for: messages of chunks, attachments. Every
+// Nothing is handed over that its CRC denies: messages of chunks, attachments. Every
 // length is held against the file before memory is taken. A chunk whose CRC is wrong is left out
 // and the reader goes on behind it; where a length is wrong it goes on with the next chunk that is
 // whole. Each of these is a Damage with place and sentence. A recording whose program was killed
@@ -9,8 +9,8 @@
 // there.
 //
 // open() fails (bad_file) when the file cannot be read or is no MCAP file, scan() when reading
-// fails. Messages outside chunks have no CRC: they are not handed over, which is a Damage. Foreign
-// chunks without a CRC are read, and counted. One thread.
+// fails. Foreign chunks without a CRC, and messages of a file without chunks, which have none, are
+// read, and counted. Chunks of a compression that this build does not know are named. One thread.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct MessageInFile {
   const Channel& channel;
   const Schema* schema = nullptr; // null: the channel has none, or it was lost
   Message message;
-  std::uint64_t chunk = 0;    // offset of its chunk in the file
+  std::uint64_t chunk = 0;    // offset of its chunk in the file, or of itself outside chunks
   std::uint64_t position = 0; // of its record in the chunk's records
 };
 
@@ -60,7 +60,9 @@ struct ScanReport {
   std::uint64_t messages = 0;
   std::uint64_t chunks = 0;
   std::uint64_t unchecked_chunks = 0; // without a CRC
+  std::uint64_t loose_messages = 0;   // outside chunks, without a CRC
   std::uint64_t lost_chunks = 0;      // of the damages
+  std::uint64_t unknown_chunks = 0; // of the damages: sound perhaps, their compression is not known
   std::uint64_t damage_count = 0;
   std::vector<Damage> damages;
   bool ended_in_order = false; // has a sound summary
@@ -76,8 +78,8 @@ public:
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size_bytes() const { return size_; }
   [[nodiscard]] services::Expected<ScanReport> scan(const ScanEvents& events);
-  // The records of the chunk at this offset, with the CRC checked. Fails (bad_file) with a part of
-  // a sentence: what is wrong with it.
+  // The records of the chunk at this offset, with the CRC checked, or the message outside chunks
+  // that is there. Fails (bad_file) with a part of a sentence: what is wrong with it.
   [[nodiscard]] services::Expected<std::string> chunk_records(std::uint64_t offset) const;
 
 private:

@@ -137,8 +137,7 @@ Scan::Finding Scan::take(Opcode opcode, const std::string& content) {
   case Opcode::channel:
     return take_definition(opcode, content);
   case Opcode::message:
-    damage(offset_, bytes, "a message outside chunks is not read: nothing shows that it is sound");
-    return Finding::damaged;
+    return take_loose_message(content);
   case Opcode::chunk:
     return take_chunk(content);
   case Opcode::message_index:
@@ -172,6 +171,19 @@ Scan::Finding Scan::take(Opcode opcode, const std::string& content) {
   default:
     return Finding::unreadable;
   }
+}
+
+// A file without chunks is of a writer that does so. Behind a chunk it may be another record whose
+// kind was damaged.
+Scan::Finding Scan::take_loose_message(std::string_view content) {
+  if (report_.chunks > 0) {
+    damage(offset_, head_bytes + content.size(),
+           "a message outside chunks is not read: nothing shows that it is sound");
+    return Finding::damaged;
+  }
+  ++report_.loose_messages;
+  take_message(content, 0);
+  return Finding::sound;
 }
 
 Scan::Finding Scan::take_definition(Opcode opcode, std::string_view content) {
@@ -221,6 +233,12 @@ Scan::Finding Scan::take_chunk(const std::string& content) {
   const auto records = uncompress(chunk->records, chunk->compression, chunk->uncompressed_size);
   const bool wrong_crc = records && chunk->crc != 0 && crc32_of(*records) != chunk->crc;
   if (!records || wrong_crc) {
+    if (!knows_compression(chunk->compression)) {
+      ++report_.unknown_chunks;
+      damage(offset_, head_bytes + content.size(),
+             fmt::format("the messages of a chunk are not read: {}", records.error().message));
+      return Finding::damaged;
+    }
     ++report_.lost_chunks;
     damage(offset_, head_bytes + content.size(),
            fmt::format("a chunk is damaged, its messages are lost: {}",

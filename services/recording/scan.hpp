@@ -22,6 +22,7 @@ private:
 
   [[nodiscard]] services::Expected<bool> step(); // false: at the end
   [[nodiscard]] Finding take(Opcode opcode, const std::string& content);
+  [[nodiscard]] Finding take_loose_message(std::string_view content);
   [[nodiscard]] Finding take_definition(Opcode opcode, std::string_view content);
   [[nodiscard]] Finding take_chunk(const std::string& content);
   void take_records(std::string_view records);

@@ -31,6 +31,51 @@ TEST(RecordingReader, ReadsEverything) {
   }
 }
 
+TEST(RecordingReader, ReadsAForeignFileWithoutChunks) {
+  std::string file(magic);
+  append_header(file, "other 1.0");
+  append_channel(file, {.id = 3, .topic = "/imu", .message_encoding = "json"});
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    append_message(file, {.channel_id = 3, .sequence = i, .log_time = i, .data = "{}"});
+  }
+  append_data_end(file, 0);
+  append_footer(file, {});
+  file += magic;
+  RecordingReader reader = reader_of(file);
+  std::vector<std::uint64_t> places;
+  ScanEvents events;
+  events.message = [&](const MessageInFile& message) {
+    EXPECT_EQ(message.message.sequence, places.size());
+    EXPECT_EQ(message.message.data, "{}");
+    EXPECT_EQ(message.position, 0U);
+    places.push_back(message.chunk);
+  };
+  const auto report = reader.scan(events);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->messages, 5U);
+  EXPECT_EQ(report->loose_messages, 5U);
+  EXPECT_EQ(report->damage_count, 0U);
+  ASSERT_EQ(places.size(), 5U);
+  EXPECT_TRUE(reader.chunk_records(places[2])->ends_with("{}")); // found again
+}
+
+// Nothing is known of it: it is neither damaged nor lost.
+TEST(RecordingReader, NamesACompressionThatItDoesNotKnow) {
+  std::string file(magic);
+  append_header(file, "other 1.0");
+  append_chunk_head(file, {.uncompressed_size = 9, .compression = "brotli"}, 4);
+  file += "????";
+  append_data_end(file, 0);
+  append_footer(file, {});
+  file += magic;
+  const auto report = reader_of(file).scan({});
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->unknown_chunks, 1U);
+  EXPECT_EQ(report->lost_chunks, 0U);
+  ASSERT_EQ(report->damages.size(), 1U);
+  EXPECT_NE(report->damages[0].what.find("'brotli' is not known to this build"), std::string::npos);
+}
+
 TEST(RecordingReader, ReadsCompressedChunks) {
   if (!parse_compression("zstd")) {
     GTEST_SKIP() << "this build has no zstd";
