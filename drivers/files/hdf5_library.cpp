@@ -175,6 +175,26 @@ std::vector<std::string> hdf5_members(hid_t place, const std::string& group) {
   return names;
 }
 
+std::string hdf5_missing_filter(hid_t dataset) {
+  const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const int filters = creation.is_open() ? H5Pget_nfilters(creation.id()) : 0;
+  for (int i = 0; i < filters; ++i) {
+    std::array<char, 64> name{};
+    unsigned flags = 0;
+    unsigned configuration = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(creation.id(), static_cast<unsigned>(i), &flags, &values, nullptr,
+                       name.size() - 1, name.data(), &configuration);
+    if (filter >= 0 && H5Zfilter_avail(filter) <= 0) {
+      const std::string text(name.data());
+      return (text.empty() ? "of number " : text + " (") + std::to_string(filter) +
+             (text.empty() ? "" : ")");
+    }
+  }
+  return {};
+}
+
 std::string hdf5_text(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) {
     return {};

@@ -61,6 +61,10 @@ inline constexpr std::uint64_t hdf5_user_block_bytes = 512;
 // Names of the members of a group, in alphabetical order; none if there is no such group.
 [[nodiscard]] std::vector<std::string> hdf5_members(hid_t place, const std::string& group);
 
+// The filter that the chunks of a dataset went through and that this library does not have, as
+// "lzf (32000)"; "" if there is none.
+[[nodiscard]] std::string hdf5_missing_filter(hid_t dataset);
+
 // A text attribute of either kind of string; "" if there is none.
 [[nodiscard]] std::string hdf5_text(hid_t object, const char* name);
 

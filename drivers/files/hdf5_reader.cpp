@@ -129,6 +129,14 @@ Expected<Hdf5Reader::Quantity> Hdf5Reader::open_dataset(const std::string& name)
   if (!quantity.dataset.is_open()) {
     return malformed("has no dataset " + name);
   }
+  if (const std::string filter = hdf5_missing_filter(quantity.dataset.id()); !filter.empty()) {
+    return fail(
+        ErrorCode::invalid_setting,
+        settings_.path.string() + ": " + place_ + ": " + name + " is stored with the HDF5 filter " +
+            filter +
+            ", which this HDF5 library does not have; write it again with gzip, as 'h5repack "
+            "-f GZIP=4' does where the filter is known");
+  }
   const Hdf5Handle type(H5Dget_type(quantity.dataset.id()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(quantity.dataset.id()), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type.id());

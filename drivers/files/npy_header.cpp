@@ -21,15 +21,27 @@ public:
     return true;
   }
 
+  // With the escapes that Python's repr() writes; u'...' is Python 2's.
   bool take_text(std::string& value) {
-    const char quote = take('\'') ? '\'' : take('"') ? '"' : '\0';
-    const std::size_t end = quote == '\0' ? std::string_view::npos : text_.find(quote);
-    if (end == std::string_view::npos) {
-      return false;
+    skip_blanks();
+    if (text_.starts_with("u'") || text_.starts_with("u\"")) {
+      text_.remove_prefix(1);
     }
-    value = text_.substr(0, end);
-    text_.remove_prefix(end + 1);
-    return true;
+    const char quote = take('\'') ? '\'' : take('"') ? '"' : '\0';
+    std::string read;
+    for (std::size_t i = 0; quote != '\0' && i < text_.size(); ++i) {
+      if (text_[i] == quote) {
+        text_.remove_prefix(i + 1);
+        value = std::move(read);
+        return true;
+      }
+      if (text_[i] != '\\') {
+        read += text_[i];
+      } else if (!take_escape(i, read)) {
+        return false;
+      }
+    }
+    return false;
   }
 
   bool take_word(std::string_view word) {
@@ -41,6 +53,7 @@ public:
     return true;
   }
 
+  // Python 2 writes L behind a long one.
   bool take_count(std::size_t& value) {
     skip_blanks();
     const auto [end, status] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
@@ -48,10 +61,50 @@ public:
       return false;
     }
     text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    text_.remove_prefix(text_.starts_with('L') ? 1 : 0);
     return true;
   }
 
 private:
+  // Of a backslash at `at`, which is moved on to the last character of the escape.
+  bool take_escape(std::size_t& at, std::string& to) const {
+    const char kind = at + 1 < text_.size() ? text_[at + 1] : '\0';
+    const std::size_t digits = kind == 'x' ? 2 : kind == 'u' ? 4 : 0;
+    if (digits > 0) {
+      const std::string_view code = text_.substr(at + 2, digits);
+      unsigned value = 0;
+      const auto [end, status] = std::from_chars(code.data(), code.data() + code.size(), value, 16);
+      if (status != std::errc() || code.size() < digits || end != code.data() + digits) {
+        return false;
+      }
+      append_utf8(value, to);
+      at += 1 + digits;
+      return true;
+    }
+    constexpr std::string_view kinds = "\\'\"ntr", stand_for = "\\'\"\n\t\r";
+    const std::size_t place = kinds.find(kind);
+    if (place == std::string_view::npos) {
+      return false;
+    }
+    to += stand_for[place];
+    ++at;
+    return true;
+  }
+
+  static void append_utf8(unsigned code, std::string& to) {
+    const auto byte = [&to](unsigned value) { to += static_cast<char>(value); };
+    if (code < 0x80U) {
+      byte(code);
+    } else if (code < 0x800U) {
+      byte(0xC0U | code >> 6U);
+      byte(0x80U | (code & 0x3FU));
+    } else {
+      byte(0xE0U | code >> 12U);
+      byte(0x80U | (code >> 6U & 0x3FU));
+      byte(0x80U | (code & 0x3FU));
+    }
+  }
+
   void skip_blanks() {
     text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size()));
   }

@@ -60,9 +60,11 @@ Expected<void> NpyReader::name_fields() {
     channels_.push_back(field);
   }
   if (!time_ && !settings_.sample_rate) {
-    return fail(ErrorCode::invalid_setting,
-                settings_.path.string() +
-                    ": no field t_ns and no sample_rate_hz; one of them must tell the time");
+    return fail(
+        ErrorCode::invalid_setting,
+        settings_.path.string() +
+            ": no field t_ns, and no sample rate is given (sample_rate_hz of the source in a "
+            "bench file, --nominal-rate of a command); one of them must tell the time");
   }
   auto described = describe_file_channels(settings_, names);
   if (!described) {

@@ -63,10 +63,10 @@ struct Field {
   std::size_t column = 1; // in the line, from 1
 };
 
-std::vector<Field> fields_of(std::string_view line) {
+std::vector<Field> fields_of(std::string_view line, char separator) {
   std::vector<Field> fields;
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
     std::size_t first = begin;
     std::size_t last = end;
     const auto blank = [&](std::size_t at) { return line[at] == ' ' || line[at] == '\t'; };
@@ -82,7 +82,12 @@ std::vector<Field> fields_of(std::string_view line) {
   return fields;
 }
 
-std::optional<double> number_in(std::string_view text) {
+// Beside semicolons a comma is that of the decimals, as Excel writes them in much of Europe.
+std::optional<double> number_in(std::string_view given, char separator) {
+  std::string text(given);
+  if (separator == ';') {
+    std::replace(text.begin(), text.end(), ',', '.');
+  }
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc{} || end != text.data() + text.size() || std::isnan(value)) {
@@ -110,6 +115,7 @@ private:
 
   std::string name_;
   std::size_t line_ = 0;
+  char separator_ = ',';
   std::vector<Column> columns_;
   std::vector<std::string> contributions_;
   bool has_whole_ = false;
@@ -149,7 +155,8 @@ Expected<Column> ReferenceTable::column_of(const Field& field) {
 }
 
 Expected<void> ReferenceTable::read_header(std::string_view line) {
-  for (const Field& field : fields_of(line)) {
+  separator_ = line.find(';') == std::string_view::npos ? ',' : ';';
+  for (const Field& field : fields_of(line, separator_)) {
     const auto column = column_of(field);
     if (!column) {
       return fail(column.error());
@@ -173,7 +180,7 @@ Expected<double> ReferenceTable::value_of(const Column& column, const Field& fie
   if (freedom && (field.text.empty() || field.text == "infinite")) {
     return infinite;
   }
-  const auto value = number_in(field.text);
+  const auto value = number_in(field.text, separator_);
   if (!value) {
     return refuse(field.column, fmt::format("'{}' is not a number; {} must be {}", field.text,
                                             rule.name, rule.hint));
@@ -208,7 +215,7 @@ Expected<void> ReferenceTable::add_whole(const ReferenceContribution& whole,
 }
 
 Expected<ReferenceCalibrationPoint> ReferenceTable::point_of(std::string_view line) const {
-  const std::vector<Field> fields = fields_of(line);
+  const std::vector<Field> fields = fields_of(line, separator_);
   if (fields.size() != columns_.size()) {
     return refuse(fields.back().column, fmt::format("{} fields, but the header names {} columns",
                                                     fields.size(), columns_.size()));
@@ -240,6 +247,8 @@ Expected<ReferenceCalibrationPoint> ReferenceTable::point_of(std::string_view li
 
 Expected<std::vector<ReferenceCalibrationPoint>> ReferenceTable::read(std::string_view text) {
   std::vector<ReferenceCalibrationPoint> points;
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; // which Excel writes
+  text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);

@@ -188,7 +188,7 @@ void print_table(const Fit& fit) {
 
 Expected<Fit> fit_file(const FitCommand& command) {
   const WorkProgress progress("reading");
-  auto series = read_series_file(command.file, progress.count());
+  auto series = read_series_file(command.file, progress.count(), command.nominal_rate_hz);
   if (!series) {
     return fail(series.error());
   }

@@ -79,9 +79,13 @@ std::size_t SeriesFile::leave_out_disorder() {
 }
 
 Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
-                                      const SharedWorkCount& count) {
+                                      const SharedWorkCount& count,
+                                      std::optional<double> nominal_rate_hz) {
   drivers::files::FileSettings settings;
   settings.path = path;
+  if (nominal_rate_hz) {
+    settings.sample_rate = drivers::sample_rate_from_hz(*nominal_rate_hz);
+  }
   drivers::files::FileSource source(std::move(settings));
   ByteCount bytes(count, "reading", bytes_of_file(path));
   Collector collector(source, bytes);

@@ -26,8 +26,10 @@ struct SeriesFile {
   std::size_t leave_out_disorder();
 };
 
-// Fails (bad_file) with file and line. `count`: of its megabytes.
-[[nodiscard]] Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
-                                                    const SharedWorkCount& count = nullptr);
+// Fails (bad_file) with file and line. `count`: of its megabytes. A file without stamps has those
+// of the nominal rate.
+[[nodiscard]] Expected<SeriesFile>
+read_series_file(const std::filesystem::path& path, const SharedWorkCount& count = nullptr,
+                 std::optional<double> nominal_rate_hz = std::nullopt);
 
 } // namespace dyncal::services

@@ -146,7 +146,7 @@ TEST(FileSource, SaysThatThereIsNoFileOrNoTime) {
   settings.path = "/nowhere/acs.csv";
   EXPECT_THAT(problem_of(settings), HasSubstr("/nowhere/acs.csv: cannot read this file"));
   const TemporaryFile file("untimed.csv", "a\n1\n");
-  EXPECT_THAT(problem_of(settings_for(file)), HasSubstr("no column t_ns and no sample_rate_hz"));
+  EXPECT_THAT(problem_of(settings_for(file)), HasSubstr("no column t_ns, and no sample rate is given"));
 }
 
 TEST(FileSource, KeepsThePaceItIsAskedFor) {
@@ -181,6 +181,17 @@ TEST(FileSource, StopsInTheMiddleWhenAskedTo) {
   sink.after_block = [&] { source.stop(); };
   ASSERT_TRUE(source.run(sink));
   EXPECT_LT(sink.numbers.size(), 5U);
+}
+
+TEST(FileSource, NamesWhatIsNoText) {
+  const auto problem = [](const char* name, const std::string& bytes) {
+    const TemporaryFile file(name, bytes);
+    return problem_of(settings_for(file));
+  };
+  EXPECT_THAT(problem("a.npz", std::string("PK\x03\x04\x14\x00", 6)),
+              testing::HasSubstr("a.npz: is an archive (NPZ"));
+  EXPECT_THAT(problem("a.csv", "\x93NUMPY..."), testing::HasSubstr("must end in .npy"));
+  EXPECT_THAT(problem("a.mat", std::string("MATLAB\x00\x01", 8)), testing::HasSubstr("is no text"));
 }
 
 } // namespace

@@ -70,6 +70,23 @@ TEST(NpyReader, PlaysStampsAndChannelsOfEveryType) {
   EXPECT_THAT(sink.channel(4), ElementsAre(4e9, 4e9, 4e9));
 }
 
+TEST(NpyReader, UnderstandsTheLiteralsOfPython) {
+  const std::string row = bytes(std::int64_t{1}) + bytes(0.5);
+  std::string text =
+      npy(R"([('t_ns', '<i8'), ('a [\\metre\\second\\tothe{-2}]\xb5\'', '<f8')])", 1, row);
+  const TemporaryFile file("escaped.npy", text);
+  const auto description = FileSource(settings_for(file)).describe();
+  ASSERT_TRUE(description) << description.error().message;
+  EXPECT_EQ(description->channels[0].name, "a [\\metre\\second\\tothe{-2}]\u00b5'");
+
+  text = npy("[(u't_ns', '<i8'), (u'a', '<f8')]", 1, row);
+  text.replace(text.find("(1,)"), 5, "(1L,)"); // eats a blank of the padding
+  const TemporaryFile old("python2.npy", text);
+  const auto of_python_2 = FileSource(settings_for(old)).describe();
+  ASSERT_TRUE(of_python_2) << of_python_2.error().message;
+  EXPECT_EQ(of_python_2->channels[0].name, "a");
+}
+
 TEST(NpyReader, ShowsGapsOfTheSampleNumber) {
   std::string data;
   for (const std::int64_t number : {7, 8, 10, 11}) {
@@ -93,7 +110,7 @@ TEST(NpyReader, TakesTheRateWhereThereIsNoTime) {
   settings.sample_rate = sample_rate_from_hz(1000.0);
   EXPECT_EQ(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0)), settings), "");
   EXPECT_THAT(problem_with(npy("[('z', '<f8')]", 2, bytes(1.0) + bytes(2.0))),
-              HasSubstr("no field t_ns and no sample_rate_hz"));
+              HasSubstr("no field t_ns, and no sample rate is given"));
 }
 
 TEST(NpyReader, SaysWhatIsWrong) {

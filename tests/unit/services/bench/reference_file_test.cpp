@@ -52,6 +52,22 @@ TEST(ReferenceFile, WithoutTheWholeItIsMadeOfItsContributions) {
   EXPECT_EQ(points->front().contributions.front().name, "drift");
 }
 
+TEST(ReferenceFile, TakesWhatExcelSaves) {
+  const auto plain = parse_reference_file("frequency_hz,magnitude,phase_rad,u_magnitude_rel\n"
+                                          "10,1.001,-0.002,0.001\n80,0.999,-0.01,0.002\n",
+                                          "reference.csv");
+  const auto excel = parse_reference_file("\xEF\xBB\xBF"
+                                          "frequency_hz;magnitude;phase_rad;u_magnitude_rel\r\n"
+                                          "10;1,001;-0,002;0,001\r\n80;0,999;-0,01;0,002\r\n",
+                                          "reference.csv");
+  ASSERT_TRUE(plain);
+  ASSERT_TRUE(excel) << excel.error().message;
+  ASSERT_EQ(excel->size(), 2U);
+  EXPECT_EQ((*excel)[1].magnitude, (*plain)[1].magnitude);
+  EXPECT_EQ((*excel)[1].phase_rad, -0.01);
+  EXPECT_EQ((*excel)[0].contributions.at(0).u_magnitude_rel, 0.001);
+}
+
 TEST(ReferenceFile, SaysFileLineAndColumnOfWhatIsNotValid) {
   const std::string head = "frequency_hz,magnitude,phase_rad,u_magnitude_rel\n";
   EXPECT_THAT(problem_of("frequency_hz,magnitud,phase_rad\n"),
