@@ -28,6 +28,9 @@ constexpr double tolerance_in_usual_residuals = 10.0;
 constexpr double period_drift = 2e-5;            // relative, while the model runs free
 constexpr double max_tolerance_in_periods = 0.5; // more than that is no jitter
 constexpr double max_period_ns = 86400e9;
+constexpr double max_lost_periods = 1000.0;
+constexpr double whole_periods_part =
+    1e-3; // of a period; of wrong stamps one in 500 is so by chance
 
 constexpr double persistence_ns = 10e9;
 constexpr std::uint64_t persistence_samples = 8;
@@ -128,6 +131,15 @@ std::uint8_t StampCheck::signature(double residual, double tolerance, const Stam
   return stamp_offset_below_second;
 }
 
+bool StampCheck::is_of_lost_samples(double residual) const {
+  const double periods = std::round(residual / period_ns_);
+  const double margin =
+      std::max(tolerance_in_usual_residuals * usual_residual_ns_, whole_periods_part * period_ns_);
+  return periods >= 1.0 && periods <= max_lost_periods &&
+         std::abs(residual - periods * period_ns_) <=
+             std::min(margin, tolerance_in_periods * period_ns_);
+}
+
 bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
   const double expected_ns = static_cast<double>(stamp.sample - last_.sample) * period_ns_;
   return std::abs(static_cast<double>(stamp.stamp_ns - last_.stamp_ns) - expected_ns) <= tolerance;
@@ -164,14 +176,15 @@ std::uint8_t StampCheck::check_against_model(const Stamp& stamp) {
     return 0;
   }
   if (last_was_jump_ && follows_from_last(stamp, tolerance)) {
-    origin_ = stamp; // the unit had paused
+    origin_ = stamp; // the unit had paused, or lost samples
     phase_ns_ = 0.0;
     distrusted_in_a_row_ = 0;
     last_was_jump_ = false;
     return 0;
   }
   const std::uint8_t flag = signature(residual, tolerance, stamp);
-  last_was_jump_ = flag == stamp_offset_below_second && residual > second_ns;
+  last_was_jump_ =
+      (flag == stamp_offset_below_second && residual > second_ns) || is_of_lost_samples(residual);
   if (lasts(stamp)) {
     founded_ = false;
   }

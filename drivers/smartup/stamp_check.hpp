@@ -15,8 +15,9 @@
 // (no_uncertainty), unix time 0 (no_fix). Ticks are those of 108 MHz, or 100 MHz of the units of
 // 2018. While stamps are wrong the model runs free. A change that lasts (10 s and 8 samples) is
 // taken as the truth from then on. A jump forward of more than a second with no signature is a
-// pause of the unit: only its first sample is flagged (offset_below_second), if the next one
-// follows from it.
+// pause of the unit, one of up to 1000 whole periods, within ten times the usual |r| or T/1000, is
+// of samples that the numbers do not show to be lost: only the first sample is flagged
+// (offset_below_second), if the next one follows from it.
 // The first 8 stamps only found the model (median period): they get the flags that need none.
 // One sensor, one numbering, one thread. Cost: some ten nanoseconds a sample.
 #pragma once
@@ -56,6 +57,7 @@ private:
   [[nodiscard]] double tolerance_ns(const Stamp& stamp) const;
   [[nodiscard]] std::uint8_t signature(double residual_ns, double tolerance_ns,
                                        const Stamp& stamp) const;
+  [[nodiscard]] bool is_of_lost_samples(double residual_ns) const;
   [[nodiscard]] bool follows_from_last(const Stamp& stamp, double tolerance_ns) const;
   [[nodiscard]] bool lasts(const Stamp& stamp);
   void follow(const Stamp& stamp, double residual_ns);
@@ -74,7 +76,7 @@ private:
 
   bool has_last_ = false;
   Stamp last_;
-  bool last_was_jump_ = false; // forward by more than a second, without a signature
+  bool last_was_jump_ = false; // forward, by a pause or by lost samples
 };
 
 } // namespace dyncal::drivers::smartup

@@ -197,6 +197,29 @@ TEST(StampCheck, APauseOfTheUnitCostsOneSample) {
   EXPECT_EQ(sensor.run(2000, 37'123'000'000), (Flags{{0, 1999}, {stamp_offset_below_second, 1}}));
 }
 
+// The unit numbers what is left: the stamps alone show it. Each loss costs one sample more.
+TEST(StampCheck, ALossThatNumbersDoNotShowCostsOneSample) {
+  constexpr double period_ns = 996'960.0;
+  StampCheck check;
+  std::mt19937 random(4);
+  std::normal_distribution<double> jitter_ns(0, 21);
+  std::uint64_t number = 0;
+  int losses = 0, flagged = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    if (i > 100 && random() % 500 == 0) {
+      i += static_cast<int>(random() % 3); // one to three
+      ++losses;
+      continue;
+    }
+    const auto stamp_ns = start_ns + std::llround(period_ns * i) + std::llround(jitter_ns(random));
+    flagged += check.check({++number, stamp_ns, 84, false}) == 0 ? 0 : 1;
+  }
+  EXPECT_GT(losses, 50);
+  EXPECT_LE(flagged, losses + 2); // and one where two meet
+  EXPECT_GE(flagged, losses - 5);
+  EXPECT_NEAR(check.period_ns(), period_ns, 1.0);
+}
+
 TEST(StampCheck, FindsItsModelThoughAFaultIsAmongTheFirstStamps) {
   SimulatedSensor sensor(996960);
   (void)sensor.next();
