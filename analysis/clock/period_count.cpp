@@ -275,7 +275,7 @@ double PeriodCount::u_ends_ns() const {
     const double mean_move_ns = sum_of_moves_ns_ / count;
     const double scatter_ns2 =
         std::max(0.0, squares_of_moves_ns2_ / count - mean_move_ns * mean_move_ns);
-    variance_ns2 += mean_move_ns * mean_move_ns / 3.0 + scatter_ns2;
+    variance_ns2 += mean_move_ns * mean_move_ns + scatter_ns2;
   }
   return std::sqrt(variance_ns2);
 }

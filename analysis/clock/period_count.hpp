@@ -51,9 +51,9 @@ public:
   [[nodiscard]] std::uint64_t left_out_jumps() const { return moves_as_made() ? 0 : moves_; }
   [[nodiscard]] double largest_jump_ns() const { return largest_ns_; }
   // Standard uncertainty of the distance of the first from the last stamp by how stamps are made:
-  // both ends lie anywhere within a tick T (T^2 / 6); a record may begin behind a read-out of the
-  // FIFO and end before one, which is wrong by up to a move (rectangular, mean^2 / 3), and moves
-  // scatter. 0: nothing of the kind.
+  // both ends lie anywhere within a tick T (T^2 / 6); a record begins, as a rule, behind a read-out
+  // of the FIFO and ends before one, and so is wrong by the mean move, and moves scatter. 0:
+  // nothing of the kind.
   [[nodiscard]] double u_ends_ns() const;
 
 private:
