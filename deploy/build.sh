@@ -25,6 +25,7 @@ case $2 in
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
     targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
       dyncal-recorder dyncal-virtual-bench guide
+      dyncal_described        # manual pages, completion
       dyncal_analysis_models) # which no program links, but is installed
     if grep -q 'bin/dyncal-web' "$directory/build.ninja"; then # not without cpp-httplib
       targets+=(dyncal-web)
