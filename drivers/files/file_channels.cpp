@@ -63,6 +63,9 @@ Expected<SourceDescription> describe_file_channels(const FileSettings& settings,
     ours.push_back(channel.name);
     const auto unit = settings.units.find(channel.name);
     channel.unit = unit == settings.units.end() ? units[i] : unit->second;
+    if (channel.unit != units[i]) {
+      channel.quantity = units[i]; // what the file says itself can still be held against a role
+    }
     description.channels.push_back(channel);
   }
   for (const auto& [name, unit] : settings.units) {

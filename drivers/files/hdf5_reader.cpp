@@ -221,6 +221,7 @@ Expected<void> Hdf5Reader::describe() {
     const auto maxima = numbers_of(dataset, "Max_scale", quantity.rows);
     for (std::size_t i = 0; i < quantity.rows; ++i) {
       ChannelDescription& one = description_.channels[channel++];
+      one.quantity = !one.unit.empty() && one.unit != unit ? unit : one.quantity;
       one.unit = one.unit.empty() ? unit : one.unit;
       one.minimum = minima[i];
       one.maximum = maxima[i];

@@ -176,7 +176,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
   if (status_.arm == wire::ARM_ARMED) {
     catch_up(now);
     watch_sources(now);
-    watch_level();
+    watch_measurement();
     evaluate(now);
     end_takeover(now);
   }
@@ -340,12 +340,14 @@ void RunSession::wait_for_source(std::string message, Instant now) {
 }
 
 // The conductor switches the output off as soon as it hears of it.
-void RunSession::watch_level() {
+void RunSession::watch_measurement() {
   if (measurement_.state() != wire::MEASUREMENT_RUNNING || status_.health == wire::HEALTH_FAILED) {
     return;
   }
   if (auto excess = evaluator_->excess_of_level()) {
     report(wire::HEALTH_FAILED, std::move(*excess));
+  } else if (const auto& slow = evaluator_->too_slow_source(); slow && excited_by_steps_) {
+    report(wire::HEALTH_FAILED, *slow);
   }
 }
 

@@ -110,7 +110,7 @@ private:
   void arm(const KnownSources& sources, Instant now);
   void say_what_is_missing(const std::string& sentence, Instant now);
   void watch_sources(Instant now);
-  void watch_level();
+  void watch_measurement();
   [[nodiscard]] std::string taking_over_sentence() const;
   void end_takeover(Instant now);
   void evaluate(Instant now);

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include "services/bench_check/checks.hpp"
+#include "services/contract/quantity.hpp"
+#include "services/contract/role_quantities.hpp"
 #include "services/contract/unit.hpp"
 #include "services/nearest_name.hpp"
 
@@ -52,6 +54,24 @@ std::string those_there(const SourceView& source, const std::string& wanted) {
                          : fmt::format("did you mean '{}'?", nearest);
 }
 
+bool states_quantity(const drivers::ChannelDescription& channel) {
+  return (!channel.unit.empty() && channel.unit != R"(\one)") ||
+         quantity_of_word(channel.quantity) != Quantity::unknown;
+}
+
+std::string no_unit_sentence(const Role& role, const std::string& channel) {
+  const std::string& name = role.key.back();
+  if (name == "reference" || name == "dut") {
+    return fmt::format(
+        "gives no unit for channel '{0}': results will be in \"1\"; write units = {{ "
+        "{0} = \"m/s^2\" }}",
+        channel);
+  }
+  return fmt::format("gives no unit for channel '{0}': nothing shows whether {1} names the right "
+                     "channel; write units = {{ {0} = \"{2}\" }}",
+                     channel, name, name == "temperature" ? "degC" : "V");
+}
+
 void check_roles(const BenchView& view, Findings& findings) {
   for (const Role& role : roles_of(view.bench.method)) {
     const SourceView* source = view.source(role.channel.source);
@@ -68,24 +88,52 @@ void check_roles(const BenchView& view, Findings& findings) {
                                  role.entry));
       continue;
     }
-    const bool measured = role.key.back() == "reference" || role.key.back() == "dut";
-    if (measured && (channel->unit.empty() || channel->unit == R"(\one)")) {
-      findings.push_back(view.at(
-          Severity::warning, {"sources", source->name},
-          fmt::format("gives no unit for channel '{0}': results will be in \"1\"; write units = {{ "
-                      "{0} = \"m/s^2\" }}",
-                      channel->name)));
+    if (!states_quantity(*channel)) {
+      findings.push_back(view.at(Severity::warning, {"sources", source->name},
+                                 no_unit_sentence(role, channel->name)));
     }
   }
 }
 
+// By the source; of an instrument, which is not asked, by the units that the bench file gives.
+std::optional<drivers::ChannelDescription> described(const BenchView& view,
+                                                     const ChannelName& name) {
+  const SourceView* source = view.source(name.source);
+  if (source != nullptr && source->description) {
+    const auto* channel = find_channel(*source, name.channel);
+    return channel != nullptr ? std::optional(*channel) : std::nullopt;
+  }
+  const SourceSettings* settings = view.bench.source(name.source);
+  if (settings == nullptr || !settings->units.contains(name.channel)) {
+    return std::nullopt;
+  }
+  drivers::ChannelDescription channel;
+  channel.name = name.channel;
+  channel.unit = settings->units.at(name.channel);
+  return channel;
+}
+
+void check_quantities(const BenchView& view, Findings& findings) {
+  const MethodSettings& method = view.bench.method;
+  const RoleNames names{method.kind,     method.reference,
+                        method.sync_acs, method.sync_dau,
+                        method.dut,      method.temperature.value_or(ChannelName{})};
+  const auto look_up = [&](const ChannelName& name) { return described(view, name); };
+  for (RoleQuantityProblem& problem : find_quantity_problems(names, look_up)) {
+    const auto entry = problem.role == "dut" ? std::optional(problem.entry) : std::nullopt;
+    findings.push_back(
+        view.at(Severity::error, {"method", problem.role}, std::move(problem.sentence), entry));
+  }
+}
+
+// What is no quantity of a level at all is an error, of check_quantities().
 void check_reference_unit(const BenchView& view, Findings& findings) {
-  const ChannelName& reference = view.bench.method.reference;
-  const SourceView* source = view.source(reference.source);
-  const auto* channel =
-      source != nullptr && source->description ? find_channel(*source, reference.channel) : nullptr;
-  if (channel != nullptr && !channel->unit.empty() && channel->unit != R"(\one)" &&
-      !is_acceleration(channel->unit)) {
+  const auto channel = described(view, view.bench.method.reference);
+  const auto is_error = [](const Finding& finding) {
+    return finding.severity == Severity::error && finding.key == "method.reference";
+  };
+  if (channel && !channel->unit.empty() && channel->unit != R"(\one)" &&
+      !is_acceleration(channel->unit) && std::ranges::none_of(findings, is_error)) {
     findings.push_back(view.at(
         Severity::warning, {"method", "reference"},
         fmt::format("is in {}, but excitation.level is planned in m/s^2: the level that was "
@@ -152,6 +200,7 @@ void check_time_base(const BenchView& view, Findings& findings) {
 Findings check_channels(const BenchView& view) {
   Findings findings;
   check_roles(view, findings);
+  check_quantities(view, findings);
   check_reference_unit(view, findings);
   check_time_base(view, findings);
   for (const SourceSettings& source : view.bench.sources) {

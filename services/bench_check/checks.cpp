@@ -42,4 +42,18 @@ Findings check_benches(std::span<const BenchView> views) {
   return findings;
 }
 
+Findings find_errors_before_run(const BenchView& view) {
+  Findings findings;
+  for (const auto check :
+       {check_channels, check_rates, check_corrections, check_levels, check_plan}) {
+    for (Finding& finding : check(view)) {
+      if (finding.severity == Severity::error) {
+        findings.push_back(std::move(finding));
+      }
+    }
+  }
+  std::ranges::stable_sort(findings, {}, &Finding::line);
+  return findings;
+}
+
 } // namespace dyncal::services::bench_check

@@ -12,7 +12,7 @@ namespace dyncal::services::bench_check {
 
 // Files that the bench names: there, readable, their SHA-256.
 [[nodiscard]] Findings check_files(const BenchView& view);
-// Channels with a role, names and units against what the sources deliver.
+// Channels with a role, their quantities, names and units against what the sources deliver.
 [[nodiscard]] Findings check_channels(const BenchView& view);
 // Every frequency against half the sample rate of every source, and the length of a step.
 [[nodiscard]] Findings check_rates(const BenchView& view);
@@ -26,6 +26,10 @@ namespace dyncal::services::bench_check {
 [[nodiscard]] Findings check_plan(const BenchView& view);
 // Ports, addresses, CAN messages and names that two sources or two benches want.
 [[nodiscard]] Findings check_collisions(std::span<const BenchView> views);
+
+// The errors for which `dyncal run` excites nothing, in the order of the file. Files that sources
+// play are left to those who play them, perhaps on other hosts.
+[[nodiscard]] Findings find_errors_before_run(const BenchView& view);
 
 // All of them, with what the readers refused, in the order of files and lines.
 [[nodiscard]] Findings check_benches(std::span<const BenchView> views);

@@ -6,6 +6,7 @@
 
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
+#include "services/bench_check/checks.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/program/bench_program.hpp"
@@ -150,12 +151,30 @@ Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
   return done;
 }
 
+// What would be excited for nothing.
+Expected<void> check_bench(const BenchFile& bench) {
+  const auto errors =
+      bench_check::find_errors_before_run(bench_check::look_at_bench_text(bench.text, bench.path));
+  if (errors.empty()) {
+    return {};
+  }
+  const auto& first = errors.front();
+  std::string sentence = BenchProblem{first.file, first.line, first.key, first.sentence}.text();
+  if (errors.size() > 1) {
+    sentence += fmt::format(" (all {} errors: dyncal check {})", errors.size(), first.file);
+  }
+  return fail(ErrorCode::bad_file, std::move(sentence));
+}
+
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
     return fail(bench.error());
+  }
+  if (const auto checked = check_bench(*bench); !checked) {
+    return fail(checked.error());
   }
   const auto adc = read_adc_calibration(*bench);
   if (!adc) {

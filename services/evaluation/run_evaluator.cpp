@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/contract/role_quantities.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
@@ -43,7 +44,7 @@ Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source, limits.behind),
-      level_watch_(*recipe_), summary_(*recipe_),
+      level_watch_(*recipe_), rate_watch_(*recipe_), summary_(*recipe_),
       runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
       never_waits_(limits.never_waits), count_(limits.count),
@@ -105,7 +106,21 @@ Expected<void> RunEvaluator::check_channels(const SourceRecord& source) const {
                               name.channel, fmt::join(there, ", ")));
     }
   }
-  return {};
+  return check_quantities();
+}
+
+// Of the channels that are described so far: the last source to describe itself completes them.
+Expected<void> RunEvaluator::check_quantities() const {
+  const auto described =
+      [&](const ChannelName& name) -> std::optional<drivers::ChannelDescription> {
+    const SourceRecord& record = records_.of(name.source);
+    const auto channel = record.described() ? record.channel(name.channel) : std::nullopt;
+    return channel ? std::optional(record.description().channels[*channel]) : std::nullopt;
+  };
+  const auto problems = find_quantity_problems(role_names(*recipe_), described);
+  return problems.empty() ? Expected<void>{}
+                          : fail(ErrorCode::no_source, fmt::format("{} {}", problems.front().role,
+                                                                   problems.front().sentence));
 }
 
 // A sine at or above half the sample rate looks like one of another frequency.
@@ -142,6 +157,7 @@ void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
   if (record == nullptr || finished_ || !record->add(block)) {
     return;
   }
+  rate_watch_.add(source, block);
   if (clock_ && clock_->source() == source && !lost_at_clock_end_) {
     follow_clock(*record, block);
   }

@@ -36,6 +36,7 @@
 #include "services/evaluation/level_watch.hpp"
 #include "services/evaluation/line_bounds.hpp"
 #include "services/evaluation/method/method.hpp"
+#include "services/evaluation/rate_watch.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/record/step_snapshot.hpp"
@@ -82,8 +83,9 @@ public:
   [[nodiscard]] const Recipe& recipe() const { return *recipe_; }
 
   // Fails (no_source) with the channels there are when the source lacks one that the recipe needs,
-  // when a planned frequency is not below half its sample rate, and when its time scale does not
-  // fit those of others. Then the run goes on by the description that was accepted before, if any.
+  // when a role has a channel of another quantity (contract/role_quantities.hpp), when a planned
+  // frequency is not below half its sample rate, and when its time scale does not fit those of
+  // others. Then the run goes on by the description that was accepted before, if any.
   Expected<void> describe(const std::string& source, drivers::SourceDescription description);
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
@@ -105,6 +107,11 @@ public:
   // One sentence when the step that is excited now is driven far above its planned level
   // (level_watch.hpp): whoever conducts the run must end the excitation.
   [[nodiscard]] std::optional<std::string> excess_of_level();
+  // One sentence when a source turns out to sample too slowly for a planned step (rate_watch.hpp):
+  // no repetition of the step changes that.
+  [[nodiscard]] const std::optional<std::string>& too_slow_source() const {
+    return rate_watch_.problem();
+  }
 
   // Evaluates what can be evaluated and hands over what is new.
   [[nodiscard]] EvaluationOutput take_output();
@@ -128,6 +135,7 @@ public:
 private:
   [[nodiscard]] Expected<void> check_description(const SourceRecord& source) const;
   [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
+  [[nodiscard]] Expected<void> check_quantities() const;
   [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
   void keep_needed_channels(SourceRecord& source) const;
   [[nodiscard]] bool is_evaluated(const TriggeredRecord& record) const;
@@ -148,6 +156,7 @@ private:
   RunRecords records_;
   std::optional<ClockReportBuilder> clock_;
   LevelWatch level_watch_;
+  RateWatch rate_watch_;
   TransferSummary summary_;
   LineBounds line_bounds_;
   std::vector<StepResult> provisional_;

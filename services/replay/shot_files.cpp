@@ -106,6 +106,7 @@ drivers::SourceDescription describe(const SourceSettings& source,
     drivers::ChannelDescription channel;
     channel.name = one.name;
     channel.unit = unit == source.units.end() ? one.unit : unit->second;
+    channel.quantity = channel.unit == one.unit ? "" : one.unit; // to be held against its role
     description.channels.push_back(std::move(channel));
   }
   return with_identity(std::move(description), source.identity);

@@ -1,6 +1,7 @@
 #include "services/run/run_controller.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
@@ -19,6 +20,22 @@ using Kind = RunOutlook::Kind;
 
 constexpr auto acknowledgment_limit = 2s;
 constexpr auto description_limit = 3s; // for what sources say of themselves
+// A rate as it is set and one as a clock makes it are closer together.
+constexpr double rate_tolerance_rel = 0.01;
+
+// What `dyncal check` held the frequencies against is not what the instrument says.
+std::optional<std::string> other_rate(const BenchFile& bench, const RunSource& source) {
+  const SourceSettings* settings = bench.source(source.source);
+  const double stated_hz = settings != nullptr ? settings->nominal_rate_hz.value_or(0.0) : 0.0;
+  const double rate_hz = source.description.nominal_rate_hz;
+  if (!(stated_hz > 0.0) || !(rate_hz > 0.0) ||
+      std::abs(rate_hz / stated_hz - 1.0) <= rate_tolerance_rel) {
+    return std::nullopt;
+  }
+  return fmt::format("source '{}' takes {:.6g} samples a second, but its nominal_rate_hz in the "
+                     "bench file is {:.6g}: 'dyncal check' held the frequencies against that",
+                     source.source, rate_hz, stated_hz);
+}
 
 } // namespace
 
@@ -208,15 +225,17 @@ std::string RunController::silence_of_analysis() const {
 
 // Sources describe themselves when they are found, which may be after the analysis has armed.
 Expected<void> RunController::check_before_first_step(const std::stop_token& stop) {
-  if (!keeping_.check) {
-    return {};
-  }
   const Instant began = clock_.now();
-  while (outcome_.sources.size() < outcome_.recipe->sources().size() &&
+  while (keeping_.check && outcome_.sources.size() < outcome_.recipe->sources().size() &&
          clock_.now() - began < description_limit && !stop.stop_requested()) {
     watch_->follow("waiting for the descriptions of the sources");
   }
-  return keeping_.check(outcome_);
+  for (const RunSource& source : outcome_.sources) {
+    if (const auto other = other_rate(bench_, source)) {
+      watch_->notice(*other);
+    }
+  }
+  return keeping_.check ? keeping_.check(outcome_) : Expected<void>{};
 }
 
 // Until the analysis attends to the run and all of its results so far have come.

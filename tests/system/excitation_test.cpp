@@ -71,9 +71,9 @@ TEST(Excitation, ALevelThatNeedsTooMuchVoltageIsRefusedBeforeTheOutputIsOn) {
   const auto folder = fresh_folder("excitation-voltage");
   LiveBench bench(folder, settings_with("level_per_volt = 50.0\nmaximum_voltage_v = 0.3\n"));
   ProgramRun& run = bench.start({"run", bench.bench_file()});
-  EXPECT_EQ(run.wait(patience), 2);
-  EXPECT_THAT(run.errors(), HasSubstr("step 1, 40 Hz: a level of 20 m/s^2 needs 0.4 V, above "
-                                      "generator.maximum_voltage_v = 0.3"));
+  EXPECT_EQ(run.wait(patience), 1);
+  EXPECT_THAT(run.errors(), HasSubstr("key 'excitation.level' of 20 m/s^2 at 40 Hz needs 0.4 V, "
+                                      "above generator.maximum_voltage_v = 0.3"));
 }
 
 // Above the limit of the bench file, although not far above the plan.

@@ -312,8 +312,64 @@ TEST_F(BenchCheckFiles, ChannelsThatTheyDoNotHave) {
 TEST_F(BenchCheckFiles, UnitsThatAreMissingOrOfAnotherQuantity) {
   expect_one(check(with(bench, "acceleration_z = \"m/s^2\", ", "")), Severity::warning, 5,
              "sources.dau", "results will be in \"1\"");
-  expect_one(check(with(bench, "reference = \"m/s^2\"", "reference = \"V\"")), Severity::warning,
-             15, "method.reference", "is in V, but excitation.level is planned in m/s^2");
+  expect_one(check(with(bench, "reference = \"m/s^2\"", "reference = \"m/s\"")), Severity::warning,
+             15, "method.reference", "is in m/s, but excitation.level is planned in m/s^2");
+  expect_one(
+      check(with(bench, "acceleration_z = \"m/s^2\", sync = \"V\"", "acceleration_z = \"m/s^2\"")),
+      Severity::warning, 5, "sources.dau",
+      "gives no unit for channel 'sync': nothing shows whether sync_dau names the right "
+      "channel; write units = { sync = \"V\" }");
+}
+
+TEST_F(BenchCheckFiles, RolesOfAnotherQuantity) {
+  expect_one(check(with(bench, "reference = \"m/s^2\"", "reference = \"V\"")), Severity::error, 15,
+             "method.reference",
+             "names \"acs/reference\", in V: a voltage, where the quantity of the level is "
+             "expected, an acceleration");
+  const std::string swapped =
+      with(with(bench, "reference = \"acs/reference\"", "reference = \"acs/sync\""),
+           "sync_acs = \"acs/sync\"", "sync_acs = \"acs/reference\"");
+  const auto errors = of(check(swapped), Severity::error);
+  ASSERT_EQ(errors.size(), 2U) << all_of(errors);
+  EXPECT_EQ(errors[0].key, "method.reference");
+  EXPECT_THAT(errors[0].sentence, HasSubstr("exchange reference and sync_acs (\"acs/reference\")"));
+  EXPECT_EQ(errors[1].key, "method.sync_acs");
+  EXPECT_THAT(errors[1].sentence, HasSubstr("in m/s^2: an acceleration, where the voltage of the "
+                                            "sync signal is expected"));
+}
+
+TEST_F(BenchCheckFiles, TheUnitOfTheFileStandsAgainstThatOfTheBenchFile) {
+  std::string acs = "t_ns,reference [\\volt],sync [\\metre\\second\\tothe{-2}]\n";
+  for (int i = 0; i < 30; ++i) {
+    acs += std::to_string(i * 1'000'000) + ",1,2\n";
+  }
+  folder.write("acs.csv", acs);
+  const auto errors = of(check(bench), Severity::error);
+  ASSERT_EQ(errors.size(), 2U) << all_of(errors);
+  EXPECT_THAT(
+      errors[0].sentence,
+      HasSubstr("in m/s^2 by the bench file, but of which its source says \"V\": a voltage"));
+}
+
+TEST_F(BenchCheckFiles, WhatARunRefuses) {
+  const auto errors_in = [&](const std::string& text) {
+    return find_errors_before_run(
+        look_at_bench_text(text, (folder.path() / "bench.toml").string()));
+  };
+  EXPECT_TRUE(errors_in(bench).empty()) << all_of(errors_in(bench));
+  const Findings errors = errors_in(
+      with(with(bench, "\"80\"", "\"500\""), "reference = \"m/s^2\"", "reference = \"V\""));
+  ASSERT_EQ(errors.size(), 2U) << all_of(errors);
+  EXPECT_EQ(errors[0].key, "excitation.frequencies_hz");
+  EXPECT_EQ(errors[1].key, "method.reference");
+}
+
+TEST(BenchCheck, UnitsOfInstrumentsAsTheBenchFileGivesThem) {
+  const std::string text = with(smartup_bench, "address = \"192.0.2.12:5026\"",
+                                "address = \"192.0.2.12:5026\"\nunits = { sync = \"m/s\" }");
+  const auto errors = of(check_text(text), Severity::error);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].key, "method.sync_acs");
 }
 
 TEST_F(BenchCheckFiles, CorrectionsThatDoNotCoverTheExcitation) {

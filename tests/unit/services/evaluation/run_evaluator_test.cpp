@@ -424,6 +424,36 @@ TEST(RunEvaluator, RefusesASourceWithoutTheChannelAndListsThoseItHas) {
             "source 'dau' has no channel 'synch'; it has: acceleration_z, temperature, sync");
 }
 
+TEST(RunEvaluator, RefusesExchangedRolesAndSaysWhich) {
+  const tests::SyntheticRun run;
+  wire::Measurement measurement = run.measurement();
+  measurement.reference("acs/sync");
+  measurement.sync_acs("acs/reference");
+  RunEvaluator evaluator(*parse_recipe(measurement));
+  EXPECT_TRUE(tests::describe(evaluator, run.dau_description()));
+  const auto described = tests::describe(evaluator, run.acs_description());
+  ASSERT_FALSE(described);
+  EXPECT_EQ(described.error().code, ErrorCode::no_source);
+  EXPECT_THAT(described.error().message,
+              HasSubstr("reference names \"acs/sync\", in V: a voltage"));
+  EXPECT_THAT(described.error().message, HasSubstr("exchange reference and sync_acs"));
+}
+
+TEST(RunEvaluator, SaysWhichSourceTurnsOutToBeTooSlow) {
+  const tests::SyntheticRun run{.steps = {{"40"}, {"507"}}};
+  RunEvaluator evaluator(*parse_recipe(run.measurement()));
+  ASSERT_TRUE(tests::describe(evaluator, run.acs_description()));
+  wire::SourceDescription dau = run.dau_description();
+  dau.nominal_rate_hz(0.0);
+  ASSERT_TRUE(tests::describe(evaluator, dau));
+  for (const wire::SampleBlock& block : run.dau_blocks()) {
+    tests::feed(evaluator, block);
+  }
+  ASSERT_TRUE(evaluator.too_slow_source());
+  EXPECT_THAT(*evaluator.too_slow_source(),
+              HasSubstr("step 2 has 507 Hz, but the samples of source 'dau' come at 1003 Hz"));
+}
+
 TEST(RunEvaluator, RefusesAFrequencyThatTheSourceCannotShow) {
   const tests::SyntheticRun run{.steps = {{"40"}, {"501.5"}}};
   RunEvaluator evaluator(*parse_recipe(run.measurement()));
