@@ -28,6 +28,8 @@ struct Centre {
   RepeatedQuantity magnitude, phase;
   double common_magnitude = 0.0;
   double common_phase = 0.0;
+  double freedom_magnitude = infinite_degrees_of_freedom; // of a single repetition
+  double freedom_phase = infinite_degrees_of_freedom;
 };
 
 // Are the phasors longer than noise alone makes them, by four standard deviations of their mean?
@@ -107,6 +109,10 @@ Centre centre_of(const RepeatedFrequency& frequency) {
         std::max(centre.common_magnitude, size * repetition.u_common_magnitude_rel);
     centre.common_phase = std::max(centre.common_phase, repetition.u_common_phase_rad);
   }
+  if (repetitions.size() == 1) {
+    centre.freedom_magnitude = repetitions.front().freedom_magnitude;
+    centre.freedom_phase = repetitions.front().freedom_phase;
+  }
   centre.magnitude.frequency_hz = frequency.frequency_hz;
   centre.phase.frequency_hz = frequency.frequency_hz;
   return centre;
@@ -126,6 +132,17 @@ double drawn_magnitude(const Contribution& row) {
                                      row.u_lasting_magnitude_rel * row.u_lasting_magnitude_rel));
 }
 
+// What is known of the error of a mean and of what all have in common. A mean of known noise alone,
+// as that of a single repetition is, has the degrees of freedom of its budget.
+CombinedUncertainty combined(const MeanError& error, double u_common, double freedom) {
+  CombinedUncertainty result = combine(error, u_common);
+  if (error.parts.size() == 1 && std::isfinite(freedom)) {
+    result.degrees_of_freedom = freedom;
+    result.k = coverage_factor(freedom);
+  }
+  return result;
+}
+
 RepetitionMean mean_from(const Centre& centre, const MeanError& magnitude_error,
                          const MeanError& phase_error) {
   constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3;
@@ -137,11 +154,14 @@ RepetitionMean mean_from(const Centre& centre, const MeanError& magnitude_error,
   const double unit = result.magnitude > 0.0 ? result.magnitude : 1.0;
   result.scatter_magnitude = unit * standard_deviation_of(centre.magnitude.deviations);
   result.scatter_phase_rad = standard_deviation_of(centre.phase.deviations);
-  result.magnitude_rel = combine(magnitude_error, centre.common_magnitude);
-  result.phase = combine(phase_error, centre.common_phase);
+  result.magnitude_rel =
+      combined(magnitude_error, centre.common_magnitude, centre.freedom_magnitude);
+  result.phase = combined(phase_error, centre.common_phase, centre.freedom_phase);
+  result.independent_magnitude_rel = combine(magnitude_error, 0.0);
+  result.independent_phase = combine(phase_error, 0.0);
   result.u_magnitude = 0.5 * unit * result.magnitude_rel.expanded();
   result.u_phase_rad = std::min(any_phase, 0.5 * result.phase.expanded());
-  result.u_independent_phase_rad = std::min(any_phase, 0.5 * combine(phase_error, 0.0).expanded());
+  result.u_independent_phase_rad = std::min(any_phase, 0.5 * result.independent_phase.expanded());
   if (const double snr = result.u_magnitude > 0.0 ? result.magnitude / result.u_magnitude : 1e12;
       snr < weak_mean) {
     const double weak = phase_standard_uncertainty(snr);
@@ -166,7 +186,10 @@ Expected<void> check(const std::vector<Repetition>& repetitions) {
 Repetition make_repetition(std::complex<double> h, std::span<const Contribution> budget) {
   Repetition result;
   result.h = h;
+  std::vector<UncertaintyPart> magnitudes, phases;
   for (const Contribution& row : budget) {
+    magnitudes.push_back({row.u_magnitude_rel, row.degrees_of_freedom});
+    phases.push_back({row.u_phase_rad, row.degrees_of_freedom});
     const bool random = row.repeats == Repeats::anew;
     double& magnitude = random ? result.u_random_magnitude_rel : result.u_common_magnitude_rel;
     double& phase = random ? result.u_random_phase_rad : result.u_common_phase_rad;
@@ -177,6 +200,8 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
           std::hypot(result.u_common_magnitude_rel, row.u_lasting_magnitude_rel);
     }
   }
+  result.freedom_magnitude = effective_degrees_of_freedom(magnitudes);
+  result.freedom_phase = effective_degrees_of_freedom(phases);
   return result;
 }
 

@@ -12,9 +12,10 @@
 // many degrees of freedom; scatter beyond it is found from all repeated frequencies together.
 // What is common to all repetitions (reference, ADC, delays) does not average. `u_magnitude` and
 // `u_phase_rad` are U / 2, so that the factor 2 that every reader applies covers 95.45 % although n
-// is small; u (k = 1), nu_eff and k are in `magnitude_rel` and `phase`. A mean below 10 u has the
-// phase uncertainty of phasor.hpp; none exceeds pi / sqrt(3), that of an angle of which nothing is
-// known.
+// is small; u (k = 1), nu_eff and k are in `magnitude_rel` and `phase`. Where no frequency was
+// repeated, they are those of the single result's own budget (coverage.hpp). A mean below 10 u has
+// the phase uncertainty of phasor.hpp; none exceeds pi / sqrt(3), that of an angle of which nothing
+// is known.
 //
 // Fails: invalid_argument (no repetition), not_finite. Any thread.
 #pragma once
@@ -35,6 +36,9 @@ struct Repetition {
   double u_random_phase_rad = 0.0;
   double u_common_magnitude_rel = 0.0; // the same in all of them
   double u_common_phase_rad = 0.0;
+  // Of all of it together: what a single repetition, which nothing is compared with, states.
+  double freedom_magnitude = infinite_degrees_of_freedom;
+  double freedom_phase = infinite_degrees_of_freedom;
 };
 
 // Divides a budget: rows that are drawn anew in every repetition are random, but for the part of
@@ -55,6 +59,8 @@ struct RepetitionMean {
   std::size_t repetitions = 0;
   CombinedUncertainty magnitude_rel;
   CombinedUncertainty phase;
+  CombinedUncertainty independent_magnitude_rel; // without the common part
+  CombinedUncertainty independent_phase;
 };
 
 struct RepeatedFrequency {

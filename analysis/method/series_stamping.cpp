@@ -8,6 +8,7 @@
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
+#include "analysis/method/trigger_phase.hpp"
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/equidistant_axis.hpp"
 #include "analysis/uncertainty/found_resolution.hpp"
@@ -49,25 +50,8 @@ std::optional<Error> problem_with(const SeriesStampingInput& input) {
   return std::nullopt;
 }
 
-// Sync as it is at the trigger point: fitted about the first sample and turned by what lies
-// between.
-struct TriggerPhase {
-  std::complex<double> sync;
-  double u_rad = 0.0;
-};
-
-Expected<TriggerPhase> fit_trigger(const SeriesShot& shot, const Frequency& frequency) {
-  const EquidistantAxis axis(shot.dso_interval_s);
-  const std::array channels{shot.dso_sync};
-  const auto fits =
-      fit_sine(axis.on_axis(frequency.hz()), 0, axis.stamps_ns(shot.dso_sync.size()), channels);
-  if (!fits) {
-    return fail(fits.error());
-  }
-  const SineFit& fit = fits->front();
-  return TriggerPhase{std::complex<double>(fit.sine, fit.cosine) *
-                          std::polar(1.0, -frequency.angular() * shot.dso_first_s),
-                      fit.u_phase_rad()};
+SyncTrace trace_of(const SeriesShot& shot) {
+  return {shot.dso_first_s, shot.dso_interval_s, shot.dso_sync};
 }
 
 std::vector<std::span<const double>> shots_of_channel(const SeriesStampingInput& input,
@@ -137,6 +121,17 @@ double u_trace_clock_rad(const SeriesStampingInput& input, double w) {
   return w * longest_s * input.u_dso_rate_rel;
 }
 
+// What harmonics of sync, as the ACS saw them, do to a trace too short to show them: their phase
+// against the fundamental is any.
+double u_distorted_trace_rad(const SeriesStampingInput& input, const ChannelFit& sync_acs) {
+  if (!input.correct_trigger_phase || !sync_acs.integrity) {
+    return 0.0;
+  }
+  const double harmonics = std::hypot(sync_acs.integrity->thd, sync_acs.integrity->u_thd);
+  return leak_rad(trace_of(input.shots.front()), sync_acs.frequency) * harmonics /
+         std::numbers::sqrt2;
+}
+
 Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock& acs, double w,
                      double u_phase_apparent) {
   Budget budget;
@@ -147,6 +142,11 @@ Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock&
   budget.add({.kind = ContributionKind::trace_clock,
               .distribution = Distribution::rectangular,
               .u_phase_rad = u_trace_clock_rad(input, w)});
+  budget.add({.kind = ContributionKind::structure,
+              .subject = "the oscilloscope's trace",
+              .distribution = Distribution::arcsine,
+              .repeats = Repeats::common,
+              .u_phase_rad = u_distorted_trace_rad(input, acs.pilot.result)});
   budget.add({.kind = ContributionKind::series_start, .u_phase_rad = w * input.u_start_latency_s});
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
@@ -160,7 +160,7 @@ Expected<std::vector<TriggerPhase>> fit_triggers(const SeriesStampingInput& inpu
                                                  const Frequency& frequency) {
   std::vector<TriggerPhase> triggers;
   for (std::size_t j = 0; j < input.shots.size(); ++j) {
-    const auto trigger = fit_trigger(input.shots[j], frequency);
+    const auto trigger = fit_trigger(trace_of(input.shots[j]), frequency);
     if (!trigger) {
       return fail(of_shot(j, "oscilloscope", trigger.error()));
     }
@@ -180,27 +180,69 @@ struct ShotEvaluation {
   const Budget& common;
 };
 
+// What its samples are without what was fitted beside the signal.
+std::optional<SeriesAgreement> compare_shots(const ShotEvaluation& shots, std::size_t channel,
+                                             const std::vector<CleanedFit>& fits) {
+  std::vector<std::span<const double>> values = shots_of_channel(shots.input, channel);
+  std::vector<SineFit> of_signal;
+  for (std::size_t j = 0; j < fits.size(); ++j) {
+    if (!fits[j].values.empty()) {
+      values[j] = fits[j].values;
+    }
+    of_signal.push_back(fits[j].fit);
+  }
+  return compare_series(shots.apparent_frequency, shots.stamps, values, of_signal);
+}
+
+// Where the rates of the shots differ, each begins where its own rate says.
+void turn_to_own_rate(const SeriesAgreement& agreement, std::vector<Repetition>& shots) {
+  for (std::size_t j = 0; j < agreement.turn_rad.size(); ++j) {
+    shots[j].h *= std::polar(1.0, agreement.turn_rad[j]);
+    shots[j].u_random_phase_rad = std::hypot(shots[j].u_random_phase_rad, agreement.u_turn_rad);
+  }
+}
+
 Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std::size_t c) {
   const auto fits = fit_sine_beside_disturbances(shots.apparent_frequency, 0, shots.stamps,
                                                  shots_of_channel(shots.input, c));
   if (!fits) {
     return fail(of_channel(shots.input.channels[c], fits.error()));
   }
+  const auto agreement = compare_shots(shots, c, *fits);
   Budget budget;
   budget.add(quantisation_row(shots.input, c, *fits, shots.apparent_frequency, shots.stamps));
+  if (agreement) {
+    budget.add({.kind = ContributionKind::structure,
+                .subject = "the series",
+                .repeats = Repeats::common,
+                .u_phase_rad = agreement->u_phase_rad});
+  }
   budget.append(shots.common);
-  SeriesChannelResult channel{shots.input.channels[c], {}, {}, budget.rows()};
+  SeriesChannelResult channel{shots.input.channels[c], {}, {}, budget.rows(), agreement};
   for (std::size_t j = 0; j < fits->size(); ++j) {
     channel.shots.push_back(shot_result((*fits)[j].fit, shots.triggers[j],
                                         shots.input.correct_trigger_phase, shots.link,
                                         shots.u_start_rad, budget));
   }
-  const auto mean = mean_of_repetitions(channel.shots);
+  if (agreement) {
+    turn_to_own_rate(*agreement, channel.shots);
+  }
+  auto mean = mean_of_repetitions(channel.shots);
   if (!mean) {
     return fail(mean.error());
   }
-  channel.mean = *mean;
+  channel.mean = std::move(*mean);
   return channel;
+}
+
+// Shots of different rates tell their mean as well as that scatters.
+void widen_rate(const std::optional<SeriesAgreement>& agreement, std::size_t shots,
+                NominalFrequency& rate) {
+  if (agreement) {
+    const double u = agreement->rate_scatter_rel / std::sqrt(static_cast<double>(shots));
+    rate.u_lambda = std::hypot(rate.u_lambda, u * rate.lambda);
+    rate.u_real_rate_hz = std::hypot(rate.u_real_rate_hz, u * rate.real_rate_hz);
+  }
 }
 
 void add_trigger_phases(const std::vector<TriggerPhase>& triggers, SeriesStampingResult& result) {
@@ -269,7 +311,29 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
     }
     result.channels.push_back(std::move(*channel));
   }
+  widen_rate(result.channels.front().agreement, input.shots.size(), result.rate);
   return result;
+}
+
+Expected<void> apply_start(const StartLatency& start, double sample_s, double angular_hz,
+                           SeriesStampingResult& result) {
+  const double scatter_s = start.kind == StartKind::uniform ? sample_s / std::sqrt(12.0) : 0.0;
+  Budget row;
+  row.add({.kind = ContributionKind::series_start, .u_phase_rad = angular_hz * start.u_latency_s});
+  for (SeriesChannelResult& channel : result.channels) {
+    for (Repetition& shot : channel.shots) {
+      shot.h *= std::polar(1.0, -angular_hz * start.latency_s);
+      shot.u_random_phase_rad = std::hypot(shot.u_random_phase_rad, angular_hz * scatter_s);
+      shot.u_common_phase_rad = std::hypot(shot.u_common_phase_rad, row.u_phase_rad());
+    }
+    channel.common_budget.insert(channel.common_budget.end(), row.rows().begin(), row.rows().end());
+    auto mean = mean_of_repetitions(channel.shots);
+    if (!mean) {
+      return fail(mean.error());
+    }
+    channel.mean = std::move(*mean);
+  }
+  return {};
 }
 
 } // namespace dyncal::analysis

@@ -12,18 +12,20 @@
 // The sensor's samples lie on the time axis of its nominal rate; all shots share one apparent
 // frequency w_TSS, and (6) gives the real rate f_nom w / w_TSS. At n = 0 the rate needs no
 // correction (paper section 2.5), but an error of w_TSS turns theta_0 of all shots alike by
-// u(w_TSS) T / 2. Harmonics and hum are fitted beside the signal (disturbances.hpp). A TSS that
-// runs freely starts within one sample interval after the trigger: mean l = T_s / 2, scatter T_s /
-// sqrt(12) (T9). A trace is fitted best in its middle, t_m from the trigger point: an error of the
-// rate of the oscilloscope's clock turns beta_j of all shots alike by w t_m u(rate). Mean over
-// shots as in repetitions.hpp, which keeps the magnitude of shots whose phase scatters; tau_DSO and
-// mean l are common to all shots and frequencies. The first of `channels` must be excited.
+// u(w_TSS) T / 2. Harmonics and hum are fitted beside the signal (disturbances.hpp); the shots are
+// compared with each other and looked into (series_blocks.hpp), beta_j is trigger_phase.hpp's. When
+// the series begin, l, is start_latency.hpp's: apply_start(). A trace is fitted best in its middle,
+// t_m from the trigger point: an error of the rate of the oscilloscope's clock turns beta_j of all
+// shots alike by w t_m u(rate). Mean over shots as in repetitions.hpp, which keeps the magnitude of
+// shots whose phase scatters; tau_DSO and mean l are common to all shots and frequencies. The first
+// of `channels` must be excited.
 //
 // Fails as channels_of_one_clock.hpp and sine_fit.hpp do; invalid_argument (no shot, shots of
 // unequal length). Any thread.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +34,8 @@
 #include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/nominal_frequency.hpp"
 #include "analysis/method/repetitions.hpp"
+#include "analysis/method/series_blocks.hpp"
+#include "analysis/method/start_latency.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
@@ -74,7 +78,8 @@ struct SeriesChannelResult {
   std::string channel;
   std::vector<Repetition> shots;
   RepetitionMean mean;
-  std::vector<Contribution> common_budget; // what all shots share
+  std::vector<Contribution> common_budget;    // what all shots share
+  std::optional<SeriesAgreement> agreement{}; // of the shots
 };
 
 struct SeriesStampingResult {
@@ -88,5 +93,10 @@ struct SeriesStampingResult {
 
 [[nodiscard]] Expected<SeriesStampingResult>
 evaluate_series_stamping(const SeriesStampingInput& input);
+
+// Corrects the mean latency that was found, and gives its uncertainty and scatter to all channels.
+// `sample_s`: the real sample interval. Fails as repetitions.hpp does.
+[[nodiscard]] Expected<void> apply_start(const StartLatency& start, double sample_s,
+                                         double angular_hz, SeriesStampingResult& result);
 
 } // namespace dyncal::analysis

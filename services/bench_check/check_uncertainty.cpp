@@ -43,6 +43,9 @@ void check_delays(const BenchView& view, Findings& findings) {
   if (kind == EvaluationMethod::absolute_time) {
     warn_without(view, "acs_delay_s", bench.uncertainty.acs_delay_s,
                  "the delay of the reference's channel and the ACS's clock", findings);
+  } else {
+    warn_without(view, "acs_delay_s", bench.uncertainty.acs_delay_s,
+                 "the delay between the channels of the ACS", findings);
   }
   if (kind == EvaluationMethod::series_timestamping) {
     warn_without(view, "acs_rate_rel", bench.uncertainty.acs_rate_rel, "the ACS's clock", findings);

@@ -287,6 +287,9 @@ reference_phase_rad = 1.7e-3
   } else if (draft.sensor == SensorKind::series) {
     text += "acs_rate_rel = 1e-6        # of the ACS's clock\n";
   }
+  if (draft.sensor != SensorKind::can) {
+    text += "acs_delay_s = 1e-7         # between the ACS's channels, where nothing is known\n";
+  }
 }
 
 } // namespace

@@ -220,7 +220,7 @@ level_per_volt = 50.0   # m/s^2 per V
 reference_magnitude_rel = {u_magnitude}
 reference_phase_rad = {u_phase}
 acs_rate_rel = {u_rate}
-)",
+{u_delay})",
       fmt::arg("bench", bench),
       fmt::arg("frequencies", fmt::join(quoted(preset.frequencies_hz), ", ")),
       fmt::arg("levels", fmt::join(preset.levels_m_s2, ", ")),
@@ -228,7 +228,11 @@ acs_rate_rel = {u_rate}
       fmt::arg("duration", preset.duration_s), fmt::arg("generator", addresses.generator),
       fmt::arg("sources", sources), fmt::arg("u_magnitude", uncertainty.reference_magnitude_rel),
       fmt::arg("u_phase", uncertainty.reference_phase_rad),
-      fmt::arg("u_rate", uncertainty.acs_rate_rel));
+      fmt::arg("u_rate", uncertainty.acs_rate_rel),
+      // The virtual ACS samples its channels at once. For absolute time the key would speak of its
+      // clock, which describes itself.
+      fmt::arg("u_delay",
+               preset.can == DemoPreset::CanLink::absolute_time ? "" : "acs_delay_s = 1e-8\n"));
 }
 
 } // namespace dyncal::services

@@ -34,6 +34,7 @@ class BenchSettings:
     u_reference_magnitude_rel: float = 3e-4
     u_reference_phase_rad: float = 3e-4
     u_adc_lag_rad: float = 1e-4
+    u_acs_delay_s: float = 1e-8  # between the channels of the ACS
     sensor_sign: float = 1.0  # -1: mounted upside down
     run_scatter_rel: float = 0.0  # of the sensor from repetition to repetition; phase in rad
 
@@ -76,4 +77,5 @@ class BenchSettings:
     corrects_trigger_phase: bool = True
     dso_rate_rel: float = 1e-6  # half width of the oscilloscope's rate error
     trace_noise_v: float = 0.02
+    trace_periods: float = 2.0
     trace_step_v: float = 16.0 / 256  # 8 bits over +-8 V

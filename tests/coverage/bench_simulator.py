@@ -34,6 +34,7 @@ DSO_DELAY_S, U_DSO_DELAY_S = 236e-9, 1e-9
 STANDARD_GRAVITY = 9.80665
 RAMP_S = 0.02
 FAULT_SEED = 77
+ACS_SEED = 78
 
 
 @dataclasses.dataclass
@@ -92,6 +93,11 @@ class Calibration:
                 settings.u_reference_phase_rad * draw[1],
             )
             self.adc_lag_error_rad[text] = settings.u_adc_lag_rad * draw[2]
+        of_acs = np.random.default_rng([ACS_SEED, *np.atleast_1d(seed)])
+        self.acs_delay_s = {  # of the reference behind the other channels
+            text: settings.u_acs_delay_s * of_acs.standard_normal()
+            for text in settings.frequencies
+        }
         self.steps = self._plan()
         self.end_s = self.steps[-1].end_s + settings.pause_s
         self.lost = collections.Counter()
@@ -176,8 +182,9 @@ class Calibration:
             magnitude_error, phase_error = self.reference_error[step.frequency_text]
             magnitude, phase_rad = self.reference_response(float(step.frequency_text))
             read = step.amplitude * magnitude * (1.0 + magnitude_error)
+            delay_rad = 2.0 * np.pi * step.frequency_hz * self.acs_delay_s[step.frequency_text]
             values[part] += read * self._excitation(
-                step, times_s[part], lag_rad=-phase_error - phase_rad
+                step, times_s[part], lag_rad=delay_rad - phase_error - phase_rad
             )
             limit = s.reference_range_rel * step.amplitude
             values[part] = disturbances.over_range(values[part], -limit, limit)
@@ -310,10 +317,11 @@ class Calibration:
                 self._write_series(folder / "tss" / name, step, sync_rad, delay_s)
 
     def _write_trace(self, path, step, sync_rad, dso_rate):
-        """Two periods of sync or 40 ms, a tenth of it before the trigger."""
+        """Some periods of sync, of two or more at least 40 ms, a tenth of it before the trigger."""
         s = self.settings
         samples = 800
-        interval_s = max(2.0 / step.frequency_hz, 0.04) / samples
+        least_s = 0.04 if s.trace_periods >= 2.0 else 0.0
+        interval_s = max(s.trace_periods / step.frequency_hz, least_s) / samples
         first_s = -samples // 10 * interval_s
         times_s = (first_s + interval_s * np.arange(samples)) * dso_rate
         turn = 2.0 * np.pi * step.frequency_hz * times_s + sync_rad
@@ -413,6 +421,8 @@ class Calibration:
             uncertainty["reference_phase_rad"] = s.u_reference_phase_rad
         if s.method == "series-timestamping" and s.states_dso_rate:
             uncertainty["dso_rate_rel"] = s.dso_rate_rel / math.sqrt(3.0)
+        if s.method != "absolute-time":
+            uncertainty["acs_delay_s"] = s.u_acs_delay_s
         if s.stated_u_adc_delay_s:
             uncertainty["adc_delay_s"] = s.stated_u_adc_delay_s
         tables["uncertainty"] = uncertainty

@@ -24,6 +24,7 @@ QUIET = {
     "u_reference_magnitude_rel": 0.0,
     "u_reference_phase_rad": 0.0,
     "u_adc_lag_rad": 0.0,
+    "u_acs_delay_s": 0.0,
     "acs_rate_error_rel": 0.0,
     "frequencies": ("31.5", "160"),
 }

@@ -30,6 +30,7 @@ HARDLY_ANY_NOISE = {
     "trace_step_v": 1e-6,
     "u_reference_magnitude_rel": 3e-7,
     "u_reference_phase_rad": 3e-7,
+    "u_acs_delay_s": 1e-10,
 }
 SHORT_ANALOGUE_STEPS = {
     "method": "analogue",

@@ -57,6 +57,7 @@ dut = ["dau/acceleration"]
 reference_magnitude_rel = {U_REFERENCE}
 reference_phase_rad = {U_REFERENCE}
 adc_delay_s = {U_ADC_DELAY_S}
+acs_delay_s = 1e-9
 """
 
 

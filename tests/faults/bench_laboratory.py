@@ -188,6 +188,7 @@ address = "127.0.0.1:{self.ports['acs']}"
 [uncertainty]
 reference_magnitude_rel = 1e-3
 reference_phase_rad = 1.7e-3
+acs_delay_s = 1e-8
 {self.sensor_uncertainty}
 """
 

@@ -44,6 +44,7 @@ adc = {{ file = "adc.json", channel = "ADC1" }}
 [uncertainty]
 reference_magnitude_rel = 5e-4
 reference_phase_rad = 5e-4
+acs_delay_s = 1e-8
 """
 
 

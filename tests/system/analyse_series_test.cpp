@@ -95,6 +95,7 @@ dso_delay = { value_s = 236e-9, u_s = 1e-9 }
 [uncertainty]
 reference_magnitude_rel = 1e-3
 reference_phase_rad = 1e-3
+acs_delay_s = 1e-8
 )";
   }
 

@@ -135,6 +135,7 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]
 [uncertainty]
 reference_magnitude_rel = 1e-3
 reference_phase_rad = 1.7e-3
+acs_delay_s = 1e-8
 )" << settings.rest;
   }
 

@@ -103,6 +103,7 @@ dut = ["dau/acceleration"]
 reference_magnitude_rel = 5e-4
 reference_phase_rad = 5e-4
 adc_delay_s = 1e-7
+acs_delay_s = 1e-8
 )",
                                                       fmt::join(texts, ", "));
 }

@@ -52,7 +52,8 @@ protected:
         << "[method]\nkind = \"series-timestamping\"\nreference = \"acs/reference\"\n"
         << "sync_acs = \"acs/sync\"\nsync_dso = \"dso/sync\"\ndut = [\"tss/acceleration_z\"]\n"
         << "shots = 4\n[corrections]\ndso_delay = { value_s = 236e-9, u_s = 1e-9 }\n"
-        << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n";
+        << "[uncertainty]\nreference_magnitude_rel = 1e-3\nreference_phase_rad = 1.7e-3\n"
+        << "acs_delay_s = 1e-8\n";
   }
 
   nlohmann::json run(int status = 0) {

@@ -1,17 +1,17 @@
 #include "services/evaluation/method/series_step_evaluation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
-#include <map>
+#include <numbers>
 
 #include <fmt/core.h>
 
+#include "analysis/base/phasor.hpp"
 #include "analysis/method/series_stamping.hpp"
-#include "analysis/uncertainty/found_resolution.hpp"
-#include "services/contract/digest.hpp"
 #include "services/evaluation/method/line_check.hpp"
+#include "services/evaluation/method/series_checks.hpp"
+#include "services/evaluation/method/series_shots.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
@@ -23,94 +23,46 @@ SeriesStepOutput without_result(const SeriesStepInput& input, const std::string&
           input.start_so_far};
 }
 
-// Shots whose series have the length and the rate that most have, and whose records have the
-// channels.
-std::vector<ShotRecord::Shot> of_usual_length(const std::vector<ShotRecord::Shot>& shots,
-                                              std::size_t series_channels,
-                                              std::size_t trace_channels,
-                                              std::vector<Flag>& flags) {
-  const auto form = [](const ShotRecord::Shot& shot) {
-    return std::pair(shot.series->samples, shot.series->interval_s);
-  };
-  std::map<std::pair<std::size_t, double>, std::size_t> forms;
-  for (const ShotRecord::Shot& shot : shots) {
-    ++forms[form(shot)];
-  }
-  const auto usual = std::max_element(
-      forms.begin(), forms.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<ShotRecord::Shot> chosen;
-  for (const ShotRecord::Shot& shot : shots) {
-    if (form(shot) == usual->first && shot.series->channels >= series_channels &&
-        shot.trace->channels >= trace_channels) {
-      chosen.push_back(shot);
-    }
-  }
-  if (chosen.size() < shots.size()) {
-    flags.push_back(
-        {ResultFlag::shots_left_out, fmt::format("{} {}", shots.size() - chosen.size(),
-                                                 to_string(ResultFlag::shots_left_out))});
-  }
-  return chosen;
-}
-
-std::string digest_of(const StepSamples& acs, const std::vector<ShotRecord::Shot>& shots) {
-  Digest digest;
-  digest.add(acs.stamps_ns.data(), acs.stamps_ns.size() * sizeof(std::int64_t));
-  for (const auto& column : acs.columns) {
-    digest.add(column.data(), column.size() * sizeof(double));
-  }
-  for (const ShotRecord::Shot& shot : shots) {
-    for (const TriggeredRecord* record : {shot.trace, shot.series}) {
-      const std::array axis{record->first_sample_s, record->interval_s};
-      digest.add(axis.data(), sizeof(axis));
-      digest.add(record->values.data(), record->values.size() * sizeof(double));
-    }
-  }
-  return digest.hex();
-}
-
-SourceSamples summary_of(const SourceRecord& source, const std::vector<ShotRecord::Shot>& shots,
-                         const TriggeredRecord* ShotRecord::Shot::*record,
-                         const ShotRecord::Loss& loss) {
-  SourceSamples summary;
-  summary.source = source.source();
-  for (const ShotRecord::Shot& shot : shots) {
-    summary.used += (shot.*record)->samples;
-  }
-  summary.unusable = loss.unusable_samples;
-  summary.overflowed = loss.overflowed_samples;
-  summary.first_stamp_ns = shots.front().trace->trigger_utc_ns;
-  summary.last_stamp_ns = shots.back().trace->trigger_utc_ns;
-  return summary;
-}
-
-// When each shot's series began, relative to their mean, from the phase of its H.
+// When each shot's series began, relative to their mean, from the phase of its H; without what
+// noise did to its trigger, be that corrected or not.
 analysis::StartLatency start_latency(const analysis::SeriesStampingResult& result,
-                                     double angular_hz) {
-  std::vector<double> offsets_s;
+                                     const analysis::SeriesStampingInput& input,
+                                     analysis::StartKind start_so_far) {
+  const double angular_hz = input.frequency.angular();
+  const std::vector<analysis::Repetition>& shots = result.channels.front().shots;
+  std::vector<std::complex<double>> directions;
+  std::complex<double> mean;
   double u2_s2 = 0.0;
-  const analysis::SeriesChannelResult& pilot = result.channels.front();
-  for (const analysis::Repetition& shot : pilot.shots) {
-    offsets_s.push_back(std::arg(shot.h / pilot.mean.h) / angular_hz);
+  for (std::size_t j = 0; j < shots.size(); ++j) {
+    const double trigger_rad = input.correct_trigger_phase ? 0.0 : result.trigger_phase_rad[j];
+    directions.push_back(analysis::unit_phasor(shots[j].h) * std::polar(1.0, -trigger_rad));
+    mean += directions.back();
     u2_s2 +=
-        std::pow(shot.u_random_phase_rad / angular_hz, 2) / static_cast<double>(pilot.shots.size());
+        std::pow(shots[j].u_random_phase_rad / angular_hz, 2) / static_cast<double>(shots.size());
   }
-  return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz);
+  std::vector<double> offsets_s;
+  for (const std::complex<double>& direction : directions) {
+    offsets_s.push_back(std::arg(direction * std::conj(mean)) / angular_hz);
+  }
+  return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz,
+                                       start_so_far);
 }
 
+// The row of the shots, and what they have in common. A mean that hardly stands out of its noise
+// has a phase whose u is no sum of squares (repetitions.hpp): its row is what is left of it.
 std::vector<analysis::Contribution> budget_of(const analysis::SeriesChannelResult& channel) {
-  const analysis::Repetition& first = channel.shots.front();
-  const auto rest = [](double u, double common) {
-    return std::sqrt(std::max(0.0, u * u - common * common));
-  };
-  std::vector<analysis::Contribution> rows{
-      {.kind = analysis::ContributionKind::shots,
-       .degrees_of_freedom = channel.shots.size() > 1
-                                 ? static_cast<double>(channel.shots.size() - 1)
-                                 : analysis::infinite_degrees_of_freedom,
-       .u_magnitude_rel =
-           rest(channel.mean.u_magnitude / channel.mean.magnitude, first.u_common_magnitude_rel),
-       .u_phase_rad = rest(channel.mean.u_phase_rad, first.u_common_phase_rad)}};
+  constexpr double weak = 10.0;
+  const analysis::RepetitionMean& mean = channel.mean;
+  analysis::Contribution shots{.kind = analysis::ContributionKind::shots,
+                               .u_magnitude_rel = mean.independent_magnitude_rel.u,
+                               .u_phase_rad = mean.independent_phase.u};
+  if (mean.magnitude < weak * mean.u_magnitude) {
+    shots.u_phase_rad = mean.u_independent_phase_rad;
+  } else {
+    shots.degrees_of_freedom = std::min(mean.independent_magnitude_rel.degrees_of_freedom,
+                                        mean.independent_phase.degrees_of_freedom);
+  }
+  std::vector<analysis::Contribution> rows{shots};
   rows.insert(rows.end(), channel.common_budget.begin(), channel.common_budget.end());
   return rows;
 }
@@ -147,39 +99,43 @@ struct EvaluatedSeries {
   analysis::StartLatency start;
 };
 
-// Evaluates, decides how the series start, and evaluates again when that must be corrected.
-analysis::Expected<EvaluatedSeries> evaluate_series(analysis::SeriesStampingInput& input,
+// Evaluates, and decides how the series start.
+analysis::Expected<EvaluatedSeries> evaluate_series(const analysis::SeriesStampingInput& input,
                                                     analysis::StartKind start_so_far) {
   auto evaluated = analysis::evaluate_series_stamping(input);
   if (!evaluated) {
     return fail(evaluated.error());
   }
-  analysis::StartLatency start = start_latency(*evaluated, input.frequency.angular());
-  start.kind = start.kind_after(start_so_far);
-  if (start.kind == analysis::StartKind::uniform) {
-    const double sample_s = 1.0 / evaluated->rate.real_rate_hz;
-    input.start_latency_s = 0.5 * sample_s;
-    input.start_scatter_s = sample_s / std::sqrt(12.0);
-    evaluated = analysis::evaluate_series_stamping(input);
+  const analysis::StartLatency start = start_latency(*evaluated, input, start_so_far);
+  const double sample_s = 1.0 / evaluated->rate.real_rate_hz;
+  if (const auto applied = analysis::apply_start(
+          start, sample_s, evaluated->sync_acs.frequency.angular(), *evaluated);
+      !applied) {
+    return fail(applied.error());
   }
-  return evaluated.map([&](analysis::SeriesStampingResult& result) {
-    return EvaluatedSeries{std::move(result), start};
-  });
+  return EvaluatedSeries{std::move(*evaluated), start};
 }
 
 void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
                const analysis::SeriesChannelResult& channel, StepResult& result) {
+  constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3; // nothing is known of it
+  double u_magnitude_rel = 0.0;
+  double u_phase_rad = 0.0;
   result.valid = true;
   result.magnitude = channel.mean.magnitude;
-  result.u_magnitude = channel.mean.u_magnitude;
   result.phase_rad = channel.mean.phase_rad;
-  result.u_phase_rad = channel.mean.u_phase_rad;
   const analysis::NominalFrequency& rate = evaluated.result.rate;
   result.series = SeriesFinding{
       rate.real_rate_hz, std::hypot(rate.u_real_rate_hz, roles.u_acs_rate_rel * rate.real_rate_hz),
       to_string(evaluated.start.kind), evaluated.start.scatter_s};
   result.fits = {evaluated.result.reference, evaluated.result.sync_acs};
   result.budget = budget_of(channel);
+  for (const analysis::Contribution& row : result.budget) {
+    u_magnitude_rel = std::hypot(u_magnitude_rel, row.u_magnitude_rel);
+    u_phase_rad = std::hypot(u_phase_rad, row.u_phase_rad);
+  }
+  result.u_magnitude = u_magnitude_rel * channel.mean.magnitude;
+  result.u_phase_rad = std::min(any_phase, u_phase_rad);
 }
 
 // What a reader of the result should know of its shots.
@@ -234,68 +190,19 @@ analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChann
   return input;
 }
 
-std::vector<std::int64_t> series_stamps_ns(const std::vector<ShotRecord::Shot>& shots,
-                                           double real_rate_hz) {
-  std::vector<std::int64_t> stamps_ns(shots.front().series->samples);
-  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
-    stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / real_rate_hz);
-  }
-  return stamps_ns;
-}
-
-// What every shot shows of the lines, of which none may tell any from the excitation.
-ChannelLines lines_of_shots(const SeriesStepInput& input,
-                            const std::vector<ShotRecord::Shot>& shots,
-                            const EvaluatedSeries& evaluated, const ChannelName& channel,
-                            std::size_t column) {
-  const std::vector<std::int64_t> stamps_ns =
-      series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
-  ChannelLines lines;
-  for (const ShotRecord::Shot& shot : shots) {
-    const std::span<const double> values[] = {shot.series->channel(column)};
-    const analysis::Frequency& frequency = evaluated.result.sync_acs.frequency;
-    const auto fit = analysis::fit_sine(frequency, 0, stamps_ns, values);
-    if (!fit) {
-      continue;
-    }
-    ChannelLines of_shot =
-        check_lines(*input.task.recipe, {"the sensor"},
-                    {.channel = channel.text(), .frequency = frequency, .fit = fit->front()},
-                    stamps_ns, values[0]);
-    if (lines.channel.empty()) {
-      lines = std::move(of_shot);
-    } else {
-      lines.measured.insert(lines.measured.end(), of_shot.measured.begin(), of_shot.measured.end());
-    }
-  }
-  return lines;
-}
-
-// The first shot in which something is found speaks for the step, or else the very first.
-SignalCheck check_shots(const SeriesStepInput& input, const std::vector<ShotRecord::Shot>& shots,
-                        const EvaluatedSeries& evaluated, const ChannelName& channel,
-                        std::size_t column) {
-  const std::vector<std::int64_t> stamps_ns =
-      series_stamps_ns(shots, evaluated.result.rate.real_rate_hz);
-  const drivers::ChannelDescription& description = input.sensor.description().channels[column];
-  std::optional<SignalCheck> first;
-  for (const ShotRecord::Shot& shot : shots) {
-    const std::span<const double> values = shot.series->channel(column);
-    analysis::SignalExpectation expected = expectation_of(description);
-    if (!(expected.resolution > 0.0)) {
-      expected.resolution = analysis::found_resolution(values);
-    }
-    SignalCheck check =
-        check_signal(channel.text(), analysis::measure_integrity(input.task.step().frequency,
-                                                                 stamps_ns, values, expected));
-    if (!check.flags.empty()) {
-      return check;
-    }
-    if (!first) {
-      first = std::move(check);
-    }
-  }
-  return *first;
+StepInput made_of(const SeriesStepInput& input, const SelectedChannels& acs,
+                  const std::vector<ShotRecord::Shot>& shots) {
+  return {.dut = input.task.recipe->dut(),
+          .reference_unit = acs.unit(0),
+          .units = {},
+          .samples = {acs.summary(),
+                      summary_of_shots(input.oscilloscope, shots, &ShotRecord::Shot::trace,
+                                       input.lost.traces),
+                      summary_of_shots(input.sensor, shots, &ShotRecord::Shot::series,
+                                       input.lost.series)},
+          .data_sha256 = digest_of_shots(acs.samples(), shots),
+          .common = {},
+          .first_dut = {}};
 }
 
 std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedChannels& acs,
@@ -304,20 +211,12 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
                                    const std::vector<Flag>& flags) {
   const auto& roles = std::get<SeriesRoles>(input.task.recipe->roles);
   const StepTask task{input.task.recipe, input.task.index, flags};
-  const StepInput made_of{
-      .dut = roles.dut,
-      .reference_unit = acs.unit(0),
-      .units = {},
-      .samples = {acs.summary(),
-                  summary_of(input.oscilloscope, shots, &ShotRecord::Shot::trace,
-                             input.lost.traces),
-                  summary_of(input.sensor, shots, &ShotRecord::Shot::series, input.lost.series)},
-      .data_sha256 = digest_of(acs.samples(), shots),
-      .common = {},
-      .first_dut = {}};
+  const StepInput of_step = made_of(input, acs, shots);
+  const CheckedShots checked{task, input.oscilloscope, input.sensor, shots, evaluated.result};
   const SignalCheck reference = check_signal(evaluated.result.reference);
   SignalCheck sync = check_signal(evaluated.result.sync_acs);
   sync.refusal.clear(); // it carries phase only
+  const SignalCheck traces = check_traces(checked, roles.sync_dso);
   const std::vector<ChannelLines> common_lines{
       check_lines(*task.recipe, {"the reference"}, evaluated.result.reference, acs, 0),
       check_lines(*task.recipe, {"the ACS sync", false}, evaluated.result.sync_acs, acs, 1)};
@@ -327,12 +226,16 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
     add_value(roles, evaluated, evaluated.result.channels[i], result);
     const std::size_t column = *input.sensor.channel(roles.dut[i].channel);
     result.unit = ratio_unit(acs.unit(0), input.sensor.description().channels[column].unit);
-    add_input(task, made_of, result);
-    add_check(reference, result);
-    add_check(sync, result);
-    add_check(check_shots(input, shots, evaluated, roles.dut[i], column), result);
+    add_input(task, of_step, result);
+    for (Flag& flag : flags_of_agreement(evaluated.result.channels[i])) {
+      result.flags.push_back(std::move(flag));
+    }
+    for (const SignalCheck& check : {reference, sync, traces}) {
+      add_check(check, result);
+    }
+    add_check(check_series(checked, roles.dut[i], column), result);
     std::vector<ChannelLines> lines = common_lines;
-    lines.push_back(lines_of_shots(input, shots, evaluated, roles.dut[i], column));
+    lines.push_back(lines_of_series(checked, roles.dut[i], column));
     add_lines(std::move(lines), result);
     results.push_back(std::move(result));
   }
@@ -351,7 +254,7 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   const std::vector<std::size_t> columns = columns_of(step.sensor, roles.dut);
   const std::size_t sync = *step.oscilloscope.channel(roles.sync_dso.channel);
   std::vector<Flag> flags = step.task.flags;
-  const auto shots = of_usual_length(
+  const auto shots = shots_of_usual_length(
       step.shots, *std::max_element(columns.begin(), columns.end()) + 1, sync + 1, flags);
   if (shots.empty()) {
     return without_result(step, "the records of the shots lack a channel that was described");

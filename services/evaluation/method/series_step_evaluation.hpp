@@ -3,8 +3,9 @@
 //
 // Series of another length than most are left out and named in a flag, and so is a step with fewer
 // shots than planned. Whether the sensor starts with the trigger or with its next own sample is
-// decided from the shots (analysis/method/start_latency.hpp), or as at earlier steps when these do
-// not tell; a sensor that runs free gets the mean of half a sample interval corrected.
+// decided from the shots and what earlier steps have shown (analysis/method/start_latency.hpp); a
+// sensor that runs free gets the mean of half a sample interval corrected. What else the shots show
+// is looked at in series_checks.hpp.
 //
 // A step that cannot be evaluated gives results that are not valid and name the reason. No state;
 // the same records give the same bits.

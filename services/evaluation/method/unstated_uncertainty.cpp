@@ -34,6 +34,15 @@ std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
   if (stamped != nullptr && stamped->adc_calibration.empty() && !(stamped->u_adc_delay_s > 0.0)) {
     flags.push_back(make_flag(ResultFlag::adc_not_calibrated));
   }
+  const auto* const series = std::get_if<SeriesRoles>(&recipe.roles);
+  if (series != nullptr && !(series->u_dso_delay_s > 0.0)) {
+    flags.push_back(make_flag(ResultFlag::trigger_delay_not_stated));
+  }
+  // Absolute time has a flag of its own, for there the key holds the clock as well.
+  if (!std::holds_alternative<AbsoluteTimeRoles>(recipe.roles) &&
+      !(recipe.systematic.acs_delay_s > 0.0)) {
+    flags.push_back(make_flag(ResultFlag::acs_delay_not_stated));
+  }
   return flags;
 }
 

@@ -36,6 +36,23 @@ TEST(Repetitions, OneRepetitionKeepsItsOwnUncertainty) {
   EXPECT_NEAR(mean->phase.k, 2.0, 1e-12);
 }
 
+TEST(Repetitions, OneRepetitionHasTheDegreesOfFreedomOfItsBudget) {
+  const std::array budget{Contribution{.kind = ContributionKind::shots,
+                                       .degrees_of_freedom = 4.0,
+                                       .u_magnitude_rel = 3e-4,
+                                       .u_phase_rad = 1e-4},
+                          Contribution{.kind = ContributionKind::reference,
+                                       .u_magnitude_rel = 4e-4,
+                                       .u_phase_rad = 2e-3}};
+  const auto mean = mean_of_repetitions(std::array{make_repetition(h_of(2.0, 0.1), budget)});
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(mean->magnitude_rel.u, 5e-4, 1e-12);
+  EXPECT_NEAR(mean->magnitude_rel.degrees_of_freedom, 4.0 * std::pow(5.0 / 3.0, 4), 1e-9);
+  EXPECT_NEAR(mean->magnitude_rel.k, coverage_factor(4.0 * std::pow(5.0 / 3.0, 4)), 1e-9);
+  EXPECT_NEAR(mean->u_magnitude, 2.0 * 0.5 * mean->magnitude_rel.k * 5e-4, 1e-12);
+  EXPECT_NEAR(mean->phase.k, 2.0, 1e-3);
+}
+
 TEST(Repetitions, ThreeThatScatterNeedStudentsFactor) {
   const std::array repetitions{Repetition{.h = h_of(1.0, -1e-3)}, Repetition{.h = h_of(1.0, 0.0)},
                                Repetition{.h = h_of(1.0, 1e-3)}};

@@ -168,6 +168,8 @@ TEST(BenchCheck, UncertaintyThatIsMissingOrZero) {
       Severity::warning, 30, "uncertainty.reference_phase_rad", "is missing or zero");
   expect_one(check_text(with(smartup_bench, "adc_delay_s = 1e-6\n", "")), Severity::warning, 28,
              "uncertainty.adc_delay_s", "sync ADC");
+  expect_one(check_text(with(smartup_bench, "acs_delay_s = 1e-7\n", "")), Severity::warning, 28,
+             "uncertainty.acs_delay_s", "between the channels of the ACS");
   expect_one(check_text(with(smartup_bench, "reference_magnitude_rel = 1e-3",
                              "reference_magnitude_rel = 50.0")),
              Severity::error, 29, "uncertainty.reference_magnitude_rel", "in per cent?");
@@ -270,6 +272,7 @@ dut = ["dau/acceleration_z"]
 reference_magnitude_rel = 1e-3
 reference_phase_rad = 1e-3
 adc_delay_s = 1e-6
+acs_delay_s = 1e-7
 )";
 };
 
@@ -390,7 +393,7 @@ TEST_F(BenchCheckFiles, CorrectionsThatDoNotCoverTheExcitation) {
 TEST_F(BenchCheckFiles, AbsoluteTimeNeedsStampsOfUtc) {
   std::string text = with(bench, "kind = \"sample-timestamping\"", "kind = \"absolute-time\"");
   text = with(text, "sync_acs = \"acs/sync\"\nsync_dau = \"dau/sync\"\n", "");
-  text = with(text, "adc_delay_s", "acs_delay_s");
+  text = with(text, "adc_delay_s = 1e-6\n", "");
   const auto errors = of(check(text), Severity::error);
   ASSERT_EQ(errors.size(), 2U) << all_of(errors);
   EXPECT_EQ(errors[0].key, "sources.dau.time_base");

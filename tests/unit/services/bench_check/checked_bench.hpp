@@ -43,6 +43,7 @@ dut = ["dau/acceleration_z"]
 reference_magnitude_rel = 1e-3
 reference_phase_rad = 1e-3
 adc_delay_s = 1e-6
+acs_delay_s = 1e-7
 )";
 
 inline std::string with(std::string text, const std::string& what, const std::string& by) {

@@ -60,6 +60,7 @@ wire::Measurement SyntheticRun::measurement() const {
   measurement.u_reference_magnitude_rel(1e-6);
   measurement.u_reference_phase_rad(1e-6);
   measurement.u_adc_delay_s(1e-10);
+  measurement.u_acs_delay_s(1e-10);
   std::uint32_t number = 0;
   for (const SyntheticStep& step : steps) {
     wire::PlannedStep planned;

@@ -253,6 +253,110 @@ TEST_F(SeriesRun, WhatTheMethodDoesNotHaveIsRefused) {
   EXPECT_THAT(parse_recipe(message).error().message, HasSubstr("series time stamping has neither"));
 }
 
+std::vector<ResultFlag> kinds_of(const StepResult& result) {
+  std::vector<ResultFlag> kinds;
+  for (const Flag& flag : result.flags) {
+    kinds.push_back(flag.kind);
+  }
+  return kinds;
+}
+
+TEST_F(SeriesRun, ASampleThatASeriesLostIsFlagged) {
+  start();
+  for (std::uint64_t number = 1; number <= 5; ++number) {
+    auto records = shot(number, 1, 40.0);
+    if (number == 3) {
+      auto& values = records.second.values();
+      values.erase(values.begin() + 400);
+      values.push_back(values.back());
+    }
+    add(records);
+  }
+  const StepResult result = finish().results.at(0);
+  ASSERT_TRUE(result.valid) << result.problem;
+  EXPECT_THAT(kinds_of(result), testing::Contains(ResultFlag::shots_disagree));
+  EXPECT_THAT(sentences_of(result.flags),
+              testing::Contains(HasSubstr("the phase changes within a series")));
+}
+
+TEST_F(SeriesRun, ATraceThatIsCutOffIsFlaggedAndRefusesNothing) {
+  start();
+  for (std::uint64_t number = 1; number <= 5; ++number) {
+    auto records = shot(number, 1, 40.0);
+    for (double& volts : records.first.values()) {
+      volts = std::min(volts, 0.9);
+    }
+    add(records);
+  }
+  const StepResult result = finish().results.at(0);
+  ASSERT_TRUE(result.valid) << result.problem;
+  EXPECT_THAT(sentences_of(result.flags), testing::Contains(HasSubstr("dso/sync: over range")));
+}
+
+TEST_F(SeriesRun, ATraceShorterThanAPeriodIsFlagged) {
+  start();
+  for (std::uint64_t number = 1; number <= 5; ++number) {
+    auto records = shot(number, 1, 40.0);
+    records.first.values().resize(700); // of 1000 a period
+    records.first.sample_count(700);
+    records.first.first_sample_s(-0.25 / 40.0);
+    add(records);
+  }
+  const StepResult result = finish().results.at(0);
+  ASSERT_TRUE(result.valid) << result.problem;
+  EXPECT_THAT(sentences_of(result.flags),
+              testing::Contains(HasSubstr("dso/sync: signal not judged: its trace is shorter")));
+}
+
+TEST_F(SeriesRun, AStartWithinPartOfASampleIsUndecidedAndInTheUncertainty) {
+  start();
+  for (std::uint64_t number = 1; number <= 5; ++number) {
+    // A motion that is ahead by so much is a series that began so much later.
+    const double late_s = 50e-6 * static_cast<double>((number * 3) % 5);
+    auto records = shot(number, 1, 40.0);
+    std::mt19937_64 random(number);
+    for (std::size_t n = 0; n < records.second.values().size(); ++n) {
+      const double t = dso_delay_s + late_s + static_cast<double>(n) / real_rate_hz - delay_s;
+      records.second.values()[n] =
+          10.0 * magnitude * std::sin(2.0 * std::numbers::pi * 40.0 * t + beta_rad[number % 5]);
+    }
+    add(records);
+  }
+  const StepResult result = finish().results.at(0);
+  ASSERT_TRUE(result.valid) << result.problem;
+  EXPECT_THAT(kinds_of(result), testing::Contains(ResultFlag::start_undecided));
+  const double error = std::abs(phase_error(result));
+  EXPECT_NEAR(error, 2.0 * std::numbers::pi * 40.0 * 100e-6, 2e-3); // the mean is not corrected
+  EXPECT_LE(error, 2.0 * result.u_phase_rad);
+  EXPECT_GE(error, 0.3 * result.u_phase_rad);
+}
+
+TEST_F(SeriesRun, APointOfOneRepetitionHasOneUncertainty) {
+  start();
+  for (std::uint64_t number = 1; number <= 5; ++number) {
+    add(shot(number, 1, 40.0));
+    add(shot(5 + number, 2, 80.0));
+  }
+  const EvaluationOutput output = finish();
+  ASSERT_EQ(output.transfer_functions.size(), 1U);
+  const std::vector<FrequencyPoint>& points = output.transfer_functions.front().points;
+  ASSERT_EQ(points.size(), 2U);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const StepResult& result = output.results.at(i);
+    std::vector<analysis::UncertaintyPart> magnitudes, phases;
+    for (const analysis::Contribution& row : result.budget) {
+      magnitudes.push_back({row.u_magnitude_rel, row.degrees_of_freedom});
+      phases.push_back({row.u_phase_rad, row.degrees_of_freedom});
+    }
+    const auto k = [](const std::vector<analysis::UncertaintyPart>& parts) {
+      return analysis::coverage_factor(analysis::effective_degrees_of_freedom(parts));
+    };
+    EXPECT_NEAR(2.0 * points[i].mean.u_magnitude / (k(magnitudes) * result.u_magnitude), 1.0, 1e-9);
+    EXPECT_NEAR(2.0 * points[i].mean.u_phase_rad / (k(phases) * result.u_phase_rad), 1.0, 1e-9);
+    EXPECT_NEAR(points[i].mean.phase.k, k(phases), 1e-9);
+  }
+}
+
 TEST_F(SeriesRun, RecordsThatCannotBeUsedAreLostInTheResult) {
   start();
   for (std::uint64_t number = 1; number <= 5; ++number) {

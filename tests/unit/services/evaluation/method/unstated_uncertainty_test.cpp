@@ -18,6 +18,7 @@ Recipe stated() {
                                      .adc_calibration = {{.frequency_hz = 10.0}}};
   recipe.systematic.reference_magnitude_rel = 1e-3;
   recipe.systematic.reference_phase_rad = 1e-3;
+  recipe.systematic.acs_delay_s = 1e-7;
   return recipe;
 }
 
@@ -46,6 +47,7 @@ TEST(UnstatedUncertainty, OfTheReferenceMagnitudeAndPhaseAreNeeded) {
 TEST(UnstatedUncertainty, TheCalibrationOfTheReferenceStatesIt) {
   Recipe recipe = stated();
   recipe.systematic = {};
+  recipe.systematic.acs_delay_s = 1e-7;
   recipe.reference_calibration = {{.frequency_hz = 10.0}};
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::reference_uncertainty_not_stated));
   recipe.reference_calibration.front().contributions = {
@@ -61,6 +63,26 @@ TEST(UnstatedUncertainty, AnAdcIsCalibratedOrItsDelayIsBounded) {
   roles.u_adc_delay_s = 1e-6;
   EXPECT_THAT(kinds(recipe), IsEmpty());
   recipe.roles = AnalogueRoles{};
+  EXPECT_THAT(kinds(recipe), IsEmpty());
+}
+
+TEST(UnstatedUncertainty, OfTheTriggerOfAnOscilloscope) {
+  Recipe recipe = stated();
+  recipe.roles = SeriesRoles{};
+  EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::trigger_delay_not_stated));
+  std::get<SeriesRoles>(recipe.roles).dso_delay_s = 236e-9; // without its uncertainty
+  EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::trigger_delay_not_stated));
+  std::get<SeriesRoles>(recipe.roles).u_dso_delay_s = 1e-9;
+  EXPECT_THAT(kinds(recipe), IsEmpty());
+}
+
+TEST(UnstatedUncertainty, OfTheDelayBetweenChannelsOfTheAcsWhereOneIsComparedWithAnother) {
+  Recipe recipe = stated();
+  recipe.systematic.acs_delay_s = 0.0;
+  EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::acs_delay_not_stated));
+  recipe.roles = AnalogueRoles{};
+  EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::acs_delay_not_stated));
+  recipe.roles = AbsoluteTimeRoles{};
   EXPECT_THAT(kinds(recipe), IsEmpty());
 }
 
