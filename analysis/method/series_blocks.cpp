@@ -221,10 +221,13 @@ void judge_rates(const Blocks& all, const TimePolynomials& powers,
     return;
   }
   for (const double slope : slopes) {
-    result.turn_rad.push_back((slope - mean_slope) * powers.at_start(1));
+    result.turn_rad.push_back(slope * powers.at_start(1));
   }
   result.u_turn_rad = std::abs(powers.at_start(1)) * u;
-  result.rate_scatter_rel = u * std::sqrt(chi_squared / freedom); // rad a half record, as yet
+  // The common frequency need not be the mean of rates that differ. In rad a half record, as yet.
+  const double scatter = u * std::sqrt(chi_squared / freedom);
+  result.rate_scatter_rel =
+      std::hypot(scatter, mean_slope * std::sqrt(static_cast<double>(all.shots)));
 }
 
 // Phases beyond offset and slope of each shot.

@@ -41,7 +41,7 @@ struct SeriesAgreement {
   std::vector<double> turn_rad;    // of each shot; empty where rates do not differ
   double u_turn_rad = 0.0;         // of one of them
   double u_phase_rad = 0.0;        // of the first sample, common to all shots
-  double rate_scatter_rel = 0.0;   // standard deviation between shots, where rates differ
+  double rate_scatter_rel = 0.0;   // between shots, where rates differ, as it counts in a mean
   double largest_change_rad = 0.0; // of one block against its shot
 
   [[nodiscard]] bool any() const { return rates_differ || phases_change || magnitudes_change; }

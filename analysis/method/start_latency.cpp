@@ -9,9 +9,9 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double probable_fixed = 0.3; // hardly any clean step falls below: 2 in 600
+constexpr double probable_fixed = 0.3; // hardly any clean step falls below: 3 in 1000
 constexpr double improbable_uniform = 0.05;
-constexpr double probable_uniform = 0.8; // 95 % of runs of five shots that are
+constexpr double probable_uniform = 0.6; // 95 % of runs of five shots that are
 constexpr std::size_t widths = 16;       // of the grid of W and of s
 constexpr std::size_t places = 24;       // of that of m
 constexpr double least_density = 1e-300; // its logarithm must exist
@@ -33,7 +33,7 @@ Prior prior_after(StartKind other_steps) {
   case StartKind::undecided:
     break;
   }
-  return {0.45, 0.40, 0.15};
+  return {0.42, 0.33, 0.25};
 }
 
 double normal_distribution(double x) {

