@@ -11,7 +11,8 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double weak_mean = 10.0; // u: below, the phase is not normal any more
+constexpr double weak_mean = 10.0;       // u: below, the phase is not normal any more
+constexpr double significant_bias = 0.1; // of its uncertainty in the mean
 
 bool is_finite(const Repetition& repetition) {
   return std::isfinite(repetition.h.real()) && std::isfinite(repetition.h.imag()) &&
@@ -38,7 +39,25 @@ bool stand_out(double mean_length, double noise, double n) {
   return mean_length > rice_mean(0.0, noise) + 4.0 * scatter;
 }
 
-Centre mean_of_lengths(std::span<const Repetition> repetitions, double noise) {
+// Of one component of the phasors, that and only that.
+double phasor_noise(std::span<const Repetition> repetitions) {
+  double squares = 0.0;
+  for (const Repetition& repetition : repetitions) {
+    const double u2 = std::pow(repetition.u_random_magnitude_rel, 2) -
+                      std::pow(repetition.u_not_noise_magnitude_rel, 2);
+    squares += std::norm(repetition.h) * std::max(0.0, u2);
+  }
+  return std::sqrt(squares / static_cast<double>(repetitions.size()));
+}
+
+double without_lengthening(double length, std::span<const Repetition> repetitions) {
+  const double noise = phasor_noise(repetitions);
+  const double magnitude = amplitude_of_rice_mean(length, noise);
+  const double u_of_mean = noise / std::sqrt(static_cast<double>(repetitions.size()));
+  return length - magnitude > significant_bias * u_of_mean ? magnitude : length;
+}
+
+Centre mean_of_lengths(std::span<const Repetition> repetitions) {
   const double n = static_cast<double>(repetitions.size());
   double length = 0.0;
   std::complex<double> directions;
@@ -46,7 +65,7 @@ Centre mean_of_lengths(std::span<const Repetition> repetitions, double noise) {
     length += std::abs(repetition.h) / n;
     directions += unit_phasor(repetition.h) / n;
   }
-  const double magnitude = amplitude_of_rice_mean(length, noise);
+  const double magnitude = without_lengthening(length, repetitions);
   const std::complex<double> direction = unit_phasor(directions);
   const double closeness = std::max(std::abs(directions), 1e-3); // R
   Centre centre{magnitude * direction, {}, {}};
@@ -98,7 +117,7 @@ Centre centre_of(const RepeatedFrequency& frequency) {
   const double n = static_cast<double>(repetitions.size());
   const double noise = std::sqrt(squares / n); // of one component
   const bool clear = n > 1.0 && stand_out(length / n, noise, n);
-  Centre centre = clear ? mean_of_lengths(repetitions, noise) : mean_of_phasors(repetitions);
+  Centre centre = clear ? mean_of_lengths(repetitions) : mean_of_phasors(repetitions);
   const double unit = std::abs(centre.h) > 0.0 ? std::abs(centre.h) : 1.0;
   for (const Repetition& repetition : repetitions) {
     const double size = std::abs(repetition.h) / unit;
@@ -198,6 +217,10 @@ Repetition make_repetition(std::complex<double> h, std::span<const Contribution>
     if (random) {
       result.u_common_magnitude_rel =
           std::hypot(result.u_common_magnitude_rel, row.u_lasting_magnitude_rel);
+    }
+    if (random && row.kind != ContributionKind::fit_noise) {
+      result.u_not_noise_magnitude_rel =
+          std::hypot(result.u_not_noise_magnitude_rel, drawn_magnitude(row));
     }
   }
   result.freedom_magnitude = effective_degrees_of_freedom(magnitudes);

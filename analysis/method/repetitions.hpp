@@ -1,12 +1,14 @@
 // One transfer function value from repeated measurements at the same frequency.
 //
-//   |H|   = mean of |H_i|, less what noise adds to lengths (rice.hpp)
+//   |H|   = mean of |H_i|, less what noise adds to lengths (rice.hpp), where that is significant
 //   psi   = arg sum(H_i / |H_i|)                                the circular mean
 //   e_i   = |H_i| / |H| - 1  and  sin(psi_i - psi) / R          R = |sum(H_i / |H_i|)| / n
 //
 // So repetitions whose phase scatters, as shots of a sensor that runs free, keep their magnitude:
 // the length of their mean phasor would be shorter by e^{-s^2 / 2}. Where their lengths do not
-// stand out of what noise alone would give, the mean is that of the phasors.
+// stand out of what noise alone would give, the mean is that of the phasors. Only noise of the
+// phasors themselves lengthens them (the rows "noise of"), not a bound of hum or of a stamp; what
+// it adds is taken off from a tenth of its own uncertainty in the mean on: less is not known.
 //
 // u of a mean: random_effects.hpp. Every repetition states its own noise (u_random), known with
 // many degrees of freedom; scatter beyond it is found from all repeated frequencies together.
@@ -39,6 +41,7 @@ struct Repetition {
   // Of all of it together: what a single repetition, which nothing is compared with, states.
   double freedom_magnitude = infinite_degrees_of_freedom;
   double freedom_phase = infinite_degrees_of_freedom;
+  double u_not_noise_magnitude_rel = 0.0; // part of u_random that is no noise of the phasor
 };
 
 // Divides a budget: rows that are drawn anew in every repetition are random, but for the part of

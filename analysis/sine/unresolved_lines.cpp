@@ -12,7 +12,6 @@ namespace {
 
 constexpr double apart = 1.5; // distance of lines in 1 / T
 constexpr int max_multiple = 10;
-constexpr std::array mains_hz{50.0, 60.0};
 constexpr std::size_t min_samples = 16;
 constexpr double mains_wander_rel = 1e-3; // 50 mHz at 50 Hz
 
@@ -32,7 +31,7 @@ double folded_hz(double line_hz, double rate_hz) {
 }
 
 std::vector<UnresolvedLine> unresolved_lines(double frequency_hz, double duration_s, double rate_hz,
-                                             double resolved) {
+                                             std::span<const double> mains_hz, double resolved) {
   std::vector<UnresolvedLine> result;
   if (!(frequency_hz > 0.0 && duration_s > 0.0)) {
     return result;

@@ -2,23 +2,25 @@
 // harmonics of the excitation that sampling folds onto the excitation.
 //
 //   |f_line - f| < 1.5 / T                  f_line = |g - fs round(g / fs)|
-//   g = 50 Hz, 60 Hz and their multiples up to the tenth; k f, k = 2..10 (2 f lies on f at fs / 3)
+//   g = 50 Hz, 60 Hz, or what the bench file calls mains, and their multiples up to the tenth;
+//       k f, k = 2..10 (2 f lies on f at fs / 3)
 //
 // A line of amplitude h at the distance d changes the phasor by up to h L(d), L = |sin(pi d T) /
 // (pi d T)| and beyond the first half lobe its envelope 1 / (pi d T). Its phase is not known, so
 //
 //   u(A) / A = u(theta) = h L(d) / (sqrt(2) A)
 //
-// h has to come from where the line is resolved: the same channel at another step or between two
-// steps (`measure_line`). Where it never was, there is no bound, and the step needs a flag. Lines
-// farther away are fitted beside the signal (disturbances.hpp). Of the mains, whose frequency
-// wanders, d counts as smaller by 1e-3 of the line's.
+// h has to come from where the line is resolved: the same channel at another step. Where it never
+// was, there is no bound, and the step needs a flag. Lines farther away are fitted beside the
+// signal (disturbances.hpp). Of the mains, whose frequency wanders, d counts as smaller by 1e-3 of
+// the line's.
 //
 // Uneven stamps fold less than this says; fs is their mean rate, and what the lines do to such a
 // record is bounded all the same. Nothing fails: what cannot be told from something else is left
 // out. Any thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -29,7 +31,10 @@
 
 namespace dyncal::analysis {
 
-enum class LineKind { mains, harmonic };
+// `background`: whatever there is at a frequency that some step excites.
+enum class LineKind { mains, harmonic, background };
+
+inline constexpr std::array usual_mains_hz{50.0, 60.0};
 
 struct UnresolvedLine {
   LineKind kind = LineKind::mains;
@@ -40,8 +45,9 @@ struct UnresolvedLine {
 
 // The nearest first; empty: none. `resolved`: how many 1 / T away a line must be to be none of
 // them. Multiples of the excitation that are mains lines too are mains.
-[[nodiscard]] std::vector<UnresolvedLine> unresolved_lines(double frequency_hz, double duration_s,
-                                                           double rate_hz, double resolved = 1.5);
+[[nodiscard]] std::vector<UnresolvedLine>
+unresolved_lines(double frequency_hz, double duration_s, double rate_hz,
+                 std::span<const double> mains_hz = usual_mains_hz, double resolved = 1.5);
 
 struct LineUncertainty { // standard uncertainties, of magnitude and phase alike
   double u_magnitude_rel = 0.0;

@@ -29,20 +29,13 @@ double log_likelihood(double h, std::span<const MeasuredAmplitude> measured) {
 
 } // namespace
 
-std::optional<double> square_of_amplitude(std::span<const MeasuredAmplitude> measured) {
-  if (measured.empty()) {
-    return std::nullopt;
-  }
-  double seen = 0.0;
+double expected_square(std::span<const MeasuredAmplitude> measured) {
   double least_u = std::numeric_limits<double>::infinity();
   for (const MeasuredAmplitude& one : measured) {
     least_u = std::min(least_u, one.u_component);
-    if (one.amplitude > significant * one.u_component) {
-      seen = std::max(seen, one.amplitude * one.amplitude);
-    }
   }
-  if (seen > 0.0 || !(least_u > 0.0)) {
-    return seen;
+  if (!(least_u > 0.0 && std::isfinite(least_u))) {
+    return 0.0;
   }
   std::array<double, grid_points> logs{};
   const double step = grid_end * least_u / (grid_points - 1);
@@ -59,6 +52,19 @@ std::optional<double> square_of_amplitude(std::span<const MeasuredAmplitude> mea
     of_square += weight * h * h;
   }
   return of_square / all;
+}
+
+std::optional<double> square_of_amplitude(std::span<const MeasuredAmplitude> measured) {
+  if (measured.empty()) {
+    return std::nullopt;
+  }
+  double seen = 0.0;
+  for (const MeasuredAmplitude& one : measured) {
+    if (one.amplitude > significant * one.u_component) {
+      seen = std::max(seen, one.amplitude * one.amplitude);
+    }
+  }
+  return seen > 0.0 ? seen : expected_square(measured);
 }
 
 } // namespace dyncal::analysis

@@ -22,6 +22,9 @@ struct MeasuredAmplitude {
   double u_component = 0.0;
 };
 
+// E[h^2] whatever the amplitudes; 0 where an uncertainty is 0. REQUIRES: amplitudes of some u.
+[[nodiscard]] double expected_square(std::span<const MeasuredAmplitude> measured);
+
 [[nodiscard]] std::optional<double>
 square_of_amplitude(std::span<const MeasuredAmplitude> measured);
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
+#include "analysis/base/statistics.hpp"
+#include "analysis/uncertainty/background_power.hpp"
 #include "services/evaluation/method/line_check.hpp"
 
 namespace dyncal::services {
@@ -12,28 +13,47 @@ namespace {
 using analysis::Contribution;
 using analysis::ContributionKind;
 using analysis::LineKind;
+using analysis::Repeats;
 
 constexpr int first_high_order = 6; // harmonics from here on count as one
+constexpr double like_quiet = 0.5;  // of the square: driven steps show no more than quiet time does
 
 bool is_of_line(const Flag& flag) {
   return flag.kind == ResultFlag::mains_not_separated ||
          flag.kind == ResultFlag::harmonic_not_separated;
 }
 
-void add_row(ContributionKind kind, const ChannelLines& channel, double u2, StepResult& result) {
+bool is_of_mains(const analysis::UnresolvedLine& line) {
+  return line.kind == LineKind::mains;
+}
+
+// Square without what noise adds to it.
+double square_of(const analysis::MeasuredAmplitude& line) {
+  return std::max(0.0, line.amplitude * line.amplitude - 2.0 * line.u_component * line.u_component);
+}
+
+void add_row(Contribution row, const ChannelLines& channel, double u2, StepResult& result) {
   if (!(u2 > 0.0)) {
     return;
   }
   const double u = std::sqrt(u2);
-  result.budget.push_back({.kind = kind,
-                           .subject = channel.subject,
-                           .distribution = analysis::Distribution::arcsine,
-                           .u_magnitude_rel = channel.counts_in_magnitude ? u : 0.0,
-                           .u_phase_rad = u});
+  row.distribution = analysis::Distribution::arcsine;
+  row.u_magnitude_rel = channel.counts_in_magnitude ? u : 0.0;
+  row.u_phase_rad = u;
+  result.budget.push_back(std::move(row));
   if (channel.counts_in_magnitude) {
     result.u_magnitude = std::hypot(result.u_magnitude, u * result.magnitude);
   }
   result.u_phase_rad = std::hypot(result.u_phase_rad, u);
+}
+
+// Half of it may come again in every repetition.
+void add_half_repeating(Contribution row, const ChannelLines& channel, double u2,
+                        StepResult& result) {
+  for (const Repeats repeats : {Repeats::anew, Repeats::common}) {
+    row.repeats = repeats;
+    add_row(row, channel, 0.5 * u2, result);
+  }
 }
 
 } // namespace
@@ -47,8 +67,10 @@ bool LineBounds::is_new(const StepOfChannel& where, std::uint32_t attempt) {
     return false;
   }
   known->second = attempt;
-  for (auto& [line, measured] : measured_) {
-    std::erase_if(measured, [&](const Measured& one) { return one.where == where; });
+  for (MeasuredLines* lines : {&driven_, &quiet_}) {
+    for (auto& [line, measured] : *lines) {
+      std::erase_if(measured, [&](const Measured& one) { return one.where == where; });
+    }
   }
   return true;
 }
@@ -59,50 +81,144 @@ void LineBounds::add(const StepResult& result) {
     if (!is_new(where, result.attempt)) {
       continue;
     }
-    for (const MeasuredLine& line : channel.measured) {
-      measured_[{channel.channel, line.kind, line.line_hz, std::min(line.order, first_high_order)}]
-          .push_back({where, line.measured});
-    }
+    const auto take = [&](const std::vector<MeasuredLine>& lines, MeasuredLines& all) {
+      for (const MeasuredLine& line : lines) {
+        all[{channel.channel, line.kind, line.line_hz, std::min(line.order, first_high_order)}]
+            .push_back({where, line.measured, channel.amplitude});
+      }
+    };
+    take(channel.measured, driven_);
+    take(channel.in_quiet, quiet_);
   }
 }
 
-std::optional<double> LineBounds::square_of(const ChannelLines& channel,
-                                            const analysis::UnresolvedLine& line) const {
-  const bool mains = line.kind == LineKind::mains;
-  const auto found = measured_.find({channel.channel, line.kind, mains ? line.line_hz : 0.0,
-                                     mains ? 0 : std::min(line.order, first_high_order)});
-  if (found == measured_.end() || found->second.empty()) {
-    return std::nullopt;
+const std::vector<LineBounds::Measured>& LineBounds::driven(const Line& line) const {
+  static const std::vector<Measured> none;
+  const auto found = driven_.find(line);
+  return found == driven_.end() ? none : found->second;
+}
+
+const std::vector<LineBounds::Measured>& LineBounds::in_quiet(const Line& line) const {
+  static const std::vector<Measured> none;
+  const auto found = quiet_.find(line);
+  return found == quiet_.end() ? none : found->second;
+}
+
+// How much of the square that the quiet time before other steps shows is there when they are
+// driven; empty where no step shows both.
+std::optional<double> LineBounds::driven_to_quiet(const Line& line,
+                                                  const StepOfChannel& where) const {
+  std::map<StepOfChannel, double> squares;
+  for (const Measured& one : in_quiet(line).empty() ? in_quiet(line) : driven(line)) {
+    squares.emplace(one.where, square_of(one.line));
   }
+  std::vector<double> ratios;
+  for (const Measured& quiet : in_quiet(line)) {
+    const auto same = squares.find(quiet.where);
+    if (quiet.where != where && same != squares.end() && square_of(quiet.line) > 0.0) {
+      ratios.push_back(same->second / square_of(quiet.line));
+    }
+  }
+  return ratios.empty() ? std::nullopt : std::optional(analysis::median(std::move(ratios)));
+}
+
+LineBounds::Bound LineBounds::bound_of(const Line& line, const StepOfChannel& where,
+                                       double excitation) const {
+  std::vector<analysis::MeasuredBackground> measured;
+  for (const Measured& one : driven(line)) {
+    measured.push_back({one.line, one.excitation});
+  }
+  const auto ratio = driven_to_quiet(line, where);
+  const bool constant = ratio && *ratio > like_quiet && *ratio < 1.0 / like_quiet;
+  const analysis::BackgroundPower power =
+      analysis::background_power(measured, excitation, constant);
+  Bound bound{power.square, !measured.empty(), power.significant};
+  for (const Measured& quiet : in_quiet(line)) {
+    if (quiet.where == where) {
+      const double square = std::min(1.0, ratio.value_or(1.0)) * square_of(quiet.line);
+      bound.significant |= square > 0.0;
+      bound.square = std::max(bound.square, square);
+    }
+  }
+  return bound;
+}
+
+std::optional<double> LineBounds::square_of_harmonic(const std::string& channel, int order) const {
   std::vector<analysis::MeasuredAmplitude> amplitudes;
-  std::transform(found->second.begin(), found->second.end(), std::back_inserter(amplitudes),
-                 [](const Measured& one) { return one.amplitude; });
+  for (const Measured& one :
+       driven({channel, LineKind::harmonic, 0.0, std::min(order, first_high_order)})) {
+    amplitudes.push_back(one.line);
+  }
   return analysis::square_of_amplitude(amplitudes);
 }
 
-void LineBounds::settle(const ChannelLines& channel, StepResult& result) const {
-  double of_mains = 0.0, of_harmonics = 0.0;
+void LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) const {
+  double u2 = 0.0;
   for (const analysis::UnresolvedLine& line : channel.unresolved) {
-    const auto square = square_of(channel, line);
+    if (!is_of_mains(line)) {
+      continue;
+    }
+    const Bound bound =
+        bound_of({channel.channel, LineKind::mains, line.line_hz, 0},
+                 {channel.channel, result.step, result.repetition}, channel.amplitude);
+    if (!bound.from_driven_steps) {
+      result.flags.push_back(flag_of_line(channel.channel, line));
+    }
+    const double u = analysis::line_uncertainty(line, std::sqrt(bound.square), channel.amplitude,
+                                                channel.duration_s)
+                         .u_phase_rad;
+    u2 += u * u;
+  }
+  add_half_repeating({.kind = ContributionKind::mains_hum, .subject = channel.subject}, channel, u2,
+                     result);
+}
+
+void LineBounds::settle_background(const ChannelLines& channel, StepResult& result) const {
+  const bool beside_mains =
+      std::any_of(channel.unresolved.begin(), channel.unresolved.end(), is_of_mains);
+  if (beside_mains || !(channel.amplitude > 0.0)) {
+    return;
+  }
+  const Bound bound =
+      bound_of({channel.channel, LineKind::background, channel.frequency_hz, 0},
+               {channel.channel, result.step, result.repetition}, channel.amplitude);
+  if (bound.significant) {
+    add_half_repeating(
+        {.kind = ContributionKind::other, .subject = background_row(channel.subject)}, channel,
+        0.5 * bound.square / (channel.amplitude * channel.amplitude), result);
+  }
+}
+
+void LineBounds::settle_harmonics(const ChannelLines& channel, StepResult& result) const {
+  double u2 = 0.0;
+  for (const analysis::UnresolvedLine& line : channel.unresolved) {
+    if (is_of_mains(line)) {
+      continue;
+    }
+    const auto square = square_of_harmonic(channel.channel, line.order);
     if (!square) {
       result.flags.push_back(flag_of_line(channel.channel, line));
       continue;
     }
-    const bool mains = line.kind == LineKind::mains;
-    const double u = analysis::line_uncertainty(line, std::sqrt(*square),
-                                                mains ? channel.amplitude : 1.0, channel.duration_s)
-                         .u_phase_rad;
-    (mains ? of_mains : of_harmonics) += u * u;
+    const double u =
+        analysis::line_uncertainty(line, std::sqrt(*square), 1.0, channel.duration_s).u_phase_rad;
+    u2 += u * u;
   }
-  add_row(ContributionKind::mains_hum, channel, of_mains, result);
-  add_row(ContributionKind::folded_harmonic, channel, of_harmonics, result);
+  add_row({.kind = ContributionKind::folded_harmonic, .subject = channel.subject}, channel, u2,
+          result);
+}
+
+bool LineBounds::concerns(const StepResult& result) const {
+  return result.provisional || settled(result).budget.size() != result.budget.size();
 }
 
 StepResult LineBounds::settled(StepResult result) const {
   result.flags.erase(std::remove_if(result.flags.begin(), result.flags.end(), is_of_line),
                      result.flags.end());
   for (const ChannelLines& channel : result.lines) {
-    settle(channel, result);
+    settle_mains(channel, result);
+    settle_background(channel, result);
+    settle_harmonics(channel, result);
   }
   result.provisional = false;
   return result;

@@ -1,14 +1,22 @@
-// Hum and folded harmonics beside the excitation, bounded at the end of a run by what the same
-// channels showed of them where they could be told: at other steps and in the quiet time between.
+// What a channel has at the frequency of a step beside the excitation (hum, ripple of the
+// amplifier, narrow-band noise, folded harmonics), bounded at the end of a run by what the same
+// channel showed of it in steps of other frequencies.
 //
-//   u(A) / A = u(theta) = L(d) sqrt(E[h^2]) / (sqrt(2) A) (analysis/sine/unresolved_lines.hpp)
+//   u(A) / A = u(theta) = L(d) sqrt(h^2) / (sqrt(2) A)  (analysis/sine/unresolved_lines.hpp; L = 1
+//                                                       but for the mains)
 //
-// E[h^2]: analysis/uncertainty/line_power.hpp, in the unit of the channel for the mains, in parts
-// of its amplitude for harmonics. The mains comes with another phase in every repetition, a
-// harmonic with the same; from the sixth harmonic on all are taken to be alike. A line that no step
-// and no quiet time showed keeps its flag: there is no bound. What this takes for granted: hum is
-// as large beside the step as elsewhere, and a harmonic has the same part of the amplitude at all
-// frequencies of the run.
+// h^2: analysis/uncertainty/background_power.hpp, in the unit of the channel, from steps that were
+// driven; of harmonics line_power.hpp, in parts of the amplitude: they have the same part at all
+// frequencies of the run, and from the sixth on all are taken to be alike. The quiet time before
+// the step counts too, where a line lasts in it; but where other steps show less of it than their
+// quiet time does, in this proportion. What only quiet time shows of the mains keeps the flag, for
+// an amplifier may hum while it drives; so does a line that nothing shows. Apart from the mains,
+// only what is significant counts.
+//
+// Hum is a bounded sine: whatever its phase, the error is at most h L, which is 2 u for u = h / 2.
+// It may come with the same phase in every repetition (a generator locked to the mains, steps at a
+// regular distance) or not: half of its variance is a row that repeats, so that a mean of any
+// number keeps u >= h L / 2 and is covered in either case. A harmonic repeats.
 //
 // Belongs to one thread.
 #pragma once
@@ -30,6 +38,9 @@ public:
   // place of the earlier one.
   void add(const StepResult& result);
 
+  // Whether settled() would change the budget or the flags.
+  [[nodiscard]] bool concerns(const StepResult& result) const;
+
   // The result with its final budget and flags; not provisional any more. Its Monte Carlo check is
   // not drawn again.
   [[nodiscard]] StepResult settled(StepResult result) const;
@@ -38,18 +49,35 @@ private:
   using Line = std::tuple<std::string, analysis::LineKind, double, int>; // channel, Hz, order
   using StepOfChannel = std::tuple<std::string, std::uint32_t, std::uint32_t>;
 
-  [[nodiscard]] bool is_new(const StepOfChannel& where, std::uint32_t attempt);
-  [[nodiscard]] std::optional<double> square_of(const ChannelLines& channel,
-                                                const analysis::UnresolvedLine& line) const;
-  void settle(const ChannelLines& channel, StepResult& result) const;
-
   struct Measured {
     StepOfChannel where;
-    analysis::MeasuredAmplitude amplitude;
+    analysis::MeasuredAmplitude line;
+    double excitation = 0.0;
+  };
+  using MeasuredLines = std::map<Line, std::vector<Measured>>;
+
+  struct Bound {
+    double square = 0.0; // h^2
+    bool from_driven_steps = false;
+    bool significant = false;
   };
 
+  [[nodiscard]] bool is_new(const StepOfChannel& where, std::uint32_t attempt);
+  [[nodiscard]] const std::vector<Measured>& driven(const Line& line) const;
+  [[nodiscard]] const std::vector<Measured>& in_quiet(const Line& line) const;
+  [[nodiscard]] std::optional<double> driven_to_quiet(const Line& line,
+                                                      const StepOfChannel& where) const;
+  [[nodiscard]] Bound bound_of(const Line& line, const StepOfChannel& where,
+                               double excitation) const;
+  [[nodiscard]] std::optional<double> square_of_harmonic(const std::string& channel,
+                                                         int order) const;
+  void settle_mains(const ChannelLines& channel, StepResult& result) const;
+  void settle_background(const ChannelLines& channel, StepResult& result) const;
+  void settle_harmonics(const ChannelLines& channel, StepResult& result) const;
+
   std::map<StepOfChannel, std::uint32_t> known_; // with the attempt
-  std::map<Line, std::vector<Measured>> measured_;
+  MeasuredLines driven_;
+  MeasuredLines quiet_;
 };
 
 } // namespace dyncal::services

@@ -225,19 +225,19 @@ void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutpu
   for (StepResult& result : results) {
     summary_.add(result);
     line_bounds_.add(result);
-    keep_if_provisional(result);
+    keep(result);
     output.results.push_back(std::move(result));
   }
 }
 
 // In place of that of an earlier attempt.
-void RunEvaluator::keep_if_provisional(const StepResult& result) {
-  std::erase_if(provisional_, [&](const StepResult& other) {
+void RunEvaluator::keep(const StepResult& result) {
+  std::erase_if(results_, [&](const StepResult& other) {
     return other.step == result.step && other.repetition == result.repetition &&
            other.channel == result.channel;
   });
-  if (result.provisional) {
-    provisional_.push_back(result);
+  if (!result.lines.empty()) {
+    results_.push_back(result);
   }
 }
 
@@ -312,22 +312,23 @@ EvaluationOutput RunEvaluator::take_output() {
 }
 
 Evaluation RunEvaluator::settlement() {
+  std::vector<StepResult> concerned = std::exchange(results_, {});
+  std::erase_if(concerned, [&](const StepResult& one) { return !line_bounds_.concerns(one); });
   if (count_) {
-    count_->begin("settling", "results", provisional_.size());
+    count_->begin("settling", "results", concerned.size());
   }
-  return
-      [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
-       provisional = std::exchange(provisional_, {}), count = count_](const std::stop_token& stop) {
-        std::vector<StepResult> settled;
-        for (const StepResult& one : provisional) {
-          settled.push_back(bounds.settled(one));
-          redo_monte_carlo_check(trials, stop, settled.back());
-          if (count) {
-            count->add_done();
-          }
-        }
-        return settled;
-      };
+  return [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
+          concerned = std::move(concerned), count = count_](const std::stop_token& stop) {
+    std::vector<StepResult> settled;
+    for (const StepResult& one : concerned) {
+      settled.push_back(bounds.settled(one));
+      redo_monte_carlo_check(trials, stop, settled.back());
+      if (count) {
+        count->add_done();
+      }
+    }
+    return settled;
+  };
 }
 
 void RunEvaluator::finish(EvaluationOutput& output) {

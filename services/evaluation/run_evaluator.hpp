@@ -9,7 +9,8 @@
 // give the same results bit for bit.
 //
 // A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
-// the end of the run, when all steps tell how large that line may be (line_bounds.hpp).
+// the end of the run, when all steps tell how large that line may be (line_bounds.hpp). Where they
+// show something else at its frequency, its u grows then, although it was not provisional.
 //
 // A step may be excited again after the planned ones, as announced: it is searched behind all that
 // was found, and its results take the place of those before. Where steps are announced at all, the
@@ -49,8 +50,9 @@ struct EvaluationOutput {
   std::vector<StepResult> results;
   std::vector<TransferFunction> transfer_functions; // at the end of the run
   std::vector<ClockReport> clock_reports;           // at the end of the run
-  // At the end of the run: those that were provisional, to take the place of what was handed over
-  // with the same channel, step and repetition.
+  // At the end of the run: those that were provisional, and those in whose background the other
+  // steps found something; to take the place of what was handed over with the same channel, step
+  // and repetition.
   std::vector<StepResult> settled;
 };
 
@@ -145,7 +147,7 @@ private:
   bool evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] Evaluation evaluation_of_next_step();
   void evaluate_ahead();
-  void keep_if_provisional(const StepResult& result);
+  void keep(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
   [[nodiscard]] Evaluation settlement();
   void follow_clock(const SourceRecord& record, const SourceBlock& block);
@@ -159,8 +161,8 @@ private:
   RateWatch rate_watch_;
   TransferSummary summary_;
   LineBounds line_bounds_;
-  std::vector<StepResult> provisional_;
-  struct AheadOfEnd { // the next step as it is expected to be
+  std::vector<StepResult> results_; // that the end of the run may settle
+  struct AheadOfEnd {               // the next step as it is expected to be
     StepSnapshot inputs;
     std::vector<StepResult> results;
   };

@@ -137,6 +137,11 @@ Expected<void> read_hum(FaultText& text, BenchFaults& faults) {
   if (!channel || !part || !frequency_hz) {
     return fail(!channel ? channel.error() : !part ? part.error() : frequency_hz.error());
   }
+  const std::string when = text.take("while").value_or("always");
+  if (when != "always" && when != "driven") {
+    return text.refuse("write while=driven, or nothing for hum that is always there");
+  }
+  (*channel)->hum_while_driven = when == "driven";
   (*channel)->hum_rel = *part;
   (*channel)->hum_hz = *frequency_hz;
   return {};
@@ -195,6 +200,15 @@ Expected<void> read_exciter_gain(FaultText& text, BenchFaults& faults) {
   return {};
 }
 
+Expected<void> read_ring_down(FaultText& text, BenchFaults& faults) {
+  const auto time_s = text.value("SECONDS", 1e-3, 10.0);
+  if (!time_s) {
+    return fail(time_s.error());
+  }
+  faults.ring_down_s = *time_s;
+  return {};
+}
+
 Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
   const auto probability = text.value("PROBABILITY", 0.0, 1.0);
   if (!probability) {
@@ -210,15 +224,16 @@ struct Fault {
   Expected<void> (*read)(FaultText&, BenchFaults&);
 };
 
-constexpr std::array<Fault, 8> known_faults{{
+constexpr std::array<Fault, 9> known_faults{{
     {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
     {"stuck", "stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
-    {"hum", "hum=PART,at=CHANNEL[,frequency=HZ]", read_hum},
+    {"hum", "hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
     {"drift", "drift=PART_PER_SECOND,at=CHANNEL", read_drift},
     {"loss", "loss=PROBABILITY,at=sensor|acs[,counted=no]", read_loss},
     {"free-running", "free-running", read_free_running},
     {"start-jitter", "start-jitter=SECONDS", read_start_jitter},
     {"exciter-gain", "exciter-gain=FACTOR", read_exciter_gain},
+    {"ring-down", "ring-down=SECONDS", read_ring_down},
 }};
 
 std::vector<std::string> forms() {

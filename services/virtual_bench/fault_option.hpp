@@ -3,13 +3,15 @@
 //
 //   over-range=LIMIT,at=CHANNEL        end stops at +-LIMIT in m/s^2 or V
 //   stuck=SAMPLES,at=CHANNEL           for so many samples, every second, or every=SECONDS
-//   hum=PART,at=CHANNEL                of the signal, at 50 Hz, or frequency=HZ
+//   hum=PART,at=CHANNEL                of the signal, at 50 Hz, or frequency=HZ; while=driven: only
+//                                      while the generator's output is on
 //   drift=PART,at=CHANNEL              of the signal per second, from each change of the generator
 //   loss=PROBABILITY,at=sensor|acs     per sample, or per frame of the ACS; counted=no: the numbers
 //                                      of the samples do not show it
 //   free-running                       the time series sensor starts with its next own sample
 //   start-jitter=SECONDS               standard deviation of its start from shot to shot
 //   exciter-gain=FACTOR                times the acceleration that a volt should give
+//   ring-down=SECONDS                  time constant of the exciter after a step, 0.04 as a rule
 //   NAME=PROBABILITY                   per sample, of a stamp (stamp_faults.hpp)
 //
 // CHANNEL is sensor, reference, sync_acs or sync_dau. Fails (bad_argument) with the whole option.

@@ -6,7 +6,8 @@
 //
 //   range      end stops at +-range, which its description states, whatever the level
 //   stuck      the value of one sample for so many samples, again and again
-//   hum        mains: an added sine of constant amplitude, between the steps too
+//   hum        mains: an added sine of constant amplitude, between the steps too, or only while the
+//              generator's output is on
 //   drift      of the zero: rises from each change of the generator on, while its output is on
 //
 // Hum and drift are in parts of the signal: of the highest level, or of the amplitude of sync.
@@ -26,6 +27,7 @@ struct ChannelFaults {
   double stuck_every_s = 1.0;
   double hum_rel = 0.0;
   double hum_hz = 50.0;
+  bool hum_while_driven = false;
   double drift_rel_per_s = 0.0;
 };
 
@@ -51,6 +53,7 @@ struct BenchFaults {
   SeriesStart series_start;
   StampFaultProbabilities stamps;
   double exciter_gain = 1.0; // times level_per_volt: an amplifier that somebody turned up
+  double ring_down_s = 0.0;  // time constant of the exciter after a step; 0: its usual one
 };
 
 } // namespace dyncal::drivers::virtual_bench

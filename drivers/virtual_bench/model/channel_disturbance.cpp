@@ -18,7 +18,7 @@ ChannelDisturbance::ChannelDisturbance(std::uint64_t seed, std::string_view name
 
 double ChannelDisturbance::added(double time_s, const Motion& motion) const {
   double value = 0.0;
-  if (faults_.hum_rel != 0.0) {
+  if (faults_.hum_rel != 0.0 && (motion.sync_on || !faults_.hum_while_driven)) {
     value += faults_.hum_rel *
              std::sin(2.0 * std::numbers::pi * faults_.hum_hz * time_s + hum_phase_rad_);
   }

@@ -33,7 +33,8 @@ const Excitation::Segment& Excitation::segment_at(double time_s) const {
 }
 
 std::complex<double> Excitation::envelope(const Segment& segment, double time_s) const {
-  const double x = (time_s - segment.begin_s) / exciter_.settling_time_s;
+  const double x =
+      (time_s - segment.begin_s) / (segment.on ? exciter_.settling_time_s : exciter_.ring_down_s);
   if (x > 40.0) {
     return segment.target;
   }

@@ -4,8 +4,9 @@
 // the first, gives the sync signal of constant amplitude.
 //
 // The exciter turns V into acceleration with a magnitude and phase response of its own; after every
-// change the complex envelope approaches its new value with exp(-t/settling time). Second and third
-// harmonic are in a fixed ratio to the fundamental.
+// change the complex envelope approaches its new value with exp(-t/settling time), or 0 with
+// exp(-t/ring-down time) when the output is switched off. Second and third harmonic are in a fixed
+// ratio to the fundamental.
 //
 // Bench time is in seconds from the start of the bench. Times may be asked for up to `memory_s`
 // before the newest change. One thread.
@@ -28,6 +29,7 @@ struct Drive { // what the generator is set to
 struct ExciterModel {
   double acceleration_per_volt = 50.0; // m/s^2 per V at low frequency
   double settling_time_s = 0.04;
+  double ring_down_s = 0.04; // likewise, of what it does when the generator's output is off
   double delay_s = 0.21e-3;
   double corner_hz = 900.0;
   double second_harmonic = 0.004; // parts of the fundamental, -40..-60 dB

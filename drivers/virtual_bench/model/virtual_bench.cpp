@@ -23,6 +23,9 @@ ExciterModel draw_exciter(const BenchSettings& settings) {
   Random random(settings.seed, "exciter");
   ExciterModel exciter;
   exciter.acceleration_per_volt = VirtualBench::level_per_volt * settings.faults.exciter_gain;
+  if (settings.faults.ring_down_s > 0.0) {
+    exciter.ring_down_s = settings.faults.ring_down_s;
+  }
   exciter.second_harmonic = std::pow(10.0, random.uniform(-52.0, -42.0) / 20.0);
   exciter.third_harmonic = std::pow(10.0, random.uniform(-60.0, -48.0) / 20.0);
   exciter.second_phase_rad = random.uniform(0.0, 2.0 * std::numbers::pi);

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include <fmt/core.h>
+
+#include "analysis/sine/background_spectrum.hpp"
+#include "analysis/sine/stationary_line.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -11,13 +16,14 @@ namespace {
 using analysis::LineAmplitude;
 using analysis::LineKind;
 
-constexpr double shorter = 0.7;         // steps may be shorter than this one by so much
-constexpr double min_quiet_periods = 5; // of a line, in quiet time
+constexpr double shorter = 0.7; // steps may be shorter than this one by so much
 
 struct WantedLine {
   LineKind kind;
-  double line_hz; // of the mains
+  double line_hz; // of the mains, of a background
   int order;      // of a harmonic
+
+  friend bool operator==(const WantedLine&, const WantedLine&) = default;
 };
 
 double rate_of(std::span<const std::int64_t> stamps_ns) {
@@ -29,19 +35,40 @@ double duration_of(std::span<const std::int64_t> stamps_ns) {
   return static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
 }
 
-// Lines that a step of the recipe may not tell from its excitation.
+WantedLine wanted_line(const analysis::UnresolvedLine& line) {
+  return line.kind == LineKind::mains ? WantedLine{LineKind::mains, line.line_hz, 0}
+                                      : WantedLine{LineKind::harmonic, 0.0, line.order};
+}
+
+bool is_of_mains(const WantedLine& line) {
+  return line.kind == LineKind::mains;
+}
+
+// What a step cannot tell from its excitation: lines of the mains, and harmonics; without the mains
+// whatever else there may be at its frequency.
+std::vector<WantedLine> wanted_of(double frequency_hz,
+                                  const std::vector<analysis::UnresolvedLine>& unresolved) {
+  std::vector<WantedLine> wanted;
+  std::transform(unresolved.begin(), unresolved.end(), std::back_inserter(wanted), wanted_line);
+  if (std::none_of(wanted.begin(), wanted.end(), is_of_mains)) {
+    wanted.push_back({LineKind::background, frequency_hz, 0});
+  }
+  return wanted;
+}
+
+// Of all steps of the recipe, if they are as short as they may be.
 std::vector<WantedLine> wanted_lines(const Recipe& recipe, double duration_s, double rate_hz) {
   std::vector<WantedLine> wanted;
+  std::vector<double> frequencies_hz;
   for (const RecipeStep& step : recipe.steps) {
-    for (const analysis::UnresolvedLine& line :
-         analysis::unresolved_lines(step.frequency.hz(), shorter * duration_s, rate_hz)) {
-      const WantedLine one = line.kind == LineKind::mains
-                                 ? WantedLine{LineKind::mains, line.line_hz, 0}
-                                 : WantedLine{LineKind::harmonic, 0.0, line.order};
-      const bool known = std::any_of(wanted.begin(), wanted.end(), [&](const WantedLine& other) {
-        return other.kind == one.kind && other.line_hz == one.line_hz && other.order == one.order;
-      });
-      if (!known) {
+    const double f = step.frequency.hz();
+    if (std::find(frequencies_hz.begin(), frequencies_hz.end(), f) != frequencies_hz.end()) {
+      continue;
+    }
+    frequencies_hz.push_back(f);
+    for (const WantedLine& one :
+         wanted_of(f, analysis::unresolved_lines(f, shorter * duration_s, rate_hz))) {
+      if (std::find(wanted.begin(), wanted.end(), one) == wanted.end()) {
         wanted.push_back(one);
       }
     }
@@ -49,58 +76,63 @@ std::vector<WantedLine> wanted_lines(const Recipe& recipe, double duration_s, do
   return wanted;
 }
 
+MeasuredLine measured_line(const WantedLine& line, const LineAmplitude& found, double unit) {
+  return {line.kind, line.line_hz, line.order, {found.amplitude / unit, found.u_component / unit}};
+}
+
 void measure_in_step(const std::vector<WantedLine>& wanted, const analysis::ChannelFit& fit,
                      std::span<const std::int64_t> stamps_ns, std::span<const double> values,
                      ChannelLines& lines) {
   const double f = fit.frequency.hz();
   const double rate_hz = rate_of(stamps_ns);
-  std::vector<double> residuals;
+  double highest_hz = 0.0;
   for (const WantedLine& one : wanted) {
-    const double line_hz = one.kind == LineKind::mains ? one.line_hz : one.order * f;
-    if (!analysis::is_resolved(line_hz, one.order, f, lines.duration_s, rate_hz)) {
-      continue;
-    }
-    if (residuals.empty()) {
-      residuals =
-          analysis::residuals_of(fit.frequency, fit.fit, fit.phase_origin_ns, stamps_ns, values);
-    }
-    if (const auto line = analysis::measure_line(line_hz, stamps_ns, residuals)) {
-      const double unit = one.kind == LineKind::mains ? 1.0 : lines.amplitude;
-      lines.measured.push_back(
-          {one.kind, one.line_hz, one.order, {line->amplitude / unit, line->u_component / unit}});
+    highest_hz = std::max(highest_hz, analysis::folded_hz(one.line_hz, rate_hz));
+  }
+  const std::vector<double> residuals =
+      analysis::residuals_of(fit.frequency, fit.fit, fit.phase_origin_ns, stamps_ns, values);
+  const auto background =
+      highest_hz > 0.0
+          ? analysis::BackgroundSpectrum::of_residuals(f, highest_hz, stamps_ns, residuals)
+          : std::nullopt;
+  for (const WantedLine& one : wanted) {
+    if (one.kind != LineKind::harmonic) {
+      const auto found =
+          background ? background->line(analysis::folded_hz(one.line_hz, rate_hz)) : std::nullopt;
+      if (found) {
+        lines.measured.push_back(measured_line(one, *found, 1.0));
+      }
+    } else if (analysis::is_resolved(one.order * f, one.order, f, lines.duration_s, rate_hz)) {
+      if (const auto found = analysis::measure_line(one.order * f, stamps_ns, residuals)) {
+        lines.measured.push_back(measured_line(one, *found, lines.amplitude));
+      }
     }
   }
 }
 
+// An exciter rings down in the beginning of quiet time: what its later parts show counts, if the
+// whole of it does not last.
 void measure_in_quiet(const std::vector<WantedLine>& wanted, const StepSamples& quiet,
                       std::size_t column, ChannelLines& lines) {
-  const auto& stamps_ns = quiet.stamps_ns;
-  if (stamps_ns.size() < 3) {
+  if (quiet.stamps_ns.size() < 3) {
     return;
   }
-  const double duration_s = duration_of(stamps_ns);
+  const double rate_hz = rate_of(quiet.stamps_ns);
   for (const WantedLine& one : wanted) {
-    const double rate_hz = rate_of(stamps_ns);
-    const double seen_hz = analysis::folded_hz(one.line_hz, rate_hz);
-    if (one.kind != LineKind::mains || seen_hz * duration_s < min_quiet_periods ||
-        (0.5 * rate_hz - seen_hz) * duration_s < min_quiet_periods) {
+    const bool own = one.kind == LineKind::background && one.line_hz == lines.frequency_hz;
+    if (one.kind != LineKind::mains && !own) {
       continue;
     }
-    const auto values = quiet.columns[column];
-    const std::size_t half = values.size() / 2;
-    auto chosen = analysis::measure_line(one.line_hz, stamps_ns, values);
-    const auto early =
-        analysis::measure_line(one.line_hz, stamps_ns.first(half), values.first(half));
-    const auto late =
-        analysis::measure_line(one.line_hz, stamps_ns.subspan(half), values.subspan(half));
-    if (early && late &&
-        std::abs(early->amplitude - late->amplitude) >
-            4.0 * std::hypot(early->u_component, late->u_component)) {
-      chosen = early->amplitude < late->amplitude ? early : late;
-    }
-    if (chosen) {
-      lines.measured.push_back(
-          {one.kind, one.line_hz, 0, {chosen->amplitude, chosen->u_component}});
+    const double seen_hz = analysis::folded_hz(one.line_hz, rate_hz);
+    for (const std::size_t part : {1, 2, 4}) {
+      const std::size_t first = quiet.stamps_ns.size() - quiet.stamps_ns.size() / part;
+      const auto found =
+          analysis::measure_stationary_line(one.line_hz, seen_hz, quiet.stamps_ns.subspan(first),
+                                            quiet.columns[column].subspan(first));
+      if (found) {
+        lines.in_quiet.push_back(measured_line(one, *found, 1.0));
+        break;
+      }
     }
   }
 }
@@ -110,6 +142,19 @@ struct StepLines {
   std::vector<WantedLine> wanted;
 };
 
+// Of the step whose excitation was found here.
+double planned_hz(const Recipe& recipe, double found_hz) {
+  double nearest_hz = found_hz;
+  double distance_hz = std::numeric_limits<double>::infinity();
+  for (const RecipeStep& step : recipe.steps) {
+    if (std::abs(step.frequency.hz() - found_hz) < distance_hz) {
+      nearest_hz = step.frequency.hz();
+      distance_hz = std::abs(nearest_hz - found_hz);
+    }
+  }
+  return nearest_hz;
+}
+
 StepLines check_step(const Recipe& recipe, const LineSubject& subject,
                      const analysis::ChannelFit& fit, std::span<const std::int64_t> stamps_ns,
                      std::span<const double> values) {
@@ -118,6 +163,7 @@ StepLines check_step(const Recipe& recipe, const LineSubject& subject,
   lines.channel = fit.channel;
   lines.subject = subject.name;
   lines.counts_in_magnitude = subject.counts_in_magnitude;
+  lines.frequency_hz = planned_hz(recipe, fit.frequency.hz());
   lines.amplitude = fit.fit.amplitude();
   if (stamps_ns.size() < 3 || !(lines.amplitude > 0.0)) {
     return found;
@@ -171,6 +217,10 @@ Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& li
   return {ResultFlag::harmonic_not_separated,
           fmt::format("{}: harmonic {} {}", channel, line.order,
                       to_string(ResultFlag::harmonic_not_separated))};
+}
+
+std::string background_row(const std::string& subject) {
+  return "background in " + subject;
 }
 
 } // namespace dyncal::services

@@ -2,9 +2,10 @@
 // quiet time before it tell of those that some step of the recipe cannot tell: for the end of the
 // run, where one bounds the other (line_bounds.hpp).
 //
-// Measured are only lines that a step of the recipe may need, at the sample rate this channel has.
-// In quiet time an excitation that dies away is no hum: of its two halves the quieter one counts
-// where they differ. Plain functions, any thread.
+// Measured are only lines that a step of the recipe may need, at the sample rate this channel has:
+// lines of the mains that it cannot tell, or else whatever there is at its own frequency. In quiet
+// time a line counts only where it is shown to last: an excitation that dies away is no hum. Plain
+// functions, any thread.
 #pragma once
 
 #include <cstdint>
@@ -41,5 +42,9 @@ void add_lines(std::vector<ChannelLines> lines, StepResult& result);
 
 // "dau/dos: hum at 50 Hz cannot be told from the excitation".
 [[nodiscard]] Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& line);
+
+// Name of the row for what is at the frequency beside the excitation, other than mains: "background
+// in the reference".
+[[nodiscard]] std::string background_row(const std::string& subject);
 
 } // namespace dyncal::services

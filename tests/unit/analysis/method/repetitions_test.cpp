@@ -101,6 +101,28 @@ TEST(Repetitions, WhatLastsOfADrawnRowIsCommon) {
   EXPECT_EQ(repetition.u_common_phase_rad, 0.0);
 }
 
+// A bound of hum lengthens nothing: three singles of 1.0088 were reported as 1.0006.
+TEST(Repetitions, OnlyNoiseOfThePhasorIsTakenOffTheirLengths) {
+  std::vector<Repetition> repetitions;
+  for (int i = 0; i < 3; ++i) {
+    const std::array budget{
+        Contribution{
+            .kind = ContributionKind::fit_noise, .u_magnitude_rel = 2e-4, .u_phase_rad = 2e-4},
+        Contribution{
+            .kind = ContributionKind::mains_hum, .u_magnitude_rel = 0.15, .u_phase_rad = 0.15}};
+    repetitions.push_back(make_repetition(h_of(1.0088, 0.1), budget));
+    EXPECT_NEAR(repetitions.back().u_not_noise_magnitude_rel, 0.15, 1e-12);
+  }
+  const auto mean = mean_of_repetitions(repetitions);
+  ASSERT_TRUE(mean.has_value());
+  EXPECT_NEAR(mean->magnitude, 1.0088, 1e-12);
+  for (Repetition& repetition : repetitions) {
+    repetition.u_not_noise_magnitude_rel = 0.0; // noise of 15 % lengthens by 1 %
+  }
+  EXPECT_NEAR(mean_of_repetitions(repetitions)->magnitude, 1.0088 * (1.0 - 0.5 * 0.15 * 0.15),
+              1e-3);
+}
+
 TEST(Repetitions, NoiseHasNoPhase) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 1e-3);

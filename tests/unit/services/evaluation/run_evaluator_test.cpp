@@ -109,11 +109,14 @@ TEST(RunEvaluator, TakesTheUncertaintyOfAnAdcThatIsNotCalibratedIntoTheBudget) {
   }
 }
 
-const analysis::Contribution* hum_of_sensor(const StepResult& result) {
-  const auto found = std::find_if(result.budget.begin(), result.budget.end(), [](const auto& row) {
-    return row.kind == analysis::ContributionKind::mains_hum && row.subject == "the sensor";
-  });
-  return found == result.budget.end() ? nullptr : &*found;
+double u_hum_of_sensor(const StepResult& result) {
+  double squares = 0.0;
+  for (const analysis::Contribution& row : result.budget) {
+    if (row.kind == analysis::ContributionKind::mains_hum && row.subject == "the sensor") {
+      squares += row.u_phase_rad * row.u_phase_rad;
+    }
+  }
+  return std::sqrt(squares);
 }
 
 TEST(RunEvaluator, BoundsHumBesideAStepByOtherStepsAndByQuietTime) {
@@ -132,13 +135,15 @@ TEST(RunEvaluator, BoundsHumBesideAStepByOtherStepsAndByQuietTime) {
                   testing::Contains("dau/acceleration_z: hum at 50 Hz cannot be told from the "
                                     "excitation"));
       EXPECT_FALSE(settled.provisional);
-      EXPECT_THAT(sentences_of(settled.flags), testing::IsEmpty());
+      if (run == &others) { // else the amplifier may hum while it drives
+        EXPECT_THAT(sentences_of(settled.flags), testing::IsEmpty());
+      }
       EXPECT_EQ(settled.step, first.step);
       EXPECT_EQ(settled.magnitude, first.magnitude);
-      const analysis::Contribution* hum = hum_of_sensor(settled);
-      ASSERT_NE(hum, nullptr);
-      EXPECT_NEAR(hum->u_phase_rad, 0.1 / 9.5 / std::numbers::sqrt2, 0.1 * hum->u_phase_rad);
-      EXPECT_NEAR(settled.u_phase_rad, std::hypot(first.u_phase_rad, hum->u_phase_rad),
+      const double u_hum = u_hum_of_sensor(settled);
+      const double of_two = run == &others ? std::sqrt(1.75) : 1.0; // background_power.hpp
+      EXPECT_NEAR(u_hum, of_two * 0.1 / 9.5 / std::numbers::sqrt2, 0.1 * u_hum);
+      EXPECT_NEAR(settled.u_phase_rad, std::hypot(first.u_phase_rad, u_hum),
                   0.01 * settled.u_phase_rad);
       EXPECT_LT(std::abs(settled.magnitude - 0.95), 2.0 * settled.u_magnitude);
       ASSERT_FALSE(output.transfer_functions.empty());

@@ -24,7 +24,8 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
       faults_of({"over-range=30,at=sensor", "over-range=5,at=reference",
                  "stuck=50,at=sync_acs,every=0.5", "hum=0.001,at=sync_dau,frequency=60",
                  "drift=-0.02,at=reference", "loss=0.01,at=sensor,counted=no", "loss=0.05,at=acs",
-                 "free-running", "start-jitter=50e-6", "exciter-gain=50", "second-slip=0.001"});
+                 "free-running", "start-jitter=50e-6", "exciter-gain=50", "ring-down=0.2",
+                 "hum=0.002,at=sensor,frequency=16.7,while=driven", "second-slip=0.001"});
   EXPECT_EQ(faults.sensor.range, 30.0);
   EXPECT_EQ(faults.reference.range, 5.0);
   EXPECT_EQ(faults.sync_acs.stuck_samples, 50U);
@@ -39,6 +40,10 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
   EXPECT_TRUE(faults.series_start.free_running);
   EXPECT_EQ(faults.series_start.jitter_s, 50e-6);
   EXPECT_EQ(faults.exciter_gain, 50.0);
+  EXPECT_EQ(faults.ring_down_s, 0.2);
+  EXPECT_EQ(faults.sensor.hum_hz, 16.7);
+  EXPECT_TRUE(faults.sensor.hum_while_driven);
+  EXPECT_FALSE(faults.sync_dau.hum_while_driven);
   EXPECT_EQ(faults.stamps.at("second-slip"), 0.001);
 }
 

@@ -43,7 +43,7 @@ ChannelLines lines_of(const Recipe& recipe, double frequency_hz) {
 }
 
 TEST(LineCheck, MeasuresOnlyWhatAStepOfTheRecipeNeeds) {
-  EXPECT_TRUE(lines_of(recipe_of({"80", "160"}), 80.0).measured.empty());
+  EXPECT_TRUE(lines_of(recipe_of({"80", "160"}), 80.0).measured.empty()); // a harmonic
   const ChannelLines lines = lines_of(recipe_of({"80", "50.1"}), 80.0);
   EXPECT_TRUE(lines.unresolved.empty());
   ASSERT_EQ(lines.measured.size(), 1U);
@@ -51,6 +51,16 @@ TEST(LineCheck, MeasuresOnlyWhatAStepOfTheRecipeNeeds) {
   EXPECT_NEAR(lines.measured[0].measured.amplitude, 0.02,
               4.0 * lines.measured[0].measured.u_component);
   EXPECT_NEAR(lines.amplitude, 10.0, 0.01);
+}
+
+// Of whatever kind it is: here at the frequency of another step, beside no line of the mains.
+TEST(LineCheck, MeasuresTheBackgroundAtTheFrequenciesOfOtherSteps) {
+  const ChannelLines lines = lines_of(recipe_of({"80", "63"}), 80.0);
+  ASSERT_EQ(lines.measured.size(), 1U);
+  EXPECT_EQ(lines.measured[0].kind, LineKind::background);
+  EXPECT_EQ(lines.measured[0].line_hz, 63.0);
+  EXPECT_LT(lines.measured[0].measured.amplitude, 6.0 * lines.measured[0].measured.u_component);
+  EXPECT_EQ(lines.frequency_hz, 80.0);
 }
 
 TEST(LineCheck, HarmonicsArePartsOfTheAmplitude) {

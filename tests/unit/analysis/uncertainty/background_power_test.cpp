@@ -1,0 +1,85 @@
+#include "analysis/uncertainty/background_power.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::analysis {
+namespace {
+
+// Amplitudes as a spectrum gives them: noise of 1 in both components, known from 12 neighbours.
+std::vector<MeasuredBackground> draw(double h, int count, std::mt19937_64& random,
+                                     double excitation = 10.0) {
+  std::normal_distribution<double> noise;
+  std::gamma_distribution<double> known(6.0, 1.0 / 6.0);
+  std::vector<MeasuredBackground> measured;
+  for (int i = 0; i < count; ++i) {
+    measured.push_back(
+        {{std::hypot(h + noise(random), noise(random)), std::sqrt(known(random))}, excitation});
+  }
+  return measured;
+}
+
+TEST(BackgroundPower, NothingIsKnownWithoutAMeasurement) {
+  EXPECT_EQ(background_power({}, 10.0).square, 0.0);
+  EXPECT_FALSE(background_power({}, 10.0).significant);
+}
+
+TEST(BackgroundPower, NoiseIsSeldomSignificantAndCostsLittle) {
+  for (const int count : {1, 2, 5, 20, 60}) {
+    std::mt19937_64 random(5);
+    int significant = 0;
+    double square = 0.0;
+    constexpr int runs = 2000;
+    for (int run = 0; run < runs; ++run) {
+      const BackgroundPower power = background_power(draw(0.0, count, random), 10.0);
+      significant += power.significant;
+      square += power.square / runs;
+    }
+    EXPECT_LE(significant, 4) << count;
+    EXPECT_LT(square, count == 1 ? 3.5 : 1.5) << count;
+  }
+}
+
+TEST(BackgroundPower, WhatManyStepsShowIsSignificant) {
+  std::mt19937_64 random(6);
+  for (int run = 0; run < 100; ++run) {
+    const BackgroundPower few = background_power(draw(12.0, 3, random), 10.0);
+    EXPECT_TRUE(few.significant);
+    EXPECT_NEAR(few.square, 144.0 * (1.0 + 3.0 / 9.0), 100.0);
+    const BackgroundPower many = background_power(draw(3.0, 40, random), 10.0);
+    EXPECT_TRUE(many.significant);
+    EXPECT_GT(many.square, 9.0);
+    EXPECT_LT(many.square, 30.0);
+  }
+}
+
+MeasuredBackground seen(double amplitude, double excitation) {
+  return {{amplitude, 0.01}, excitation};
+}
+
+TEST(BackgroundPower, OneDisturbedStepIsNotTakenForAll) {
+  const std::vector<MeasuredBackground> measured{seen(1.0, 10.0), seen(0.01, 10.0),
+                                                 seen(0.01, 10.0), seen(0.01, 10.0)};
+  EXPECT_NEAR(background_power(measured, 10.0).square, 0.5 * (1.0 + 3.0 / 16.0), 0.01);
+}
+
+TEST(BackgroundPower, GrowsWithTheDriveUnlessTheStepsSayOtherwise) {
+  // All driven alike: who knows; the larger.
+  const std::vector<MeasuredBackground> alike(40, seen(1.0, 10.0));
+  EXPECT_NEAR(background_power(alike, 10.0).square, 1.0, 0.01);
+  EXPECT_NEAR(background_power(alike, 50.0).square, 25.0, 0.1);
+  EXPECT_NEAR(background_power(alike, 2.0).square, 1.0, 0.01);
+  EXPECT_NEAR(background_power(alike, 50.0, true).square, 1.0, 0.01);
+  // It grew, or did not, from step to step.
+  const std::vector<MeasuredBackground> growing{seen(1.0, 10.0), seen(2.0, 20.0), seen(4.1, 40.0)};
+  EXPECT_NEAR(background_power(growing, 10.0).square, 1.0 + 3.0 / 9.0, 0.1);
+  const std::vector<MeasuredBackground> constant{seen(1.0, 10.0), seen(1.05, 20.0),
+                                                 seen(1.0, 40.0)};
+  EXPECT_NEAR(background_power(constant, 400.0).square, 1.05 * (1.0 + 3.0 / 9.0), 0.1);
+}
+
+} // namespace
+} // namespace dyncal::analysis
