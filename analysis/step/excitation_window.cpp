@@ -7,6 +7,7 @@
 
 #include "analysis/base/statistics.hpp"
 #include "analysis/step/frame_sine.hpp"
+#include "analysis/step/phase_line.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -365,10 +366,29 @@ std::optional<ExcitationWindow> ExcitationWindowFinder::steady_part() const {
       (2.0 * pi * frequency_.hz() * static_cast<double>((last.index - first.index) * frame_ns_) *
        1e-9);
   window.frames = part.size();
+  describe_sine(part, window);
   if (static_cast<double>(window.end_ns - window.begin_ns) * 1e-9 < settings_.min_duration_s) {
     return std::nullopt;
   }
   return window;
+}
+
+void ExcitationWindowFinder::describe_sine(Frames part, ExcitationWindow& window) const {
+  const std::int64_t first = run_[part.begin].index;
+  std::vector<FramePhase> phases;
+  for (std::size_t i = part.begin; i < part.end; ++i) {
+    phases.push_back({static_cast<double>(run_[i].index - first), run_[i].phase_rad,
+                      run_[i].u_amplitude / run_[i].amplitude});
+  }
+  const PhaseLine line = fit_phase_line(phases);
+  const auto frame_ns = static_cast<double>(frame_ns_);
+  const double turns_a_frame = frequency_.hz() * frame_ns * 1e-9;
+  window.frequency_hz = frequency_.hz() * (1.0 + line.slope_rad / (2.0 * pi * turns_a_frame));
+  window.u_frequency_rel = line.u_slope_rad / (2.0 * pi * turns_a_frame);
+  window.middle_ns = first * frame_ns_ + std::llround((line.x_mean + 0.5) * frame_ns);
+  window.phase_rad =
+      wrapped(line.mean_rad + 2.0 * pi * frequency_.reduced_turns(window.middle_ns - *origin_ns_));
+  window.u_phase_rad = line.u_mean_rad;
 }
 
 } // namespace dyncal::analysis

@@ -51,6 +51,13 @@ struct ExcitationWindow {
   double amplitude = 0.0;  // of the plateau, in the unit of the channel
   double frequency_offset_rel = 0.0; // of the sine in this clock against the nominal frequency
   std::size_t frames = 0;            // of the steady part
+  // Of a sine through the phases of the steady part, all in this clock: its frequency, and its
+  // phase (lead) in the middle.
+  double frequency_hz = 0.0;
+  double u_frequency_rel = 0.0;
+  std::int64_t middle_ns = 0;
+  double phase_rad = 0.0;
+  double u_phase_rad = 0.0;
 };
 
 class ExcitationWindowFinder {
@@ -107,6 +114,7 @@ private:
   [[nodiscard]] Frames without_edges(Frames part) const;
   [[nodiscard]] bool has_nominal_frequency(std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::optional<ExcitationWindow> steady_part() const;
+  void describe_sine(Frames part, ExcitationWindow& window) const;
   [[nodiscard]] double mean_advance_rad() const;
 
   Frequency frequency_;

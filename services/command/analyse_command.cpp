@@ -10,6 +10,7 @@
 #include "services/command/run_command.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/evaluation/run_evaluator.hpp"
+#include "services/evaluation/step_survey.hpp"
 #include "services/exchange/opened_recording.hpp"
 #include "services/replay/file_input.hpp"
 #include "services/replay/sample_memory.hpp"
@@ -156,6 +157,52 @@ Expected<BenchFile> read_bench_or_folder(const std::filesystem::path& path) {
              : read_bench_file(path);
 }
 
+// Reads them once more, for all that they show of any step.
+Expected<std::shared_ptr<const RunSchedule>>
+look_at_all(const BenchFile& bench, const Recipe& recipe, const std::stop_token& stop) {
+  StepSurvey survey(recipe);
+  for (const std::string& name : recipe.sources()) {
+    if (!survey.looks_at(name)) {
+      continue;
+    }
+    auto input = FileInput::open(*bench.source(name));
+    if (!input) {
+      return fail(input.error());
+    }
+    survey.describe(name, (*input)->description());
+    for (bool ended = false; !ended && !stop.stop_requested();) {
+      const auto block = (*input)->next();
+      if (!block) {
+        return fail(block.error());
+      }
+      survey.add(name, (*input)->view(*block));
+      ended = block->end_of_stream;
+    }
+  }
+  return survey.schedule();
+}
+
+struct Evaluated {
+  RunOutcome outcome;
+  bool needs_survey = false;
+};
+
+Expected<Evaluated> evaluate_files(const BenchFile& bench, const Recipe& recipe,
+                                   const EvaluationLimits& limits, const std::stop_token& stop) {
+  Evaluated evaluated{.outcome = outcome_of(recipe)};
+  evaluated.outcome.adc_file = adc_file_of(bench);
+  RunEvaluator evaluator(recipe, limits);
+  auto inputs = open_inputs(bench, evaluator, evaluated.outcome);
+  if (!inputs) {
+    return fail(inputs.error());
+  }
+  if (const auto done = evaluate(std::move(*inputs), evaluator, stop, evaluated.outcome); !done) {
+    return fail(done.error());
+  }
+  evaluated.needs_survey = !evaluated.outcome.interrupted && evaluator.needs_survey();
+  return evaluated;
+}
+
 Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   const WorkProgress progress("reading");
   if (is_recording(command.bench_file)) {
@@ -174,24 +221,27 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (!adc) {
     return fail(adc.error());
   }
-  auto recipe = plan_recipe(*bench, "files", *adc);
+  const auto recipe = plan_recipe(*bench, "files", *adc);
   if (!recipe) {
     return fail(recipe.error());
   }
-  RunOutcome outcome = outcome_of(*recipe);
-  outcome.adc_file = adc_file_of(*bench);
-  RunEvaluator evaluator(std::move(*recipe),
-                         {.evaluations_at_once = std::clamp<std::size_t>(
+  EvaluationLimits limits{.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
                           .clock_to_the_end = true,
-                          .count = progress.count()});
-  auto inputs = open_inputs(*bench, evaluator, outcome);
-  if (!inputs) {
-    return fail(inputs.error());
+                          .count = progress.count()};
+  auto evaluated = evaluate_files(*bench, *recipe, limits, stop);
+  if (evaluated && evaluated->needs_survey) {
+    auto schedule = look_at_all(*bench, *recipe, stop);
+    if (!schedule) {
+      return fail(schedule.error());
+    }
+    limits.schedule = std::move(*schedule);
+    evaluated = evaluate_files(*bench, *recipe, limits, stop);
   }
-  if (const auto evaluated = evaluate(std::move(*inputs), evaluator, stop, outcome); !evaluated) {
+  if (!evaluated) {
     return fail(evaluated.error());
   }
+  RunOutcome outcome = std::move(evaluated->outcome);
   outcome.analysis_dds = "none";
   outcome.analysis_software = software_version();
   add_recorded_time(outcome);

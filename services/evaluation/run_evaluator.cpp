@@ -43,7 +43,8 @@ Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
-      records_(*recipe_, method_->searches(), limits.samples_of_a_source, limits.behind),
+      records_(*recipe_, method_->searches(), limits.samples_of_a_source, limits.behind,
+               limits.schedule),
       level_watch_(*recipe_), rate_watch_(*recipe_), summary_(*recipe_),
       runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
@@ -189,6 +190,11 @@ std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
   const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() &&
                        !lost_at_clock_end_ && !records_.of(clock_->source()).ended();
   return goes_on ? std::optional(clock_->source()) : std::nullopt;
+}
+
+bool RunEvaluator::needs_survey() const {
+  return !recipe_->whole_record && !records_.excitation().is_conducted() &&
+         !records_.agree_with_plan();
 }
 
 bool RunEvaluator::is_evaluated(const TriggeredRecord& record) const {

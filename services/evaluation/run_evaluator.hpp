@@ -73,6 +73,8 @@ struct EvaluationLimits {
   bool ahead = false;      // in the caller's thread only: before the end of a step has come
   // The run began before: its samples come before what was announced about them (step_search.hpp).
   bool behind = false;
+  // Where the steps are, from somebody who has looked at the whole records (step_survey.hpp).
+  std::shared_ptr<const RunSchedule> schedule{};
 };
 
 class RunEvaluator {
@@ -126,6 +128,10 @@ public:
   [[nodiscard]] bool is_evaluating() const { return !evaluations_.is_idle(); }
   // Every planned step has been evaluated; some may be excited again.
   [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->steps.size(); }
+  // Nobody conducts this run, and its records do not show all planned steps one after the other, or
+  // not the same ones: whether each was taken for the right one, only a survey of all that they
+  // show can tell (step_survey.hpp). REQUIRES: finished()
+  [[nodiscard]] bool needs_survey() const;
   // Everything of this run has been handed over.
   [[nodiscard]] bool finished() const { return finished_; }
   // Ends the run with what there is, whatever is still missing.

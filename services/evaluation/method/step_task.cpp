@@ -102,9 +102,13 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
   return task;
 }
 
-std::string no_sine(const RunRecords& records, const RecipeStep& step, const ChannelName& sync) {
-  return fmt::format("no steady sine of {} Hz was found in {}{}", step.frequency_text_hz,
-                     sync.text(), likely_cause(records, step, sync.source));
+std::string no_sine(const RunRecords& records, std::size_t step, const ChannelName& sync) {
+  if (auto known = records.why_missing(step); !known.empty()) {
+    return known;
+  }
+  const RecipeStep& planned = records.planned(step);
+  return fmt::format("no steady sine of {} Hz was found in {}{}", planned.frequency_text_hz,
+                     sync.text(), likely_cause(records, planned, sync.source));
 }
 
 } // namespace dyncal::services

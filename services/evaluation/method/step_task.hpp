@@ -33,9 +33,10 @@ struct StepTask {
                                       const ExcitationProgress& excitation,
                                       const std::vector<SourceInterval>& sources);
 
-// Why a step has no interval in the source of this sync channel: what is known of the source, the
-// connection of sync only where nothing else is.
-[[nodiscard]] std::string no_sine(const RunRecords& records, const RecipeStep& step,
+// Why a step has no interval in the source of this sync channel: what the whole records show where
+// somebody has looked at them, what is known of the source, the connection of sync only where
+// nothing else is.
+[[nodiscard]] std::string no_sine(const RunRecords& records, std::size_t step,
                                   const ChannelName& sync);
 
 } // namespace dyncal::services

@@ -18,6 +18,7 @@
 
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/excitation_progress.hpp"
+#include "services/evaluation/record/run_schedule.hpp"
 #include "services/evaluation/record/source_record.hpp"
 #include "services/evaluation/record/step_search.hpp"
 #include "services/evaluation/record/time_interval.hpp"
@@ -41,9 +42,10 @@ struct SourceInterval {
 
 class RunRecords {
 public:
-  // `capacity`: samples that a source's record holds. `behind`: step_search.hpp.
+  // `capacity`: samples that a source's record holds. `behind`, `schedule`: step_search.hpp.
   RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
-             std::size_t capacity = SourceRecord::default_capacity, bool behind = false);
+             std::size_t capacity = SourceRecord::default_capacity, bool behind = false,
+             std::shared_ptr<const RunSchedule> schedule = nullptr);
   RunRecords(const RunRecords&) = delete; // its searches look at it
   RunRecords& operator=(const RunRecords&) = delete;
 
@@ -84,6 +86,13 @@ public:
   // Of the step in the clock of one search, in the order of the channels given.
   [[nodiscard]] std::optional<TimeInterval> interval(std::size_t search, std::size_t step) const;
 
+  // Every search has found every step, all of it, and the instants of their excitations agree
+  // between the searches. REQUIRES: all of the records was searched.
+  [[nodiscard]] bool agree_with_plan() const;
+  // Why a step has no value, where one channel was found to lack it, or somebody has looked for it
+  // before (run_schedule.hpp).
+  [[nodiscard]] std::string why_missing(std::size_t step) const;
+
   // Evaluated in the caller's thread these look at the records themselves, else at copies.
   void copy_samples(bool copies) { copies_ = copies; }
   // Of the step in a source; nothing where no search applies to it or the step was not found.
@@ -98,20 +107,29 @@ public:
 private:
   struct Search {
     std::string source; // whose channel is searched
+    std::string channel;
     std::vector<std::string> sources;
     StepSearch steps;
   };
 
+  [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
+  void search_all(std::size_t expected);
+  void compare_instants();
+  void compare_instants(std::size_t step);
+  [[nodiscard]] bool may_be_another(std::size_t step) const;
   [[nodiscard]] std::shared_ptr<const SourceRecord> part_of(const SourceRecord& whole,
                                                             const TimeInterval& interval) const;
   void follow_restarts();
 
   ExcitationProgress excitation_;
   bool behind_; // samples come before what was announced about them
+  std::shared_ptr<const RunSchedule> schedule_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   // By source and step: its newest stamp when the step was announced to be over.
   std::map<std::string, std::map<std::size_t, std::int64_t>> newest_when_over_ns_;
   std::vector<Search> searches_;
+  std::size_t compared_ = 0;                   // steps before this one
+  std::map<std::size_t, std::string> lacking_; // by step, the channel that lacks it
   bool copies_ = false;
 };
 

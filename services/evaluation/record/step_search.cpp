@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "services/evaluation/record/cut_step.hpp"
+#include "services/evaluation/record/good_samples.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -12,26 +15,23 @@ constexpr double distinct_frequencies_rel = 0.01; // that no window of one is on
 constexpr std::int64_t max_quiet_ns = 2'000'000'000;
 
 constexpr std::int64_t beginning_of_time = std::numeric_limits<std::int64_t>::min();
-constexpr std::int64_t end_of_time = std::numeric_limits<std::int64_t>::max();
 
 std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * ns_per_s));
 }
 
-// What to evaluate of a step that was excited in this window.
-TimeInterval evaluated_part(const analysis::ExcitationWindow& window, const RecipeStep& step,
-                            bool settling_from_data) {
-  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
-  return {settling_from_data ? window.begin_ns : planned_begin,
-          std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1};
-}
-
 } // namespace
 
 StepSearch::StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
-                       std::string sync_channel, bool behind)
+                       std::string sync_channel, bool behind,
+                       std::optional<RunSchedule::OfRecord> schedule)
     : recipe_(recipe), order_(order), record_(record), sync_channel_(std::move(sync_channel)),
-      behind_(behind), search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
+      behind_(behind), schedule_(std::move(schedule)), search_from_ns_(beginning_of_time),
+      expected_until_ns_(beginning_of_time) {}
+
+const std::optional<ScheduledStep>* StepSearch::scheduled(std::size_t step) const {
+  return schedule_ && step < schedule_->size() ? &(*schedule_)[step] : nullptr;
+}
 
 void StepSearch::search_step(std::size_t step) {
   step_ = step;
@@ -53,6 +53,10 @@ void StepSearch::advance(std::size_t last_step) {
     return;
   }
   while (step_ <= last_step && step_ < order_.size()) {
+    if (const auto* seen = scheduled(step_); seen != nullptr && !*seen) {
+      search_step(step_ + 1);
+      continue;
+    }
     feed();
     if (!finder_) {
       return;
@@ -82,36 +86,23 @@ void StepSearch::feed() {
   if (!channel) {
     return;
   }
+  if (!record_begin_ns_ && !record_.stamps_ns().empty()) {
+    record_begin_ns_ = record_.stamps_ns().front();
+  }
   if (!finder_) {
+    if (const auto* seen = scheduled(step_); seen != nullptr && *seen) {
+      search_from_ns_ = std::max(search_from_ns_, (*seen)->search_from_ns);
+    }
     finder_.emplace(order_.step(step_).frequency);
   }
-  push_good(*finder_,
-            static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten()),
-            end_of_time);
+  push_good_samples(
+      record_, *channel,
+      {static_cast<std::size_t>(std::max(fed_, record_.forgotten()) - record_.forgotten()),
+       search_from_ns_},
+      *finder_);
   fed_ = record_.forgotten() + record_.stamps_ns().size();
   if (record_.ended()) {
     finder_->finish();
-  }
-}
-
-// The samples from where the search is to before `end_ns`, from the `from`-th that is held on.
-void StepSearch::push_good(analysis::ExcitationWindowFinder& finder, std::size_t from,
-                           std::int64_t end_ns) const {
-  const auto stamps = record_.stamps_ns();
-  const auto flags = record_.flags();
-  const auto sync = record_.column(*record_.channel(sync_channel_));
-  const auto good = [&](std::size_t i) {
-    return flags[i] == 0 && stamps[i] >= search_from_ns_ && stamps[i] < end_ns;
-  };
-  for (std::size_t i = from; i < stamps.size();) {
-    const std::size_t begin = i;
-    while (i < stamps.size() && good(i)) {
-      ++i;
-    }
-    finder.push(stamps.subspan(begin, i - begin), sync.subspan(begin, i - begin));
-    while (i < stamps.size() && !good(i)) {
-      ++i;
-    }
   }
 }
 
@@ -139,7 +130,7 @@ bool StepSearch::shows_before(std::size_t step, std::int64_t end_ns) const {
     return false;
   }
   analysis::ExcitationWindowFinder finder(planned.frequency);
-  push_good(finder, 0, end_ns);
+  push_good_samples(record_, *record_.channel(sync_channel_), {0, search_from_ns_, end_ns}, finder);
   finder.finish();
   const auto window = finder.window();
   return window && window->end_ns - window->begin_ns >= excited_ns / 2;
@@ -156,17 +147,43 @@ void StepSearch::expect() {
   const RecipeStep& step = order_.step(step_);
   const auto window = finder_->window();
   if (window && window->end_ns >= window->begin_ns + to_ns(step.settling_s + step.duration_s)) {
-    expected_ = {evaluated_part(*window, step, recipe_.settling_from_data), quiet_time(*window)};
+    expected_ = {evaluated_part(*window), quiet_time(*window), {*window, finder_->frame_ns()}};
   }
 }
 
 void StepSearch::accept(const analysis::ExcitationWindow& window) {
-  const TimeInterval part = evaluated_part(window, order_.step(step_), recipe_.settling_from_data);
+  if (const auto* seen = scheduled(step_);
+      seen != nullptr && *seen &&
+      (window.begin_ns >= (*seen)->excited.end_ns || window.end_ns <= (*seen)->excited.begin_ns)) {
+    search_step(step_ + 1);
+    return;
+  }
+  const TimeInterval part = evaluated_part(window);
   if (part.end_ns > part.begin_ns) {
-    found_[step_] = {part, quiet_time(window)};
+    found_[step_] = {
+        part, quiet_time(window), {window, finder_->frame_ns()}, search_from_ns_, restarts_};
   }
   search_from_ns_ = window.off_ns;
   search_step(step_ + 1);
+}
+
+// Of the step that is searched, which was excited in this window.
+TimeInterval StepSearch::evaluated_part(const analysis::ExcitationWindow& window) const {
+  const RecipeStep& step = order_.step(step_);
+  if (const auto* seen = scheduled(step_);
+      seen != nullptr && *seen && (*seen)->evaluated && !recipe_.settling_from_data) {
+    return {std::max(window.begin_ns, (*seen)->evaluated->begin_ns),
+            std::min(window.end_ns - 1, (*seen)->evaluated->end_ns)};
+  }
+  const std::int64_t planned_begin = window.begin_ns + to_ns(step.settling_s);
+  return {recipe_.settling_from_data ? window.begin_ns : planned_begin,
+          std::min(planned_begin + to_ns(step.duration_s), window.end_ns) - 1};
+}
+
+bool StepSearch::begins_within_step() const {
+  return record_begin_ns_ && std::any_of(found_.begin(), found_.end(), [&](const auto& one) {
+           return begins_with_record(one.second.excitation, *record_begin_ns_);
+         });
 }
 
 std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWindow& window) const {
@@ -207,6 +224,28 @@ std::optional<TimeInterval> StepSearch::interval(std::size_t step) const {
     return found->second.interval;
   }
   return step == step_ && expected_ ? std::optional(expected_->interval) : std::nullopt;
+}
+
+const FoundExcitation* StepSearch::excitation(std::size_t step) const {
+  const auto found = found_.find(step);
+  return found == found_.end() ? nullptr : &found->second.excitation;
+}
+
+bool StepSearch::are_of_one_session(std::size_t step, std::size_t other) const {
+  const auto one = found_.find(step);
+  const auto before = found_.find(other);
+  return one != found_.end() && before != found_.end() &&
+         one->second.session == before->second.session;
+}
+
+void StepSearch::pass_over(std::size_t step) {
+  const auto found = found_.find(step);
+  if (found == found_.end()) {
+    return;
+  }
+  search_from_ns_ = found->second.searched_from_ns;
+  found_.erase(found, found_.end());
+  search_step(step + 1);
 }
 
 std::optional<TimeInterval> StepSearch::quiet_before(const TimeInterval& interval) const {

@@ -10,6 +10,10 @@
 // over without being found, and its repeat behind all others would be taken for it. Then a step was
 // passed over when a later one, of another frequency, was excited before what shows of it.
 //
+// Where somebody has looked at the whole record before (`schedule`), a step is searched behind the
+// excitation that was found before it, and only found where it was seen; one that the record lacks
+// is passed over.
+//
 // Belongs to one thread; the record and the recipe must outlive it.
 #pragma once
 
@@ -20,6 +24,8 @@
 
 #include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/recorded_excitations.hpp"
+#include "services/evaluation/record/run_schedule.hpp"
 #include "services/evaluation/record/source_record.hpp"
 #include "services/evaluation/record/step_order.hpp"
 #include "services/evaluation/record/time_interval.hpp"
@@ -30,7 +36,8 @@ class StepSearch {
 public:
   // `order` too outlives the search.
   StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
-             std::string sync_channel, bool behind = false);
+             std::string sync_channel, bool behind = false,
+             std::optional<RunSchedule::OfRecord> schedule = {});
 
   // Looks at the samples that have come since the last call, as far as `last_step`.
   void advance(std::size_t last_step);
@@ -45,6 +52,14 @@ public:
   [[nodiscard]] std::optional<TimeInterval> quiet_before(const TimeInterval& interval) const;
   // The first instant of interest for this step, quiet time before it included.
   [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
+  // Where the step was found; nothing for one that was not.
+  [[nodiscard]] const FoundExcitation* excitation(std::size_t step) const;
+  // Both were found in one session of the source: its clock went on between them.
+  [[nodiscard]] bool are_of_one_session(std::size_t step, std::size_t other) const;
+  // What was found of the step is of a later one: this one, the record lacks.
+  void pass_over(std::size_t step);
+  // Some step was found where the record begins: what is missing of it, the order does not tell.
+  [[nodiscard]] bool begins_within_step() const;
   // The step whose excitation is searched now.
   [[nodiscard]] std::size_t step() const { return step_; }
   // Nothing comes any more in the source's present session: a step that is expected is found.
@@ -59,6 +74,9 @@ private:
   struct Found {
     TimeInterval interval;
     std::optional<TimeInterval> quiet{};
+    FoundExcitation excitation{};
+    std::int64_t searched_from_ns = 0;
+    std::uint32_t session = 0;
   };
 
   void search_step(std::size_t step);
@@ -68,8 +86,9 @@ private:
   void accept(const analysis::ExcitationWindow& window);
   [[nodiscard]] bool was_passed_over(const analysis::ExcitationWindow& window);
   [[nodiscard]] bool shows_before(std::size_t step, std::int64_t end_ns) const;
-  void push_good(analysis::ExcitationWindowFinder& finder, std::size_t from,
-                 std::int64_t end_ns) const;
+  // Nothing was scheduled, or this: where it was seen.
+  [[nodiscard]] const std::optional<ScheduledStep>* scheduled(std::size_t step) const;
+  [[nodiscard]] TimeInterval evaluated_part(const analysis::ExcitationWindow& window) const;
   [[nodiscard]] std::optional<TimeInterval>
   quiet_time(const analysis::ExcitationWindow& window) const;
 
@@ -78,9 +97,11 @@ private:
   const SourceRecord& record_;
   std::string sync_channel_;
   bool behind_;
+  std::optional<RunSchedule::OfRecord> schedule_;
   std::uint32_t restarts_ = 0;
   std::size_t step_ = 0;
   std::int64_t search_from_ns_;
+  std::optional<std::int64_t> record_begin_ns_; // its first stamp
   std::uint64_t fed_ = 0; // samples of the record, counted from its very first
   std::optional<analysis::ExcitationWindowFinder> finder_;
   std::map<std::size_t, Found> found_;

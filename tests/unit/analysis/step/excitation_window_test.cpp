@@ -200,6 +200,27 @@ TEST(ExcitationWindow, FollowsAGeneratorThatIsOffByAThousandth) {
   }
 }
 
+TEST(ExcitationWindow, TellsFrequencyAndPhaseOfTheSine) {
+  for (const double offset_rel : {-8e-4, 0.0, 5e-5}) {
+    const double real_hz = 80.0 * (1.0 + offset_rel);
+    const Stream stream =
+        record({{0.0, 0.0, 0.5}, {real_hz, 1.0, 2.0, 0.7}, {0.0, 0.0, 0.5}}, {.noise = 0.01});
+    const auto window = search(stream, 80.0);
+    ASSERT_TRUE(window.has_value());
+    EXPECT_NEAR(window->frequency_hz / real_hz, 1.0, 4.0 * window->u_frequency_rel);
+    EXPECT_LT(window->u_frequency_rel, 2e-6);
+    EXPECT_GT(window->u_frequency_rel, 1e-8);
+    EXPECT_GT(window->middle_ns, window->begin_ns);
+    EXPECT_LT(window->middle_ns, window->end_ns);
+    const double since_begin_s =
+        static_cast<double>(window->middle_ns - stream.begins_ns[1]) * 1e-9;
+    const double phase_rad = 2.0 * std::numbers::pi * real_hz * since_begin_s + 0.7;
+    EXPECT_NEAR(std::remainder(window->phase_rad - phase_rad, 2.0 * std::numbers::pi), 0.0,
+                4.0 * window->u_phase_rad);
+    EXPECT_LT(window->u_phase_rad, 1e-3);
+  }
+}
+
 TEST(ExcitationWindow, LeavesOutTheRiseOfTheAmplitude) {
   const Stream stream = record({{0, 0, 0.5}, {80.0, 1.0, 4.0, 0.0, 0.3}, {0, 0, 0.5}}, {});
   const auto window = search(stream, 80.0);

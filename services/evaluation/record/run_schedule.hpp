@@ -1,0 +1,29 @@
+// Where every step of a run is in the records, from somebody who has looked at all of them before
+// the evaluation begins (step_alignment.hpp). Plain data; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/record/time_interval.hpp"
+
+namespace dyncal::services {
+
+struct ScheduledStep {
+  std::int64_t search_from_ns = 0; // end of the excitation before it in this record
+  TimeInterval excited{};
+  std::optional<TimeInterval> evaluated{}; // of a step within which the record begins
+  friend bool operator==(const ScheduledStep&, const ScheduledStep&) = default;
+};
+
+struct RunSchedule {
+  // By step in the order of their excitation; nothing: the record does not show the step.
+  using OfRecord = std::vector<std::optional<ScheduledStep>>;
+
+  std::vector<OfRecord> records;     // in the order of the method's searches
+  std::vector<std::string> problems; // by step: why it has no value; empty where it has one
+};
+
+} // namespace dyncal::services
