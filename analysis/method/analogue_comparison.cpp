@@ -3,17 +3,22 @@
 #include <cmath>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
-#include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
-Budget systematic_rows(const RecordedChannel& reference, double w,
-                       const ReferenceResponse& response, const ComparisonUncertainty& systematic) {
+Budget noise_of(const RecordedChannel& reference) {
   Budget budget;
   add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
+  return budget;
+}
+
+Budget systematic_rows(double w, const ReferenceResponse& response,
+                       const ComparisonUncertainty& systematic) {
+  Budget budget;
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the channels",
               .u_phase_rad = w * systematic.channel_delay_s});
@@ -25,47 +30,63 @@ Budget systematic_rows(const RecordedChannel& reference, double w,
 } // namespace
 
 Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
-  const auto system = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                                input.stamps_ns, input.reference, input.dut);
+  auto system = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                          input.stamps_ns, input.reference, input.dut);
   if (!system) {
     return fail(system.error());
   }
+  const BlocksOfClock blocks = learn_from_blocks(*system);
   const RecordedChannel& reference = system->pilot;
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
                                     reference.phasor() * input.reference_response.phasor();
-  const Budget common = systematic_rows(reference, w, input.reference_response, input.systematic);
-  ComparisonResult result{reference.result, {}};
-  for (const RecordedChannel& dut : system->others) {
+  const Budget noise = noise_of(reference);
+  const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
+  ComparisonResult result{reference.result, {}, {}};
+  add_knock(reference, result.findings);
+  for (std::size_t i = 0; i < system->others.size(); ++i) {
+    const RecordedChannel& dut = system->others[i];
     Budget budget;
     add_sensor_rows(budget, dut, 0.0);
-    budget.append(common);
-    budget.add_excess("the signals",
-                      ratio_scatter(reference.result.frequency, input.stamps_ns, dut.values(),
-                                    reference.values()),
-                      budget.u_magnitude_rel(), budget.u_phase_rad());
-    result.points.push_back(transfer_point(dut, link, budget));
+    budget.append(noise);
+    const auto ratio = compare(blocks.others[i], blocks.pilot, {});
+    add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
+    budget.append(systematic);
+    result.points.push_back(transfer_point(dut, link * factor_of(ratio), budget));
+    result.findings.points.push_back(
+        findings_of(ratio, dut.noise_unknown || reference.noise_unknown));
+    add_knock(dut, result.findings);
   }
   return result;
 }
 
 Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input) {
-  const auto acs = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                             input.reference_stamps_ns, input.reference, {});
+  auto acs = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                       input.reference_stamps_ns, input.reference, {});
   if (!acs) {
     return fail(acs.error());
   }
+  const BlocksOfClock blocks = learn_from_blocks(*acs);
   const RecordedChannel& reference = acs->pilot;
-  ComparisonResult result{reference.result, {}};
+  ComparisonResult result{reference.result, {}, {}};
+  add_knock(reference, result.findings);
   const double w = reference.result.frequency.angular();
-  const Budget common = systematic_rows(reference, w, input.reference_response, input.systematic);
+  const Budget noise = noise_of(reference);
+  const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
                                     reference.phasor() * input.reference_response.phasor();
   const OwnClockUncertainty clock{.clock_offset_s = input.systematic.clock_offset_s,
                                   .stamp_jitter_s = input.systematic.stamp_jitter_s};
   for (const ChannelSamples& channel : input.dut) {
-    auto point = evaluate_own_clock_channel(reference.result, link, common, input.dut_stamps_ns,
-                                            channel, clock);
+    auto point = evaluate_own_clock_channel(reference.result, input.reference_stamps_ns.front(),
+                                            {.link = link,
+                                             .noise = noise,
+                                             .systematic = systematic,
+                                             .sync = std::nullopt,
+                                             .denominator = blocks.pilot,
+                                             .alignment = {},
+                                             .noise_unknown = reference.noise_unknown},
+                                            input.dut_stamps_ns, channel, clock, result.findings);
     if (!point) {
       return fail(point.error());
     }

@@ -27,6 +27,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/instrument/reference_calibration.hpp"
+#include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
@@ -65,6 +66,7 @@ struct AbsoluteTimeInput {
 struct ComparisonResult {
   ChannelFit reference;
   std::vector<TransferPoint> points; // in the order of `dut`
+  StepFindings findings{};
 };
 
 [[nodiscard]] Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input);

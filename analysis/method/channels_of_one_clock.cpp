@@ -26,7 +26,8 @@ struct FitNoise {
   double u_phase_rad = 0.0;
 };
 
-FitNoise fit_noise(const ChannelFit& channel, double jitter_s) {
+FitNoise fit_noise(const RecordedChannel& recorded, double jitter_s) {
+  const ChannelFit& channel = recorded.result;
   const double variance = channel.fit.residual_sd() * channel.fit.residual_sd();
   const double by_jitter =
       0.5 * std::pow(channel.frequency.angular() * channel.fit.amplitude() * jitter_s, 2);
@@ -37,7 +38,7 @@ FitNoise fit_noise(const ChannelFit& channel, double jitter_s) {
   const double u_amplitude =
       channel.fit.amplitude() > 0.0 ? channel.fit.u_amplitude() : u_component;
   const double u_phase = channel.fit.amplitude() > 0.0 ? channel.fit.u_phase_rad() : 0.0;
-  return {u_amplitude * kept, u_phase * kept};
+  return {u_amplitude * kept * recorded.noise_factor, u_phase * kept * recorded.noise_factor};
 }
 
 QuantisationUncertainty quantisation(const RecordedChannel& recorded) {
@@ -53,7 +54,7 @@ struct SensorNoise {
   double amplitude = 0.0; // never so small that a quotient would be meaningless
 
   SensorNoise(const RecordedChannel& recorded, double jitter_s)
-      : noise(fit_noise(recorded.result, jitter_s)), steps(quantisation(recorded)),
+      : noise(fit_noise(recorded, jitter_s)), steps(quantisation(recorded)),
         u_amplitude(std::hypot(noise.u_amplitude, steps.u_amplitude)),
         amplitude(std::max(recorded.amplitude(), 1e-6 * u_amplitude)) {}
 
@@ -206,12 +207,12 @@ Expected<void> require_excitation(const RecordedChannel& recorded) {
 
 void add_signal_rows(Budget& budget, const std::string& what, const RecordedChannel& recorded,
                      double jitter_s, CountsIn counts_in) {
-  const FitNoise noise = fit_noise(recorded.result, jitter_s);
+  const FitNoise noise = fit_noise(recorded, jitter_s);
   const QuantisationUncertainty steps = quantisation(recorded);
   const double relative = counts_in == CountsIn::phase ? 0.0 : 1.0 / recorded.amplitude();
   budget.add({.kind = ContributionKind::fit_noise,
               .subject = what,
-              .degrees_of_freedom = recorded.result.fit.degrees_of_freedom,
+              .degrees_of_freedom = recorded.noise_freedom(),
               .u_magnitude_rel = noise.u_amplitude * relative,
               .u_phase_rad = noise.u_phase_rad});
   budget.add({.kind = ContributionKind::quantisation,
@@ -228,7 +229,7 @@ void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jit
   budget.add(
       {.kind = ContributionKind::fit_noise,
        .subject = "the sensor",
-       .degrees_of_freedom = recorded.result.fit.degrees_of_freedom,
+       .degrees_of_freedom = recorded.noise_freedom(),
        .u_magnitude_rel = sensor.noise.u_amplitude * relative,
        .u_phase_rad = weak ? phase_standard_uncertainty(sensor.snr()) : sensor.noise.u_phase_rad});
   budget.add({.kind = ContributionKind::quantisation,

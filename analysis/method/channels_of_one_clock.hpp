@@ -18,6 +18,7 @@
 
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/transfer_point.hpp"
+#include "analysis/step/short_disturbance.hpp"
 #include "analysis/uncertainty/budget.hpp"
 
 namespace dyncal::analysis {
@@ -34,7 +36,16 @@ struct RecordedChannel {
   std::vector<double> cleaned; // the samples without disturbances, where some were found
   ChannelSamples samples;
   std::span<const std::int64_t> stamps_ns;
+  // Of noise near the frequency (noise_near_signal.hpp), against white noise.
+  double noise_factor = 1.0;
+  double noise_degrees_of_freedom = 0.0; // 0: those of the fit
+  bool noise_unknown = false;            // slow, and the record too short to know it
+  std::optional<ShortDisturbance> knock{};
 
+  [[nodiscard]] double noise_freedom() const {
+    return noise_degrees_of_freedom > 0.0 ? noise_degrees_of_freedom
+                                          : result.fit.degrees_of_freedom;
+  }
   [[nodiscard]] std::span<const double> values() const {
     return cleaned.empty() ? samples.values : std::span<const double>(cleaned);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 
 namespace dyncal::analysis {
@@ -20,23 +21,43 @@ void add_jitter(Budget& budget, double w, double jitter_s, double samples) {
               .u_lasting_magnitude_rel = shortening});
 }
 
+// In blocks on the pilot's time scale, `distance_s` of the first samples apart.
+std::optional<RatioInBlocks> ratio_in_blocks(std::optional<BlockSeries> sensor,
+                                             const OwnClockLink& link, double distance_s) {
+  if (!sensor) {
+    return std::nullopt;
+  }
+  for (double& time_s : sensor->time_s) {
+    time_s += distance_s;
+  }
+  if (link.sync) {
+    refer_phase(*sensor, *link.sync, 0.0);
+  }
+  return compare(sensor, link.denominator, link.alignment);
+}
+
 } // namespace
 
-Expected<TransferPoint> evaluate_own_clock_channel(const ChannelFit& pilot,
-                                                   std::complex<double> link, const Budget& common,
-                                                   std::span<const std::int64_t> dut_stamps_ns,
-                                                   const ChannelSamples& dut,
-                                                   const OwnClockUncertainty& clock) {
-  const auto sensor = fit_weak_channel(pilot.frequency, dut_stamps_ns, dut);
+Expected<TransferPoint>
+evaluate_own_clock_channel(const ChannelFit& pilot, std::int64_t pilot_first_ns,
+                           const OwnClockLink& link, std::span<const std::int64_t> dut_stamps_ns,
+                           const ChannelSamples& dut, const OwnClockUncertainty& clock,
+                           StepFindings& findings) {
+  auto sensor = fit_weak_channel(pilot.frequency, dut_stamps_ns, dut);
   if (!sensor) {
     return fail(sensor.error());
   }
+  const std::optional<RatioInBlocks> ratio =
+      ratio_in_blocks(learn_from_blocks(*sensor), link,
+                      static_cast<double>(dut_stamps_ns.front() - pilot_first_ns) * 1e-9);
   const double turns =
       pilot.frequency.reduced_turns(sensor->result.phase_origin_ns - pilot.phase_origin_ns);
   Budget budget;
   add_sensor_rows(budget, *sensor, clock.stamp_jitter_s);
   add_jitter(budget, pilot.frequency.angular(), clock.stamp_jitter_s,
              static_cast<double>(sensor->result.fit.samples));
+  budget.append(link.noise);
+  add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
   // The middles of the two records are apart: an error of the frequency turns one against the
   // other.
   const double distance_s =
@@ -46,8 +67,12 @@ Expected<TransferPoint> evaluate_own_clock_channel(const ChannelFit& pilot,
               .u_phase_rad = 2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(distance_s)});
   budget.add({.kind = ContributionKind::clock_offset,
               .u_phase_rad = pilot.frequency.angular() * clock.clock_offset_s});
-  budget.append(common);
-  return transfer_point(*sensor, link * std::polar(1.0, -2.0 * std::numbers::pi * turns), budget);
+  budget.append(link.systematic);
+  findings.points.push_back(findings_of(ratio, link.noise_unknown || sensor->noise_unknown));
+  add_knock(*sensor, findings);
+  return transfer_point(
+      *sensor, link.link * factor_of(ratio) * std::polar(1.0, -2.0 * std::numbers::pi * turns),
+      budget);
 }
 
 } // namespace dyncal::analysis

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
-#include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -15,22 +17,23 @@ double common_jitter_s(const SystematicUncertainty& systematic) {
   return std::max(systematic.dau_jitter_s, systematic.dau_tick_s / std::sqrt(12.0));
 }
 
-// Rows of the reference side and of the corrections, the same for every channel of the sensor.
-Budget common_budget(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                     const RecordedChannel& sync_dau) {
+// Noise of the channels that all channels of the sensor share.
+Budget common_noise(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                    const RecordedChannel& sync_dau) {
+  Budget budget;
+  add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
+  add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
+  add_signal_rows(budget, "the DAU sync", sync_dau,
+                  std::hypot(input.systematic.sync_adc_jitter_s, common_jitter_s(input.systematic)),
+                  CountsIn::phase);
+  return budget;
+}
+
+// Rows of the corrections, the same for every channel of the sensor.
+Budget systematic_rows(const SampleStampingInput& input, const RecordedChannel& sync_dau) {
   const SystematicUncertainty& systematic = input.systematic;
-  const RecordedChannel& reference = acs.others.front();
   const double w = input.frequency.angular();
   Budget budget;
-  add_signal_rows(budget, "the reference", reference, 0.0, CountsIn::magnitude_and_phase);
-  add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
-  budget.add_excess("the reference",
-                    ratio_scatter(reference.result.frequency, input.acs_stamps_ns,
-                                  reference.values(), acs.pilot.values()),
-                    budget.u_magnitude_rel(), budget.u_phase_rad());
-  add_signal_rows(budget, "the DAU sync", sync_dau,
-                  std::hypot(systematic.sync_adc_jitter_s, common_jitter_s(systematic)),
-                  CountsIn::phase);
   budget.add({.kind = ContributionKind::sync_jitter,
               .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
                              systematic.sync_adc_jitter_s});
@@ -67,32 +70,61 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Rec
   add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
 }
 
+// The records of the two clocks begin where the search found their step, in frames of a grid of
+// each clock's own (excitation_window.hpp): up to one frame apart. Sync says the rest, modulo a
+// period.
+BlockAlignment alignment_of(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                            const RecordedChannel& sync_dau) {
+  constexpr double frame_s = 0.1;
+  constexpr double frame_periods = 50.0;
+  const auto turns_at_begin = [](const RecordedChannel& sync) {
+    const ChannelFit& fit = sync.result;
+    return fit.fit.phase_rad() / (2.0 * std::numbers::pi) +
+           fit.frequency.reduced_turns(sync.stamps_ns.front() - fit.phase_origin_ns);
+  };
+  const double lag_turns = input.adc.phase_lag_rad / (2.0 * std::numbers::pi);
+  const double period_s = 1.0 / sync_dau.result.frequency.hz();
+  return {.offset_s = (turns_at_begin(sync_dau) + lag_turns - turns_at_begin(acs.pilot)) * period_s,
+          .period_s = period_s,
+          .reach_s = std::max(period_s, std::min(frame_s, frame_periods * period_s))};
+}
+
+// What all channels of the sensor are compared with.
+struct Comparison {
+  std::complex<double> link;
+  const Budget& noise;
+  const Budget& systematic;
+  std::optional<BlockSeries> reference;
+  BlockAlignment alignment;
+  bool noise_unknown = false;
+};
+
 TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedChannel& dut,
-                               const RecordedChannel& sync_dau, std::complex<double> link,
-                               const Budget& common) {
+                               const RecordedChannel& sync_dau,
+                               const std::optional<BlockSeries>& blocks, const Comparison& with,
+                               StepFindings& findings) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
   add_stamp_noise(budget, input, dut, sync_dau);
-  budget.add_excess(
-      "the sensor's signal",
-      ratio_scatter(dut.result.frequency, input.dau_stamps_ns, dut.values(), sync_dau.values()),
-      budget.u_magnitude_rel(),
-      std::hypot(budget.u_phase_rad(), sync_dau.result.fit.u_phase_rad()));
-  budget.append(common);
-  return transfer_point(dut, link, budget);
+  budget.append(with.noise);
+  const auto ratio = compare(blocks, with.reference, with.alignment);
+  add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
+  budget.append(with.systematic);
+  findings.points.push_back(findings_of(ratio, dut.noise_unknown || with.noise_unknown));
+  return transfer_point(dut, with.link * factor_of(ratio), budget);
 }
 
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
-  const auto acs =
+  auto acs =
       fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
                                 input.sync_acs, std::span(&input.reference, 1));
   if (!acs) {
     return fail(acs.error());
   }
   const bool own_clock = !input.dut_stamps_ns.empty();
-  const auto dau = fit_channels_of_one_clock(
+  auto dau = fit_channels_of_one_clock(
       input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
       own_clock ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
   if (!dau) {
@@ -103,6 +135,9 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
     return fail(excited.error());
   }
 
+  const BlocksOfClock acs_blocks = learn_from_blocks(*acs);
+  const BlocksOfClock dau_blocks = learn_from_blocks(*dau);
+
   // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
   // G.
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
@@ -112,18 +147,37 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                                     (unit_phasor(dau->pilot.phasor()) / adc) /
                                     (reference.phasor() * late / input.reference_response.phasor());
 
-  const Budget common = common_budget(input, *acs, dau->pilot);
-  SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}};
-  for (const RecordedChannel& dut : dau->others) {
-    result.points.push_back(evaluate_channel(input, dut, dau->pilot, link, common));
+  const Budget noise = common_noise(input, *acs, dau->pilot);
+  const Budget systematic = systematic_rows(input, dau->pilot);
+  const Comparison with{.link = link,
+                        .noise = noise,
+                        .systematic = systematic,
+                        .reference = acs_blocks.beside_pilot(0),
+                        .alignment = alignment_of(input, *acs, dau->pilot),
+                        .noise_unknown = reference.noise_unknown};
+  SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}, {}};
+  add_knock(reference, result.findings);
+  for (std::size_t i = 0; i < dau->others.size(); ++i) {
+    result.points.push_back(evaluate_channel(input, dau->others[i], dau->pilot,
+                                             dau_blocks.beside_pilot(i), with, result.findings));
+    add_knock(dau->others[i], result.findings);
   }
   if (!own_clock) {
     return result;
   }
   for (const ChannelSamples& dut : input.dut) {
     auto point = evaluate_own_clock_channel(
-        dau->pilot.result, link, common, input.dut_stamps_ns, dut,
-        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0});
+        dau->pilot.result, input.dau_stamps_ns.front(),
+        {.link = link,
+         .noise = noise,
+         .systematic = systematic,
+         .sync = dau_blocks.pilot,
+         .denominator = with.reference,
+         .alignment = with.alignment,
+         .noise_unknown = with.noise_unknown},
+        input.dut_stamps_ns, dut,
+        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0},
+        result.findings);
     if (!point) {
       return fail(point.error());
     }

@@ -12,8 +12,9 @@
 // In each system the frequency is refined on its sync channel in that system's own clock, and both
 // of its channels are evaluated at that frequency about the same instant, which removes unknown
 // epochs and constant rate errors. Significant harmonics and hum are fitted beside the signal
-// (disturbances.hpp); what else makes the residuals other than white is found by block-wise scatter
-// and has a row of its own (ratio_scatter.hpp).
+// (disturbances.hpp). The ratio of sensor and reference is looked at in blocks, so that what both
+// share cancels, and what else makes the residuals other than white has a row of its own
+// (ratio_blocks.hpp).
 //
 // Fails as sine_fit.hpp does; the message names the channel. no_excitation when reference or sync
 // is not significant; a channel under calibration may be without excitation, its phase then has an
@@ -28,6 +29,7 @@
 #include "analysis/base/frequency.hpp"
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/instrument/reference_calibration.hpp"
+#include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
 
 namespace dyncal::analysis {
@@ -68,6 +70,7 @@ struct SampleStampingResult {
   ChannelFit sync_acs;
   ChannelFit sync_dau;
   std::vector<TransferPoint> points; // in the order of `dut`
+  StepFindings findings{};
 };
 
 [[nodiscard]] Expected<SampleStampingResult>

@@ -22,20 +22,6 @@ void Budget::add(Contribution row) {
   }
 }
 
-void Budget::add_excess(std::string subject, const std::optional<RatioScatter>& scatter,
-                        double expected_magnitude_rel, double expected_phase_rad) {
-  if (!scatter) {
-    return;
-  }
-  const double freedom = scatter->degrees_of_freedom;
-  add({.kind = ContributionKind::structure,
-       .subject = std::move(subject),
-       .degrees_of_freedom = freedom,
-       .u_magnitude_rel =
-           significant_excess(scatter->u_magnitude_rel, expected_magnitude_rel, freedom),
-       .u_phase_rad = significant_excess(scatter->u_phase_rad, expected_phase_rad, freedom)});
-}
-
 void Budget::append(const Budget& other) {
   rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end());
 }

@@ -4,12 +4,9 @@
 // Rows are uncorrelated; what is correlated is combined into one row first. One thread.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "analysis/uncertainty/contribution.hpp"
-#include "analysis/uncertainty/ratio_scatter.hpp"
 
 namespace dyncal::analysis {
 
@@ -17,10 +14,6 @@ class Budget {
 public:
   // A row whose uncertainties are both 0 is left out.
   void add(Contribution row);
-  // A row of kind `structure`: what scatter along the record shows beyond the expected
-  // uncertainties (ratio_scatter.hpp).
-  void add_excess(std::string subject, const std::optional<RatioScatter>& scatter,
-                  double expected_magnitude_rel, double expected_phase_rad);
   void append(const Budget& other);
 
   [[nodiscard]] double u_magnitude_rel() const;

@@ -157,6 +157,38 @@ Expected<void> read_drift(FaultText& text, BenchFaults& faults) {
   return {};
 }
 
+Expected<void> read_knock(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", -1e3, 1e3);
+  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
+  if (!channel || !part || !after_s) {
+    return fail(!channel ? channel.error() : !part ? part.error() : after_s.error());
+  }
+  (*channel)->knock_rel = *part;
+  (*channel)->knock_after_s = *after_s;
+  return {};
+}
+
+Expected<void> read_delay_change(FaultText& text, BenchFaults& faults) {
+  const auto by_s = text.value("SECONDS", -0.1, 0.1);
+  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
+  if (!by_s || !after_s) {
+    return fail(!by_s ? by_s.error() : after_s.error());
+  }
+  faults.delay_change = {*by_s, *after_s};
+  return {};
+}
+
+Expected<void> read_wandering(FaultText& text, BenchFaults& faults) {
+  const auto part = text.value("PART", 0.0, 0.5);
+  const auto period_s = text.setting("period", "SECONDS", 1.0, 0.01, 1e6);
+  if (!part || !period_s) {
+    return fail(!part ? part.error() : period_s.error());
+  }
+  faults.wandering = {*part, *period_s};
+  return {};
+}
+
 Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
   const auto probability = text.value("PROBABILITY", 0.0, 1.0);
   if (!probability) {
@@ -224,11 +256,14 @@ struct Fault {
   Expected<void> (*read)(FaultText&, BenchFaults&);
 };
 
-constexpr std::array<Fault, 9> known_faults{{
+constexpr std::array<Fault, 12> known_faults{{
     {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
     {"stuck", "stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
     {"hum", "hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
     {"drift", "drift=PART_PER_SECOND,at=CHANNEL", read_drift},
+    {"knock", "knock=PART,at=CHANNEL[,after=SECONDS]", read_knock},
+    {"delay-change", "delay-change=SECONDS[,after=SECONDS]", read_delay_change},
+    {"wandering", "wandering=PART[,period=SECONDS]", read_wandering},
     {"loss", "loss=PROBABILITY,at=sensor|acs[,counted=no]", read_loss},
     {"free-running", "free-running", read_free_running},
     {"start-jitter", "start-jitter=SECONDS", read_start_jitter},

@@ -9,6 +9,7 @@
 //   hum        mains: an added sine of constant amplitude, between the steps too, or only while the
 //              generator's output is on
 //   drift      of the zero: rises from each change of the generator on, while its output is on
+//   knock      half a sine of 10 ms, so long after each change of the generator
 //
 // Hum and drift are in parts of the signal: of the highest level, or of the amplitude of sync.
 // Stamps have faults of their own (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp).
@@ -29,6 +30,20 @@ struct ChannelFaults {
   double hum_hz = 50.0;
   bool hum_while_driven = false;
   double drift_rel_per_s = 0.0;
+  double knock_rel = 0.0;
+  double knock_after_s = 1.0;
+};
+
+// The sensor's filter switches, so long after each change of the generator.
+struct DelayChange {
+  double by_s = 0.0;
+  double after_s = 1.0;
+};
+
+// The exciter's amplitude is modulated by a sine.
+struct Wandering {
+  double part = 0.0;
+  double period_s = 1.0;
 };
 
 // Of single samples of the sensor; of the ACS, which loses whole frames.
@@ -52,6 +67,8 @@ struct BenchFaults {
   SampleLoss acs_loss;
   SeriesStart series_start;
   StampFaultProbabilities stamps;
+  DelayChange delay_change;
+  Wandering wandering;
   double exciter_gain = 1.0; // times level_per_volt: an amplifier that somebody turned up
   double ring_down_s = 0.0;  // time constant of the exciter after a step; 0: its usual one
 };

@@ -7,6 +7,11 @@
 #include "drivers/virtual_bench/model/random.hpp"
 
 namespace dyncal::drivers::virtual_bench {
+namespace {
+
+constexpr double knock_s = 0.01;
+
+} // namespace
 
 ChannelDisturbance::ChannelDisturbance(std::uint64_t seed, std::string_view name,
                                        const ChannelFaults& faults, double signal)
@@ -24,6 +29,10 @@ double ChannelDisturbance::added(double time_s, const Motion& motion) const {
   }
   if (motion.sync_on) {
     value += faults_.drift_rel_per_s * motion.since_change_s;
+    const double since_knock = (motion.since_change_s - faults_.knock_after_s) / knock_s;
+    if (since_knock > 0.0 && since_knock < 1.0) {
+      value += faults_.knock_rel * std::sin(std::numbers::pi * since_knock);
+    }
   }
   return signal_ * value;
 }

@@ -1,6 +1,6 @@
 // Puts the faults of one channel (bench_faults.hpp) into what its instrument measures.
 //
-//   added    signal (hum_rel sin(2 pi hum_hz t + phase) + drift_rel_per_s s)
+//   added    signal (hum_rel sin(2 pi hum_hz t + phase) + drift_rel_per_s s + knock)
 //            s: seconds since the generator was last changed, 0 while its output is off
 //   held     every `stuck_every_s` the value of one sample in place of the next ones
 //

@@ -41,6 +41,11 @@ std::complex<double> Excitation::envelope(const Segment& segment, double time_s)
   return segment.target + (segment.initial - segment.target) * std::exp(-std::max(x, 0.0));
 }
 
+double Excitation::wandering(double time_s) const {
+  return 1.0 + exciter_.wandering_part *
+                   std::sin(two_pi * time_s / exciter_.wandering_period_s);
+}
+
 void Excitation::change(double time_s, const Drive& drive) {
   const Segment& last = segments_.back();
   Segment next;
@@ -66,7 +71,7 @@ Motion Excitation::motion(double time_s) const {
   const double angle = two_pi * (turns - std::floor(turns));
   return {.sine = std::sin(angle),
           .cosine = std::cos(angle),
-          .envelope = envelope(segment, time_s),
+          .envelope = wandering(time_s) * envelope(segment, time_s),
           .frequency_hz = segment.frequency_hz,
           .sync_on = segment.on,
           .generator_v = segment.amplitude_v,

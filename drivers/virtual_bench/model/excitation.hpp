@@ -36,6 +36,8 @@ struct ExciterModel {
   double third_harmonic = 0.002;
   double second_phase_rad = 0.0;
   double third_phase_rad = 0.0;
+  double wandering_part = 0.0; // of the amplitude, a sine
+  double wandering_period_s = 1.0;
 
   [[nodiscard]] std::complex<double> at(double frequency_hz) const; // m/s^2 per V
 };
@@ -87,6 +89,7 @@ private:
     bool on = false;
   };
   [[nodiscard]] const Segment& segment_at(double time_s) const;
+  [[nodiscard]] double wandering(double time_s) const;
   [[nodiscard]] std::complex<double> envelope(const Segment& segment, double time_s) const;
 
   ExciterModel exciter_;

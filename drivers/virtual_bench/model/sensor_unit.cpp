@@ -132,7 +132,11 @@ const HarmonicGains& SensorUnit::gains(std::size_t axis, double frequency_hz) {
 void SensorUnit::measure_acceleration(UnitSample& sample, double time_s,
                                       const Excitation& excitation) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
+    Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
+    const DelayChange& change = settings_.delay_change;
+    if (change.by_s != 0.0 && motion.since_change_s > change.after_s) {
+      motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s - change.by_s);
+    }
     const double value = excitation.acceleration(motion, gains(axis, motion.frequency_hz)) +
                          offset_m_s2_[axis] + noise_.normal(noise_m_s2_) +
                          sensor_disturbances_[axis].added(time_s, motion);

@@ -39,6 +39,7 @@ struct SensorUnitSettings {
   bool sync_is_first_output = false;
   SyncAdcModel adc;
   ChannelFaults sensor_faults;
+  DelayChange delay_change;
   ChannelFaults sync_faults;
   SampleLoss loss;
   StampFaultProbabilities stamp_faults;

@@ -26,6 +26,8 @@ ExciterModel draw_exciter(const BenchSettings& settings) {
   if (settings.faults.ring_down_s > 0.0) {
     exciter.ring_down_s = settings.faults.ring_down_s;
   }
+  exciter.wandering_part = settings.faults.wandering.part;
+  exciter.wandering_period_s = settings.faults.wandering.period_s;
   exciter.second_harmonic = std::pow(10.0, random.uniform(-52.0, -42.0) / 20.0);
   exciter.third_harmonic = std::pow(10.0, random.uniform(-60.0, -48.0) / 20.0);
   exciter.second_phase_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -87,6 +89,7 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
   unit.sync_is_first_output = settings.sync_is_first_output;
   unit.adc = adc;
   unit.sensor_faults = settings.faults.sensor;
+  unit.delay_change = settings.faults.delay_change;
   unit.sync_faults = settings.faults.sync_dau;
   unit.loss = settings.faults.sensor_loss;
   unit.stamp_faults = settings.faults.stamps;

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "analysis/method/analogue_comparison.hpp"
+#include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -36,20 +37,22 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
                       .clock_offset_s = u_clock_offset_s(acs, dut),
                       .stamp_jitter_s = 0.0};
   return analysis::evaluate_absolute_time(input).map([](const analysis::ComparisonResult& result) {
-    return EvaluatedStep{{result.reference}, result.points};
+    return EvaluatedStep{{result.reference}, result.points, result.findings};
   });
 }
 
 std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs_source,
                                         const SourceInterval& sensor) {
   const Recipe& recipe = *task.recipe;
-  const SelectedChannels acs(acs_source, {recipe.reference()});
-  const SelectedChannels dut = select_dut(recipe, sensor);
+  SelectedChannels acs(acs_source, {recipe.reference()});
+  SelectedChannels dut = select_dut(recipe, sensor);
   // A known delay of the ACS counts for its clock too, which describes no uncertainty of its own.
   if (recipe.systematic.acs_delay_s <= 0.0) {
     flag_unknown_clock(acs, task.flags);
   }
   flag_unknown_clock(dut, task.flags);
+  const auto step = evaluate_without_knocks(task, {&acs, &dut},
+                                            [&] { return evaluate_channels(task, acs, dut); });
   return make_results(task,
                       {.dut = dut_of(recipe, sensor.record->source()),
                        .reference_unit = acs.unit(0),
@@ -58,7 +61,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs
                        .data_sha256 = digest_of({&acs, &dut}),
                        .common = {{&acs, 0}},
                        .first_dut = {&dut, 0}},
-                      evaluate_channels(task, acs, dut));
+                      step);
 }
 
 std::vector<StepResult> evaluate(const StepTask& task, const SourceInterval& acs,

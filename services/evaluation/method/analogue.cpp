@@ -1,6 +1,7 @@
 #include "services/evaluation/method/analogue.hpp"
 
 #include "analysis/method/analogue_comparison.hpp"
+#include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -49,14 +50,15 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, channels);
   }
-  const auto evaluated =
-      reference_response(*task.recipe, task.step())
-          .and_then([&](const analysis::ReferenceResponse& reference) {
-            return analysis::evaluate_analogue(input_of(task, channels, reference));
-          })
-          .map([](const analysis::ComparisonResult& result) {
-            return EvaluatedStep{{result.reference}, result.points};
-          });
+  const auto evaluated = evaluate_without_knocks(task, {&channels}, [&] {
+    return reference_response(*task.recipe, task.step())
+        .and_then([&](const analysis::ReferenceResponse& reference) {
+          return analysis::evaluate_analogue(input_of(task, channels, reference));
+        })
+        .map([](const analysis::ComparisonResult& result) {
+          return EvaluatedStep{{result.reference}, result.points, result.findings};
+        });
+  });
   return make_results(task,
                       {.dut = roles.dut,
                        .reference_unit = channels.unit(0),

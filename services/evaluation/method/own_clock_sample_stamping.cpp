@@ -4,6 +4,7 @@
 
 #include "analysis/method/sample_stamping.hpp"
 #include "services/evaluation/method/adc_correction.hpp"
+#include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -55,18 +56,21 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
   input.systematic.clock_offset_s = u_clock_offset_s(channels.sync, channels.dut);
   return analysis::evaluate_sample_stamping(input).map(
       [](const analysis::SampleStampingResult& result) {
-        return EvaluatedStep{{result.reference, result.sync_acs, result.sync_dau}, result.points};
+        return EvaluatedStep{
+            {result.reference, result.sync_acs, result.sync_dau}, result.points, result.findings};
       });
 }
 
 std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& sources,
                                         const SourceInterval& sensor) {
   const auto& roles = std::get<SampleStampingRoles>(task.recipe->roles);
-  const StepChannels channels{.acs = {sources.acs, {roles.reference, roles.sync_acs}},
-                              .sync = {sources.dau, {roles.sync_dau}},
-                              .dut = select_dut(*task.recipe, sensor)};
+  StepChannels channels{.acs = {sources.acs, {roles.reference, roles.sync_acs}},
+                        .sync = {sources.dau, {roles.sync_dau}},
+                        .dut = select_dut(*task.recipe, sensor)};
   flag_unknown_clock(channels.sync, task.flags);
   flag_unknown_clock(channels.dut, task.flags);
+  const auto step = evaluate_without_knocks(task, {&channels.acs, &channels.sync, &channels.dut},
+                                            [&] { return evaluate_channels(task, channels); });
   return make_results(
       task,
       {.dut = dut_of(*task.recipe, sensor.record->source()),
@@ -76,7 +80,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& source
        .data_sha256 = digest_of({&channels.acs, &channels.sync, &channels.dut}),
        .common = {{&channels.acs, 0}, {&channels.acs, 1}, {&channels.sync, 0}},
        .first_dut = {&channels.dut, 0}},
-      evaluate_channels(task, channels));
+      step);
 }
 
 std::vector<StepResult> evaluate(const StepTask& task, const StepSources& sources) {

@@ -2,6 +2,7 @@
 
 #include "analysis/method/sample_stamping.hpp"
 #include "services/evaluation/method/adc_correction.hpp"
+#include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -65,7 +66,8 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
   input.systematic.dau_tick_s = dau.record().description().tick_s;
   return analysis::evaluate_sample_stamping(input).map(
       [](const analysis::SampleStampingResult& result) {
-        return EvaluatedStep{{result.reference, result.sync_acs, result.sync_dau}, result.points};
+        return EvaluatedStep{
+            {result.reference, result.sync_acs, result.sync_dau}, result.points, result.findings};
       });
 }
 
@@ -80,6 +82,8 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, acs, dau);
   }
+  const auto step = evaluate_without_knocks(task, {&acs, &dau},
+                                            [&] { return evaluate_channels(task, acs, dau); });
   return make_results(task,
                       {.dut = dut,
                        .reference_unit = acs.unit(0),
@@ -88,7 +92,7 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                        .data_sha256 = digest_of({&acs, &dau}),
                        .common = {{&acs, 0}, {&acs, 1}, {&dau, 0}},
                        .first_dut = {&dau, 1}},
-                      evaluate_channels(task, acs, dau));
+                      step);
 }
 
 } // namespace

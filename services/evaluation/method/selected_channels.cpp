@@ -1,5 +1,8 @@
 #include "services/evaluation/method/selected_channels.hpp"
 
+#include <algorithm>
+#include <memory>
+
 #include <fmt/core.h>
 
 #include "services/contract/digest.hpp"
@@ -19,6 +22,29 @@ SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelNam
 void SelectedChannels::narrow(const TimeInterval& interval) {
   source_.interval = interval;
   samples_ = select_samples(record(), interval, columns_);
+}
+
+void SelectedChannels::leave_out(const TimeInterval& interval) {
+  const auto copies = std::make_shared<StepSamples::Copies>();
+  copies->columns.resize(samples_.columns.size());
+  for (std::size_t i = 0; i < samples_.stamps_ns.size(); ++i) {
+    const std::int64_t stamp_ns = samples_.stamps_ns[i];
+    if (stamp_ns >= interval.begin_ns && stamp_ns < interval.end_ns) {
+      continue;
+    }
+    copies->stamps_ns.push_back(stamp_ns);
+    for (std::size_t k = 0; k < copies->columns.size(); ++k) {
+      copies->columns[k].push_back(samples_.columns[k][i]);
+    }
+  }
+  samples_.stamps_ns = copies->stamps_ns;
+  samples_.columns.assign(copies->columns.begin(), copies->columns.end());
+  samples_.copies = copies;
+}
+
+bool SelectedChannels::has(const std::string& channel) const {
+  return std::any_of(names_.begin(), names_.end(),
+                     [&](const ChannelName& name) { return name.text() == channel; });
 }
 
 analysis::ChannelSamples SelectedChannels::channel(std::size_t i) const {

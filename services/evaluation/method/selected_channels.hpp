@@ -26,6 +26,10 @@ public:
 
   // Selects again.
   void narrow(const TimeInterval& interval);
+  // Copies the samples without those of an interval.
+  void leave_out(const TimeInterval& interval);
+
+  [[nodiscard]] bool has(const std::string& channel) const;
 
   [[nodiscard]] const SourceRecord& record() const { return *source_.record; }
   [[nodiscard]] const TimeInterval& interval() const { return source_.interval; }

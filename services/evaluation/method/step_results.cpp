@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "services/evaluation/method/clock_check.hpp"
 #include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/line_check.hpp"
@@ -24,6 +26,22 @@ StepResult point_result(const StepTask& task, const ChannelName& channel,
   result.fits.push_back(point.dut);
   result.budget = point.budget;
   return result;
+}
+
+// What the evaluation found along the step.
+void add_findings(const analysis::PointFindings& point, StepResult& result) {
+  if (point.change) {
+    result.flags.push_back({ResultFlag::changed_within_step,
+                            fmt::format("{}: {}: by {:.2g} % and {:.2g} rad after {:.2g} s",
+                                        result.channel, to_string(ResultFlag::changed_within_step),
+                                        100.0 * point.change->magnitude_rel,
+                                        point.change->phase_rad, point.change->at_s)});
+  }
+  if (point.too_short_for_noise) {
+    result.flags.push_back(
+        {ResultFlag::too_short_for_noise,
+         fmt::format("{}: {}", result.channel, to_string(ResultFlag::too_short_for_noise))});
+  }
 }
 
 // Of the channels that all results share. Sync carries phase only, which end stops on both sides
@@ -144,6 +162,9 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     result.unit = input.units[i];
     add_input(task, input, result);
     add_clock_check(stepped, result);
+    if (i < step->findings.points.size()) {
+      add_findings(step->findings.points[i], result);
+    }
     for (const SignalCheck& check : common) {
       add_check(check, result);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
+#include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "services/evaluation/method/selected_channels.hpp"
 #include "services/evaluation/method/signal_check.hpp"
@@ -20,6 +21,7 @@ namespace dyncal::services {
 struct EvaluatedStep {
   std::vector<analysis::ChannelFit> common_fits;
   std::vector<analysis::TransferPoint> points;
+  analysis::StepFindings findings{};
 };
 
 // A channel among those that were selected, which outlives it.

@@ -32,19 +32,5 @@ TEST(Budget, AppendingKeepsTheOrder) {
   EXPECT_EQ(first.rows()[1].kind, ContributionKind::reference);
 }
 
-TEST(Budget, StructureIsWhatScattersBeyondTheExpected) {
-  Budget budget;
-  budget.add_excess("the sensor's signal", RatioScatter{5e-3, 1e-3, 15.0}, 3e-3, 1e-3);
-  ASSERT_EQ(budget.rows().size(), 1u);
-  const Contribution& row = budget.rows().front();
-  EXPECT_EQ(row.name(), "structure in the sensor's signal");
-  EXPECT_EQ(row.repeats, Repeats::anew);
-  EXPECT_EQ(row.degrees_of_freedom, 15.0);
-  EXPECT_NEAR(row.u_magnitude_rel, 4e-3, 1e-15);
-  EXPECT_EQ(row.u_phase_rad, 0.0);
-  budget.add_excess("the reference", std::nullopt, 0.0, 0.0);
-  EXPECT_EQ(budget.rows().size(), 1u);
-}
-
 } // namespace
 } // namespace dyncal::analysis

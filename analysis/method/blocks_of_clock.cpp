@@ -1,0 +1,146 @@
+#include "analysis/method/blocks_of_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/base/statistics.hpp"
+#include "analysis/step/short_disturbance.hpp"
+#include "analysis/uncertainty/noise_near_signal.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+// Residuals that a converter's steps make have no noise whose density could be estimated.
+constexpr double hides_steps = 0.6; // residual over one step
+// Fewer tell nothing of noise that is not white.
+constexpr double known_noise_freedom = 6.0;
+
+FittedValues fitted(const RecordedChannel& channel) {
+  return {channel.values(), channel.result.fit};
+}
+
+double periods_of(const RecordedChannel& channel) {
+  return channel.result.frequency.hz() * 1e-9 *
+         static_cast<double>(channel.stamps_ns.back() - channel.stamps_ns.front());
+}
+
+void learn_noise(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
+  const ChannelFit& result = channel.result;
+  if (!(result.fit.residual_sd() > hides_steps * channel.samples.resolution)) {
+    return;
+  }
+  const NoiseNearSignal noise =
+      periods_of(channel) < few_periods
+          ? noise_of_few_periods(result.frequency, result.phase_origin_ns, channel.stamps_ns,
+                                 channel.values(), result.fit)
+          : noise_from_blocks(blocks, result.fit);
+  if (!noise.white) {
+    channel.noise_factor = noise.factor;
+    channel.noise_degrees_of_freedom = noise.degrees_of_freedom;
+    channel.noise_unknown = noise.factor > 1.0 && noise.degrees_of_freedom < known_noise_freedom;
+  }
+}
+
+// Whether a closer look may find a knock: a block with more than its share of the residuals. Where
+// blocks are few or none, always.
+bool may_be_disturbed(std::span<const PhasorBlock> blocks) {
+  constexpr std::size_t enough = 16;
+  constexpr double share = 1.5; // of the usual variance; noise alone shows 8 standard deviations
+  if (blocks.size() < enough) {
+    return true;
+  }
+  std::vector<double> variances;
+  double samples = 0.0;
+  for (const PhasorBlock& block : blocks) {
+    variances.push_back(block.rss / std::max(1.0, block.samples - 3.0));
+    samples += block.samples / static_cast<double>(blocks.size());
+  }
+  const double largest = *std::max_element(variances.begin(), variances.end());
+  return largest > (share + 8.0 * std::sqrt(2.0 / samples)) * upper_median(variances);
+}
+
+void find_knock(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
+  if (may_be_disturbed(blocks)) {
+    channel.knock =
+        find_short_disturbance(channel.result.frequency, channel.stamps_ns, channel.samples.values);
+  }
+}
+
+std::optional<BlockSeries> learn(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
+  learn_noise(channel, blocks);
+  find_knock(channel, blocks);
+  return block_series(blocks, channel.result.fit);
+}
+
+} // namespace
+
+std::optional<BlockSeries> BlocksOfClock::beside_pilot(std::size_t other) const {
+  std::optional<BlockSeries> series = others[other];
+  if (series && pilot) {
+    refer_phase(*series, *pilot, 0.0);
+  }
+  return pilot ? series : std::nullopt;
+}
+
+BlocksOfClock learn_from_blocks(ChannelsOfOneClock& system) {
+  const RecordedChannel& pilot = system.pilot;
+  std::vector<FittedValues> channels{fitted(pilot)};
+  for (const RecordedChannel& other : system.others) {
+    channels.push_back(fitted(other));
+  }
+  const auto blocks = phasors_in_blocks(pilot.result.frequency, pilot.result.phase_origin_ns,
+                                        pilot.stamps_ns, channels);
+  BlocksOfClock result{learn(system.pilot, blocks.front()), {}};
+  for (std::size_t i = 0; i < system.others.size(); ++i) {
+    result.others.push_back(learn(system.others[i], blocks[i + 1]));
+  }
+  return result;
+}
+
+std::optional<BlockSeries> learn_from_blocks(RecordedChannel& channel) {
+  const FittedValues values[] = {fitted(channel)};
+  const auto blocks = phasors_in_blocks(channel.result.frequency, channel.result.phase_origin_ns,
+                                        channel.stamps_ns, values);
+  return learn(channel, blocks.front());
+}
+
+std::optional<RatioInBlocks> compare(const std::optional<BlockSeries>& numerator,
+                                     const std::optional<BlockSeries>& denominator,
+                                     const BlockAlignment& alignment) {
+  return numerator && denominator ? compare_in_blocks(*numerator, *denominator, alignment)
+                                  : std::nullopt;
+}
+
+void add_ratio_rows(Budget& budget, const std::optional<RatioInBlocks>& ratio,
+                    double expected_magnitude_rel, double expected_phase_rad) {
+  if (!ratio) {
+    return;
+  }
+  const double freedom = ratio->degrees_of_freedom;
+  budget.add({.kind = ContributionKind::structure,
+              .subject = "the ratio of the signals",
+              .degrees_of_freedom = freedom,
+              .u_magnitude_rel =
+                  significant_excess(ratio->u_magnitude_rel, expected_magnitude_rel, freedom),
+              .u_phase_rad = significant_excess(ratio->u_phase_rad, expected_phase_rad, freedom)});
+  budget.add({.kind = ContributionKind::structure,
+              .subject = "the exciter, where the clocks see other parts of it",
+              .u_magnitude_rel = ratio->u_correction_magnitude_rel,
+              .u_phase_rad = ratio->u_correction_phase_rad});
+}
+
+std::complex<double> factor_of(const std::optional<RatioInBlocks>& ratio) {
+  return ratio ? std::exp(ratio->correction) : std::complex<double>(1.0, 0.0);
+}
+
+PointFindings findings_of(const std::optional<RatioInBlocks>& ratio, bool too_short_for_noise) {
+  return {ratio ? ratio->change : std::nullopt, too_short_for_noise};
+}
+
+void add_knock(const RecordedChannel& channel, StepFindings& findings) {
+  if (channel.knock) {
+    findings.knocks.push_back({channel.result.channel, *channel.knock});
+  }
+}
+
+} // namespace dyncal::analysis

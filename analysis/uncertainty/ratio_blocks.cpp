@@ -1,0 +1,365 @@
+#include "analysis/uncertainty/ratio_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/uncertainty/chi_squared_limit.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr std::size_t min_blocks = 4;
+constexpr std::size_t max_groups = 16;
+constexpr double weakest_snr = 5.0;       // of a block: below, its logarithm is not normal any more
+constexpr double varies_quantile = 4.265; // once in 10^5
+// Gain of a split, chi-squared with two degrees of freedom, that one of 256 splits of white noise
+// exceeds once in 10^4: 2 ln(256 / 10^-4).
+constexpr double significant_gain = 29.5;
+// A split that leaves most of the scatter where it was describes something else: hum that beats, a
+// knock.
+constexpr double min_explained = 0.4;
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
+
+// Means of `group` neighbours; what is left over at the end is left out.
+BlockSeries grouped(const BlockSeries& series, std::size_t group) {
+  if (group < 2) {
+    return series;
+  }
+  BlockSeries result;
+  const double part = 1.0 / static_cast<double>(group);
+  for (std::size_t i = 0; i + group <= series.time_s.size(); i += group) {
+    double time_s = 0.0;
+    Complex sum;
+    for (std::size_t k = i; k < i + group; ++k) {
+      time_s += series.time_s[k] * part;
+      sum += series.log_ratio[k] * part;
+    }
+    result.time_s.push_back(time_s);
+    result.log_ratio.push_back(sum);
+  }
+  result.variance_magnitude = series.variance_magnitude * part;
+  result.variance_phase = series.variance_phase * part;
+  result.shortening = series.shortening;
+  return result;
+}
+
+double spacing_s(const BlockSeries& series) {
+  return (series.time_s.back() - series.time_s.front()) /
+         static_cast<double>(series.time_s.size() - 1);
+}
+
+// Makes both about as coarse as the coarser one.
+void make_alike(BlockSeries& one, BlockSeries& other) {
+  const double a = spacing_s(one), b = spacing_s(other);
+  one = grouped(one, static_cast<std::size_t>(std::max(1.0, std::round(b / a))));
+  other = grouped(other, static_cast<std::size_t>(std::max(1.0, std::round(a / b))));
+}
+
+// Linear between the blocks; empty more than half a block outside.
+std::optional<Complex> value_at(const BlockSeries& series, double time_s) {
+  const auto& times = series.time_s;
+  const double margin_s = 0.5 * spacing_s(series);
+  if (time_s < times.front() - margin_s || time_s > times.back() + margin_s) {
+    return std::nullopt;
+  }
+  const auto behind = std::clamp<std::ptrdiff_t>(
+      std::upper_bound(times.begin(), times.end(), time_s) - times.begin(), 1,
+      static_cast<std::ptrdiff_t>(times.size()) - 1);
+  const auto i = static_cast<std::size_t>(behind);
+  // Noise of an end is not to be extrapolated.
+  const double part = std::clamp((time_s - times[i - 1]) / (times[i] - times[i - 1]), 0.0, 1.0);
+  return (1.0 - part) * series.log_ratio[i - 1] + part * series.log_ratio[i];
+}
+
+double chi_squared(std::span<const Complex> values, Complex mean, double variance_magnitude,
+                   double variance_phase) {
+  double sum = 0.0;
+  for (const Complex& value : values) {
+    sum += std::pow(value.real() - mean.real(), 2) / variance_magnitude +
+           std::pow(value.imag() - mean.imag(), 2) / variance_phase;
+  }
+  return sum;
+}
+
+Complex mean_of(std::span<const Complex> values) {
+  Complex sum;
+  for (const Complex& value : values) {
+    sum += value;
+  }
+  return sum / static_cast<double>(values.size());
+}
+
+bool varies(const BlockSeries& series) {
+  const double freedom = 2.0 * static_cast<double>(series.time_s.size() - 1);
+  return chi_squared(series.log_ratio, mean_of(series.log_ratio), series.variance_magnitude,
+                     series.variance_phase) > freedom * chi_squared_limit(freedom, varies_quantile);
+}
+
+// d_k for one offset.
+struct Difference {
+  std::vector<double> time_s;
+  std::vector<Complex> values;
+  Complex mean;
+  double chi_squared_per_block = 0.0;
+  double weight = 0.0;
+};
+
+class Comparison {
+public:
+  Comparison(const BlockSeries& numerator, const BlockSeries& denominator)
+      : numerator_(numerator), denominator_(denominator),
+        // An instant between two blocks has less noise than a block; that is left aside.
+        variance_magnitude_(numerator.variance_magnitude + denominator.variance_magnitude),
+        variance_phase_(numerator.variance_phase + denominator.variance_phase) {}
+
+  [[nodiscard]] Difference at(double offset_s) const {
+    Difference difference;
+    for (std::size_t k = 0; k < numerator_.time_s.size(); ++k) {
+      if (const auto value = value_at(denominator_, numerator_.time_s[k] + offset_s)) {
+        const Complex d = numerator_.log_ratio[k] - *value;
+        const double before = difference.values.empty() ? 0.0 : difference.values.back().imag();
+        difference.time_s.push_back(numerator_.time_s[k]);
+        difference.values.emplace_back(d.real(), before + wrapped(d.imag() - before));
+      }
+    }
+    if (difference.values.size() >= min_blocks) {
+      difference.mean = mean_of(difference.values);
+      difference.chi_squared_per_block =
+          chi_squared(difference.values, difference.mean, variance_magnitude_, variance_phase_) /
+          static_cast<double>(difference.values.size());
+    }
+    return difference;
+  }
+
+  // All offsets that may be, with their weights; the largest weight of all is 1.
+  [[nodiscard]] std::vector<Difference> candidates(const BlockAlignment& alignment) const {
+    std::vector<Difference> all;
+    const double lowest = std::ceil((-alignment.reach_s - alignment.offset_s) / alignment.period_s);
+    const double highest =
+        std::floor((alignment.reach_s - alignment.offset_s) / alignment.period_s);
+    for (double n = lowest; n <= highest; n += 1.0) {
+      const double offset_s = alignment.offset_s + n * alignment.period_s;
+      Difference difference = at(offset_s);
+      if (difference.values.size() >= min_blocks) {
+        difference.weight = std::max(1e-3, 1.0 - std::abs(offset_s) / alignment.reach_s);
+        all.push_back(std::move(difference));
+      }
+    }
+    weigh(all);
+    return all;
+  }
+
+  [[nodiscard]] std::optional<RatioChange> change_in(const Difference& difference) const {
+    const std::size_t m = difference.values.size();
+    const double total = difference.chi_squared_per_block * static_cast<double>(m);
+    double best_gain = 0.0;
+    RatioChange best;
+    Complex before;
+    for (std::size_t j = 1; j + 1 < m; ++j) {
+      before += difference.values[j - 1] - difference.mean;
+      if (j < 2) {
+        continue; // one block alone is a knock
+      }
+      const double n = static_cast<double>(j), rest = static_cast<double>(m - j);
+      const Complex step = -before * (1.0 / n + 1.0 / rest);
+      const double weight = n * rest / (n + rest);
+      const double gain = weight * (step.real() * step.real() / variance_magnitude_ +
+                                    step.imag() * step.imag() / variance_phase_);
+      if (gain > best_gain) {
+        best_gain = gain;
+        best = {0.5 * (difference.time_s[j - 1] + difference.time_s[j]), step.real(), step.imag()};
+      }
+    }
+    const double freedom = 2.0 * static_cast<double>(m) - 4.0;
+    const double noise = std::max(1.0, (total - best_gain) / freedom);
+    const bool real = m >= 2 * min_blocks && best_gain > significant_gain * noise &&
+                      best_gain > min_explained * total;
+    return real ? std::optional(best) : std::nullopt;
+  }
+
+private:
+  static void weigh(std::vector<Difference>& all) {
+    double least = 1e300;
+    for (const Difference& one : all) {
+      least = std::min(least, one.chi_squared_per_block);
+    }
+    // Noise that is larger than white makes the likelihood flatter.
+    const double scale = std::max(1.0, 0.5 * least);
+    double largest = 0.0;
+    for (Difference& one : all) {
+      const double blocks = static_cast<double>(one.values.size());
+      one.weight *= std::exp(-0.5 * blocks * (one.chi_squared_per_block - least) / scale);
+      largest = std::max(largest, one.weight);
+    }
+    for (Difference& one : all) {
+      one.weight /= largest;
+    }
+  }
+
+  const BlockSeries& numerator_;
+  const BlockSeries& denominator_;
+  double variance_magnitude_, variance_phase_;
+};
+
+// s / sqrt(m), larger where neighbours resemble each other: of blocks that follow a trend only m (1
+// - r) / (1 + r) are independent, r being their correlation.
+double scatter_of_mean(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  double mean = 0.0;
+  for (double value : values) {
+    mean += value / n;
+  }
+  double squares = 0.0, products = 0.0, before = 0.0;
+  for (double value : values) {
+    squares += (value - mean) * (value - mean);
+    products += (value - mean) * before;
+    before = value - mean;
+  }
+  const double correlation = squares > 0.0 ? std::min(products / squares, 0.9) : 0.0;
+  const bool resembling = correlation > 2.0 / std::sqrt(n);
+  return std::sqrt(squares / (n - 1.0) / n *
+                   (resembling ? (1.0 + correlation) / (1.0 - correlation) : 1.0));
+}
+
+void add_scatter(const Difference& difference, RatioInBlocks& result) {
+  const std::size_t group = (difference.values.size() + max_groups - 1) / max_groups;
+  std::vector<double> magnitudes, phases;
+  for (std::size_t i = 0; i + group <= difference.values.size(); i += group) {
+    const Complex mean = mean_of(std::span(difference.values).subspan(i, group));
+    magnitudes.push_back(mean.real());
+    phases.push_back(mean.imag());
+  }
+  result.u_magnitude_rel = scatter_of_mean(magnitudes);
+  result.u_phase_rad = scatter_of_mean(phases);
+  result.degrees_of_freedom = static_cast<double>(magnitudes.size()) - 1.0;
+}
+
+void add_correction(const std::vector<Difference>& all, double shortening, RatioInBlocks& result) {
+  double weights = 0.0;
+  Complex mean;
+  for (const Difference& one : all) {
+    weights += one.weight;
+    mean += one.weight * one.mean;
+  }
+  mean /= weights;
+  double magnitude = 0.0, phase = 0.0;
+  for (const Difference& one : all) {
+    magnitude += one.weight / weights * std::pow(one.mean.real() - mean.real(), 2);
+    phase += one.weight / weights * std::pow(one.mean.imag() - mean.imag(), 2);
+  }
+  result.correction = {mean.real() + shortening, wrapped(mean.imag())};
+  result.u_correction_magnitude_rel = std::hypot(std::sqrt(magnitude), 0.5 * shortening);
+  result.u_correction_phase_rad = std::sqrt(phase);
+}
+
+// The phase advances by `b` over a block of noise-free signal: sinc(b / 2) = 1 - b^2 / 24.
+double shortening_of(const std::vector<Complex>& log_ratio, double variance) {
+  double squares = 0.0;
+  for (std::size_t k = 2; k < log_ratio.size(); ++k) {
+    squares += std::pow(0.5 * (log_ratio[k].imag() - log_ratio[k - 2].imag()), 2);
+  }
+  const double mean = squares / static_cast<double>(log_ratio.size() - 2);
+  return std::max(0.0, mean - 2.0 * variance) / 24.0;
+}
+
+} // namespace
+
+std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, const SineFit& fit) {
+  const Complex whole{fit.sine, fit.cosine};
+  if (blocks.size() < min_blocks || !(std::abs(whole) > 0.0)) {
+    return std::nullopt;
+  }
+  BlockSeries series;
+  double unit_variance = 0.0;
+  for (const PhasorBlock& block : blocks) {
+    unit_variance += block.unit_variance / static_cast<double>(blocks.size());
+  }
+  const double noise = fit.residual_sd() / std::abs(whole);
+  const double variance = std::max(noise * noise * unit_variance, 1e-28);
+  const double enough = std::ceil(variance * weakest_snr * weakest_snr);
+  if (enough * static_cast<double>(min_blocks) > static_cast<double>(blocks.size())) {
+    return std::nullopt;
+  }
+  const auto group = static_cast<std::size_t>(std::max(1.0, enough));
+  double before = 0.0;
+  for (std::size_t i = 0; i + group <= blocks.size(); i += group) {
+    Complex ratio;
+    double time_s = 0.0;
+    for (std::size_t k = i; k < i + group; ++k) {
+      ratio += blocks[k].phasor / whole / static_cast<double>(group);
+      time_s += blocks[k].centre_s / static_cast<double>(group);
+    }
+    before += wrapped(std::arg(ratio) - before);
+    series.time_s.push_back(time_s);
+    series.log_ratio.emplace_back(std::log(std::max(std::abs(ratio), 1e-3)), before);
+  }
+  series.variance_magnitude = series.variance_phase = variance / static_cast<double>(group);
+  series.shortening = shortening_of(series.log_ratio, series.variance_phase);
+  return series;
+}
+
+void refer_phase(BlockSeries& series, const BlockSeries& pilot, double offset_s) {
+  BlockSeries coarse = pilot;
+  make_alike(series, coarse);
+  BlockSeries referred;
+  for (std::size_t k = 0; k < series.time_s.size(); ++k) {
+    if (const auto phase = value_at(coarse, series.time_s[k] + offset_s)) {
+      referred.time_s.push_back(series.time_s[k]);
+      referred.log_ratio.push_back(series.log_ratio[k] - Complex(0.0, phase->imag()));
+    }
+  }
+  series.time_s = std::move(referred.time_s);
+  series.log_ratio = std::move(referred.log_ratio);
+  series.variance_phase += coarse.variance_phase;
+}
+
+std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSeries denominator,
+                                               const BlockAlignment& alignment) {
+  if (numerator.time_s.size() < min_blocks || denominator.time_s.size() < min_blocks) {
+    return std::nullopt;
+  }
+  make_alike(numerator, denominator);
+  if (numerator.time_s.size() < min_blocks || denominator.time_s.size() < min_blocks) {
+    return std::nullopt;
+  }
+  const Comparison comparison(numerator, denominator);
+  const bool wanders = varies(numerator) || varies(denominator);
+  std::vector<Difference> all;
+  if (wanders && alignment.reach_s > 0.0) {
+    all = comparison.candidates(alignment);
+  }
+  if (all.empty()) {
+    const double turns = alignment.period_s > 0.0 && alignment.reach_s > 0.0
+                             ? std::round(alignment.offset_s / alignment.period_s)
+                             : 0.0;
+    all = {comparison.at(alignment.offset_s - turns * alignment.period_s)};
+    all.front().weight = 1.0;
+  }
+  const auto best = std::max_element(
+      all.begin(), all.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
+  if (best->values.size() < min_blocks) {
+    return std::nullopt;
+  }
+  RatioInBlocks result;
+  add_scatter(*best, result);
+  if (wanders) {
+    add_correction(all, numerator.shortening - denominator.shortening, result);
+    result.change = comparison.change_in(*best);
+  }
+  return result;
+}
+
+double significant_excess(double observed, double expected, double degrees_of_freedom) {
+  constexpr double normal_quantile = 3.0902; // once in a thousand
+  const double limit = chi_squared_limit(degrees_of_freedom, normal_quantile);
+  const double ratio = observed * observed - limit * expected * expected;
+  return ratio > 0.0 ? std::sqrt(observed * observed - expected * expected) : 0.0;
+}
+
+} // namespace dyncal::analysis

@@ -1,0 +1,79 @@
+// The ratio of two sines in blocks along their records: whether it stays, what it is where both
+// wander alike, and by how much its scatter exceeds white noise.
+//
+//   L_k = ln(P_k / P)                        of one signal; real: magnitude, imaginary: phase
+//   d_k = L_num(t_k) - L_den(t_k + offset)   of the ratio; P_k: phasor_blocks.hpp
+//
+// 1. Phases may be referred to a pilot on the same clock (sync), so that clock and generator
+// cancel.
+// 2. Two clocks that are linked by sync alone are apart by an offset that is known modulo a period,
+//    and to `reach_s` from where the records begin (a triangle). Each candidate has the weight of
+//    that triangle and of the likelihood of its d_k, constant but for noise.
+// 3. Where either signal varies more than white noise does (once in 10^5), the ratio of the whole
+//    records is not the best estimate: blocks of different phase add to a shorter phasor, and the
+//    records do not cover the same part of what both share. `correction` is the weighted mean of
+//    d_k, ln(ratio in blocks / ratio of the records), with what is lost within blocks, 1/24 of the
+//    square of the phase's advance in one; else it is 0, so that clean records keep their value.
+// 4. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
+// 5. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
+//    noise as white as stated or as large as what the split leaves.
+//
+// No series for a signal whose blocks are weaker than 5 u even in groups. Any thread.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/sine/phasor_blocks.hpp"
+
+namespace dyncal::analysis {
+
+struct BlockSeries {
+  std::vector<double> time_s;
+  std::vector<std::complex<double>> log_ratio; // L_k
+  double variance_magnitude = 0.0;             // of one block, for white noise as the fit shows it
+  double variance_phase = 0.0;
+  double shortening = 0.0; // of the magnitude, by the advance of the phase within blocks
+};
+
+[[nodiscard]] std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks,
+                                                      const SineFit& fit);
+// Subtracts the pilot's phase `offset_s` later in its own time.
+void refer_phase(BlockSeries& series, const BlockSeries& pilot, double offset_s);
+
+struct BlockAlignment {
+  double offset_s = 0.0; // added to the numerator's times
+  double period_s = 0.0; // the offset is known modulo this ...
+  double reach_s = 0.0;  // ... and below this; 0: it is known
+};
+
+struct RatioChange { // after less before
+  double at_s = 0.0; // after the first stamp of the numerator
+  double magnitude_rel = 0.0;
+  double phase_rad = 0.0;
+};
+
+struct RatioInBlocks {
+  std::complex<double> correction{};
+  double u_magnitude_rel = 0.0; // of the mean, from the scatter
+  double u_phase_rad = 0.0;
+  double degrees_of_freedom = 0.0;
+  double u_correction_magnitude_rel = 0.0; // from the offset, and from the loss within blocks
+  double u_correction_phase_rad = 0.0;
+  std::optional<RatioChange> change{};
+};
+
+// Empty where fewer than four blocks overlap.
+[[nodiscard]] std::optional<RatioInBlocks>
+compare_in_blocks(BlockSeries numerator, BlockSeries denominator, const BlockAlignment& alignment);
+
+// What `observed` shows beyond `expected`, both standard uncertainties: sqrt(observed^2 -
+// expected^2) where the ratio of the variances is larger than white noise gives once in a thousand
+// (chi-squared, `degrees_of_freedom`), 0 otherwise. So white records keep the uncertainty, and with
+// it the coverage, that theory gives them.
+[[nodiscard]] double significant_excess(double observed, double expected,
+                                        double degrees_of_freedom);
+
+} // namespace dyncal::analysis

@@ -1,0 +1,166 @@
+#include "analysis/uncertainty/ratio_blocks.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double frequency_hz = 80.0;
+using Envelope = std::function<double(double)>;
+
+struct Record {
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<double> values;
+  SineFit fit;
+};
+
+// Three seconds from `begin_s` on; `level` and `lag_rad` over time.
+Record record_of(double begin_s, double noise, unsigned seed, const Envelope& level,
+                 const Envelope& lag_rad = [](double) { return 0.0; }) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, noise);
+  Record record;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = begin_s + i * 1e-3;
+    record.stamps_ns.push_back(1'000'000LL * i);
+    record.values.push_back(level(t) * std::sin(2.0 * pi * frequency_hz * t - lag_rad(t)) +
+                            normal(random));
+  }
+  const std::span<const double> channel[] = {record.values};
+  record.fit = fit_sine(*Frequency::parse("80"), 0, record.stamps_ns, channel)->front();
+  return record;
+}
+
+BlockSeries series_of(const Record& record) {
+  const FittedValues values[] = {{record.values, record.fit}};
+  const auto blocks = phasors_in_blocks(*Frequency::parse("80"), 0, record.stamps_ns, values);
+  return *block_series(blocks.front(), record.fit);
+}
+
+double steady(double) {
+  return 1.0;
+}
+
+TEST(RatioBlocks, OfWhiteNoiseKeepTheValueAndScatterAsTheorySays) {
+  int changes = 0;
+  double squares = 0.0;
+  constexpr int draws = 50;
+  for (unsigned seed = 1; seed <= draws; ++seed) {
+    const auto ratio = compare_in_blocks(series_of(record_of(0.0, 0.01, seed, steady)),
+                                         series_of(record_of(0.0, 0.01, seed + 1000, steady)), {});
+    ASSERT_TRUE(ratio.has_value());
+    EXPECT_EQ(ratio->correction, std::complex<double>());
+    EXPECT_GE(ratio->degrees_of_freedom, 12.0);
+    changes += ratio->change ? 1 : 0;
+    squares += ratio->u_magnitude_rel * ratio->u_magnitude_rel / draws;
+  }
+  EXPECT_EQ(changes, 0);
+  EXPECT_NEAR(std::sqrt(squares), 0.01 * std::sqrt(2.0 * 2.0 / 3000.0), 4e-5);
+}
+
+TEST(RatioBlocks, WhatBothShareCancels) {
+  const Envelope swings = [](double t) { return 1.0 + 0.02 * std::sin(2.0 * pi * 1.1 * t + 0.4); };
+  const auto ratio = compare_in_blocks(series_of(record_of(0.0, 1e-3, 1, swings)),
+                                       series_of(record_of(0.0, 1e-3, 2, swings)), {});
+  ASSERT_TRUE(ratio.has_value());
+  EXPECT_LT(ratio->u_magnitude_rel, 1e-4);
+  EXPECT_LT(std::abs(ratio->correction), 1e-4);
+  EXPECT_FALSE(ratio->change.has_value());
+}
+
+// The numerator begins 37 ms later; sync says so modulo 12.5 ms.
+TEST(RatioBlocks, FindTheOffsetOfTwoClocksInWhatBothShare) {
+  const Envelope swings = [](double t) { return 1.0 + 0.02 * std::sin(2.0 * pi * 2.3 * t + 0.4); };
+  const Record late = record_of(0.037, 1e-3, 1, swings), early = record_of(0.0, 1e-3, 2, swings);
+  const auto ratio = compare_in_blocks(
+      series_of(late), series_of(early),
+      {.offset_s = 0.037 - 3 * 0.0125, .period_s = 0.0125, .reach_s = 0.1});
+  ASSERT_TRUE(ratio.has_value());
+  EXPECT_LT(ratio->u_magnitude_rel, 2e-4);
+  const double of_records = std::log(late.fit.amplitude() / early.fit.amplitude());
+  EXPECT_NEAR(of_records + ratio->correction.real(), 0.0, 2e-4);
+}
+
+// A ramp says nothing of the offset, which is then in u.
+TEST(RatioBlocks, ARampLeavesTheOffsetInTheUncertainty) {
+  const Envelope ramp = [](double t) { return 1.0 + 0.05 * t / 3.0; };
+  const auto ratio = compare_in_blocks(series_of(record_of(0.05, 1e-4, 1, ramp)),
+                                       series_of(record_of(0.0, 1e-4, 2, ramp)),
+                                       {.offset_s = 0.0, .period_s = 0.0125, .reach_s = 0.1});
+  ASSERT_TRUE(ratio.has_value());
+  EXPECT_GT(ratio->u_correction_magnitude_rel, 0.05 / 3.0 * 0.03);
+  EXPECT_LT(ratio->u_correction_magnitude_rel, 0.05 / 3.0 * 0.06);
+  EXPECT_FALSE(ratio->change.has_value());
+}
+
+struct Change {
+  double gain_rel;
+  double lag_rad;
+};
+
+class ChangeWithinTheStep : public testing::TestWithParam<Change> {};
+
+TEST_P(ChangeWithinTheStep, IsFoundWithItsPlaceAndSize) {
+  const auto [gain_rel, lag_rad] = GetParam();
+  const Envelope level = [gain = gain_rel](double t) { return t > 1.3 ? 1.0 + gain : 1.0; };
+  const Envelope lag = [lag = lag_rad](double t) { return t > 1.3 ? lag : 0.0; };
+  const auto ratio = compare_in_blocks(series_of(record_of(0.0, 2e-3, 1, level, lag)),
+                                       series_of(record_of(0.0, 2e-3, 2, steady)), {});
+  ASSERT_TRUE(ratio && ratio->change);
+  EXPECT_NEAR(ratio->change->at_s, 1.3, 0.06);
+  EXPECT_NEAR(ratio->change->magnitude_rel, std::log1p(gain_rel), 1e-3);
+  EXPECT_NEAR(ratio->change->phase_rad, -lag_rad, 1e-3);
+  // It is in u: half the change, as if the record said nothing of when.
+  EXPECT_GT(ratio->u_magnitude_rel + ratio->u_phase_rad,
+            0.1 * (std::abs(gain_rel) + std::abs(lag_rad)));
+}
+
+INSTANTIATE_TEST_SUITE_P(RatioBlocks, ChangeWithinTheStep,
+                         testing::Values(Change{0.02, 0.0}, Change{-0.3, 0.0}, Change{0.0, 0.05},
+                                         Change{0.0, 1.5}, Change{0.01, -0.02}));
+
+// Blocks of different phase add to a shorter phasor; their mean is not shorter.
+TEST(RatioBlocks, AWanderingPhaseShortensTheRecordAndNotTheBlocks) {
+  const Envelope wanders = [](double t) { return 0.5 * std::sin(2.0 * pi * 0.7 * t); };
+  const Record turned = record_of(0.0, 1e-4, 1, steady, wanders);
+  EXPECT_LT(turned.fit.amplitude(), 0.95);
+  const auto ratio = compare_in_blocks(series_of(turned),
+                                       series_of(record_of(0.0, 1e-4, 2, steady)), {});
+  ASSERT_TRUE(ratio.has_value());
+  EXPECT_NEAR(std::log(turned.fit.amplitude()) + ratio->correction.real(), 0.0, 1e-3);
+}
+
+TEST(RatioBlocks, TooFewPeriodsOrNoSignalSayNothing) {
+  const Record record = record_of(0.0, 0.01, 1, steady);
+  const auto blocks_of_first = [&](std::size_t n) {
+    const FittedValues values[] = {{std::span<const double>(record.values).first(n), record.fit}};
+    return phasors_in_blocks(*Frequency::parse("80"), 0, std::span(record.stamps_ns).first(n),
+                             values);
+  };
+  EXPECT_TRUE(blocks_of_first(40).front().empty()); // 3.2 periods
+  EXPECT_FALSE(blocks_of_first(3000).front().empty());
+  Record noise = record_of(0.0, 1.0, 3, [](double) { return 0.01; });
+  const FittedValues values[] = {{noise.values, noise.fit}};
+  const auto blocks = phasors_in_blocks(*Frequency::parse("80"), 0, noise.stamps_ns, values);
+  EXPECT_FALSE(block_series(blocks.front(), noise.fit).has_value());
+}
+
+TEST(SignificantExcess, StaysSilentWithinWhatNoiseDoes) {
+  EXPECT_EQ(significant_excess(1.2e-3, 1e-3, 15.0), 0.0);
+  EXPECT_EQ(significant_excess(0.5e-3, 1e-3, 15.0), 0.0);
+  EXPECT_NEAR(significant_excess(5e-3, 3e-3, 15.0), 4e-3, 1e-15);
+  // chi-squared with 15 degrees of freedom exceeds 37.70 once in a thousand.
+  const double limit = std::sqrt(37.70 / 15.0);
+  EXPECT_EQ(significant_excess(0.98 * limit, 1.0, 15.0), 0.0);
+  EXPECT_GT(significant_excess(1.02 * limit, 1.0, 15.0), 0.0);
+}
+
+} // namespace
+} // namespace dyncal::analysis
