@@ -14,6 +14,8 @@ namespace {
 constexpr double hides_steps = 0.6; // residual over one step
 // Fewer tell nothing of noise that is not white.
 constexpr double known_noise_freedom = 6.0;
+// Below, a drift that was taken out took noise beside the frequency with it.
+constexpr double known_slope_periods = 4.0;
 
 FittedValues fitted(const RecordedChannel& channel) {
   return {channel.values(), channel.result.fit};
@@ -37,7 +39,9 @@ void learn_noise(RecordedChannel& channel, std::span<const PhasorBlock> blocks) 
   if (!noise.white) {
     channel.noise_factor = noise.factor;
     channel.noise_degrees_of_freedom = noise.degrees_of_freedom;
-    channel.noise_unknown = noise.factor > 1.0 && noise.degrees_of_freedom < known_noise_freedom;
+    const bool few = noise.degrees_of_freedom < known_noise_freedom;
+    const bool bent = periods_of(channel) < known_slope_periods && channel.drift_order > 0;
+    channel.noise_unknown = noise.factor > 1.0 && (few || bent);
   }
 }
 

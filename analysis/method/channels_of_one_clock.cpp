@@ -100,6 +100,7 @@ RecordedChannel recorded_channel(const Frequency& frequency, double u_frequency_
       std::move(fit.values),
       samples,
       stamps_ns};
+  recorded.drift_order = fit.drift_order;
   SignalExpectation expected = samples.expected;
   double& resolution = recorded.samples.resolution;
   if (!(resolution > 0.0) || !(expected.resolution > 0.0)) {

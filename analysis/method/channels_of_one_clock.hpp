@@ -40,6 +40,7 @@ struct RecordedChannel {
   double noise_factor = 1.0;
   double noise_degrees_of_freedom = 0.0; // 0: those of the fit
   bool noise_unknown = false;            // slow, and the record too short to know it
+  int drift_order = 0;                   // of the polynomial that was fitted beside the signal
   std::optional<ShortDisturbance> knock{};
 
   [[nodiscard]] double noise_freedom() const {

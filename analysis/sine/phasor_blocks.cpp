@@ -112,6 +112,16 @@ private:
 
 } // namespace
 
+NoiseWithinBlocks noise_within(std::span<const PhasorBlock> blocks) {
+  NoiseWithinBlocks noise;
+  for (const PhasorBlock& block : blocks) {
+    noise.rss += block.rss;
+    noise.degrees_of_freedom += block.samples - 3.0;
+  }
+  noise.variance = noise.degrees_of_freedom > 0.0 ? noise.rss / noise.degrees_of_freedom : 0.0;
+  return noise;
+}
+
 std::vector<std::vector<PhasorBlock>> phasors_in_blocks(const Frequency& frequency,
                                                         std::int64_t phase_origin_ns,
                                                         std::span<const std::int64_t> stamps_ns,

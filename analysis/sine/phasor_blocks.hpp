@@ -34,6 +34,14 @@ struct FittedValues {
   SineFit fit;
 };
 
+// Variance of the residuals within the blocks: without what the sine does from block to block.
+struct NoiseWithinBlocks {
+  double variance = 0.0;
+  double degrees_of_freedom = 0.0;
+  double rss = 0.0;
+};
+[[nodiscard]] NoiseWithinBlocks noise_within(std::span<const PhasorBlock> blocks);
+
 // One vector a channel. REQUIRES: fits about `phase_origin_ns`, as many values as stamps.
 [[nodiscard]] std::vector<std::vector<PhasorBlock>>
 phasors_in_blocks(const Frequency& frequency, std::int64_t phase_origin_ns,

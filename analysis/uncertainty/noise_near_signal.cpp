@@ -17,6 +17,7 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t min_blocks = 16;
 constexpr double narrows_quantile = -3.719; // once in 10^4
+constexpr double wanders_quantile = 4.265;  // once in 10^5
 constexpr double slow_quantile = 3.0902;    // once in a thousand
 constexpr double near_a_line = 0.75;        // 1 / T: nearer, a bin has what the fit left of it
 // Enough for 4 p bins: the mean over one of them is hardly less than the coefficient there.
@@ -80,10 +81,19 @@ NoiseNearSignal noise_from_blocks(std::span<const PhasorBlock> blocks, const Sin
     squares += std::norm(block.phasor - mean);
   }
   const double freedom = 2.0 * (m - 1.0);
-  const double white = fit.residual_sd() * fit.residual_sd() * unit_variance;
-  const double ratio = squares / freedom / white;
-  return ratio < chi_squared_limit(freedom, narrows_quantile)
-             ? NoiseNearSignal{false, std::sqrt(ratio), freedom}
+  const double white = fit.residual_sd() * fit.residual_sd();
+  const double ratio = squares / freedom / (white * unit_variance);
+  if (ratio < chi_squared_limit(freedom, narrows_quantile)) {
+    return {false, std::sqrt(ratio), freedom};
+  }
+  // What blocks of their own phasor and constant take from the residuals, beside chance.
+  const NoiseWithinBlocks within = noise_within(blocks);
+  const double taken = fit.degrees_of_freedom - within.degrees_of_freedom;
+  const bool wanders =
+      taken > 0.0 &&
+      fit.rss - within.rss > taken * within.variance * chi_squared_limit(taken, wanders_quantile);
+  return wanders
+             ? NoiseNearSignal{false, std::sqrt(within.variance / white), within.degrees_of_freedom}
              : NoiseNearSignal{};
 }
 

@@ -8,7 +8,8 @@
 // - From blocks (eight periods and more): the scatter of the block phasors is the density within
 //   half a block's bandwidth around f. Only a factor below 1 is given, where white noise shows it
 //   once in 10^4: scatter that is larger may be that of the exciter, which the ratio of two
-//   channels does not have (ratio_blocks.hpp).
+//   channels does not have (ratio_blocks.hpp). Where it wanders, the residuals within the blocks
+//   are the noise; those of the record would hold the wandering too.
 // - Of few periods p: the residuals' Fourier coefficients c_j at j / T beside f and its harmonic,
 //   0 < j < 2 p, each with two degrees of freedom. `white` is false where these, or those up to
 //   4 p, are larger than white noise gives once in a thousand (or smaller: a factor below 1).

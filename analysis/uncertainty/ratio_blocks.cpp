@@ -280,8 +280,8 @@ std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, con
   for (const PhasorBlock& block : blocks) {
     unit_variance += block.unit_variance / static_cast<double>(blocks.size());
   }
-  const double noise = fit.residual_sd() / std::abs(whole);
-  const double variance = std::max(noise * noise * unit_variance, 1e-28);
+  const double variance =
+      std::max(noise_within(blocks).variance / std::norm(whole) * unit_variance, 1e-28);
   const double enough = std::ceil(variance * weakest_snr * weakest_snr);
   if (enough * static_cast<double>(min_blocks) > static_cast<double>(blocks.size())) {
     return std::nullopt;

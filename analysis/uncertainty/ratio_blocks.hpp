@@ -33,7 +33,7 @@ namespace dyncal::analysis {
 struct BlockSeries {
   std::vector<double> time_s;
   std::vector<std::complex<double>> log_ratio; // L_k
-  double variance_magnitude = 0.0;             // of one block, for white noise as the fit shows it
+  double variance_magnitude = 0.0;             // of one block, for white noise as within the blocks
   double variance_phase = 0.0;
   double shortening = 0.0; // of the magnitude, by the advance of the phase within blocks
 };

@@ -42,8 +42,7 @@ std::complex<double> Excitation::envelope(const Segment& segment, double time_s)
 }
 
 double Excitation::wandering(double time_s) const {
-  return 1.0 + exciter_.wandering_part *
-                   std::sin(two_pi * time_s / exciter_.wandering_period_s);
+  return 1.0 + exciter_.wandering_part * std::sin(two_pi * time_s / exciter_.wandering_period_s);
 }
 
 void Excitation::change(double time_s, const Drive& drive) {

@@ -166,11 +166,11 @@ WANDERING = {
     "amplifier steps by 20 %": {"step_rel": 0.2},
 }
 CHANGING = {
-    "sensor 1 us later within the step": ({"late_s": 1e-6}, COVERED_OR_FLAGGED),
+    "sensor 0.2 us later within the step": ({"late_s": 2e-7}, COVERED_OR_FLAGGED),
     "sensor 0.1 ms later within the step": ({"late_s": 1e-4}, FLAGGED),
     "sensor 1 ms later within the step": ({"late_s": 1e-3}, FLAGGED),
     "FIFO 3 samples late within the step": ({"late_s": 3.0 / 1003.05}, FLAGGED),
-    "gain changes by 0.03 %": ({"gain_rel": 3e-4}, COVERED_OR_FLAGGED),
+    "gain changes by 0.005 %": ({"gain_rel": 5e-5}, COVERED_OR_FLAGGED),
     "gain changes by 2 %": ({"gain_rel": 0.02}, FLAGGED),
     "gain creeps by 2 %": ({"gain_rel": 0.02, "creeps_s": 0.4}, FLAGGED),
     "gain halves": ({"gain_rel": -0.5}, FLAGGED),

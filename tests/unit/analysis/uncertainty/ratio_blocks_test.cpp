@@ -22,8 +22,9 @@ struct Record {
 };
 
 // Three seconds from `begin_s` on; `level` and `lag_rad` over time.
-Record record_of(double begin_s, double noise, unsigned seed, const Envelope& level,
-                 const Envelope& lag_rad = [](double) { return 0.0; }) {
+Record record_of(
+    double begin_s, double noise, unsigned seed, const Envelope& level,
+    const Envelope& lag_rad = [](double) { return 0.0; }) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, noise);
   Record record;
@@ -79,9 +80,9 @@ TEST(RatioBlocks, WhatBothShareCancels) {
 TEST(RatioBlocks, FindTheOffsetOfTwoClocksInWhatBothShare) {
   const Envelope swings = [](double t) { return 1.0 + 0.02 * std::sin(2.0 * pi * 2.3 * t + 0.4); };
   const Record late = record_of(0.037, 1e-3, 1, swings), early = record_of(0.0, 1e-3, 2, swings);
-  const auto ratio = compare_in_blocks(
-      series_of(late), series_of(early),
-      {.offset_s = 0.037 - 3 * 0.0125, .period_s = 0.0125, .reach_s = 0.1});
+  const auto ratio =
+      compare_in_blocks(series_of(late), series_of(early),
+                        {.offset_s = 0.037 - 3 * 0.0125, .period_s = 0.0125, .reach_s = 0.1});
   ASSERT_TRUE(ratio.has_value());
   EXPECT_LT(ratio->u_magnitude_rel, 2e-4);
   const double of_records = std::log(late.fit.amplitude() / early.fit.amplitude());
@@ -131,8 +132,8 @@ TEST(RatioBlocks, AWanderingPhaseShortensTheRecordAndNotTheBlocks) {
   const Envelope wanders = [](double t) { return 0.5 * std::sin(2.0 * pi * 0.7 * t); };
   const Record turned = record_of(0.0, 1e-4, 1, steady, wanders);
   EXPECT_LT(turned.fit.amplitude(), 0.95);
-  const auto ratio = compare_in_blocks(series_of(turned),
-                                       series_of(record_of(0.0, 1e-4, 2, steady)), {});
+  const auto ratio =
+      compare_in_blocks(series_of(turned), series_of(record_of(0.0, 1e-4, 2, steady)), {});
   ASSERT_TRUE(ratio.has_value());
   EXPECT_NEAR(std::log(turned.fit.amplitude()) + ratio->correction.real(), 0.0, 1e-3);
 }
