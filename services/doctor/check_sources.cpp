@@ -1,3 +1,4 @@
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@ namespace dyncal::services::doctor {
 namespace {
 
 constexpr double full_buffer = 0.5;
+// The rate of a status is counted over a second or so, in blocks.
+constexpr double rate_tolerance_rel = 0.1;
 
 using SourceKey = LaboratoryView::SourceKey;
 
@@ -103,6 +106,27 @@ Findings check_twins(const SourceKey& key, const SeenSource& source) {
                        fmt::join(source.writers, " and "))}};
 }
 
+void append(Findings& findings, const Findings& more) {
+  findings.insert(findings.end(), more.begin(), more.end());
+}
+
+// Frequencies are held against half of the stated rate before a run.
+Findings check_rate(const SourceKey& key, const SeenSource& source,
+                    const SourceSettings& settings) {
+  const bool is_running = source.status && source.status->state() == wire::SOURCE_RUNNING;
+  const double stated_hz = settings.nominal_rate_hz.value_or(0.0);
+  const double rate_hz = is_running ? source.status->rate_hz() : 0.0;
+  if (!(stated_hz > 0.0) || !(rate_hz > 0.0) ||
+      std::abs(rate_hz / stated_hz - 1.0) < rate_tolerance_rel) {
+    return {};
+  }
+  return {
+      {Severity::warning, "bench file",
+       fmt::format("source {} sends {:.4g} samples a second, but its nominal_rate_hz is {:.6g}: "
+                   "'dyncal check' holds the frequencies against that",
+                   name_of(key), rate_hz, stated_hz)}};
+}
+
 // Against the file at hand.
 Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
   Findings findings;
@@ -116,6 +140,7 @@ Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
                                       name_of(key), bench.path.string(), view.domain)});
       continue;
     }
+    append(findings, check_rate(key, found->second, settings));
     if (!found->second.description) {
       continue;
     }
@@ -160,10 +185,6 @@ Findings check_files_of_benches(const LaboratoryView& view) {
     }
   }
   return findings;
-}
-
-void append(Findings& findings, const Findings& more) {
-  findings.insert(findings.end(), more.begin(), more.end());
 }
 
 } // namespace

@@ -263,6 +263,9 @@ void Run::take(const wire::Excitation& excitation, Instant at) {
   now->step.repetition = excitation.repetition();
   now->step.state = state_of(excitation.state());
   now->step.attempt = attempt;
+  if (now->step.state == StepState::steady && !now->steady) {
+    now->steady = at;
+  }
   conductor_heard = at;
   if (!plan) {
     return;

@@ -57,9 +57,10 @@ struct Plan {
 // The newest excitation, even if the plan is not known.
 struct Excitation {
   Step step;
-  std::int64_t begin_utc_ns = 0; // 0: not yet
-  std::int64_t end_utc_ns = 0;   // 0: not yet, or not known
-  bus::Clock::Instant began{};   // when it was first heard of
+  std::int64_t begin_utc_ns = 0;               // 0: not yet
+  std::int64_t end_utc_ns = 0;                 // 0: not yet, or not known
+  bus::Clock::Instant began{};                 // when it was first heard of
+  std::optional<bus::Clock::Instant> steady{}; // when it was first heard to be steady
   bus::Clock::Instant heard{};
 };
 

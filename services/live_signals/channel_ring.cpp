@@ -9,10 +9,11 @@ void ChannelRing::clear() {
   samples_.clear();
   extremes_.clear();
   gaps_.clear();
+  arrivals_.clear();
 }
 
 void ChannelRing::push(std::span<const std::int64_t> stamps_ns, std::span<const double> values,
-                       bool missing, std::int64_t received_utc_ns) {
+                       bool missing, std::int64_t received_utc_ns, Instant came) {
   const std::size_t count = std::min(stamps_ns.size(), values.size());
   if (count == 0) {
     return;
@@ -25,6 +26,10 @@ void ChannelRing::push(std::span<const std::int64_t> stamps_ns, std::span<const 
     if (gaps_.size() > max_gaps) {
       gaps_.pop_front();
     }
+  }
+  arrivals_.emplace_back(came, stamps_ns.front());
+  if (arrivals_.size() > max_arrivals) {
+    arrivals_.pop_front();
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (std::isfinite(values[i]) && (samples_.empty() || stamps_ns[i] > newest_ns())) {
@@ -47,6 +52,13 @@ void ChannelRing::push_one(const Sample& sample) {
     extremes_.back().minimum = std::min(extremes_.back().minimum, sample.value);
     extremes_.back().maximum = std::max(extremes_.back().maximum, sample.value);
   }
+}
+
+std::optional<std::int64_t> ChannelRing::first_stamp_since(Instant instant) const {
+  const auto first =
+      std::lower_bound(arrivals_.begin(), arrivals_.end(), instant,
+                       [](const auto& arrival, Instant asked) { return arrival.first < asked; });
+  return first == arrivals_.end() ? std::nullopt : std::optional(first->second);
 }
 
 double ChannelRing::rate_hz() const {

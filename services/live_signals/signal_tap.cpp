@@ -133,7 +133,7 @@ void SignalTap::push(const Topic& topic, Readers& readers, const wire::SampleBlo
       stamps_ns = stamps_of(block);
     }
     tapped.ring.push(stamps_ns, block.values.subspan(channel.column * block.samples, block.samples),
-                     finding.missing_samples > 0, message.received_utc_ns());
+                     finding.missing_samples > 0, message.received_utc_ns(), clock_.now());
   }
 }
 
@@ -159,7 +159,7 @@ void SignalTap::push(const Topic& topic, const wire::TriggeredRecord& record) {
       tapped.ring.clear(); // a shot is looked at by itself
       tapped.ring.push(stamps_ns,
                        std::span(record.values()).subspan(channel.column * samples, samples), false,
-                       record.received_utc_ns());
+                       record.received_utc_ns(), clock_.now());
     }
   }
 }

@@ -30,16 +30,20 @@ std::vector<TraceColumn> columns_of(std::span<const Sample> samples, std::size_t
   return columns;
 }
 
+// As if the scatter were of every fit: it has no reason to be less over a longer time.
+void widen(double scatter, analysis::SineFit& fit) {
+  const double u = fit.u_amplitude();
+  const double times = u > 0.0 ? 1.0 + scatter * scatter / (u * u) : 1.0;
+  for (double& one : fit.covariance) {
+    one *= times;
+  }
+}
+
 } // namespace
 
-Expected<SineView> view_sine(std::span<const Sample> samples, const analysis::Frequency& frequency,
-                             std::size_t columns) {
-  const auto fitted = samples.last(std::min(samples.size(), max_fitted_samples));
-  const double period_ns = 1e9 / frequency.hz();
-  if (fitted.size() < 8 ||
-      static_cast<double>(fitted.back().stamp_ns - fitted.front().stamp_ns) < 2.0 * period_ns) {
-    return fail(ErrorCode::no_source, "less than two periods of samples yet");
-  }
+Expected<SineView> view_sine(const SettledSamples& settled, std::size_t columns) {
+  const analysis::Frequency& frequency = settled.frequency;
+  const auto fitted = settled.samples.last(std::min(settled.samples.size(), max_fitted_samples));
   std::vector<std::int64_t> stamps_ns;
   std::vector<double> values;
   stamps_ns.reserve(fitted.size());
@@ -61,9 +65,10 @@ Expected<SineView> view_sine(std::span<const Sample> samples, const analysis::Fr
     residuals.push_back({sample.stamp_ns, sample.value - value_of(view.fit, frequency,
                                                                   sample.stamp_ns - origin_ns)});
   }
+  widen(settled.scatter, view.fit);
   view.residual_rms = std::sqrt(view.fit.rss / static_cast<double>(fitted.size()));
   view.residuals = columns_of(residuals, columns);
-  const auto shown_ns = static_cast<std::int64_t>(shown_periods * period_ns);
+  const auto shown_ns = static_cast<std::int64_t>(shown_periods * 1e9 / frequency.hz());
   const auto shown = std::find_if(fitted.begin(), fitted.end(), [&](const Sample& sample) {
     return sample.stamp_ns >= fitted.back().stamp_ns - shown_ns;
   });

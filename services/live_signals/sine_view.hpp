@@ -1,7 +1,8 @@
-// The sine of the excitation in the newest samples of a channel, and what it leaves: to see that
-// something is there and how clean it is. The frequency is the planned one, taken as exact.
+// The sine of the excitation in the settled samples of a step (settled_samples.hpp), and what it
+// leaves: to see that something is there and how clean it is. What the amplitude scatters by from
+// block to block is in the uncertainties.
 //
-// Fails (no_source) with less than two periods or what analysis::fit_sine() refuses, in its words.
+// Fails (no_source) with what analysis::fit_sine() refuses, in its words.
 // Plain function; any thread.
 #pragma once
 
@@ -10,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/base/frequency.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "services/error.hpp"
-#include "services/live_signals/channel_ring.hpp"
+#include "services/live_signals/settled_samples.hpp"
 #include "services/live_signals/trace.hpp"
 
 namespace dyncal::services {
@@ -28,8 +28,6 @@ struct SineView {
 
 inline constexpr std::size_t max_fitted_samples = std::size_t{1} << 15U;
 
-[[nodiscard]] Expected<SineView> view_sine(std::span<const Sample> samples,
-                                           const analysis::Frequency& frequency,
-                                           std::size_t columns);
+[[nodiscard]] Expected<SineView> view_sine(const SettledSamples& settled, std::size_t columns);
 
 } // namespace dyncal::services

@@ -219,22 +219,65 @@ Text SignalAnswers::spectrum_text(const Question& question, std::string& problem
                   {"resolution_hz", json_number(spectrum->resolution_hz)}});
 }
 
-// Null: the role has no channel, or its sine is not there yet.
+struct SignalAnswers::ExcitedStep {
+  bool is_excited = false;
+  std::uint32_t step = 0;
+  std::uint32_t attempt = 0;
+  std::string frequency_hz;
+  bus::Clock::Instant announced;
+  std::optional<bus::Clock::Instant> steady; // nothing: it is settling
+  live::Plan plan;
+};
+
+// The one that is excited now, by what was announced last; nothing: no run is under way.
+std::optional<SignalAnswers::ExcitedStep>
+SignalAnswers::excited_step(const std::string& bench_name) const {
+  return board_.look([&](const live::Laboratory& laboratory) -> std::optional<ExcitedStep> {
+    const live::Bench* bench = laboratory.bench(bench_name);
+    const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+    if (run == nullptr || !run->plan || !run->now || run->is_over()) {
+      return std::nullopt;
+    }
+    const live::Excitation& now = *run->now;
+    const bool is_steady = now.step.state == live::StepState::steady;
+    ExcitedStep step{is_steady || now.step.state == live::StepState::settling,
+                     now.step.step,
+                     now.step.attempt,
+                     now.step.frequency_text_hz,
+                     now.began,
+                     is_steady ? now.steady : std::nullopt,
+                     *run->plan};
+    step.plan.steps.clear();
+    return step;
+  });
+}
+
+// Null: the role has no channel.
 Json SignalAnswers::fitted_json(const std::string& bench, const std::string& name,
-                                const std::string& frequency_hz) {
+                                const ExcitedStep& step) {
   const auto parsed = parse_channel_name(name);
-  const auto frequency = analysis::Frequency::parse(frequency_hz);
+  const auto frequency = analysis::Frequency::parse(step.frequency_hz);
   const auto found =
       parsed ? find({.bench = bench, .source = parsed->source, .channel = parsed->channel})
              : std::nullopt;
   std::vector<Sample> samples;
+  std::optional<StepWindow> window;
   const auto look = [&](const ChannelRing& ring) {
-    samples = ring.newest_stretch(max_fitted_samples);
+    window = step.steady
+                 ? step_window(ring, step.announced, *step.steady, is_triggered(found->tapped.kind))
+                 : std::nullopt;
+    if (window) {
+      samples = samples_around(ring, *window);
+    }
   };
   if (!found || !frequency || !tap_.look(found->tapped, look)) {
     return nullptr;
   }
-  const auto view = view_sine(samples, *frequency, 1000);
+  const auto settled = window ? find_settled(samples, *window, *frequency) : std::nullopt;
+  if (!settled) {
+    return {{"channel", name}, {"unit", found->unit}, {"problem", "settling"}};
+  }
+  const auto view = view_sine(*settled, 1000);
   if (!view) {
     return {{"channel", name}, {"unit", found->unit}, {"problem", view.error().message}};
   }
@@ -245,35 +288,26 @@ Json SignalAnswers::fitted_json(const std::string& bench, const std::string& nam
           {"residual_columns", Json::parse(columns_text(view->residuals))}};
 }
 
-Text SignalAnswers::fit_text(const std::string& bench_name, std::string& problem) {
-  struct Step {
-    std::uint32_t step = 0;
-    std::string frequency_hz;
-    live::Plan plan;
+Text SignalAnswers::fit_text(const std::string& bench, std::string& problem) {
+  const auto step = excited_step(bench);
+  const auto fitted = [&](const std::string& channel) {
+    return fitted_json(bench, channel, *step);
   };
-  const auto step = board_.look([&](const live::Laboratory& laboratory) -> std::optional<Step> {
-    const live::Bench* bench = laboratory.bench(bench_name);
-    const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
-    if (run == nullptr || !run->plan || !run->now) {
-      return std::nullopt;
-    }
-    Step found{run->now->step.step, run->now->step.frequency_text_hz, *run->plan};
-    found.plan.steps.clear();
-    return found;
-  });
-  if (!step) {
+  Json json;
+  if (step) { // between steps too: samples from before a step show where it begins
+    json = {{"step", step->step},
+            {"attempt", step->attempt},
+            {"frequency_text_hz", step->frequency_hz},
+            {"reference", fitted(step->plan.reference)},
+            {"sync", fitted(step->plan.sync_acs)},
+            {"dau_phase",
+             fitted(step->plan.sync_dau.empty() ? step->plan.sync_dso : step->plan.sync_dau)}};
+  }
+  if (!step || !step->is_excited) {
     problem = "no step is excited on this bench now";
     return nullptr;
   }
-  const auto fitted = [&](const std::string& channel) {
-    return fitted_json(bench_name, channel, step->frequency_hz);
-  };
-  return text_of({{"step", step->step},
-                  {"frequency_text_hz", step->frequency_hz},
-                  {"reference", fitted(step->plan.reference)},
-                  {"sync", fitted(step->plan.sync_acs)},
-                  {"dau_phase", fitted(step->plan.sync_dau.empty() ? step->plan.sync_dso
-                                                                   : step->plan.sync_dau)}});
+  return text_of(json);
 }
 
 bool SignalAnswers::answer(const httplib::Request& request, httplib::Response& response) {

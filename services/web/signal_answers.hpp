@@ -45,8 +45,10 @@ private:
   [[nodiscard]] Text signal_text(const Question& question);
   [[nodiscard]] Text spectrum_text(const Question& question, std::string& problem);
   [[nodiscard]] Text fit_text(const std::string& bench, std::string& problem);
+  struct ExcitedStep;
+  [[nodiscard]] std::optional<ExcitedStep> excited_step(const std::string& bench) const;
   [[nodiscard]] nlohmann::ordered_json
-  fitted_json(const std::string& bench, const std::string& name, const std::string& frequency_hz);
+  fitted_json(const std::string& bench, const std::string& name, const ExcitedStep& step);
   [[nodiscard]] static Question question_of(const std::string& bench,
                                             const httplib::Request& request);
 

@@ -43,8 +43,11 @@ export class StepPanel {
   show_fit(fit) {
     const { reference, sync, dau_phase } = fit;
     const is_fit = Boolean(dau_phase?.fit || dau_phase?.problem);
-    set_text(this.problem, fit.step ? `Fits of step ${fit.step}, ${fit.frequency_text_hz ?? "?"} Hz` +
-      `${fit.attempt > 1 ? `, attempt ${fit.attempt}` : ""}.` : "");
+    const has_numbers = [reference, sync, dau_phase].some((role) => role?.fit || role?.columns);
+    const step = `${fit.step}, ${fit.frequency_text_hz ?? "?"} Hz` +
+      `${fit.attempt > 1 ? `, attempt ${fit.attempt}` : ""}`;
+    const text = has_numbers ? `Fits of step ${step}.` : `Step ${step}: settling.`;
+    set_text(this.problem, fit.step ? text : "");
     this.reference.show(reference);
     this.sync.show(sync);
     this.dau.show(is_fit ? dau_phase : null);

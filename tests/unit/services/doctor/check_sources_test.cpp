@@ -55,6 +55,17 @@ TEST_F(CheckSources, IsContentWithASourceThatRuns) {
   EXPECT_THAT(check().at(0).sentence, HasSubstr("acc-1/dau on lab-2 is running, 1000.0 samples"));
 }
 
+TEST_F(CheckSources, HoldsTheRateAgainstThatOfTheBenchFile) {
+  BenchFile bench = bench_file("sensor = \"1\"\n");
+  bench.sources.front().nominal_rate_hz = 1000.0;
+  dau().status->rate_hz(1011.0);
+  EXPECT_THAT(warnings(check(bench)), IsEmpty());
+  dau().status->rate_hz(2000.0);
+  EXPECT_THAT(warnings(check(bench)),
+              ElementsAre(HasSubstr("source acc-1/dau sends 2000 samples a second, but its "
+                                    "nominal_rate_hz is 1000")));
+}
+
 TEST_F(CheckSources, SaysThatThereIsNone) {
   view_.sources.clear();
   EXPECT_THAT(warnings(check()), ElementsAre("sources: no source is there"));

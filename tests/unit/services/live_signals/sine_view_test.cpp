@@ -20,7 +20,8 @@ std::vector<Sample> sine(std::size_t count) {
 }
 
 TEST(SineView, FitsTheExcitationAndShowsWhatItLeaves) {
-  const auto view = view_sine(sine(2000), *analysis::Frequency::parse("16"), 100);
+  const auto samples = sine(2000);
+  const auto view = view_sine({samples, *analysis::Frequency::parse("16"), 0.0}, 100);
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->fit.amplitude(), 3.0, 1e-4);
   EXPECT_NEAR(view->fit.offset, 0.5, 1e-4);
@@ -34,10 +35,11 @@ TEST(SineView, FitsTheExcitationAndShowsWhatItLeaves) {
   EXPECT_NEAR(view->columns.back().time_s, 0.25, 0.02) << "four periods";
 }
 
-TEST(SineView, NeedsTwoPeriods) {
-  const auto view = view_sine(sine(100), *analysis::Frequency::parse("16"), 100);
-  ASSERT_FALSE(view);
-  EXPECT_EQ(view.error().message, "less than two periods of samples yet");
+TEST(SineView, StatesTheScatterFromBlockToBlock) {
+  const auto samples = sine(2000);
+  const auto view = view_sine({samples, *analysis::Frequency::parse("16"), 0.02}, 100);
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(view->fit.u_amplitude(), 0.02, 1e-4);
 }
 
 } // namespace
