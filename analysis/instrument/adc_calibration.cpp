@@ -6,7 +6,9 @@
 #include <numeric>
 #include <string>
 
+#include "analysis/base/phasor.hpp"
 #include "analysis/base/statistics.hpp"
+#include "analysis/instrument/curve_between_points.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -117,25 +119,27 @@ struct Interpolated {
   double u = 0.0;
 };
 
-// Linear between points i and i + 1; values and their u over frequencies f.
+// Between points i and i + 1; values and their u over frequencies f.
 Interpolated interpolate(const std::vector<double>& f, const std::vector<double>& values,
                          const std::vector<double>& u, std::size_t i, double at) {
+  const CurveValue curve = curve_between_points(f, values, i, at);
   const double weight = (at - f[i]) / (f[i + 1] - f[i]);
-  const auto second_difference = [&](std::size_t first) { // divided: half the curvature
-    const double left = (values[first + 1] - values[first]) / (f[first + 1] - f[first]);
-    const double right = (values[first + 2] - values[first + 1]) / (f[first + 2] - f[first + 1]);
-    return std::abs(right - left) / (f[first + 2] - f[first]);
-  };
-  double curvature = 0.0;
-  if (i > 0) {
-    curvature = second_difference(i - 1);
+  return {curve.value, std::hypot((1.0 - weight) * u[i] + weight * u[i + 1],
+                                  curve.missed / std::numbers::sqrt3)};
+}
+
+// Files have lags within a turn. Returns which intervals are ambiguous.
+std::vector<bool> unwrap(std::vector<AdcCalibrationPoint>& points) {
+  std::vector<double> f, lags;
+  for (const AdcCalibrationPoint& point : points) {
+    f.push_back(point.frequency_hz);
+    lags.push_back(point.phase_lag_rad);
   }
-  if (i + 2 < f.size()) {
-    curvature = std::max(curvature, second_difference(i));
+  const UnwrappedPhases unwrapped = unwrap_over_frequency(f, lags);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].phase_lag_rad = unwrapped.phases_rad[i];
   }
-  const double missed = curvature * (at - f[i]) * (f[i + 1] - at) / std::sqrt(3.0);
-  return {values[i] + weight * (values[i + 1] - values[i]),
-          std::hypot((1.0 - weight) * u[i] + weight * u[i + 1], missed)};
+  return unwrapped.ambiguous;
 }
 
 // Scatter differs by decades between 1 Hz and 100 kHz: each point takes it from this many points on
@@ -173,6 +177,11 @@ struct Group { // measurements of one frequency
   double phase_squares = 0.0;
 };
 
+// The lag of `point` within half a turn of another of the same frequency.
+double lag_near(const AdcCalibrationPoint& other, const AdcCalibrationPoint& point) {
+  return other.phase_lag_rad + wrap_phase(point.phase_lag_rad - other.phase_lag_rad);
+}
+
 std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
   std::vector<Group> groups;
   for (std::size_t begin = 0; begin < sorted.size();) {
@@ -181,7 +190,7 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
     double gain = 0.0, lag = 0.0;
     for (; end < sorted.size() && same(sorted[end].frequency_hz, group.mean.frequency_hz); ++end) {
       gain += sorted[end].gain;
-      lag += sorted[end].phase_lag_rad;
+      lag += lag_near(sorted[begin], sorted[end]);
       group.mean.u_gain = std::max(group.mean.u_gain, sorted[end].u_gain);
       group.mean.u_phase_lag_rad =
           std::max(group.mean.u_phase_lag_rad, sorted[end].u_phase_lag_rad);
@@ -191,7 +200,8 @@ std::vector<Group> gather(std::span<const AdcCalibrationPoint> sorted) {
     group.mean.phase_lag_rad = lag / group.count;
     for (std::size_t i = begin; i < end; ++i) {
       group.gain_squares += std::pow(sorted[i].gain / group.mean.gain - 1.0, 2);
-      group.phase_squares += std::pow(sorted[i].phase_lag_rad - group.mean.phase_lag_rad, 2);
+      group.phase_squares +=
+          std::pow(lag_near(sorted[begin], sorted[i]) - group.mean.phase_lag_rad, 2);
     }
     groups.push_back(group);
     begin = end;
@@ -208,6 +218,7 @@ points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
   for (const Group& group : groups) {
     points.push_back(group.mean);
   }
+  unwrap(points);
   const FrontEnd model = approximate(points);
   for (const Group& group : groups) {
     f.push_back(group.mean.frequency_hz);
@@ -215,7 +226,7 @@ points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
     gain_squares.push_back(group.gain_squares);
     phase_squares.push_back(group.phase_squares);
     gains.push_back(std::log(group.mean.gain) - model.log_gain_at(f.back()));
-    lags.push_back(group.mean.phase_lag_rad - model.lag_at(f.back()));
+    lags.push_back(points[f.size() - 1].phase_lag_rad - model.lag_at(f.back()));
   }
   const auto sum = [](std::span<const double> values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
@@ -247,7 +258,7 @@ points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
 Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_points,
                                       double frequency_hz,
                                       std::optional<double> test_amplitude_vpp) {
-  const auto points = of_one_amplitude(all_points, test_amplitude_vpp);
+  auto points = of_one_amplitude(all_points, test_amplitude_vpp);
   if (!points) {
     return fail(points.error());
   }
@@ -264,14 +275,19 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
     return AdcResponse{only.gain, only.phase_lag_rad, only.u_gain, only.u_phase_lag_rad};
   }
 
+  const auto twice =
+      std::adjacent_find(points->begin(), points->end(), [](const auto& a, const auto& b) {
+        return same(a.frequency_hz, b.frequency_hz);
+      });
+  if (twice != points->end()) {
+    return fail(ErrorCode::invalid_argument,
+                "the ADC calibration has " + number(twice->frequency_hz) +
+                    " Hz twice: first make one point of repeated measurements");
+  }
+  const std::vector<bool> ambiguous = unwrap(*points);
   const FrontEnd model = approximate(*points);
   std::vector<double> f, gains, lags, u_gains, u_lags;
   for (const AdcCalibrationPoint& point : *points) {
-    if (!f.empty() && same(point.frequency_hz, f.back())) {
-      return fail(ErrorCode::invalid_argument,
-                  "the ADC calibration has " + number(point.frequency_hz) +
-                      " Hz twice: first make one point of repeated measurements");
-    }
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));
     lags.push_back(point.phase_lag_rad - model.lag_at(point.frequency_hz));
@@ -288,7 +304,9 @@ Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_p
   response.gain = std::exp(gain.value + model.log_gain_at(at));
   response.u_gain = response.gain * gain.u;
   response.phase_lag_rad = lag.value + model.lag_at(at);
-  response.u_phase_lag_rad = lag.u;
+  const double weight = (at - f[i]) / (f[i + 1] - f[i]);
+  response.u_phase_lag_rad =
+      std::hypot(lag.u, ambiguous[i] ? ambiguous_phase_rad(weight) / std::numbers::sqrt3 : 0.0);
   return response;
 }
 

@@ -3,13 +3,12 @@
 //   G(f) = g0 e^{-i w tau} / (1 + i f / fc),   phase_lag_rad = -arg G, positive: the ADC reads late
 //   u^2  = (w1 u1 + w2 u2)^2 + e^2 / 3
 //
-// G is approximated to the points (1 / g^2 is linear in f^2; the rest of the lag is w tau); the
-// ratio of points and model is interpolated, log gain and phase each linearly in f. A pure delay
-// and a first-order low pass are therefore exact. e is the larger of the neighbouring second
-// differences, a bound of what a straight line misses. The first term of u holds however much the
-// two points have in common (time scales, voltmeter), and is an upper bound where they have
-// nothing. Points of different test amplitudes are never mixed: gains differ by per cents, delays
-// by a factor.
+// G is approximated to the points (1 / g^2 is linear in f^2; the rest of the lag, unwrapped, is
+// w tau); the ratio of points and model is interpolated, log gain and phase each
+// (curve_between_points.hpp, with e as what a straight line misses). A pure delay and a first-order
+// low pass are therefore exact. The first term of u holds however much the two points have in
+// common (time scales, voltmeter), and is an upper bound where they have nothing. Points of
+// different test amplitudes are never mixed: gains differ by per cents, delays by a factor.
 //
 // Fails: invalid_argument (no points, not positive, several test amplitudes and none chosen),
 // out_of_calibration (frequency outside the calibrated range, or no points within a factor of two

@@ -4,7 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <sstream>
+
+#include "analysis/base/phasor.hpp"
+#include "analysis/instrument/curve_between_points.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -77,7 +81,8 @@ ReferenceResponse response_of(const ReferenceCalibrationPoint& point) {
 // The more of `b`, the nearer `weight` is to 1.
 ReferenceResponse between(const ReferenceResponse& a, const ReferenceResponse& b, double weight) {
   const auto mixed = [&](double left, double right) { return left + weight * (right - left); };
-  ReferenceResponse result{mixed(a.magnitude, b.magnitude), mixed(a.phase_rad, b.phase_rad),
+  const double turned_rad = wrap_phase(b.phase_rad - a.phase_rad);
+  ReferenceResponse result{mixed(a.magnitude, b.magnitude), a.phase_rad + weight * turned_rad,
                            a.contributions};
   for (std::size_t i = 0; i < result.contributions.size(); ++i) {
     ReferenceContribution& one = result.contributions[i];
@@ -89,18 +94,42 @@ ReferenceResponse between(const ReferenceResponse& a, const ReferenceResponse& b
   return result;
 }
 
-// Half the curvature about the interval from point i on: the larger of its neighbours'.
-double half_curvature(const Curve& curve, std::size_t i, double ReferenceCalibrationPoint::*value) {
-  const auto divided = [&](std::size_t first) {
-    const auto slope = [&](std::size_t from) {
-      return (curve[from + 1].*value - curve[from].*value) /
-             (curve[from + 1].frequency_hz - curve[from].frequency_hz);
-    };
-    return std::abs(slope(first + 1) - slope(first)) /
-           (curve[first + 2].frequency_hz - curve[first].frequency_hz);
-  };
-  const double before = i > 0 ? divided(i - 1) : 0.0;
-  return i + 2 < curve.size() ? std::max(before, divided(i)) : before;
+struct Table { // of one level
+  std::vector<double> frequencies_hz, magnitudes;
+  UnwrappedPhases phases;
+};
+
+Table table_of(const Curve& curve) {
+  Table table;
+  std::vector<double> phases_rad;
+  for (const ReferenceCalibrationPoint& point : curve) {
+    table.frequencies_hz.push_back(point.frequency_hz);
+    table.magnitudes.push_back(point.magnitude);
+    phases_rad.push_back(point.phase_rad);
+  }
+  table.phases = unwrap_over_frequency(table.frequencies_hz, phases_rad);
+  return table;
+}
+
+ReferenceResponse between_points(const Curve& curve, std::size_t i, double frequency_hz) {
+  const Table table = table_of(curve);
+  const CurveValue magnitude =
+      curve_between_points(table.frequencies_hz, table.magnitudes, i, frequency_hz);
+  const CurveValue phase =
+      curve_between_points(table.frequencies_hz, table.phases.phases_rad, i, frequency_hz);
+  const double missed_phase =
+      phase.missed + (table.phases.ambiguous[i] ? ambiguous_phase_rad(phase.weight) : 0.0);
+  ReferenceResponse response = between(response_of(curve[i]), response_of(curve[i + 1]),
+                                       (frequency_hz - curve[i].frequency_hz) /
+                                           (curve[i + 1].frequency_hz - curve[i].frequency_hz));
+  response.magnitude = magnitude.value;
+  response.phase_rad = phase.value;
+  response.contributions.push_back(
+      {.name = interpolation,
+       .distribution = Distribution::rectangular,
+       .u_magnitude_rel = magnitude.missed / std::numbers::sqrt3 / response.magnitude,
+       .u_phase_rad = missed_phase / std::numbers::sqrt3});
+  return response;
 }
 
 Expected<ReferenceResponse> response_on(const Curve& curve, double frequency_hz) {
@@ -119,19 +148,7 @@ Expected<ReferenceResponse> response_on(const Curve& curve, double frequency_hz)
                                                    number(curve.back().frequency_hz) +
                                                    " Hz, not at " + number(frequency_hz) + " Hz");
   }
-  const auto i = static_cast<std::size_t>(above - curve.begin()) - 1;
-  const double from_left = frequency_hz - curve[i].frequency_hz;
-  const double to_right = curve[i + 1].frequency_hz - frequency_hz;
-  ReferenceResponse response =
-      between(response_of(curve[i]), response_of(curve[i + 1]), from_left / (from_left + to_right));
-  const double missed = from_left * to_right / std::sqrt(3.0);
-  response.contributions.push_back(
-      {.name = interpolation,
-       .distribution = Distribution::rectangular,
-       .u_magnitude_rel = missed * half_curvature(curve, i, &ReferenceCalibrationPoint::magnitude) /
-                          response.magnitude,
-       .u_phase_rad = missed * half_curvature(curve, i, &ReferenceCalibrationPoint::phase_rad)});
-  return response;
+  return between_points(curve, static_cast<std::size_t>(above - curve.begin()) - 1, frequency_hz);
 }
 
 } // namespace

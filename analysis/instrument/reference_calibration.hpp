@@ -8,11 +8,11 @@
 // strain, temperature, mounting, drift), uncorrelated with each other; every point has them all, in
 // one order. An unnamed one is what the others leave of the whole.
 //
-// Magnitude and phase are interpolated linearly in frequency, then linearly in level between curves
-// of one level each; points that all have the same level hold at every level. A contribution is
-// w1 u1 + w2 u2: the points of a certificate have it in common. What a straight line misses between
-// two frequencies is bounded by the neighbouring second differences and is a contribution of its
-// own, "interpolation", rectangular. Degrees of freedom are the fewest of the points.
+// Magnitude and unwrapped phase are interpolated over frequency (curve_between_points.hpp), then
+// linearly in level between curves of one level each; points that all have the same level hold at
+// every level. A contribution is w1 u1 + w2 u2: the points of a certificate have it in common. What
+// a straight line misses between two frequencies is a contribution of its own, "interpolation",
+// rectangular. Degrees of freedom are the fewest of the points.
 //
 // Fails: invalid_argument (no points, not positive or not finite, contributions differ from point
 // to point, a point twice), out_of_calibration: nothing is extrapolated. Any thread.

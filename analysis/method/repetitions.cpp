@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/uncertainty/rice.hpp"
@@ -13,6 +15,10 @@ namespace {
 
 constexpr double weak_mean = 10.0;       // u: below, the phase is not normal any more
 constexpr double significant_bias = 0.1; // of its uncertainty in the mean
+// Phases of two repetitions that are farther apart, each known to `known_phase_rad` (so by more
+// than six standard deviations), are of sensors that point in opposite directions.
+constexpr double opposite_rad = 0.75 * std::numbers::pi;
+constexpr double known_phase_rad = 0.25;
 
 bool is_finite(const Repetition& repetition) {
   return std::isfinite(repetition.h.real()) && std::isfinite(repetition.h.imag()) &&
@@ -72,7 +78,8 @@ Centre mean_of_lengths(std::span<const Repetition> repetitions) {
   for (const Repetition& repetition : repetitions) {
     const std::complex<double> turned = unit_phasor(repetition.h) * std::conj(direction);
     centre.magnitude.deviations.push_back(std::abs(repetition.h) / length - 1.0);
-    centre.phase.deviations.push_back(turned.imag() / closeness);
+    centre.phase.deviations.push_back(turned.real() < 0.0 ? std::arg(turned)
+                                                          : turned.imag() / closeness);
   }
   return centre;
 }
@@ -134,7 +141,23 @@ Centre centre_of(const RepeatedFrequency& frequency) {
   }
   centre.magnitude.frequency_hz = frequency.frequency_hz;
   centre.phase.frequency_hz = frequency.frequency_hz;
+  if (std::all_of(repetitions.begin(), repetitions.end(),
+                  [](const Repetition& one) { return one.sweep > 0; })) {
+    std::transform(repetitions.begin(), repetitions.end(),
+                   std::back_inserter(centre.magnitude.repetitions),
+                   [](const Repetition& one) { return one.sweep; });
+    centre.phase.repetitions = centre.magnitude.repetitions;
+  }
   return centre;
+}
+
+bool have_opposite_phases(const std::vector<Repetition>& repetitions) {
+  const auto opposite = [&](const Repetition& one) {
+    const Repetition& first = repetitions.front();
+    return one.u_random_phase_rad < known_phase_rad && first.u_random_phase_rad < known_phase_rad &&
+           std::abs(std::arg(one.h * std::conj(first.h))) > opposite_rad;
+  };
+  return std::any_of(repetitions.begin(), repetitions.end(), opposite);
 }
 
 double standard_deviation_of(const std::vector<double>& deviations) {
@@ -247,7 +270,9 @@ means_of_repetitions(std::span<const RepeatedFrequency> frequencies) {
     if (const auto checked = check(frequency.repetitions); !checked) {
       means.emplace_back(fail(checked.error()));
     } else {
-      means.emplace_back(mean_from(centres[next], magnitude_errors[next], phase_errors[next]));
+      RepetitionMean mean = mean_from(centres[next], magnitude_errors[next], phase_errors[next]);
+      mean.polarity_differs = have_opposite_phases(frequency.repetitions);
+      means.emplace_back(std::move(mean));
       ++next;
     }
   }

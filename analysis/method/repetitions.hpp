@@ -4,6 +4,8 @@
 //   psi   = arg sum(H_i / |H_i|)                                the circular mean
 //   e_i   = |H_i| / |H| - 1  and  sin(psi_i - psi) / R          R = |sum(H_i / |H_i|)| / n
 //
+// but the angle itself beyond a quarter turn, where the sine falls again.
+//
 // So repetitions whose phase scatters, as shots of a sensor that runs free, keep their magnitude:
 // the length of their mean phasor would be shorter by e^{-s^2 / 2}. Where their lengths do not
 // stand out of what noise alone would give, the mean is that of the phasors. Only noise of the
@@ -11,18 +13,19 @@
 // it adds is taken off from a tenth of its own uncertainty in the mean on: less is not known.
 //
 // u of a mean: random_effects.hpp. Every repetition states its own noise (u_random), known with
-// many degrees of freedom; scatter beyond it is found from all repeated frequencies together.
-// What is common to all repetitions (reference, ADC, delays) does not average. `u_magnitude` and
-// `u_phase_rad` are U / 2, so that the factor 2 that every reader applies covers 95.45 % although n
-// is small; u (k = 1), nu_eff and k are in `magnitude_rel` and `phase`. Where no frequency was
-// repeated, they are those of the single result's own budget (coverage.hpp). A mean below 10 u has
-// the phase uncertainty of phasor.hpp; none exceeds pi / sqrt(3), that of an angle of which nothing
-// is known.
+// many degrees of freedom; scatter beyond it is found from all repeated frequencies together, that
+// of whole sweeps by their numbers. What is common to all repetitions (reference, ADC, delays) does
+// not average. `u_magnitude` and `u_phase_rad` are U / 2, so that the factor 2 that every reader
+// applies covers 95.45 % although n is small; u (k = 1), nu_eff and k are in `magnitude_rel` and
+// `phase`. Where no frequency was repeated, they are those of the single result's own budget
+// (coverage.hpp). A mean below 10 u has the phase uncertainty of phasor.hpp; none exceeds
+// pi / sqrt(3), that of an angle of which nothing is known.
 //
 // Fails: invalid_argument (no repetition), not_finite. Any thread.
 #pragma once
 
 #include <complex>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,6 +45,7 @@ struct Repetition {
   double freedom_magnitude = infinite_degrees_of_freedom;
   double freedom_phase = infinite_degrees_of_freedom;
   double u_not_noise_magnitude_rel = 0.0; // part of u_random that is no noise of the phasor
+  std::uint32_t sweep = 0; // which sweep over the frequencies it is of; 0: not known
 };
 
 // Divides a budget: rows that are drawn anew in every repetition are random, but for the part of
@@ -60,6 +64,7 @@ struct RepetitionMean {
   double scatter_magnitude = 0.0; // s of one repetition, in the unit of the magnitude; 0 for n = 1
   double scatter_phase_rad = 0.0;
   std::size_t repetitions = 0;
+  bool polarity_differs = false; // of repetitions whose phase is known: one points the other way
   CombinedUncertainty magnitude_rel;
   CombinedUncertainty phase;
   CombinedUncertainty independent_magnitude_rel; // without the common part

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/response/delay_branches.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double weakest_phase_rad = 0.5; // a point less certain than this does not count
 constexpr std::size_t min_to_search = 6;
+constexpr double most_birge = 3.0; // residuals over u: above, no straight line describes the phase
 
 std::string hertz(double value) {
   std::string text = std::to_string(value);
@@ -129,56 +131,39 @@ Expected<std::vector<double>> unwrap_points_that_count(const std::vector<PhasePo
   return unwrapped;
 }
 
-struct Line {
-  double delay_s = 0.0;
-  double intercept_rad = 0.0;
-  double variance_delay = 0.0;
-  double variance_intercept = 0.0;
-  double covariance = 0.0;
-  double chi_squared = 0.0;
-
-  [[nodiscard]] double at(double frequency_hz) const {
-    return intercept_rad - 2.0 * pi * frequency_hz * delay_s;
-  }
+// The line that the phases follow from point to point; where it does not fit, the least delay of a
+// sensor that does.
+struct Choice {
+  DelayBranch branch;
+  std::vector<double> alternatives_s; // that fit as well
 };
 
-// Generalised least squares. Errors in common lie in the space of the model, so they change neither
-// estimate nor residuals and only add to the covariance: weights of the independent parts alone
-// give the GLS estimate.
-Line fit_line(const std::vector<PhasePoint>& points, const std::vector<double>& phases) {
-  double weight_sum = 0.0, mean_w = 0.0, mean_phase = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double weight = 1.0 / (points[i].u_phase_rad * points[i].u_phase_rad);
-    weight_sum += weight;
-    mean_w += weight * 2.0 * pi * points[i].frequency_hz;
-    mean_phase += weight * phases[i];
+Expected<Choice> choose_branch(const std::vector<PhasePoint>& points) {
+  auto unwrapped = unwrap_points_that_count(points);
+  std::vector<DelayBranch> fitting = delay_branches(points);
+  const double freedom = static_cast<double>(points.size()) - 2.0;
+  if (!unwrapped && (freedom < 1.0 || fitting.size() != 1)) {
+    return fail(unwrapped.error());
   }
-  mean_w /= weight_sum;
-  mean_phase /= weight_sum;
-  double ww = 0.0, wp = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double weight = 1.0 / (points[i].u_phase_rad * points[i].u_phase_rad);
-    const double w = 2.0 * pi * points[i].frequency_hz - mean_w;
-    ww += weight * w * w;
-    wp += weight * w * (phases[i] - mean_phase);
+  Choice choice;
+  if (unwrapped) {
+    choice.branch = {fit_phase_line(points, *unwrapped), std::move(*unwrapped)};
   }
-  Line line;
-  line.delay_s = -wp / ww;
-  line.intercept_rad = mean_phase + mean_w * line.delay_s;
-  line.variance_delay = 1.0 / ww;
-  line.variance_intercept = 1.0 / weight_sum + mean_w * mean_w / ww;
-  line.covariance = mean_w / ww;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    line.chi_squared +=
-        std::pow((phases[i] - line.at(points[i].frequency_hz)) / points[i].u_phase_rad, 2);
+  const bool fits = unwrapped && (freedom < 1.0 || choice.branch.line.chi_squared <=
+                                                       freedom * chi_squared_limit(freedom));
+  if (!fits && fitting.empty()) {
+    return choice; // no straight line
   }
-  return line;
-}
-
-// Chi-squared / dof that is exceeded once in a thousand (Wilson and Hilferty).
-double chi_squared_limit(double degrees_of_freedom) {
-  const double spread = 2.0 / (9.0 * degrees_of_freedom);
-  return std::pow(1.0 - spread + 3.0902 * std::sqrt(spread), 3.0);
+  if (!fits) {
+    choice.branch = fitting.front();
+  }
+  const double apart_s = 0.1 / (points.back().frequency_hz - points.front().frequency_hz);
+  for (const DelayBranch& other : fitting) {
+    if (std::abs(other.line.delay_s - choice.branch.line.delay_s) > apart_s) {
+      choice.alternatives_s.push_back(other.line.delay_s);
+    }
+  }
+  return choice;
 }
 
 std::vector<double> covariance_of(std::span<const PhasePoint> points,
@@ -199,7 +184,7 @@ std::vector<double> covariance_of(std::span<const PhasePoint> points,
 // Points that do not count follow the line; all are moved by whole turns so that the line starts
 // within (-pi, pi].
 std::vector<double> place_on_line(std::span<const PhasePoint> points,
-                                  const std::vector<double>& counted, const Line& line,
+                                  const std::vector<double>& counted, const PhaseLine& line,
                                   double shift) {
   std::vector<double> result;
   std::size_t next = 0;
@@ -225,13 +210,13 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
         ErrorCode::too_few_samples,
         "a group delay needs the phase at two frequencies with an uncertainty below 0.5 rad");
   }
-  const auto phases = unwrap_points_that_count(counted);
-  if (!phases) {
-    return fail(phases.error());
+  const auto choice = choose_branch(counted);
+  if (!choice) {
+    return fail(choice.error());
   }
-
-  const Line line = fit_line(counted, *phases);
+  const PhaseLine& line = choice->branch.line;
   GroupDelay result;
+  result.alternatives_s = choice->alternatives_s;
   result.delay_s = line.delay_s;
   result.intercept_rad = wrap_phase(line.intercept_rad);
   result.polarity_inverted = std::abs(result.intercept_rad) > 0.5 * pi;
@@ -241,12 +226,13 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
       result.degrees_of_freedom > 0.0 ? result.chi_squared / result.degrees_of_freedom : 0.0;
   const double birge =
       ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom)) ? ratio : 1.0;
+  result.is_constant = std::sqrt(birge) <= most_birge;
   result.u_delay_s = std::sqrt(birge * line.variance_delay + common.delay_s * common.delay_s);
   result.u_intercept_rad =
       std::sqrt(birge * line.variance_intercept + common.phase_rad * common.phase_rad);
   result.cov_delay_intercept = birge * line.covariance;
-  result.unwrapped_rad =
-      place_on_line(points, *phases, line, result.intercept_rad - line.intercept_rad);
+  result.unwrapped_rad = place_on_line(points, choice->branch.unwrapped_rad, line,
+                                       result.intercept_rad - line.intercept_rad);
   result.phase_covariance = covariance_of(points, common);
   return result;
 }

@@ -11,11 +11,13 @@
 // Unwrapping: the delay for which the phases agree best is searched over +-1/2 of the smallest
 // frequency spacing (periodogram of the unit phasors, six points and more), else predicted from the
 // two points before; what remains is unwrapped from point to point and must stay below pi - 3 u at
-// each step. Points whose u is above 0.5 rad follow the line and do not count. psi_0 is reduced to
+// each step. Where that line does not fit and that of a delay that a sensor may have does
+// (delay_branches.hpp), it is that one; other delays that fit as well are `alternatives_s`. Points
+// whose u is above 0.5 rad follow the line and do not count. psi_0 is reduced to
 // (-pi, pi]; polarity is inverted when it is nearer to pi than to 0: unwrapping never absorbs that.
 //
 // When the residuals are larger than u allows once in a thousand (chi-squared), u(tau) and u(psi_0)
-// grow by the Birge ratio: the phase is then not a straight line.
+// grow by the Birge ratio: the phase is then not a straight line, and above 3 u not `is_constant`.
 //
 // Fails: invalid_argument (frequencies not rising, u not positive), too_few_samples (fewer than two
 // points that count), not_converged (cannot be unwrapped; the message says where). Any thread.
@@ -46,6 +48,8 @@ struct GroupDelay {
   double u_intercept_rad = 0.0;
   double cov_delay_intercept = 0.0; // s rad
   bool polarity_inverted = false;
+  bool is_constant = true;            // a straight line describes the phase
+  std::vector<double> alternatives_s; // delays that a sensor may have and that fit as well
   double chi_squared = 0.0;
   double degrees_of_freedom = 0.0;
   std::vector<double> unwrapped_rad;    // of all points

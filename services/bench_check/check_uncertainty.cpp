@@ -32,6 +32,49 @@ void warn_without(const BenchView& view, const char* key, double value, const st
   }
 }
 
+// What no reference transducer in use is as bad as: certificates state per cents and degrees.
+constexpr double doubtful_magnitude_rel = 0.05;
+constexpr double doubtful_phase_rad = 0.1;
+
+double largest(const std::vector<analysis::ReferenceCalibrationPoint>& points,
+               double analysis::ReferenceContribution::*u) {
+  double result = 0.0;
+  for (const analysis::ReferenceCalibrationPoint& point : points) {
+    for (const analysis::ReferenceContribution& one : point.contributions) {
+      result = std::max(result, one.*u);
+    }
+  }
+  return result;
+}
+
+void warn_if_doubtful(const BenchView& view, const KeyPath& key, double value, double doubtful,
+                      const std::string& hint, Findings& findings) {
+  if (value > doubtful) {
+    findings.push_back(
+        view.at(Severity::warning, key,
+                fmt::format("states {:.3g} as standard uncertainty, more than {:g}: {}", value,
+                            doubtful, hint)));
+  }
+}
+
+void check_reference(const BenchView& view, Findings& findings) {
+  using Contribution = analysis::ReferenceContribution;
+  const char* const per_cent = "is it given in per cent, or with k = 2?";
+  const char* const degrees = "is it given in degrees, or with k = 2?";
+  const BenchFile& bench = view.bench;
+  warn_if_doubtful(view, {"uncertainty", "reference_magnitude_rel"},
+                   bench.uncertainty.reference_magnitude_rel, doubtful_magnitude_rel, per_cent,
+                   findings);
+  warn_if_doubtful(view, {"uncertainty", "reference_phase_rad"},
+                   bench.uncertainty.reference_phase_rad, doubtful_phase_rad, degrees, findings);
+  const auto& points = bench.corrections.reference;
+  warn_if_doubtful(view, {"corrections", "reference"},
+                   largest(points, &Contribution::u_magnitude_rel), doubtful_magnitude_rel,
+                   per_cent, findings);
+  warn_if_doubtful(view, {"corrections", "reference"}, largest(points, &Contribution::u_phase_rad),
+                   doubtful_phase_rad, degrees, findings);
+}
+
 void check_delays(const BenchView& view, Findings& findings) {
   const BenchFile& bench = view.bench;
   const EvaluationMethod kind = bench.method.kind;
@@ -84,6 +127,7 @@ Findings check_uncertainty(const BenchView& view) {
     warn_without(view, "reference_phase_rad", bench.uncertainty.reference_phase_rad,
                  "the reference's phase", findings);
   }
+  check_reference(view, findings);
   check_delays(view, findings);
   check_can(view, findings);
   return findings;

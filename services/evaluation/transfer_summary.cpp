@@ -4,6 +4,9 @@
 #include <cmath>
 #include <complex>
 #include <iterator>
+#include <optional>
+
+#include <fmt/core.h>
 
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
@@ -14,7 +17,10 @@ namespace {
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
 
 analysis::Repetition repetition_of(const StepResult& result) {
-  return analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);
+  analysis::Repetition repetition =
+      analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);
+  repetition.sweep = result.repetition;
+  return repetition;
 }
 
 std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& results) {
@@ -56,6 +62,36 @@ std::vector<std::size_t> first_of_each_frequency(const std::vector<FrequencyPoin
   return chosen;
 }
 
+// Delays of the same phases at frequencies that are multiples of a spacing.
+Flag ambiguous_delay(const analysis::GroupDelay& delay) {
+  constexpr std::size_t most_named = 3;
+  double nearest_s = std::abs(delay.alternatives_s.front() - delay.delay_s);
+  std::string others;
+  for (std::size_t i = 0; i < delay.alternatives_s.size(); ++i) {
+    nearest_s = std::min(nearest_s, std::abs(delay.alternatives_s[i] - delay.delay_s));
+    if (i < most_named) {
+      others += fmt::format("{}{:.4g}", i > 0 ? ", " : "", 1e3 * delay.alternatives_s[i]);
+    }
+  }
+  return flag_with_reason(
+      ResultFlag::group_delay_ambiguous,
+      fmt::format("{} ms fit as well{}; frequencies less than {:.3g} Hz apart would tell", others,
+                  delay.alternatives_s.size() > most_named ? ", and more" : "", 1.0 / nearest_s));
+}
+
+std::optional<Flag> opposite_repetitions(const std::vector<FrequencyPoint>& points) {
+  const auto found = std::find_if(points.begin(), points.end(), [](const FrequencyPoint& point) {
+    return point.mean.polarity_differs;
+  });
+  if (found == points.end()) {
+    return std::nullopt;
+  }
+  return flag_with_reason(ResultFlag::polarity_inverted,
+                          fmt::format("repetitions at {} Hz point in opposite directions, and "
+                                      "their mean is of neither",
+                                      found->frequency_text_hz));
+}
+
 // The budget of a point: that of its first step, which the others repeat.
 BudgetAtFrequency budget_of(const FrequencyPoint& point,
                             const std::vector<const StepResult*>& results) {
@@ -92,7 +128,13 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
     function.group_delay_problem = delay.error().message;
     return;
   }
-  if (delay->polarity_inverted) {
+  if (!delay->alternatives_s.empty()) {
+    function.flags.push_back(ambiguous_delay(*delay));
+  }
+  if (!delay->is_constant) {
+    function.flags.push_back(make_flag(ResultFlag::group_delay_not_constant));
+  }
+  if (delay->polarity_inverted && !opposite_repetitions(function.points)) {
     function.flags.push_back(make_flag(ResultFlag::polarity_inverted));
   }
   if (delay->delay_s < -before_excitation * delay->u_delay_s) {
@@ -120,6 +162,9 @@ TransferFunction TransferSummary::function_of(const std::string& channel) const 
   function.points = mean_points(valid);
   if (!function.points.empty()) {
     function.flags = flags_of_unstated(recipe_);
+    if (const auto opposite = opposite_repetitions(function.points)) {
+      function.flags.push_back(*opposite);
+    }
     add_group_delay(valid, function);
   }
   return function;

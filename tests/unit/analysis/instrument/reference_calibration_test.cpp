@@ -1,6 +1,7 @@
 #include "analysis/instrument/reference_calibration.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,6 +57,26 @@ TEST(ReferenceCalibration, ACurvedResponseLiesWithinWhatTheInterpolationAdds) {
   EXPECT_GT(missed, 1e-3);
   EXPECT_EQ(response->contributions.back().name, "interpolation");
   EXPECT_NEAR(response->contributions.back().u_magnitude_rel, missed / std::sqrt(3.0), 1e-9);
+}
+
+// The certificate of an inverting charge amplifier: 179.9 and -179.8 degrees.
+TEST(ReferenceCalibration, PhasesAboutHalfATurnAreNotTakenThroughZero) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  const std::vector points{point(40.0, 0.0, 1.0, 179.9 * degree),
+                           point(80.0, 0.0, 1.0, -179.8 * degree),
+                           point(160.0, 0.0, 1.0, 179.7 * degree)};
+  for (const double hz : {57.0, 113.0}) {
+    const auto response = reference_response_at(points, hz, 0.0);
+    ASSERT_TRUE(response) << response.error().message;
+    EXPECT_NEAR(std::abs(std::remainder(response->phase_rad, 360.0 * degree)), 180.0 * degree,
+                0.5 * degree);
+    EXPECT_LT(response->contributions.back().u_phase_rad, 0.5 * degree);
+  }
+  const std::vector levels{point(40.0, 1.0, 1.0, 179.9 * degree),
+                           point(40.0, 5.0, 1.0, -179.9 * degree)};
+  const auto between = reference_response_at(levels, 40.0, 3.0);
+  ASSERT_TRUE(between) << between.error().message;
+  EXPECT_NEAR(between->phase_rad, 180.0 * degree, 1e-9);
 }
 
 TEST(ReferenceCalibration, ExtrapolatesNothing) {

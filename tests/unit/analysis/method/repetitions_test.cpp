@@ -136,6 +136,25 @@ TEST(Repetitions, NoiseHasNoPhase) {
   EXPECT_GT(mean->u_phase_rad, 0.3);
 }
 
+TEST(Repetitions, OneThatPointsTheOtherWayIsSeen) {
+  for (const std::size_t others : {1U, 2U}) {
+    std::vector<Repetition> repetitions(others, Repetition{h_of(1.0, 0.3), 1e-3, 1e-3, 1e-3, 1e-3});
+    repetitions.push_back({h_of(1.0, 0.3 - std::numbers::pi), 1e-3, 1e-3, 1e-3, 1e-3});
+    const auto mean = mean_of_repetitions(repetitions);
+    ASSERT_TRUE(mean.has_value());
+    EXPECT_TRUE(mean->polarity_differs);
+    EXPECT_GT(mean->u_phase_rad, 1.0);
+    EXPECT_GT(mean->scatter_phase_rad, 1.0);
+  }
+  // Weak phases and such as only scatter do not.
+  const std::array weak{Repetition{h_of(1.0, 0.0), 0.5, 0.6, 0.0, 0.0},
+                        Repetition{h_of(1.0, 3.1), 0.5, 0.6, 0.0, 0.0}};
+  EXPECT_FALSE(mean_of_repetitions(weak)->polarity_differs);
+  const std::array scattered{Repetition{h_of(1.0, 0.0), 1e-3, 1e-3, 0.0, 0.0},
+                             Repetition{h_of(1.0, 1.2), 1e-3, 1e-3, 0.0, 0.0}};
+  EXPECT_FALSE(mean_of_repetitions(scattered)->polarity_differs);
+}
+
 TEST(Repetitions, RefusesNothingAndWhatIsNoNumber) {
   EXPECT_EQ(mean_of_repetitions({}).error().code, ErrorCode::invalid_argument);
   const std::array repetitions{Repetition{.h = {std::nan(""), 0.0}}};

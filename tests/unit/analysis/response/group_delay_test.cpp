@@ -68,6 +68,47 @@ TEST(GroupDelay, SaysSoWhenThePhaseCannotBeUnwrapped) {
       << result.error().message;
 }
 
+// 30 ms and 5 ms have the same phases at multiples of 40 Hz.
+TEST(GroupDelay, NamesTheOtherDelaysThatFit) {
+  for (const double delay : {5e-3, 30e-3}) {
+    const auto result = evaluate_group_delay(phases_of(delay, 0.0, 1e-4, {40, 80, 160}));
+    ASSERT_TRUE(result.has_value()) << result.error().message;
+    EXPECT_NEAR(result->delay_s, 5e-3, 1e-9);
+    ASSERT_EQ(result->alternatives_s.size(), 1U);
+    EXPECT_NEAR(result->alternatives_s[0], 30e-3, 1e-9);
+    EXPECT_TRUE(result->is_constant);
+  }
+  EXPECT_EQ(evaluate_group_delay(phases_of(30e-3, 0.0, 1e-4))->alternatives_s.size(), 0U);
+}
+
+TEST(GroupDelay, FewFrequenciesThatTellItAreEnough) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> delay_s(0.2e-3, 4e-3);
+  for (unsigned draw = 1; draw <= 100; ++draw) {
+    const double delay = delay_s(random);
+    for (const std::vector<double>& frequencies : {std::vector<double>{31.5, 40.0},
+                                                   {12.5, 16.0, 80.0},
+                                                   {12.5, 31.5, 63, 80, 125, 160, 200}}) {
+      const auto result = evaluate_group_delay(phases_of(delay, 0.0, 1e-3, frequencies, draw));
+      ASSERT_TRUE(result.has_value()) << result.error().message;
+      EXPECT_NEAR(result->delay_s, delay, 5.0 * result->u_delay_s);
+      EXPECT_TRUE(result->alternatives_s.empty()) << delay << " s, " << frequencies.size();
+      EXPECT_TRUE(result->is_constant);
+    }
+  }
+}
+
+// From 10 to 80 Hz it makes more than half a turn: the nearest turn gives -7.7 ms and bends.
+TEST(GroupDelay, TakesTheDelayThatFits) {
+  const auto result = evaluate_group_delay(phases_of(8.1e-3, 0.0, 1e-4, {10, 80, 200}, 5));
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_NEAR(result->delay_s, 8.1e-3, 5.0 * result->u_delay_s);
+  EXPECT_LT(result->chi_squared, 11.0);
+  EXPECT_TRUE(result->is_constant);
+  EXPECT_TRUE(result->alternatives_s.empty());
+  EXPECT_NEAR(result->unwrapped_rad.back(), -2.0 * pi * 200.0 * 8.1e-3, 1e-3);
+}
+
 TEST(GroupDelay, PhasesWithoutMeaningGiveNoDelay) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> anywhere(-pi, pi);
@@ -109,6 +150,7 @@ TEST(GroupDelay, FollowsAResponseThatIsNoPureDelay) {
                 1e-9);
   }
   EXPECT_GT(result->chi_squared, 10.0 * result->degrees_of_freedom);
+  EXPECT_FALSE(result->is_constant);
   EXPECT_GT(result->u_delay_s, 1e-6); // no straight line: more than the 0.3 us of the points alone
 }
 

@@ -175,6 +175,15 @@ TEST(BenchCheck, UncertaintyThatIsMissingOrZero) {
              Severity::error, 29, "uncertainty.reference_magnitude_rel", "in per cent?");
 }
 
+TEST(BenchCheck, UncertaintyOfTheReferenceThatIsDoubtful) {
+  expect_one(check_text(with(smartup_bench, "reference_magnitude_rel = 1e-3",
+                             "reference_magnitude_rel = 0.2")),
+             Severity::warning, 29, "uncertainty.reference_magnitude_rel", "in per cent");
+  expect_one(
+      check_text(with(smartup_bench, "reference_phase_rad = 1e-3", "reference_phase_rad = 0.5")),
+      Severity::warning, 30, "uncertainty.reference_phase_rad", "in degrees");
+}
+
 TEST(BenchCheck, UncertaintyThatIsMisspelt) {
   expect_one(check_text(with(smartup_bench, "reference_phase_rad", "reference_phase_deg")),
              Severity::error, 30, "uncertainty.reference_phase_deg",

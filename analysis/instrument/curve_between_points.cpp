@@ -1,0 +1,117 @@
+#include "analysis/instrument/curve_between_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/base/phasor.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double better = 0.8;         // times the misses of the straight line over frequency
+constexpr double unknown_growth = 3.0; // of a table of three points; 1 / f grows by 2 an octave
+constexpr double below_both = 2.0;     // 1 / f lies as far again below the line over the logarithm
+constexpr double most_growth = 4.0;    // of one that falls as 1 / f^2
+constexpr double least_span = 0.4;     // of a slope, in steps ahead: octaves have a half
+constexpr double well_predicted_rad = 1.0; // then a slope is believed over more than half a turn
+constexpr double most_step_rad = 0.75 * std::numbers::pi; // that nothing else predicts
+
+// Divided: half the curvature about the points first, first + 1, first + 2.
+double second_difference(std::span<const double> x, std::span<const double> y, std::size_t first) {
+  const double left = (y[first + 1] - y[first]) / (x[first + 1] - x[first]);
+  const double right = (y[first + 2] - y[first + 1]) / (x[first + 2] - x[first + 1]);
+  return std::abs(right - left) / (x[first + 2] - x[first]);
+}
+
+// Sum of how far inner points lie from the line through their neighbours.
+double misses(std::span<const double> x, std::span<const double> y) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < x.size(); ++i) {
+    sum += second_difference(x, y, i) * (x[i + 1] - x[i]) * (x[i + 2] - x[i + 1]);
+  }
+  return sum;
+}
+
+// At an end, from the second difference beside it and the next one.
+double at_end(double beside, double next) {
+  return beside * (next > 0.0 ? std::clamp(beside / next, 1.0, most_growth) : 1.0);
+}
+
+double half_curvature(std::span<const double> x, std::span<const double> y, std::size_t i) {
+  const std::size_t last = x.size() - 3; // of the second differences
+  if (x.size() == 3) {
+    return unknown_growth * second_difference(x, y, 0);
+  }
+  if (i == 0) {
+    return at_end(second_difference(x, y, 0), second_difference(x, y, 1));
+  }
+  if (i > last) {
+    return at_end(second_difference(x, y, last), second_difference(x, y, last - 1));
+  }
+  return std::max(second_difference(x, y, i - 1), second_difference(x, y, i));
+}
+
+// From the last of `unwrapped_rad` to the next point: by the slope before it, over a part that is
+// not short beside the step; 0 where there is none.
+double predicted_step(std::span<const double> frequencies_hz,
+                      const std::vector<double>& unwrapped_rad) {
+  const std::size_t last = unwrapped_rad.size() - 1;
+  const double step_hz = frequencies_hz[last + 1] - frequencies_hz[last];
+  for (std::size_t first = last; first-- > 0;) {
+    const double span_hz = frequencies_hz[last] - frequencies_hz[first];
+    if (span_hz >= least_span * step_hz) {
+      return step_hz * (unwrapped_rad[last] - unwrapped_rad[first]) / span_hz;
+    }
+  }
+  return 0.0;
+}
+
+} // namespace
+
+CurveValue curve_between_points(std::span<const double> frequencies_hz,
+                                std::span<const double> values, std::size_t i,
+                                double frequency_hz) {
+  std::vector<double> x(frequencies_hz.begin(), frequencies_hz.end());
+  std::vector<double> logarithms = x;
+  std::transform(x.begin(), x.end(), logarithms.begin(), [](double hz) { return std::log(hz); });
+  double at = frequency_hz;
+  const double log_weight = (std::log(at) - logarithms[i]) / (logarithms[i + 1] - logarithms[i]);
+  if (misses(logarithms, values) < better * misses(x, values)) {
+    x = std::move(logarithms);
+    at = std::log(at);
+  }
+  CurveValue result;
+  result.weight = (at - x[i]) / (x[i + 1] - x[i]);
+  const double rise = values[i + 1] - values[i];
+  result.value = values[i] + result.weight * rise;
+  result.missed = x.size() > 2 ? half_curvature(x, values, i) * (at - x[i]) * (x[i + 1] - at)
+                               : below_both * std::abs((log_weight - result.weight) * rise);
+  return result;
+}
+
+UnwrappedPhases unwrap_over_frequency(std::span<const double> frequencies_hz,
+                                      std::span<const double> phases_rad) {
+  UnwrappedPhases result;
+  for (std::size_t i = 0; i < phases_rad.size(); ++i) {
+    if (i == 0) {
+      result.phases_rad.push_back(phases_rad[i]);
+      continue;
+    }
+    const double before = result.phases_rad[i - 1];
+    const double predicted = before + predicted_step(frequencies_hz, result.phases_rad);
+    const double deviation = wrap_phase(phases_rad[i] - predicted);
+    const double nearest = before + wrap_phase(phases_rad[i] - before);
+    result.phases_rad.push_back(predicted + deviation);
+    const bool disagree = std::abs(result.phases_rad[i] - nearest) > std::numbers::pi;
+    result.ambiguous.push_back(std::abs(deviation) >
+                               (disagree ? well_predicted_rad : most_step_rad));
+  }
+  return result;
+}
+
+double ambiguous_phase_rad(double weight) {
+  return 2.0 * std::numbers::pi * std::clamp(std::min(weight, 1.0 - weight), 0.0, 0.5);
+}
+
+} // namespace dyncal::analysis

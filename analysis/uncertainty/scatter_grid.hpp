@@ -1,0 +1,23 @@
+// The values that a scatter from run to run may have, with their prior probabilities, for
+// integration by quadrature.
+//
+//   p(tau) ~ 1 / (0.2 u + tau)     from 0.03 u to 3e4 u in logarithmic steps, and one point for 0
+//
+// in units of the noise u. The last point is 0 and stands for all below the first as well. Plain
+// tables, made once; any thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace dyncal::analysis {
+
+inline constexpr std::size_t scatter_grid_steps = 80;
+inline constexpr std::size_t scatter_grid_points = scatter_grid_steps + 1;
+
+using ScatterGrid = std::array<double, scatter_grid_points>;
+
+[[nodiscard]] const ScatterGrid& scatter_grid();
+[[nodiscard]] const ScatterGrid& scatter_prior(); // all together 1
+
+} // namespace dyncal::analysis

@@ -1,0 +1,136 @@
+#include "analysis/instrument/curve_between_points.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "analysis/base/phasor.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+struct Response {
+  std::vector<double> frequencies_hz, magnitudes, phases_rad;
+};
+
+double high_pass_magnitude(double hz, double corner_hz) {
+  return 1.0 / std::hypot(1.0, corner_hz / hz);
+}
+
+Response high_pass(const std::vector<double>& frequencies_hz, double corner_hz) {
+  Response result{frequencies_hz, {}, {}};
+  for (const double hz : frequencies_hz) {
+    result.magnitudes.push_back(high_pass_magnitude(hz, corner_hz));
+    result.phases_rad.push_back(std::atan(corner_hz / hz));
+  }
+  return result;
+}
+
+// 2 / sqrt(3) of the half width is U.
+double expanded(const CurveValue& curve) {
+  return 2.0 * curve.missed / std::numbers::sqrt3;
+}
+
+TEST(CurveBetweenPoints, IsExactAtThePointsAndOnALine) {
+  const std::vector<double> hz{10.0, 20.0, 50.0, 80.0};
+  const std::vector<double> values{1.0, 1.1, 1.4, 1.7};
+  for (const double at : {10.0, 14.0, 20.0, 30.0, 50.0, 79.0}) {
+    const std::size_t i = at < 20.0 ? 0 : at < 50.0 ? 1 : 2;
+    const CurveValue curve = curve_between_points(hz, values, i, at);
+    EXPECT_NEAR(curve.value, 0.9 + at / 100.0, 1e-14);
+    EXPECT_NEAR(curve.missed, 0.0, 1e-14);
+  }
+}
+
+TEST(CurveBetweenPoints, HighPassesAreCoveredInEveryInterval) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> part;
+  for (int draw = 0; draw < 300; ++draw) {
+    std::vector<double> hz{2.0 + 10.0 * part(random)};
+    const int count = 3 + draw % 5;
+    const double ratio = 1.2 + 0.9 * part(random);
+    while (static_cast<int>(hz.size()) < count) {
+      hz.push_back(hz.back() * ratio);
+    }
+    const double corner_hz = 0.05 * std::pow(10.0, part(random)) * hz.front();
+    const Response table = high_pass(hz, corner_hz);
+    for (std::size_t i = 0; i + 1 < hz.size(); ++i) {
+      const double at = hz[i] + part(random) * (hz[i + 1] - hz[i]);
+      const CurveValue magnitude = curve_between_points(hz, table.magnitudes, i, at);
+      const CurveValue phase = curve_between_points(hz, table.phases_rad, i, at);
+      EXPECT_LE(std::abs(magnitude.value - high_pass_magnitude(at, corner_hz)), expanded(magnitude))
+          << count << " points, interval " << i;
+      EXPECT_LE(std::abs(phase.value - std::atan(corner_hz / at)), expanded(phase))
+          << count << " points, interval " << i;
+    }
+  }
+}
+
+// 1 Hz with points at 10, 20 and 40 Hz: 8.5e-3 rad with U 3.4e-3 when only one neighbour counted.
+TEST(CurveBetweenPoints, TheFirstIntervalOfThreePointsIsCoveredAndNotMuchMore) {
+  const Response table = high_pass({10.0, 20.0, 40.0}, 1.0);
+  const CurveValue phase = curve_between_points(table.frequencies_hz, table.phases_rad, 0, 14.0);
+  const double error = std::abs(phase.value - std::atan(1.0 / 14.0));
+  EXPECT_GT(error, 1e-3);
+  EXPECT_LE(error, expanded(phase));
+  EXPECT_LE(expanded(phase), 3.0 * error);
+}
+
+TEST(CurveBetweenPoints, ASmoothTableIsNotBlownUp) {
+  std::vector<double> hz, phases;
+  for (int i = 0; i < 20; ++i) {
+    hz.push_back(10.0 * std::pow(10.0, 0.1 * i));
+    phases.push_back(-std::atan(hz.back() / 5000.0));
+  }
+  for (std::size_t i = 1; i + 2 < hz.size(); ++i) {
+    const double at = std::sqrt(hz[i] * hz[i + 1]);
+    const CurveValue curve = curve_between_points(hz, phases, i, at);
+    const double error = std::abs(curve.value + std::atan(at / 5000.0));
+    EXPECT_LE(error, expanded(curve));
+    EXPECT_LE(expanded(curve), 4.0 * error + 1e-9) << at;
+  }
+}
+
+TEST(CurveBetweenPoints, TwoPointsBoundByBothLines) {
+  const Response table = high_pass({10.0, 40.0}, 1.0);
+  const CurveValue phase = curve_between_points(table.frequencies_hz, table.phases_rad, 0, 20.0);
+  EXPECT_LE(std::abs(phase.value - std::atan(1.0 / 20.0)), expanded(phase));
+  EXPECT_EQ(curve_between_points(table.frequencies_hz, std::vector{1.0, 1.0}, 0, 20.0).missed, 0.0);
+}
+
+TEST(UnwrapOverFrequency, NeighboursOfHalfATurnAreClose) {
+  const std::vector<double> hz{20.0, 50.0, 80.0, 160.0};
+  const double degree = pi / 180.0;
+  const auto unwrapped = unwrap_over_frequency(
+      hz, std::vector{179.9 * degree, -179.8 * degree, 179.7 * degree, -179.0 * degree});
+  EXPECT_NEAR(unwrapped.phases_rad[1], 180.2 * degree, 1e-12);
+  EXPECT_NEAR(unwrapped.phases_rad[2], 179.7 * degree, 1e-12);
+  EXPECT_NEAR(unwrapped.phases_rad[3], 181.0 * degree, 1e-12);
+  EXPECT_EQ(unwrapped.ambiguous, std::vector<bool>(3, false));
+}
+
+TEST(UnwrapOverFrequency, FollowsADelayOverStepsOfMoreThanHalfATurn) {
+  std::vector<double> hz, phases;
+  for (double f = 100.0; f < 7000.0; f *= 2.0) {
+    hz.push_back(f);
+    phases.push_back(wrap_phase(-2.0 * pi * f * 1e-3 + 1e-3 * std::sin(f)));
+  }
+  const auto unwrapped = unwrap_over_frequency(hz, phases);
+  EXPECT_NEAR(unwrapped.phases_rad.back(), -2.0 * pi * hz.back() * 1e-3, 2e-3);
+  EXPECT_EQ(unwrapped.ambiguous, std::vector<bool>(hz.size() - 1, false));
+}
+
+TEST(UnwrapOverFrequency, SaysWhereTheTableDoesNotTell) {
+  const auto unwrapped =
+      unwrap_over_frequency(std::vector{100.0, 200.0, 300.0}, std::vector{0.0, 3.0, 2.9});
+  EXPECT_TRUE(unwrapped.ambiguous[0]);
+  EXPECT_NEAR(ambiguous_phase_rad(0.5), pi, 1e-12);
+  EXPECT_EQ(ambiguous_phase_rad(0.0), 0.0);
+}
+
+} // namespace
+} // namespace dyncal::analysis
