@@ -267,6 +267,10 @@ std::string channel_section(const ReportContents& contents, const std::string& c
       "p", fmt::format("Means over n repetitions. U is the expanded uncertainty, U = k u, for a "
                        "coverage probability of {}; a is the planned amplitude of the excitation.",
                        coverage_percent(values.front().coverage_probability)));
+  html += element("p", "U holds what the records show and what the bench file states. Errors that "
+                       "leave no trace in the records are listed, each with the experiment that "
+                       "shows it, on the page \"what this measurement cannot see\" of the guide "
+                       "(what-it-cannot-see.md).");
   html += value_table(contents, values);
   html += missing_values(result, channel);
   html += delay_sentence(result, channel);

@@ -228,6 +228,9 @@ std::string legend(const RunOutcome& outcome) {
   for (const FlagMeaning& meaning : flag_legend(flags)) {
     text += (text.empty() ? "\nFlags:\n" : "") + wrapped(legend_line(meaning));
   }
+  if (!text.empty()) {
+    text += "  What no flag can tell: what-it-cannot-see.md of the guide\n";
+  }
   return text;
 }
 

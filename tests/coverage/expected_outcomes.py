@@ -40,8 +40,11 @@ EXPECTED = [
     Row("clean, series with hardly any noise", VALUE, COVERED_NO_FLAG),
     Row("clean, series with hardly any noise", RATE, COVERED),
     Row("mean of 1", MEAN, COVERED_NO_FLAG),
-    *(Row(f"mean of {n}", MEAN, COVERED_NO_FLAG) for n in (2, 3, 5, 10)),
-    *(Row(f"mean of {n}, runs scatter", MEAN, COVERED_NO_MORE) for n in (2, 3, 5, 10)),
+    # Two sweeps have one degree of freedom for what they share: wide by rights.
+    Row("mean of 2", MEAN, COVERED),
+    *(Row(f"mean of {n}", MEAN, COVERED_NO_FLAG) for n in (3, 5, 10)),
+    Row("mean of 2, runs scatter", MEAN, COVERED),
+    *(Row(f"mean of {n}, runs scatter", MEAN, COVERED_NO_MORE) for n in (3, 5, 10)),
     Row("free-running series", VALUE, COVERED),
     Row("series with start jitter of 50 us", VALUE, COVERED),
     Row("phase of the trigger not corrected", MAGNITUDE, COVERED),

@@ -80,8 +80,9 @@ constexpr std::array rows{
         "the cross-check that the bench file asks for was not possible for the reason given; the "
         "value and its u stand without it"},
     Row{ResultFlag::polarity_inverted, "polarity_inverted", "polarity inverted",
-        "the phase tends to pi at 0 Hz: sensor or reference point the other way or a cable is "
-        "reversed; turn it, or add pi to the phase when comparing"},
+        "the phase tends to pi at 0 Hz, or repetitions point in opposite directions: sensor or "
+        "reference point the other way or a cable is reversed; turn it, or add pi to the phase "
+        "when comparing"},
     Row{ResultFlag::answers_before_excitation, "answers_before_excitation",
         "answers before its excitation",
         "the group delay is below 0 by more than three times its uncertainty, which no sensor "
