@@ -58,8 +58,9 @@ Intervals divide(std::span<const std::int64_t> stamps_ns, std::span<const double
 
 std::vector<double> transform(Intervals intervals) {
   intervals.weighted.resize(std::bit_ceil(2 * intervals.weighted.size()));
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  // Its tables of sines cost more than a transform: each thread keeps those of the lengths it met.
+  thread_local Eigen::FFT<double> fft{Eigen::FFT<double>::impl_type(),
+                                      Eigen::FFT<double>::HalfSpectrum};
   std::vector<std::complex<double>> transformed;
   fft.fwd(transformed, intervals.weighted);
   std::vector<double> squares(transformed.size());

@@ -11,6 +11,7 @@ constexpr std::size_t blocks = 4;
 constexpr std::size_t min_block_samples = 16;
 constexpr double min_block_periods = 2.0;
 constexpr double significant = 4.5;      // u: by chance 4 in 100 000
+constexpr double coherent = 0.8;         // part of the blocks' amplitudes that adds up
 constexpr double agreeing = 0.5;         // of the mean amplitude, 2 u included
 constexpr double negligible_slope = 0.1; // over the record, of the mean amplitude
 
@@ -31,11 +32,14 @@ std::optional<Blocks> measure_blocks(double line_hz, std::span<const std::int64_
   return found;
 }
 
-bool lasts(const Blocks& found) {
+bool lasts(const LineAmplitude& whole, const Blocks& found) {
   double mean = 0.0, largest_u = 0.0;
   for (const LineAmplitude& block : found) {
     mean += block.amplitude / static_cast<double>(blocks);
     largest_u = std::max(largest_u, block.u_component);
+  }
+  if (!(whole.amplitude > coherent * mean)) {
+    return false;
   }
   for (const LineAmplitude& block : found) {
     if (!(std::abs(block.amplitude - mean) + 2.0 * block.u_component < agreeing * mean)) {
@@ -68,7 +72,7 @@ std::optional<LineAmplitude> measure_stationary_line(double line_hz, double seen
     return std::nullopt;
   }
   const auto found = measure_blocks(line_hz, stamps_ns, values);
-  return found && lasts(*found) ? whole : std::nullopt;
+  return found && lasts(*whole, *found) ? whole : std::nullopt;
 }
 
 } // namespace dyncal::analysis

@@ -5,7 +5,8 @@
 // of it, their uncertainty included (2 u), and show no slope: less than 10 % over the record, or
 // less than three times its own uncertainty. So a decay of a time constant below some three records
 // is told from hum while it stands out of the noise; what does not stand out of it, or is not told,
-// is not said to last. Phases are not compared: hum wanders, and may be a little off the frequency
+// is not said to last. The blocks must add up to 0.8 of their amplitudes: what leaks into them from
+// a decay at another frequency does not, while hum may be 0.3 of a turn a record off the frequency
 // that is asked for.
 //
 //   a e^{i phi}   least squares with a constant, over the whole record

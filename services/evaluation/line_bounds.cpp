@@ -143,6 +143,26 @@ LineBounds::Bound LineBounds::bound_of(const Line& line, const StepOfChannel& wh
   return bound;
 }
 
+LineBounds::Bound LineBounds::bound_of_mains(const ChannelLines& channel,
+                                             const analysis::UnresolvedLine& line,
+                                             const StepOfChannel& where) const {
+  Bound bound =
+      bound_of({channel.channel, LineKind::mains, line.line_hz, 0}, where, channel.amplitude);
+  if (bound.from_driven_steps) {
+    return bound;
+  }
+  std::vector<analysis::MeasuredBackground> measured;
+  for (const double kindred_hz : kindred_lines_hz(line)) {
+    for (const Measured& one : driven({channel.channel, LineKind::mains, kindred_hz, 0})) {
+      measured.push_back({one.line, one.excitation});
+    }
+  }
+  const analysis::BackgroundPower power = analysis::background_power(measured, channel.amplitude);
+  bound.from_driven_steps = !measured.empty() && !power.significant && !bound.significant;
+  bound.square = std::max(bound.square, power.square);
+  return bound;
+}
+
 std::optional<double> LineBounds::square_of_harmonic(const std::string& channel, int order) const {
   std::vector<analysis::MeasuredAmplitude> amplitudes;
   for (const Measured& one :
@@ -159,8 +179,7 @@ void LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) c
       continue;
     }
     const Bound bound =
-        bound_of({channel.channel, LineKind::mains, line.line_hz, 0},
-                 {channel.channel, result.step, result.repetition}, channel.amplitude);
+        bound_of_mains(channel, line, {channel.channel, result.step, result.repetition});
     if (!bound.from_driven_steps) {
       result.flags.push_back(flag_of_line(channel.channel, line));
     }

@@ -9,9 +9,10 @@
 // driven; of harmonics line_power.hpp, in parts of the amplitude: they have the same part at all
 // frequencies of the run, and from the sixth on all are taken to be alike. The quiet time before
 // the step counts too, where a line lasts in it; but where other steps show less of it than their
-// quiet time does, in this proportion. What only quiet time shows of the mains keeps the flag, for
-// an amplifier may hum while it drives; so does a line that nothing shows. Apart from the mains,
-// only what is significant counts.
+// quiet time does, in this proportion. A line of the mains that no driven step shows apart is not
+// there where its kindred are not (low multiples of the same parity); else it keeps its flag,
+// whatever quiet time shows, for an amplifier may hum while it drives. So does a harmonic that
+// nothing shows. Apart from the mains, only what is significant counts.
 //
 // Hum is a bounded sine: whatever its phase, the error is at most h L, which is 2 u for u = h / 2.
 // It may come with the same phase in every repetition (a generator locked to the mains, steps at a
@@ -69,6 +70,9 @@ private:
                                                       const StepOfChannel& where) const;
   [[nodiscard]] Bound bound_of(const Line& line, const StepOfChannel& where,
                                double excitation) const;
+  [[nodiscard]] Bound bound_of_mains(const ChannelLines& channel,
+                                     const analysis::UnresolvedLine& line,
+                                     const StepOfChannel& where) const;
   [[nodiscard]] std::optional<double> square_of_harmonic(const std::string& channel,
                                                          int order) const;
   void settle_mains(const ChannelLines& channel, StepResult& result) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include <fmt/core.h>
@@ -44,12 +43,17 @@ bool is_of_mains(const WantedLine& line) {
   return line.kind == LineKind::mains;
 }
 
-// What a step cannot tell from its excitation: lines of the mains, and harmonics; without the mains
-// whatever else there may be at its frequency.
+// What a step cannot tell from its excitation: lines of the mains with their kindred, and
+// harmonics; without the mains whatever else there may be at its frequency.
 std::vector<WantedLine> wanted_of(double frequency_hz,
                                   const std::vector<analysis::UnresolvedLine>& unresolved) {
   std::vector<WantedLine> wanted;
-  std::transform(unresolved.begin(), unresolved.end(), std::back_inserter(wanted), wanted_line);
+  for (const analysis::UnresolvedLine& line : unresolved) {
+    wanted.push_back(wanted_line(line));
+    for (const double kindred_hz : kindred_lines_hz(line)) {
+      wanted.push_back({LineKind::mains, kindred_hz, 0});
+    }
+  }
   if (std::none_of(wanted.begin(), wanted.end(), is_of_mains)) {
     wanted.push_back({LineKind::background, frequency_hz, 0});
   }
@@ -193,6 +197,19 @@ ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
     measure_in_quiet(found.wanted, selected.quiet_samples(), index, found.lines);
   }
   return std::move(found.lines);
+}
+
+std::vector<double> kindred_lines_hz(const analysis::UnresolvedLine& line) {
+  std::vector<double> kindred;
+  if (line.kind == LineKind::mains) {
+    const int lowest = line.order % 2 == 0 ? 2 : 1;
+    for (const int order : {lowest, lowest + 2}) {
+      if (order != line.order) {
+        kindred.push_back(line.line_hz / line.order * order);
+      }
+    }
+  }
+  return kindred;
 }
 
 void add_lines(std::vector<ChannelLines> lines, StepResult& result) {

@@ -3,7 +3,8 @@
 // run, where one bounds the other (line_bounds.hpp).
 //
 // Measured are only lines that a step of the recipe may need, at the sample rate this channel has:
-// lines of the mains that it cannot tell, or else whatever there is at its own frequency. In quiet
+// lines of the mains that it cannot tell with their kindred, or else whatever there is at its own
+// frequency. In quiet
 // time a line counts only where it is shown to last: an excitation that dies away is no hum. Plain
 // functions, any thread.
 #pragma once
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "analysis/method/transfer_point.hpp"
 #include "services/evaluation/method/selected_channels.hpp"
@@ -35,6 +37,10 @@ struct LineSubject {
 [[nodiscard]] ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
                                        const analysis::ChannelFit& fit,
                                        const SelectedChannels& selected, std::size_t index);
+
+// Low multiples of the same mains with the same parity (rectifiers make even ones), which show
+// whether there is hum at all where the line itself is never told from an excitation.
+[[nodiscard]] std::vector<double> kindred_lines_hz(const analysis::UnresolvedLine& line);
 
 // Gives a valid result its lines, and a flag for each that could not be told: it is provisional
 // then.

@@ -122,6 +122,21 @@ TEST(LineBounds, QuietTimeAloneKeepsTheFlagOfTheMains) {
               testing::Contains("dau/z: hum at 50 Hz cannot be told from the excitation"));
 }
 
+// 420 Hz of 60 Hz folds onto 80 Hz at 500 samples a second.
+TEST(LineBounds, NoHighMultipleOfTheMainsIsThereWithoutItsKindred) {
+  const analysis::UnresolvedLine seventh_of_60{LineKind::mains, 420.0, 7, 0.0};
+  const StepResult step = beside(seventh_of_60, 10.0);
+  LineBounds without, with, even;
+  add_others(without, {LineKind::mains, 60.0, 0, {1.2e-4, 1e-4}});
+  add_others(with, {LineKind::mains, 180.0, 0, {1e-2, 1e-4}});
+  add_others(even, {LineKind::mains, 120.0, 0, {1.2e-4, 1e-4}});
+  const auto flagged = testing::Contains(testing::HasSubstr("hum at 420 Hz"));
+  EXPECT_THAT(sentences_of(without.settled(step).flags), testing::Not(flagged));
+  EXPECT_LT(total_phase(without.settled(step)), 1e-5);
+  EXPECT_THAT(sentences_of(with.settled(step).flags), flagged);
+  EXPECT_THAT(sentences_of(even.settled(step).flags), flagged);
+}
+
 TEST(LineBounds, QuietTimeCountsLessWhereDrivenStepsShowLess) {
   LineBounds bounds;
   StepResult step = beside(at_50_hz, 10.0);

@@ -46,7 +46,8 @@ TEST(LineCheck, MeasuresOnlyWhatAStepOfTheRecipeNeeds) {
   EXPECT_TRUE(lines_of(recipe_of({"80", "160"}), 80.0).measured.empty()); // a harmonic
   const ChannelLines lines = lines_of(recipe_of({"80", "50.1"}), 80.0);
   EXPECT_TRUE(lines.unresolved.empty());
-  ASSERT_EQ(lines.measured.size(), 1U);
+  ASSERT_EQ(lines.measured.size(), 2U); // 50 Hz and its kindred
+  EXPECT_EQ(lines.measured[1].line_hz, 150.0);
   EXPECT_EQ(lines.measured[0].kind, LineKind::mains);
   EXPECT_NEAR(lines.measured[0].measured.amplitude, 0.02,
               4.0 * lines.measured[0].measured.u_component);
@@ -75,7 +76,9 @@ TEST(LineCheck, AStepBesideALineTellsNothingOfIt) {
   const ChannelLines lines = lines_of(recipe_of({"80", "50.1"}), 50.1);
   ASSERT_EQ(lines.unresolved.size(), 1U);
   EXPECT_EQ(lines.unresolved[0].line_hz, 50.0);
-  EXPECT_TRUE(lines.measured.empty());
+  for (const MeasuredLine& line : lines.measured) {
+    EXPECT_NE(line.kind, LineKind::mains); // nor of 150 Hz, beside the third harmonic
+  }
 }
 
 TEST(LineCheck, AResultWithSuchALineIsProvisional) {
