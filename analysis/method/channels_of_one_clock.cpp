@@ -136,7 +136,8 @@ Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
   if (!channels) {
     return fail(channels.error());
   }
-  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, *channels);
+  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, *channels,
+                                           all.front().mains_hz);
   if (!fits) {
     return of_channel(names_of(all), fits.error());
   }
@@ -153,7 +154,7 @@ fit_channels_of_pilot(const Frequency& nominal, double frequency_search_rel,
     return fail(channels.error());
   }
   auto pilot = fit_pilot_beside_disturbances(nominal, frequency_search_rel, middle_ns(stamps_ns),
-                                             stamps_ns, *channels);
+                                             stamps_ns, *channels, all.front().mains_hz);
   if (!pilot) {
     return of_channel(all.front().name, pilot.error());
   }

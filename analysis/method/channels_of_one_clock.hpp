@@ -3,7 +3,8 @@
 //
 // The frequency is refined on the pilot channel (sync, or the reference where there is no sync) in
 // this clock and serves all channels, about the same instant, the middle of the record. Significant
-// harmonics and hum are fitted beside the signal (disturbances.hpp). Rows of the budget:
+// harmonics and hum (of the mains that the pilot names) are fitted beside the signal
+// (disturbances.hpp). Rows of the budget:
 //
 //   fit noise     covariance of the fit without the share of white stamp noise s_t, which has rows
 //                 of its own: w^2 A^2 s_t^2 / 2 of s^2

@@ -204,7 +204,8 @@ void turn_to_own_rate(const SeriesAgreement& agreement, std::vector<Repetition>&
 
 Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std::size_t c) {
   const auto fits = fit_sine_beside_disturbances(shots.apparent_frequency, 0, shots.stamps,
-                                                 shots_of_channel(shots.input, c));
+                                                 shots_of_channel(shots.input, c),
+                                                 shots.input.reference.mains_hz);
   if (!fits) {
     return fail(of_channel(shots.input.channels[c], fits.error()));
   }
@@ -279,9 +280,9 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   const std::vector<std::int64_t> stamps =
       axis.stamps_ns(input.shots.front().series.front().size());
   // The apparent frequency, shared by all shots.
-  const auto pilot =
-      fit_frequency_beside_disturbances(axis.on_axis(sync.frequency.hz()), input.rate_tolerance_rel,
-                                        0, stamps, shots_of_channel(input, 0));
+  const auto pilot = fit_frequency_beside_disturbances(
+      axis.on_axis(sync.frequency.hz()), input.rate_tolerance_rel, 0, stamps,
+      shots_of_channel(input, 0), input.reference.mains_hz);
   if (!pilot) {
     return fail(of_channel(input.channels.front(), pilot.error()));
   }

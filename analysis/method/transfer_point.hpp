@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/sine/mains.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/step/signal_integrity.hpp"
 #include "analysis/uncertainty/contribution.hpp"
@@ -25,6 +26,7 @@ struct ChannelSamples {
   double resolution = 0.0; // one quantisation step; 0: not stated
   // What its integrity is held against; a resolution that is not stated is found in the values.
   SignalExpectation expected{};
+  std::span<const double> mains_hz = usual_mains_hz; // lines that are looked for beside the sine
 };
 
 struct ChannelFit { // the sine fitted to one recorded channel

@@ -16,8 +16,7 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr int max_harmonic = 10;
-constexpr std::array mains_hz{50.0, 60.0};
-constexpr int mains_multiples = 3;
+constexpr std::size_t mains_multiples = 3;
 constexpr double usable_part_of_rate = 0.45;
 constexpr double min_distance = 1.5; // in 1 / T
 constexpr double significant = 4.5;  // standard uncertainties
@@ -41,11 +40,12 @@ struct Extent {
   }
 };
 
-ResidualSearch search_of(const Frequency& frequency, const Extent& extent) {
+ResidualSearch search_of(const Frequency& frequency, const Extent& extent,
+                         std::span<const double> mains_hz) {
   ResidualSearch search{.first = {frequency, 2, max_harmonic - 1}};
   for (const double mains : mains_hz) {
-    for (int k = 1; k <= mains_multiples; ++k) {
-      if (extent.can_tell_hum(k * mains, frequency.hz())) {
+    for (std::size_t k = 1; k <= mains_multiples; ++k) {
+      if (extent.can_tell_hum(static_cast<double>(k) * mains, frequency.hz())) {
         search.others.push_back({Frequency::from_hz(mains), 1, mains_multiples});
         break;
       }
@@ -108,12 +108,18 @@ ExtendedBasis basis_of(const ResidualSearch& search, const ChannelResiduals& res
       basis.max_harmonic = order;
     }
   }
-  for (std::size_t set = 0; set < search.others.size(); ++set) {
-    const auto& lines = residuals.lines[set + 1];
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-      const double line_hz = (search.others[set].first_order + static_cast<int>(k)) *
-                             search.others[set].frequency.hz();
-      if (extent.can_tell_hum(line_hz, frequency.hz()) && stands_out(lines[k])) {
+  const auto is_known = [&](double line_hz) {
+    return std::any_of(basis.lines.begin(), basis.lines.end(), [&](const Frequency& other) {
+      return std::abs(other.hz() - line_hz) * extent.duration_s < min_distance;
+    });
+  };
+  // Low multiples first: three times 16.7 Hz is beside 50 Hz, which is the more likely.
+  for (std::size_t k = 0; k < mains_multiples; ++k) {
+    for (std::size_t set = 0; set < search.others.size(); ++set) {
+      const LineSet& mains = search.others[set];
+      const double line_hz = (mains.first_order + static_cast<int>(k)) * mains.frequency.hz();
+      if (extent.can_tell_hum(line_hz, frequency.hz()) && !is_known(line_hz) &&
+          stands_out(residuals.lines[set + 1][k])) {
         basis.lines.push_back(Frequency::from_hz(line_hz));
       }
     }
@@ -131,9 +137,9 @@ struct Disturbances { // of one channel
 Expected<std::vector<Disturbances>>
 search_residuals(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
                  std::span<const std::span<const double>> channels,
-                 const std::vector<SineFit>& fits) {
+                 const std::vector<SineFit>& fits, std::span<const double> mains_hz) {
   const Extent extent(stamps_ns);
-  ResidualSearch search = search_of(frequency, extent);
+  ResidualSearch search = search_of(frequency, extent, mains_hz);
   auto residuals = reduce_residuals(search, stamps_ns, channels, fits);
   if (!residuals) {
     return fail(residuals.error());
@@ -204,13 +210,15 @@ struct Examination {
 
 Expected<Examination> examine(const Frequency& frequency, std::int64_t phase_origin_ns,
                               std::span<const std::int64_t> stamps_ns,
-                              std::span<const std::span<const double>> channels) {
+                              std::span<const std::span<const double>> channels,
+                              std::span<const double> mains_hz) {
   auto plain = fit_sine(frequency, phase_origin_ns, stamps_ns, channels);
   if (!plain) {
     return fail(plain.error());
   }
-  auto found = search_residuals(frequency, stamps_ns, channels,
-                                about_middle(*plain, frequency, phase_origin_ns, stamps_ns));
+  auto found =
+      search_residuals(frequency, stamps_ns, channels,
+                       about_middle(*plain, frequency, phase_origin_ns, stamps_ns), mains_hz);
   if (!found) {
     return fail(found.error());
   }
@@ -239,7 +247,8 @@ CleanedFit clean(const Frequency& frequency, const Examination& examined, std::s
 Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit> undisturbed,
                                         double search_rel, std::int64_t phase_origin_ns,
                                         std::span<const std::int64_t> stamps_ns,
-                                        std::span<const std::span<const double>> channels) {
+                                        std::span<const std::span<const double>> channels,
+                                        std::span<const double> mains_hz) {
   constexpr int max_rounds = 3; // each round's disturbances are those at the frequency of the last
   for (int round = 1;; ++round) {
     std::vector<std::span<const double>> cleaned(channels.begin(), channels.end());
@@ -260,7 +269,8 @@ Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit
       return refined;
     }
     fit = std::move(*refined);
-    auto next = fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns, channels);
+    auto next =
+        fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
     if (!next) {
       return fail(next.error());
     }
@@ -273,8 +283,9 @@ Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit
 Expected<std::vector<CleanedFit>>
 fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_origin_ns,
                              std::span<const std::int64_t> stamps_ns,
-                             std::span<const std::span<const double>> channels) {
-  const auto examined = examine(frequency, phase_origin_ns, stamps_ns, channels);
+                             std::span<const std::span<const double>> channels,
+                             std::span<const double> mains_hz) {
+  const auto examined = examine(frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
   if (!examined) {
     return fail(examined.error());
   }
@@ -287,32 +298,34 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_orig
 
 Expected<FrequencyFit> fit_frequency_beside_disturbances(
     const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
-    std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels) {
+    std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels,
+    std::span<const double> mains_hz) {
   auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, channels);
   if (!fit) {
     return fit;
   }
   auto undisturbed =
-      fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels);
+      fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
   if (!undisturbed) {
     return fail(undisturbed.error());
   }
   return refine_frequency(std::move(*fit), std::move(*undisturbed), search_rel, phase_origin_ns,
-                          stamps_ns, channels);
+                          stamps_ns, channels, mains_hz);
 }
 
-Expected<PilotFit>
-fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
-                              std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
-                              std::span<const std::span<const double>> channels) {
+Expected<PilotFit> fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
+                                                 std::int64_t phase_origin_ns,
+                                                 std::span<const std::int64_t> stamps_ns,
+                                                 std::span<const std::span<const double>> channels,
+                                                 std::span<const double> mains_hz) {
   const auto pilot = channels.first(1);
   auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, pilot);
   if (!fit) {
     return fail(fit.error());
   }
-  auto examined = examine(fit->frequency, phase_origin_ns, stamps_ns, channels);
+  auto examined = examine(fit->frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
   if (!examined) { // perhaps because of another channel
-    examined = examine(fit->frequency, phase_origin_ns, stamps_ns, pilot);
+    examined = examine(fit->frequency, phase_origin_ns, stamps_ns, pilot, mains_hz);
   }
   if (!examined) {
     return fail(examined.error());
@@ -321,7 +334,7 @@ fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
       clean(fit->frequency, *examined, 0, phase_origin_ns, stamps_ns, pilot.front())};
   if (!cleaned.front().values.empty()) {
     return refine_frequency(std::move(*fit), std::move(cleaned), search_rel, phase_origin_ns,
-                            stamps_ns, pilot)
+                            stamps_ns, pilot, mains_hz)
         .map([](const FrequencyFit& refined) {
           return PilotFit{refined.frequency, refined.u_frequency_hz, {}};
         });

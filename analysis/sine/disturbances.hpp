@@ -4,7 +4,7 @@
 // the residuals.
 //
 // Each channel is fitted with three parameters (paper eq. (1)). Its residuals are searched for
-// drift (drift_order.hpp), then for harmonics 2..10 and for 50 Hz and 60 Hz with their first
+// drift (drift_order.hpp), then for harmonics 2..10 and for the mains with their first two
 // multiples, below 0.45 of the mean sample rate and at least 1.5 / T away from the harmonics. What
 // exceeds 4.5 standard uncertainties (by chance: 4 in 100 000) is fitted beside the signal
 // (extended_sine_fit.hpp). A clean channel therefore keeps the plain three-parameter result, bit
@@ -23,6 +23,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/sine/mains.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/sine_residuals.hpp"
 
@@ -39,12 +40,14 @@ struct CleanedFit {
 [[nodiscard]] Expected<std::vector<CleanedFit>>
 fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_origin_ns,
                              std::span<const std::int64_t> stamps_ns,
-                             std::span<const std::span<const double>> channels);
+                             std::span<const std::span<const double>> channels,
+                             std::span<const double> mains_hz = usual_mains_hz);
 
 // fit_sine_and_frequency() beside disturbances.
 [[nodiscard]] Expected<FrequencyFit> fit_frequency_beside_disturbances(
     const Frequency& start, double search_rel, std::int64_t phase_origin_ns,
-    std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels);
+    std::span<const std::int64_t> stamps_ns, std::span<const std::span<const double>> channels,
+    std::span<const double> mains_hz = usual_mains_hz);
 
 // The frequency of the first channel, beside its disturbances, and all channels at this frequency;
 // these are empty where they remain to be fitted, for the disturbances moved the frequency or
@@ -57,6 +60,7 @@ struct PilotFit {
 [[nodiscard]] Expected<PilotFit>
 fit_pilot_beside_disturbances(const Frequency& start, double search_rel,
                               std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
-                              std::span<const std::span<const double>> channels);
+                              std::span<const std::span<const double>> channels,
+                              std::span<const double> mains_hz = usual_mains_hz);
 
 } // namespace dyncal::analysis

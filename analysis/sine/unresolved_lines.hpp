@@ -20,21 +20,19 @@
 // out. Any thread.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/sine/mains.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
 
 // `background`: whatever there is at a frequency that some step excites.
 enum class LineKind { mains, harmonic, background };
-
-inline constexpr std::array usual_mains_hz{50.0, 60.0};
 
 struct UnresolvedLine {
   LineKind kind = LineKind::mains;

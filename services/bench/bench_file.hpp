@@ -67,6 +67,7 @@ struct MethodSettings {
       true; // series time stamping; false shows what the correction of every shot is worth
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
+  std::vector<double> mains_hz;       // empty: what a recipe takes
   double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency;
                                       // 0: exactly there in both clocks
 };

@@ -129,6 +129,18 @@ void check_roles(TomlTable& table, const MethodSettings& method) {
   }
 }
 
+void read_mains(TomlTable& table, MethodSettings& method) {
+  method.mains_hz = table.numbers("mains_hz", "Hz");
+  if (method.mains_hz.empty() && table.has("mains_hz") && !table.refused("mains_hz")) {
+    table.refuse("mains_hz", "must list at least one frequency, as in [16.7, 50]");
+  }
+  for (std::size_t i = 0; i < method.mains_hz.size(); ++i) {
+    if (!(method.mains_hz[i] > 0.0)) {
+      table.refuse_entry("mains_hz", i, "must be positive, in Hz");
+    }
+  }
+}
+
 } // namespace
 
 MethodSettings read_method(TomlTable table, const Sources& sources) {
@@ -147,6 +159,7 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
     table.refuse("frequency_search_rel",
                  "must be between 0 (the frequency is known exactly in every clock) and 0.1");
   }
+  read_mains(table, method);
   table.finish();
   return method;
 }

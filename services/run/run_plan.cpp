@@ -57,6 +57,9 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.monte_carlo_trials = file.uncertainty.monte_carlo_trials;
   recipe.whole_record = file.excitation.whole_record;
   recipe.frequency_search_rel = file.method.frequency_search_rel;
+  if (!file.method.mains_hz.empty()) {
+    recipe.mains_hz = file.method.mains_hz;
+  }
   recipe.level_deviation_rel =
       file.excitation.level_deviation_rel.value_or(recipe.level_deviation_rel);
   recipe.reference_delay_s = file.corrections.reference_delay_s;

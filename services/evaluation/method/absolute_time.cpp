@@ -44,7 +44,7 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
 std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs_source,
                                         const SourceInterval& sensor) {
   const Recipe& recipe = *task.recipe;
-  SelectedChannels acs(acs_source, {recipe.reference()});
+  SelectedChannels acs(acs_source, {recipe.reference()}, recipe.mains_hz);
   SelectedChannels dut = select_dut(recipe, sensor);
   // A known delay of the ACS counts for its clock too, which describes no uncertainty of its own.
   if (recipe.systematic.acs_delay_s <= 0.0) {

@@ -11,10 +11,11 @@ namespace dyncal::services {
 namespace {
 
 // The reference, then the channels under calibration.
-SelectedChannels select_channels(const AnalogueRoles& roles, SourceInterval source) {
+SelectedChannels select_channels(const Recipe& recipe, SourceInterval source) {
+  const auto& roles = std::get<AnalogueRoles>(recipe.roles);
   std::vector<ChannelName> names{roles.reference};
   names.insert(names.end(), roles.dut.begin(), roles.dut.end());
-  return {std::move(source), std::move(names)};
+  return {std::move(source), std::move(names), recipe.mains_hz};
 }
 
 void leave_settling_out(StepTask& task, SelectedChannels& channels) {
@@ -46,7 +47,7 @@ analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& c
 
 std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
   const auto& roles = std::get<AnalogueRoles>(task.recipe->roles);
-  SelectedChannels channels = select_channels(roles, std::move(acs));
+  SelectedChannels channels = select_channels(*task.recipe, std::move(acs));
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, channels);
   }

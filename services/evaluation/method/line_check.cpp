@@ -70,8 +70,8 @@ std::vector<WantedLine> wanted_lines(const Recipe& recipe, double duration_s, do
       continue;
     }
     frequencies_hz.push_back(f);
-    for (const WantedLine& one :
-         wanted_of(f, analysis::unresolved_lines(f, shorter * duration_s, rate_hz))) {
+    for (const WantedLine& one : wanted_of(
+             f, analysis::unresolved_lines(f, shorter * duration_s, rate_hz, recipe.mains_hz))) {
       if (std::find(wanted.begin(), wanted.end(), one) == wanted.end()) {
         wanted.push_back(one);
       }
@@ -174,7 +174,8 @@ StepLines check_step(const Recipe& recipe, const LineSubject& subject,
   }
   lines.duration_s = duration_of(stamps_ns);
   const double rate_hz = rate_of(stamps_ns);
-  lines.unresolved = analysis::unresolved_lines(fit.frequency.hz(), lines.duration_s, rate_hz);
+  lines.unresolved =
+      analysis::unresolved_lines(fit.frequency.hz(), lines.duration_s, rate_hz, recipe.mains_hz);
   found.wanted = wanted_lines(recipe, lines.duration_s, rate_hz);
   measure_in_step(found.wanted, fit, stamps_ns, values, lines);
   return found;

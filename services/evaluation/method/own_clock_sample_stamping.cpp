@@ -64,9 +64,10 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
 std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& sources,
                                         const SourceInterval& sensor) {
   const auto& roles = std::get<SampleStampingRoles>(task.recipe->roles);
-  StepChannels channels{.acs = {sources.acs, {roles.reference, roles.sync_acs}},
-                        .sync = {sources.dau, {roles.sync_dau}},
-                        .dut = select_dut(*task.recipe, sensor)};
+  StepChannels channels{
+      .acs = {sources.acs, {roles.reference, roles.sync_acs}, task.recipe->mains_hz},
+      .sync = {sources.dau, {roles.sync_dau}, task.recipe->mains_hz},
+      .dut = select_dut(*task.recipe, sensor)};
   flag_unknown_clock(channels.sync, task.flags);
   flag_unknown_clock(channels.dut, task.flags);
   const auto step = evaluate_without_knocks(task, {&channels.acs, &channels.sync, &channels.dut},

@@ -36,7 +36,7 @@ std::vector<ChannelName> dut_of(const Recipe& recipe, const std::string& source)
 }
 
 SelectedChannels select_dut(const Recipe& recipe, const SourceInterval& sensor) {
-  return {sensor, dut_of(recipe, sensor.record->source())};
+  return {sensor, dut_of(recipe, sensor.record->source()), recipe.mains_hz};
 }
 
 double u_clock_offset_s(const SelectedChannels& a, const SelectedChannels& b) {

@@ -77,8 +77,9 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
   const std::vector<ChannelName> dut = channels_under_calibration(*task.recipe, *dau_source.record);
   std::vector<ChannelName> of_dau{roles.sync_dau};
   of_dau.insert(of_dau.end(), dut.begin(), dut.end());
-  SelectedChannels acs(std::move(acs_source), {roles.reference, roles.sync_acs});
-  SelectedChannels dau(std::move(dau_source), std::move(of_dau));
+  SelectedChannels acs(std::move(acs_source), {roles.reference, roles.sync_acs},
+                       task.recipe->mains_hz);
+  SelectedChannels dau(std::move(dau_source), std::move(of_dau), task.recipe->mains_hz);
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, acs, dau);
   }

@@ -11,8 +11,9 @@
 
 namespace dyncal::services {
 
-SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelName> names)
-    : source_(std::move(source)), names_(std::move(names)) {
+SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelName> names,
+                                   std::span<const double> mains_hz)
+    : source_(std::move(source)), names_(std::move(names)), mains_hz_(mains_hz) {
   for (const ChannelName& name : names_) {
     columns_.push_back(*record().channel(name.channel));
   }
@@ -49,7 +50,7 @@ bool SelectedChannels::has(const std::string& channel) const {
 
 analysis::ChannelSamples SelectedChannels::channel(std::size_t i) const {
   return {names_[i].text(), samples_.columns[i], description(i).resolution,
-          expectation_of(description(i))};
+          expectation_of(description(i)), mains_hz_};
 }
 
 std::vector<analysis::ChannelSamples> SelectedChannels::channels_from(std::size_t first) const {

@@ -22,7 +22,9 @@ namespace dyncal::services {
 
 class SelectedChannels {
 public:
-  SelectedChannels(SourceInterval source, std::vector<ChannelName> names);
+  // `mains_hz` lives as long as this.
+  SelectedChannels(SourceInterval source, std::vector<ChannelName> names,
+                   std::span<const double> mains_hz = analysis::usual_mains_hz);
 
   // Selects again.
   void narrow(const TimeInterval& interval);
@@ -55,6 +57,7 @@ private:
   std::vector<ChannelName> names_;
   std::vector<std::size_t> columns_;
   StepSamples samples_;
+  std::span<const double> mains_hz_;
 };
 
 // SHA-256 over stamps and values of all parts in their order.

@@ -250,7 +250,8 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
     return without_result(step, fmt::format("no shot of {} and {} was triggered in this step",
                                             step.oscilloscope.source(), step.sensor.source()));
   }
-  const SelectedChannels acs(step.acs, {roles.reference, roles.sync_acs});
+  const SelectedChannels acs(step.acs, {roles.reference, roles.sync_acs},
+                             step.task.recipe->mains_hz);
   const std::vector<std::size_t> columns = columns_of(step.sensor, roles.dut);
   const std::size_t sync = *step.oscilloscope.channel(roles.sync_dso.channel);
   std::vector<Flag> flags = step.task.flags;

@@ -171,6 +171,9 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   if (measurement.level_deviation_rel() > 0.0) {
     recipe.level_deviation_rel = measurement.level_deviation_rel();
   }
+  if (!measurement.mains_hz().empty()) {
+    recipe.mains_hz.assign(measurement.mains_hz().begin(), measurement.mains_hz().end());
+  }
   recipe.reference_delay_s = measurement.reference_delay_s();
   recipe.systematic.reference_magnitude_rel = measurement.u_reference_magnitude_rel();
   recipe.systematic.reference_phase_rad = measurement.u_reference_phase_rad();
@@ -210,6 +213,9 @@ wire::Measurement to_message(const Recipe& recipe) {
   measurement.frequency_search_rel(recipe.frequency_search_rel);
   measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
   measurement.level_deviation_rel(recipe.level_deviation_rel);
+  if (recipe.mains_hz != Recipe{}.mains_hz) {
+    measurement.mains_hz().assign(recipe.mains_hz.begin(), recipe.mains_hz.end());
+  }
   measurement.reference_delay_s(recipe.reference_delay_s);
   measurement.whole_record(recipe.whole_record);
   measurement.settling_from_data(recipe.settling_from_data);

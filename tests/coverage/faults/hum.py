@@ -114,14 +114,17 @@ def hum(**more):
 
 
 AT_MAINS = ("31.5", "50", "80", "100", "150", "200")
-ISO_266 = ("10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80", "100", "125", "150", "200")
+ISO_266 = ("10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80",
+           "100", "125", "160", "200")
 RAILWAY = ("10", "12.5", "16.7", "25", "31.5", "40")
 STRENGTHS = {"just visible": 0.0007, "clear": 0.005, "gross": 0.05}
 
 CLASSES = {
     **{
         f"clean, rings {1e3 * tau_s:g} ms, pauses {pause_s:g} s": bench(
-            frequencies=AT_MAINS, pause_s=pause_s, fault=functools.partial(RingDown, tau_s=tau_s)
+            frequencies=AT_MAINS,
+            pause_s=pause_s,
+            fault=functools.partial(RingDown, tau_s=tau_s),
         )
         for tau_s, pause_s in ((0.02, 0.3), (0.06, 0.32), (0.2, 0.6), (0.2, 3.0))
     },

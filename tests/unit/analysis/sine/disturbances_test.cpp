@@ -69,6 +69,20 @@ TEST(Disturbances, ALineTooCloseToTellApartIsLeftAlone) {
   }
 }
 
+TEST(Disturbances, LooksForTheMainsThatItIsTold) {
+  const Record disturbed = record(0.0, 0.02, 1e-4);
+  const std::array channels{std::span<const double>(disturbed.values)};
+  const auto lines = [&](std::span<const double> mains_hz) {
+    return fit_sine_beside_disturbances(frequency, 0, disturbed.stamps_ns, channels, mains_hz)
+        ->front()
+        .removed_hz;
+  };
+  EXPECT_EQ(lines(std::array{60.0}), std::vector<double>{});
+  EXPECT_EQ(lines(std::array{25.0}), std::vector<double>{50.0}); // its second multiple
+  // The third multiple of 16.7 Hz cannot be told from 50 Hz.
+  EXPECT_EQ(lines(std::array{16.7, 50.0}), std::vector<double>{50.0});
+}
+
 TEST(Disturbances, AShortRecordFailsAsAPlainFitDoes) {
   const Record clean = record(0.0, 0.0, 1e-3, 0.0006);
   const std::array channels{std::span<const double>(clean.values)};

@@ -240,6 +240,18 @@ TEST(BenchFile, EvaluatesWholeRecordsAtAKnownFrequencyWhenToldTo) {
   EXPECT_EQ(file->corrections.reference_delay_s, 2e-6);
 }
 
+TEST(BenchFile, ListsTheMainsThatAreLookedFor) {
+  EXPECT_TRUE(parse_bench_file(complete, "bench.toml")->method.mains_hz.empty());
+  const auto with = [](const std::string& mains_hz) {
+    return replaced(complete, "[uncertainty]", "mains_hz = " + mains_hz + "\n[uncertainty]");
+  };
+  const auto file = parse_bench_file(with("[16.7, 50]"), "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_THAT(file->method.mains_hz, testing::ElementsAre(16.7, 50.0));
+  EXPECT_THAT(problem_of(with("[]")), HasSubstr("at least one frequency"));
+  EXPECT_THAT(problem_of(with("[50, 0]")), HasSubstr("must be positive"));
+}
+
 TEST(BenchFile, RefusesWholeRecordsOfSeveralSteps) {
   EXPECT_THAT(problem_of(replaced(complete, "repetitions = 3", "window = \"whole-record\"")),
               HasSubstr("key 'excitation.window' can be \"whole-record\" for one frequency"));
