@@ -18,9 +18,12 @@ TEST(DeviceIdentity, StandsInPlaceOfWhatTheInstrumentSays) {
 
 TEST(DeviceIdentity, StatesRangesOfChannels) {
   drivers::SourceDescription description;
-  description.channels = {{.name = "x", .minimum = -1.0, .maximum = 1.0},
-                          {.name = "y", .minimum = -2.0, .maximum = 2.0},
-                          {.name = "z", .minimum = -3.0, .maximum = 3.0}};
+  for (const char* name : {"x", "y", "z"}) {
+    drivers::ChannelDescription& channel = description.channels.emplace_back();
+    channel.name = name;
+    channel.minimum = -3.0;
+    channel.maximum = 3.0;
+  }
   DeviceIdentity identity;
   identity.ranges = {{"x", {}}, {"y", {-20.0, 30.0}}};
   const auto stated = with_identity(description, identity);

@@ -34,7 +34,7 @@ TEST(RecordingReader, ReadsEverything) {
 TEST(RecordingReader, ReadsAForeignFileWithoutChunks) {
   std::string file(magic);
   append_header(file, "other 1.0");
-  append_channel(file, {.id = 3, .topic = "/imu", .message_encoding = "json"});
+  append_channel(file, {.id = 3, .topic = "/imu", .message_encoding = "json", .metadata = {}});
   for (std::uint32_t i = 0; i < 5; ++i) {
     append_message(file, {.channel_id = 3, .sequence = i, .log_time = i, .data = "{}"});
   }
@@ -63,7 +63,7 @@ TEST(RecordingReader, ReadsAForeignFileWithoutChunks) {
 TEST(RecordingReader, NamesACompressionThatItDoesNotKnow) {
   std::string file(magic);
   append_header(file, "other 1.0");
-  append_chunk_head(file, {.uncompressed_size = 9, .compression = "brotli"}, 4);
+  append_chunk_head(file, {.uncompressed_size = 9, .compression = "brotli", .records = {}}, 4);
   file += "????";
   append_data_end(file, 0);
   append_footer(file, {});

@@ -16,7 +16,7 @@ constexpr double frequency_hz = 80.0;
 SelectedChannels channels_with_step(std::int64_t size_ns) {
   auto record = std::make_shared<SourceRecord>("dau");
   drivers::SourceDescription description;
-  description.channels.push_back({.name = "z"});
+  description.channels.emplace_back().name = "z";
   record->describe(description);
   std::vector<std::int64_t> stamps;
   std::vector<std::uint8_t> flags;
