@@ -45,6 +45,7 @@ BlockSeries grouped(const BlockSeries& series, std::size_t group) {
   }
   result.variance_magnitude = series.variance_magnitude * part;
   result.variance_phase = series.variance_phase * part;
+  result.varies = series.varies;
   result.shortening = series.shortening;
   return result;
 }
@@ -151,7 +152,9 @@ public:
         all.push_back(std::move(difference));
       }
     }
-    weigh(all);
+    const double margin_s = 0.5 * spacing_s(denominator_);
+    weigh(all, denominator_.time_s.front() - margin_s + alignment.reach_s,
+          denominator_.time_s.back() + margin_s - alignment.reach_s);
     return all;
   }
 
@@ -184,18 +187,36 @@ public:
   }
 
 private:
-  static void weigh(std::vector<Difference>& all) {
-    double least = 1e300;
+  // By the blocks that all candidates have: what others have says nothing of the offset.
+  void weigh(std::vector<Difference>& all, double first_s, double last_s) const {
+    constexpr double chance = 3.0; // standard deviations of what the denominator's noise does
+    std::vector<double> sums;
+    double blocks = 0.0;
     for (const Difference& one : all) {
-      least = std::min(least, one.chi_squared_per_block);
+      std::vector<Complex> values;
+      for (std::size_t k = 0; k < one.values.size(); ++k) {
+        if (one.time_s[k] >= first_s && one.time_s[k] <= last_s) {
+          values.push_back(one.values[k]);
+        }
+      }
+      blocks = static_cast<double>(values.size());
+      sums.push_back(values.empty() ? 0.0
+                                    : chi_squared(values, mean_of(values), variance_magnitude_,
+                                                  variance_phase_));
     }
+    if (all.empty()) {
+      return;
+    }
+    const double least = *std::min_element(sums.begin(), sums.end());
     // Noise that is larger than white makes the likelihood flatter.
-    const double scale = std::max(1.0, 0.5 * least);
+    const double scale = std::max(1.0, 0.5 * least / std::max(1.0, blocks));
+    const double share = denominator_.variance_magnitude / variance_magnitude_;
+    // Between two blocks the denominator has up to half the noise of a block.
+    const double margin = share * (blocks + chance * 2.0 * std::sqrt(blocks));
     double largest = 0.0;
-    for (Difference& one : all) {
-      const double blocks = static_cast<double>(one.values.size());
-      one.weight *= std::exp(-0.5 * blocks * (one.chi_squared_per_block - least) / scale);
-      largest = std::max(largest, one.weight);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i].weight *= std::exp(-0.5 * std::max(0.0, (sums[i] - least) / scale - margin));
+      largest = std::max(largest, all[i].weight);
     }
     for (Difference& one : all) {
       one.weight /= largest;
@@ -300,6 +321,7 @@ std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, con
     series.log_ratio.emplace_back(std::log(std::max(std::abs(ratio), 1e-3)), before);
   }
   series.variance_magnitude = series.variance_phase = variance / static_cast<double>(group);
+  series.varies = varies(series);
   series.shortening = shortening_of(series.log_ratio, series.variance_phase);
   return series;
 }
@@ -329,7 +351,8 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
     return std::nullopt;
   }
   const Comparison comparison(numerator, denominator);
-  const bool wanders = varies(numerator) || varies(denominator);
+  const bool wanders =
+      numerator.varies || denominator.varies || varies(numerator) || varies(denominator);
   std::vector<Difference> all;
   if (wanders && alignment.reach_s > 0.0) {
     all = comparison.candidates(alignment);
