@@ -14,7 +14,7 @@
 // epochs and constant rate errors. Significant harmonics and hum are fitted beside the signal
 // (disturbances.hpp). The ratio of sensor and reference is looked at in blocks, so that what both
 // share cancels, and what else makes the residuals other than white has a row of its own
-// (ratio_blocks.hpp).
+// (ratio_blocks.hpp); for that the two records begin at most a frame of the search apart.
 //
 // Fails as sine_fit.hpp does; the message names the channel. no_excitation when reference or sync
 // is not significant; a channel under calibration may be without excitation, its phase then has an

@@ -289,6 +289,19 @@ double shortening_of(const std::vector<Complex>& log_ratio, double variance) {
   return std::max(0.0, mean - 2.0 * variance) / 24.0;
 }
 
+// Whether blocks of different phase add to a phasor that is shorter by a tenth of its noise.
+bool shortens(const BlockSeries& series) {
+  constexpr double negligible = 0.1;
+  const double blocks = static_cast<double>(series.time_s.size());
+  const double mean = mean_of(series.log_ratio).imag();
+  double squares = 0.0;
+  for (const Complex& value : series.log_ratio) {
+    squares += std::pow(value.imag() - mean, 2);
+  }
+  const double loss = 0.5 * (squares / blocks - series.variance_phase);
+  return varies(series) && loss > negligible * std::sqrt(series.variance_magnitude / blocks);
+}
+
 } // namespace
 
 std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, const SineFit& fit) {
@@ -321,7 +334,7 @@ std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, con
     series.log_ratio.emplace_back(std::log(std::max(std::abs(ratio), 1e-3)), before);
   }
   series.variance_magnitude = series.variance_phase = variance / static_cast<double>(group);
-  series.varies = varies(series);
+  series.varies = shortens(series);
   series.shortening = shortening_of(series.log_ratio, series.variance_phase);
   return series;
 }

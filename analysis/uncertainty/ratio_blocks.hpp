@@ -35,7 +35,7 @@ struct BlockSeries {
   std::vector<std::complex<double>> log_ratio; // L_k
   double variance_magnitude = 0.0;             // of one block, for white noise as within the blocks
   double variance_phase = 0.0;
-  bool varies = false;     // of itself, more than white noise does
+  bool varies = false;     // in phase, by so much that the phasor of the record is visibly shorter
   double shortening = 0.0; // of the magnitude, by the advance of the phase within blocks
 };
 
