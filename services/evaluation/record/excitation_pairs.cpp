@@ -158,7 +158,7 @@ bool Proposals::is_natural(const std::vector<Places>& pairs) const {
   const auto lengths_agree = [&](double of_first_s) {
     const auto of_second = lengths_s(second_record_);
     return std::any_of(of_second.begin(), of_second.end(), [&](double of_second_s) {
-      return std::abs(of_first_s - of_second_s) < tolerance_s;
+      return of_first_s > 0.0 && std::abs(of_first_s - of_second_s) < tolerance_s;
     });
   };
   const auto of_first = lengths_s(first_record_);

@@ -105,6 +105,7 @@ protected:
         record.recorded.end_ns = clock.at(run_[i].begin_s - 0.2);
       }
     }
+    record.length_s = 1e-9 * static_cast<double>(record.recorded.end_ns - record.recorded.begin_ns);
     return record;
   }
 
