@@ -158,6 +158,15 @@ public:
     return all;
   }
 
+  // Scatter of `blocks` blocks that both records have says what whole records do by this factor,
+  // for noise that stays the same along them.
+  [[nodiscard]] double of_records_magnitude(double blocks) const {
+    return of_records(numerator_.variance_magnitude, denominator_.variance_magnitude, blocks);
+  }
+  [[nodiscard]] double of_records_phase(double blocks) const {
+    return of_records(numerator_.variance_phase, denominator_.variance_phase, blocks);
+  }
+
   [[nodiscard]] std::optional<RatioChange> change_in(const Difference& difference) const {
     const std::size_t m = difference.values.size();
     const double total = difference.chi_squared_per_block * static_cast<double>(m);
@@ -187,6 +196,12 @@ public:
   }
 
 private:
+  [[nodiscard]] double of_records(double numerator, double denominator, double blocks) const {
+    const double whole = numerator / static_cast<double>(numerator_.time_s.size()) +
+                         denominator / static_cast<double>(denominator_.time_s.size());
+    return std::sqrt(whole / ((numerator + denominator) / blocks));
+  }
+
   // By the blocks that all candidates have: what others have says nothing of the offset.
   void weigh(std::vector<Difference>& all, double first_s, double last_s) const {
     constexpr double chance = 3.0; // standard deviations of what the denominator's noise does
@@ -248,7 +263,8 @@ double scatter_of_mean(const std::vector<double>& values) {
                    (resembling ? (1.0 + correlation) / (1.0 - correlation) : 1.0));
 }
 
-void add_scatter(const Difference& difference, RatioInBlocks& result) {
+void add_scatter(const Comparison& comparison, const Difference& difference,
+                 RatioInBlocks& result) {
   const std::size_t group = (difference.values.size() + max_groups - 1) / max_groups;
   std::vector<double> magnitudes, phases;
   for (std::size_t i = 0; i + group <= difference.values.size(); i += group) {
@@ -256,8 +272,9 @@ void add_scatter(const Difference& difference, RatioInBlocks& result) {
     magnitudes.push_back(mean.real());
     phases.push_back(mean.imag());
   }
-  result.u_magnitude_rel = scatter_of_mean(magnitudes);
-  result.u_phase_rad = scatter_of_mean(phases);
+  const double blocks = static_cast<double>(difference.values.size());
+  result.u_magnitude_rel = comparison.of_records_magnitude(blocks) * scatter_of_mean(magnitudes);
+  result.u_phase_rad = comparison.of_records_phase(blocks) * scatter_of_mean(phases);
   result.degrees_of_freedom = static_cast<double>(magnitudes.size()) - 1.0;
 }
 
@@ -383,7 +400,7 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
     return std::nullopt;
   }
   RatioInBlocks result;
-  add_scatter(*best, result);
+  add_scatter(comparison, *best, result);
   if (wanders) {
     add_correction(all, numerator.shortening - denominator.shortening, result);
     result.change = comparison.change_in(*best);

@@ -147,7 +147,7 @@ TEST(RatioBlocks, TooFewPeriodsOrNoSignalSayNothing) {
   };
   EXPECT_TRUE(blocks_of_first(40).front().empty()); // 3.2 periods
   EXPECT_FALSE(blocks_of_first(3000).front().empty());
-  Record noise = record_of(0.0, 1.0, 3, [](double) { return 0.01; });
+  Record noise = record_of(0.0, 1.0, 3, [](double) { return 0.15; });
   const FittedValues values[] = {{noise.values, noise.fit}};
   const auto blocks = phasors_in_blocks(*Frequency::parse("80"), 0, noise.stamps_ns, values);
   EXPECT_FALSE(block_series(blocks.front(), noise.fit).has_value());
