@@ -115,10 +115,10 @@ TEST(RandomEffects, EightFrequenciesKnowTheScatter) {
 TEST(RandomEffects, ScatterOfWholeSweepsHasTheirDegreesOfFreedom) {
   for (const std::size_t runs : {2U, 3U, 5U}) {
     for (const std::size_t frequencies : {4U, 10U}) {
-      for (const double tau : {0.0, 1.0, 10.0, 100.0}) {
+      for (const double tau : {0.0, 10.0}) {
         const Session session{frequencies, runs, tau, 0.0, true};
-        const Coverage coverage = coverage_of(session, draws() / 3, 9);
-        const double above = std::sqrt(3.0) * slack();
+        const Coverage coverage = coverage_of(session, draws() / 8, 9);
+        const double above = std::sqrt(8.0) * slack();
         EXPECT_GT(coverage.part, 0.9545 - 0.014 - above)
             << runs << " runs, " << frequencies << " frequencies, tau " << tau;
         // 1.2 times what Student's factor alone makes of the usual scatter.
