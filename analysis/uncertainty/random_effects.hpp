@@ -10,8 +10,8 @@
 // the same time (tau f) at all of them, each with the weight its likelihood gives it, and alike
 // within 30 %, or nothing scatters (35 %, where all together have five degrees of freedom). One
 // frequency in ten may be unlike the others. Or whole sweeps scatter, alike at all frequencies
-// (sweep_scatter.hpp): then n sweeps tell it with n - 1 degrees of freedom. Where none was repeated,
-// nothing is known of tau, and u holds what the single run shows.
+// (sweep_scatter.hpp): then n sweeps tell it with n - 1 degrees of freedom. Where none was
+// repeated, nothing is known of tau, and u holds what the single run shows.
 //
 // Why so: with equal noise, Birge, Mandel and Paule, DerSimonian and Laird all take max(s, u),
 // which covers 70 % (n = 2) and 82 % (n = 3) of large scatter; Hartung and Knapp's is Student's t
