@@ -10,6 +10,8 @@ namespace {
 constexpr double first_fraction = 0.5;  // of the expected voltage
 constexpr double min_response = 0.05;   // of the one expected
 constexpr double rounding = 1.0 + 1e-9; // a limit may be reached
+constexpr double beyond_highest = 1.5;  // of the voltage of the highest level
+constexpr double falling = 0.8;         // of the response before the voltage rose
 
 std::string number(double value) {
   char text[40];
@@ -18,6 +20,10 @@ std::string number(double value) {
 }
 
 } // namespace
+
+double plausible_voltage_v(double highest_level_m_s2, double level_per_volt) {
+  return beyond_highest * highest_level_m_s2 / level_per_volt;
+}
 
 Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
                                    const LevelLimits& limits) {
@@ -37,6 +43,14 @@ Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
                 "a level of " + number(level_m_s2) + " m/s^2 needs " + number(voltage_v) +
                     " V, above generator.maximum_voltage_v = " + number(limits.maximum_voltage_v));
   }
+  if (voltage_v > limits.plausible_voltage_v * rounding) {
+    return fail(ErrorCode::invalid_setting,
+                "a level of " + number(level_m_s2) + " m/s^2 would need " + number(voltage_v) +
+                    " V by what the reference shows, and the highest level is expected at " +
+                    number(limits.plausible_voltage_v / beyond_highest) +
+                    " V: is generator.level_per_volt right, and does the reference show all of "
+                    "the motion?");
+  }
   return voltage_v;
 }
 
@@ -46,10 +60,8 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
                 "the level needs a tolerance above 0 and at least one correction");
   }
   const double level_m_s2 = target.level_m_s2 * (target.response_known ? 1.0 : first_fraction);
-  const auto possible =
-      voltage_for_level(target.level_m_s2, target.level_per_volt,
-                        {.maximum_voltage_v = std::numeric_limits<double>::infinity(),
-                         .maximum_level_m_s2 = limits.maximum_level_m_s2});
+  const auto possible = voltage_for_level(target.level_m_s2, target.level_per_volt,
+                                          {.maximum_level_m_s2 = limits.maximum_level_m_s2});
   if (!possible) {
     return fail(possible.error());
   }
@@ -77,7 +89,16 @@ Expected<bool> LevelControl::take(double measured_m_s2) {
         "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
             " V, above generator.maximum_level_m_s2 = " + number(limits_.maximum_level_m_s2));
   }
-  level_per_volt_ = measured_m_s2 / voltage_v_;
+  const double response = measured_m_s2 / voltage_v_;
+  if (measured_at_v_ > 0.0 && voltage_v_ > measured_at_v_ && response < falling * level_per_volt_) {
+    return fail(ErrorCode::refused,
+                "the reference shows " + number(level_per_volt_) + " m/s^2 per volt at " +
+                    number(measured_at_v_) + " V and " + number(response) + " at " +
+                    number(voltage_v_) +
+                    " V: does it end at its range, or the amplifier at its limit?");
+  }
+  level_per_volt_ = response;
+  measured_at_v_ = voltage_v_;
   if (std::abs(measured_m_s2 / target_.level_m_s2 - 1.0) <= target_.tolerance_rel) {
     return true;
   }

@@ -8,12 +8,14 @@
 //
 // The first voltage is half of the expected one, since the exciter's response at a frequency is not
 // known before; where an earlier step has shown it, it is used in full. A voltage above a limit is
-// never returned.
+// never returned. A reference that ends at its range, or an amplifier at its limit, shows ever less
+// per volt: a loop that believed it would drive without end.
 //
 // Fails: invalid_setting (a limit would be passed, or is: the reference shows more than the maximum
 // level), refused (the exciter does not follow: the reference shows less than a twentieth of what
-// is expected, or the level is not within the tolerance after `corrections` changes). The caller
-// then switches the output off. Pure arithmetic; one thread.
+// is expected, or per volt less than 0.8 of what it showed before the voltage rose, or the level is
+// not within the tolerance after `corrections` changes). The caller then switches the output off.
+// Pure arithmetic; one thread.
 #pragma once
 
 #include <limits>
@@ -25,7 +27,12 @@ namespace dyncal::drivers::generator {
 struct LevelLimits {
   double maximum_voltage_v = std::numeric_limits<double>::infinity();
   double maximum_level_m_s2 = std::numeric_limits<double>::infinity();
+  // No level needs more while level_per_volt is about right, whatever the reference shows.
+  double plausible_voltage_v = std::numeric_limits<double>::infinity();
 };
+
+// 1.5 times the voltage of the highest level.
+[[nodiscard]] double plausible_voltage_v(double highest_level_m_s2, double level_per_volt);
 
 // The voltage for a level without any control. Fails when it, or the level, is above a limit.
 [[nodiscard]] Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
@@ -59,6 +66,7 @@ private:
   LevelLimits limits_;
   double voltage_v_ = 0.0;
   double level_per_volt_ = 0.0;
+  double measured_at_v_ = 0.0; // the voltage at which level_per_volt_ was measured; 0: it was not
   int changes_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <utility>
 
+#include "analysis/base/text.hpp"
 #include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::generator {
@@ -12,6 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds answer_limit{8000};
 constexpr milliseconds connect_limit{4000}; // and for each answer meanwhile; it is tried again
+constexpr milliseconds delivery_limit{2000};
 
 } // namespace
 
@@ -45,6 +47,7 @@ Expected<void> ScpiGenerator::reconnect() {
   if (!connection) {
     return fail(connection.error());
   }
+  connection->set_delivery_limit(delivery_limit);
   connection->call_while_waiting([this] { return go_on_waiting(); });
   const auto identity = connection->query("*IDN?");
   if (!identity) {
@@ -60,6 +63,30 @@ Expected<void> ScpiGenerator::reconnect() {
   }
   connection->set_answer_limit(answer_limit);
   connection_.emplace(std::move(*connection));
+  return confirm_off();
+}
+
+Expected<std::optional<bool>> ScpiGenerator::output_is_on() {
+  return query(":OUTPut1?").map([](const std::string& answer) -> std::optional<bool> {
+    const std::string_view state = trimmed(answer);
+    if (state == "ON" || state == "1") {
+      return true;
+    }
+    return state == "OFF" || state == "0" ? std::optional(false) : std::nullopt;
+  });
+}
+
+Expected<void> ScpiGenerator::confirm_off() {
+  const auto on = output_is_on();
+  if (!on) {
+    return fail(on.error());
+  }
+  if (on->value_or(false)) {
+    return fail(ErrorCode::refused,
+                "generator " + address_ +
+                    " takes :OUTPut1 OFF without an error, but its OUTPUT IS STILL ON: switch it "
+                    "off by hand; is its front panel locked, or does it need another command?");
+  }
   return {};
 }
 
@@ -95,7 +122,10 @@ Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
 }
 
 Expected<void> ScpiGenerator::set_output(bool on) {
-  return command(on ? ":OUTPut1 ON" : ":OUTPut1 OFF");
+  if (on) {
+    return command(":OUTPut1 ON");
+  }
+  return command(":OUTPut1 OFF").and_then([this] { return confirm_off(); });
 }
 
 Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {

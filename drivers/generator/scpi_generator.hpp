@@ -7,6 +7,10 @@
 // are lost (4 s while connecting); after that the connection is given up, and the next call
 // connects anew, which switches the output off.
 //
+// No command arrives later than 2 s after it was sent: an ON that the network held would otherwise
+// switch on after the run, with nobody there. OFF is believed when :OUTPut1? confirms it: a front
+// panel that is locked, another dialect or a relay leave the output on without an error (refused).
+//
 // The virtual bench also understands :BENCh:TIME? and :BENCh:WAIT?; with every other instrument,
 // bench time is the host's monotonic clock. One thread.
 #pragma once
@@ -37,6 +41,8 @@ public:
   [[nodiscard]] Expected<void> set_output(bool on) override;
   // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
+  // Whether the instrument says that its output is on; nothing where its answer is neither.
+  [[nodiscard]] Expected<std::optional<bool>> output_is_on();
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
   void call_while_waiting(const std::function<bool()>& callback) override;
   [[nodiscard]] Expected<double> clock_now_s() override;
@@ -47,6 +53,7 @@ private:
   void choose_clock();
   bool go_on_waiting();
   Expected<void> reconnect();
+  Expected<void> confirm_off();
   Expected<void> command(const std::string& text);
   Expected<std::string> query(const std::string& text);
   Expected<double> query_bench_time(const std::string& text);

@@ -32,6 +32,9 @@ ScpiConnection::ScpiConnection(std::string instrument, std::string address,
       transport_(std::move(transport)) {}
 
 tl::unexpected<Error> ScpiConnection::give_up(const Error& error, const std::string& command) {
+  if (!lost_) {
+    transport_->abandon();
+  }
   lost_ = true;
   return fail(error.code, instrument_ + " " + error.message + " (" + command + ")");
 }

@@ -7,7 +7,7 @@
 // A query without an answer (timeout), an answer to nothing, or a block of another length than it
 // announces (malformed) mean that question and answer no longer belong together. Such a connection
 // fails, and lost() is true from then on: its owner connects anew, because talking on would mistake
-// one answer for another.
+// one answer for another. It is closed at once, so that no command of it arrives later.
 //
 // One thread at a time.
 #pragma once
@@ -50,6 +50,10 @@ public:
   // a caller who waits long does not neglect everything else; returns false to wait no longer.
   void call_while_waiting(std::function<bool()> callback) { while_waiting_ = std::move(callback); }
   void set_answer_limit(std::chrono::milliseconds limit) { answer_limit_ = limit; }
+  // For an instrument that moves something: a command that has not arrived by then never does.
+  void set_delivery_limit(std::chrono::milliseconds limit) {
+    transport_->set_delivery_limit(limit);
+  }
 
   [[nodiscard]] bool lost() const { return lost_; }
   [[nodiscard]] const std::string& address() const { return address_; }

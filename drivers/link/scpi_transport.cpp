@@ -22,6 +22,10 @@ public:
   }
   bool keeps_part_of_line() const override { return true; }
   bool has_unread() override { return connection_.has_unread(); }
+  void set_delivery_limit(std::chrono::milliseconds limit) override {
+    connection_.set_delivery_limit(limit);
+  }
+  void abandon() override { connection_.abandon(); }
 
 private:
   TcpConnection connection_;

@@ -38,6 +38,11 @@ public:
   [[nodiscard]] virtual bool keeps_part_of_line() const { return false; }
   // Whether bytes have come that were not read: before a query they answer something else.
   [[nodiscard]] virtual bool has_unread() = 0;
+  // Nothing arrives at the instrument later than this after it was sent. liblxi has no such limit:
+  // over VXI-11 the kernel's own holds.
+  virtual void set_delivery_limit(std::chrono::milliseconds /*limit*/) {}
+  // Closes at once; what has not been delivered yet is forgotten. Nothing else is called after it.
+  virtual void abandon() {}
 };
 
 // `stop` must outlive the transport.

@@ -212,6 +212,18 @@ bool TcpConnection::has_unread() const {
   return !received_.empty() || recv(socket_.number(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
 }
 
+void TcpConnection::set_delivery_limit(std::chrono::milliseconds limit) {
+  const auto limit_ms = static_cast<unsigned int>(limit.count());
+  setsockopt(socket_.number(), IPPROTO_TCP, TCP_USER_TIMEOUT, &limit_ms, sizeof(limit_ms));
+}
+
+void TcpConnection::abandon() {
+  const linger at_once{.l_onoff = 1, .l_linger = 0};
+  setsockopt(socket_.number(), SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+  socket_.reset();
+  received_.clear();
+}
+
 Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) {
   const auto deadline = Clock::now() + limit;
   const std::size_t waiting = std::min(bytes.size(), received_.size());

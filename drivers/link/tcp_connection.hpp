@@ -36,6 +36,14 @@ public:
   // Whether bytes have come that were not read. Does not wait.
   [[nodiscard]] bool has_unread() const;
 
+  // Bytes whose arrival is not confirmed within the limit end the connection (TCP_USER_TIMEOUT): a
+  // command never arrives later than that, whatever the network does, also when this program has
+  // died meanwhile.
+  void set_delivery_limit(std::chrono::milliseconds limit);
+  // Closes at once. What has not been delivered yet is forgotten (SO_LINGER of 0), where a plain
+  // close lets the kernel go on delivering it for minutes.
+  void abandon();
+
 private:
   TcpConnection(FileDescriptor socket, Address address, const StopSignal& stop)
       : socket_(std::move(socket)), address_(std::move(address)), stop_(&stop) {}

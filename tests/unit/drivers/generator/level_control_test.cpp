@@ -95,6 +95,52 @@ TEST(LevelControl, GivesUpOnAnExciterThatIsNeverTheSame) {
   EXPECT_THAT(outcome.done.error().message, HasSubstr("after 4 corrections"));
 }
 
+// Whatever gain the exciter has, and wherever the reference ends.
+TEST(LevelControl, AReferenceThatEndsAtItsRangeNeverDrivesFarBeyondTheHighestLevel) {
+  std::mt19937 random(32);
+  std::uniform_real_distribution<double> factor(0.7, 5.0), end(0.2, 0.95);
+  int refused = 0;
+  for (int draw = 0; draw < 200; ++draw) {
+    const double gain = 50.0 * factor(random);
+    const double range = 50.0 * end(random);
+    double largest_v = 0.0;
+    const auto outcome = control(
+        {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
+        {.maximum_level_m_s2 = 120.0, .plausible_voltage_v = plausible_voltage_v(120.0, 50.0)},
+        [&](double v) {
+          largest_v = std::max(largest_v, v);
+          return std::min(gain * v, range);
+        });
+    refused += outcome.done ? 0 : 1;
+    EXPECT_LE(largest_v, 1.5 * 120.0 / 50.0);
+  }
+  EXPECT_EQ(refused, 200);
+}
+
+TEST(LevelControl, AnExciterOfAnotherGainThanStatedReachesItsLevel) {
+  std::mt19937 random(33);
+  std::uniform_real_distribution<double> factor(0.7, 2.3);
+  for (int draw = 0; draw < 200; ++draw) {
+    const double gain = 50.0 * factor(random);
+    const auto outcome = control(
+        {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
+        {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = plausible_voltage_v(60.0, 50.0)},
+        [&](double v) { return gain * v; });
+    ASSERT_TRUE(outcome.done) << outcome.done.error().message;
+    EXPECT_NEAR(gain * outcome.voltage_v, 50.0, 0.5);
+  }
+}
+
+TEST(LevelControl, AnExciterFarLazierThanStatedIsRefusedByTheKeyThatSaysSo) {
+  const auto outcome =
+      control({.level_m_s2 = 50.0, .level_per_volt = 50.0},
+              {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = plausible_voltage_v(60.0, 50.0)},
+              [](double v) { return 15.0 * v; });
+  ASSERT_FALSE(outcome.done);
+  EXPECT_THAT(outcome.done.error().message, HasSubstr("is generator.level_per_volt right"));
+  EXPECT_LE(outcome.voltage_v, 1.8);
+}
+
 TEST(LevelControl, ALevelAboveTheHighestIsRefusedBeforeAnythingIsSet) {
   EXPECT_FALSE(LevelControl::start({.level_m_s2 = 20.0, .level_per_volt = 50.0},
                                    {.maximum_level_m_s2 = 15.0}));

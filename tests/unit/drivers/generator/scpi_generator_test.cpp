@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "tests/unit/drivers/link/scripted_instrument.hpp"
@@ -28,6 +29,15 @@ public:
     const std::lock_guard lock(mutex_);
     return commands_;
   }
+  // Takes :OUTPut1 OFF without an error, and stays on.
+  void ignore_off() {
+    const std::lock_guard lock(mutex_);
+    ignores_off_ = true;
+  }
+  void always_answer_output(const std::string& answer) {
+    const std::lock_guard lock(mutex_);
+    output_answer_ = answer;
+  }
 
 private:
   void serve(ScriptedInstrument::Client& client) {
@@ -42,13 +52,19 @@ private:
         client.say("12.5\n");
       } else if (line.starts_with(":BENCh:WAIT?")) {
         client.say(line.substr(13) + "\n");
+      } else if (line == ":OUTPut1?") {
+        client.say(output_answer_.value_or(is_on_ ? "ON" : "OFF") + "\n");
       } else {
+        is_on_ = line == ":OUTPut1 ON" || (is_on_ && (ignores_off_ || line != ":OUTPut1 OFF"));
         commands_.push_back(line);
       }
     }
   }
 
   std::mutex mutex_;
+  bool is_on_ = false;
+  bool ignores_off_ = false;
+  std::optional<std::string> output_answer_; // always this one
   std::vector<std::string> errors_;
   std::size_t answered_ = 0;
   std::string identity_;
@@ -115,6 +131,38 @@ TEST(ScpiGenerator, EndsItsWaitWhenAskedToStop) {
   EXPECT_LT(*end_s, 5.0);
 }
 
+TEST(ScpiGenerator, DoesNotBelieveThatAnOutputIsOffWhichSaysThatItIsOn) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  ASSERT_TRUE((*generator)->set_output(true));
+  EXPECT_TRUE((*generator)->output_is_on().value().value());
+  instrument.ignore_off();
+  const auto off = (*generator)->set_output(false);
+  ASSERT_FALSE(off);
+  EXPECT_EQ(off.error().code, ErrorCode::refused);
+  EXPECT_THAT(off.error().message, HasSubstr("OUTPUT IS STILL ON"));
+  // Another program that connects to switch it off, as dyncal-guard does, is told as well.
+  EXPECT_THAT(off.error().message, HasSubstr(instrument.address()));
+}
+
+TEST(ScpiGenerator, ConnectsOnlyWhereTheOutputIsOff) {
+  FakeGenerator instrument;
+  instrument.always_answer_output("1");
+  const auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_FALSE(generator);
+  EXPECT_THAT(generator.error().message, HasSubstr("OUTPUT IS STILL ON"));
+}
+
+TEST(ScpiGenerator, GoesOnWhereTheAnswerSaysNeither) {
+  FakeGenerator instrument;
+  instrument.always_answer_output("HIZ");
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_FALSE((*generator)->output_is_on().value().has_value());
+  EXPECT_TRUE((*generator)->set_output(false));
+}
+
 TEST(ScpiGenerator, SaysThatNobodyListens) {
   std::string address;
   {
@@ -137,6 +185,8 @@ TEST(ScpiGenerator, CallsWhileAnAnswerLetsWaitAndReadsItToItsEnd) {
         client.say("dyncal virtual bench,bma280,1,1\n");
       } else if (line == ":SYSTem:ERRor?") {
         client.say("0,\"No error\"\n");
+      } else if (line == ":OUTPut1?") {
+        client.say("OFF\n");
       } else if (line == ":BENCh:TIME?") {
         client.say("12");
         was_called.wait();
@@ -164,6 +214,8 @@ TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
         client.say("dyncal virtual bench,bma280,1,1\n");
       } else if (line == ":SYSTem:ERRor?") {
         client.say("0,\"No error\"\n");
+      } else if (line == ":OUTPut1?") {
+        client.say("0\n");
       }
     }
   });
