@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
@@ -13,7 +15,8 @@ namespace dyncal::services {
 namespace {
 
 constexpr double kept_s = 20.0;
-constexpr double max_drift = 1e-4; // of two clocks
+constexpr double max_drift = 1e-4;         // of two clocks
+constexpr double max_part_at_range = 5e-4; // as a result is flagged (signal_integrity.hpp)
 constexpr std::size_t max_samples = std::size_t{1} << 22U;
 
 std::int64_t ns(double seconds) {
@@ -70,29 +73,55 @@ void LevelMeter::take(double bench_time_s) {
   record_.forget_before(newest_ns - ns(kept_s));
 }
 
-std::optional<double> LevelMeter::level_after(double bench_time_s,
-                                              const analysis::Frequency& frequency,
-                                              double agreement_rel) const {
+double LevelMeter::part_at_range(std::size_t channel, const TimeInterval& window) const {
+  const drivers::ChannelDescription& described = record_.description().channels[channel];
+  if (!(described.maximum > described.minimum)) {
+    return 0.0;
+  }
+  const double half = 0.5 * described.resolution;
+  const auto stamps = record_.stamps_ns();
+  const auto values = record_.column(channel);
+  std::size_t all = 0, at_range = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (stamps[i] >= window.begin_ns && stamps[i] <= window.end_ns) {
+      ++all;
+      at_range +=
+          values[i] <= described.minimum + half || values[i] >= described.maximum - half ? 1 : 0;
+    }
+  }
+  return all > 0 ? static_cast<double>(at_range) / static_cast<double>(all) : 0.0;
+}
+
+Expected<std::optional<double>> LevelMeter::level_after(double bench_time_s,
+                                                        const analysis::Frequency& frequency,
+                                                        double agreement_rel) const {
   const auto stamps = record_.stamps_ns();
   if (stamps.empty() || !acs_minus_bench_ns_ || !record_.described()) {
-    return std::nullopt;
+    return std::optional<double>{};
   }
   const auto channel = record_.channel(reference_.channel);
   if (!channel) {
-    return std::nullopt;
+    return std::optional<double>{};
   }
   const std::int64_t window_ns = ns(level_window_s(frequency.hz()));
   const std::int64_t begin_ns = stamps.back() - window_ns;
   if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) ||
       record_.lost_in({begin_ns, stamps.back()}).all() > 0) {
-    return std::nullopt;
+    return std::optional<double>{};
+  }
+  if (const double part = part_at_range(*channel, {begin_ns, stamps.back()});
+      part > max_part_at_range) {
+    return fail(ErrorCode::device,
+                fmt::format("{} is at an end of its range in {:.2g} % of its samples, so that it "
+                            "shows less than there is; choose a wider range, or a lower level",
+                            reference_.text(), 100.0 * part));
   }
   const std::int64_t middle_ns = begin_ns + window_ns / 2;
   const auto whole = level_in(record_, *channel, {begin_ns, stamps.back()}, frequency);
   const auto first = level_in(record_, *channel, {begin_ns, middle_ns - 1}, frequency);
   const auto second = level_in(record_, *channel, {middle_ns, stamps.back()}, frequency);
   if (!whole || !first || !second || std::abs(*second - *first) > agreement_rel * *whole) {
-    return std::nullopt;
+    return std::optional<double>{};
   }
   return whole;
 }

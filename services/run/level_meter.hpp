@@ -13,6 +13,9 @@
 // which is too small by at most level_transport_s. Against longer travel, and a level that still
 // moves, the two halves of the window must show the same level within the agreement asked for.
 //
+// A window with samples at an end of the range that the channel's description states shows less
+// than there is: it is refused (device).
+//
 // While the object exists its blocks must be taken: call take() at least every second. One thread.
 #pragma once
 
@@ -39,13 +42,15 @@ public:
 
   // Nothing while there is no full window of samples from after `bench_time_s`, or while its halves
   // differ by more than `agreement_rel`.
-  [[nodiscard]] std::optional<double> level_after(double bench_time_s,
-                                                  const analysis::Frequency& frequency,
-                                                  double agreement_rel) const;
+  [[nodiscard]] Expected<std::optional<double>> level_after(double bench_time_s,
+                                                            const analysis::Frequency& frequency,
+                                                            double agreement_rel) const;
 
 private:
   LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescription> descriptions,
              bus::Reader<wire::SampleBlock> samples);
+
+  [[nodiscard]] double part_at_range(std::size_t channel, const TimeInterval& window) const;
 
   ChannelName reference_;
   bus::Reader<wire::SourceDescription> descriptions_;

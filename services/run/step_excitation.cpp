@@ -84,6 +84,13 @@ drivers::generator::LevelLimits StepExcitation::limits() const {
   limits.maximum_voltage_v = bench_.generator.maximum_voltage_v.value_or(limits.maximum_voltage_v);
   limits.maximum_level_m_s2 =
       bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
+  const auto& levels = bench_.excitation.levels_m_s2;
+  if (bench_.generator.maximum_level_m_s2 || !levels.empty()) {
+    limits.plausible_voltage_v = drivers::generator::plausible_voltage_v(
+        bench_.generator.maximum_level_m_s2 ? *bench_.generator.maximum_level_m_s2
+                                            : *std::max_element(levels.begin(), levels.end()),
+        bench_.generator.level_per_volt);
+  }
   return limits;
 }
 
@@ -244,6 +251,8 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
     }
     const auto reached = loop->take(**level);
     if (!reached) {
+      known_responses_.erase(
+          step.frequency_text_hz()); // nothing that another attempt may begin with
       const bool passes_limit = reached.error().code == drivers::ErrorCode::invalid_setting;
       return fail(passes_limit ? of_step(step, ErrorCode::device, reached.error().message)
                                : fault_of_step(reached.error().message));
@@ -278,7 +287,11 @@ Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, 
     const auto level =
         meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step_),
                             0.5 * *bench_.generator.level_tolerance_rel);
-    if (level) {
+    if (!level) {
+      known_responses_.erase(step_.frequency_text_hz());
+      return fail(fault_of_step(level.error().message));
+    }
+    if (*level) {
       return level;
     }
     if (*now > deadline_s) {

@@ -2,6 +2,7 @@
 // afterwards. No real time passes.
 #include "services/run/step_excitation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -235,6 +236,7 @@ protected:
   static constexpr double rate_hz = 2000.0;
   double gain_ = 4.0;
   bool level_moves_ = false; // the exciter never comes to rest
+  double range_m_s2_ = 0.0;  // of the reference, as it states; 0: it states none and has none
   std::uint64_t block_ = 0;
   std::uint64_t sample_ = 0;
   bus::Writer<wire::SourceDescription> descriptions_ =
@@ -257,6 +259,8 @@ protected:
     description.channels().resize(1);
     description.channels()[0].name("reference");
     description.channels()[0].unit(R"(\metre\second\tothe{-2})");
+    description.channels()[0].minimum(-range_m_s2_);
+    description.channels()[0].maximum(range_m_s2_);
     descriptions_.write(description);
   }
   void send_block() {
@@ -275,7 +279,9 @@ protected:
       const double t_s = static_cast<double>(sample_) / rate_hz;
       const double drift = level_moves_ ? 1.0 + 0.5 * t_s : 1.0;
       const double level = instrument_.on ? instrument_.amplitude_v * gain_ * drift : 0.0;
-      block.values().push_back(level * std::sin(2.0 * std::numbers::pi * 40.0 * t_s));
+      const double value = level * std::sin(2.0 * std::numbers::pi * 40.0 * t_s);
+      block.values().push_back(range_m_s2_ > 0.0 ? std::clamp(value, -range_m_s2_, range_m_s2_)
+                                                 : value);
     }
     blocks_.write(block, 0s);
   }
@@ -338,6 +344,24 @@ TEST_F(LevelTest, SwitchesOffWhenTheReferenceShowsMoreThanTheHighestLevel) {
   EXPECT_FALSE(fault_may_pass_);
   EXPECT_FALSE(instrument_.on);
   EXPECT_LT(instrument_.now_s(), planned_settling_s(bench_, 40.0, 1));
+}
+
+TEST_F(LevelTest, IsNotTakenFromAReferenceThatEndsAtItsRange) {
+  gain_ = 5.0;
+  range_m_s2_ = 4.0; // half of the level is beyond it
+  play_reference();
+  const auto excited = excite();
+  ASSERT_FALSE(excited);
+  EXPECT_THAT(excited.error().message, HasSubstr("acs/reference is at an end of its range"));
+  EXPECT_THAT(instrument_.settings, ElementsAre("40 Hz", "1.0 V", "on", "off"));
+}
+
+TEST_F(LevelTest, IsReachedWithinTheRangeOfTheReference) {
+  gain_ = 5.0;
+  range_m_s2_ = 10.5;
+  play_reference();
+  ASSERT_TRUE(excite());
+  EXPECT_NEAR(instrument_.amplitude_v * gain_, 10.0, 0.1);
 }
 
 TEST_F(LevelTest, HoldsNoSourceUpBetweenSteps) {
