@@ -17,6 +17,7 @@
 #include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
+#include "services/run/output_guard.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -45,24 +46,51 @@ drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& comman
           .points = 1'000'000};
 }
 
-Expected<std::unique_ptr<ScpiGenerator>> start_generator(const CalibrateDsoDelayCommand& command) {
-  if (command.generator.empty()) {
-    return nullptr;
+// A generator whose output is on for as long as the object lives. The guard switches it off where
+// this program is killed, or cannot do it itself.
+class DrivenGenerator {
+public:
+  static Expected<DrivenGenerator> start(const CalibrateDsoDelayCommand& command) {
+    auto guard = OutputGuard::start(command.generator);
+    if (!guard) {
+      return fail(guard.error());
+    }
+    auto connected = ScpiGenerator::connect(command.generator);
+    if (!connected) {
+      guard->dismiss(); // nothing was switched on
+      return fail(device_error(connected.error()));
+    }
+    DrivenGenerator driven(std::move(*guard), std::move(*connected));
+    ScpiGenerator& generator = *driven.generator_;
+    const auto set = generator.set_rectangle(command.by == "rectangle")
+                         .and_then([&] { return generator.set_frequency(command.frequency_hz); })
+                         .and_then([&] { return generator.set_amplitude_v(command.amplitude_v); })
+                         .and_then([&] { return generator.set_output(true); });
+    if (!set) {
+      static_cast<void>(driven.switch_off()); // else the guard does
+      return fail(device_error(set.error()));
+    }
+    return driven;
   }
-  auto generator = ScpiGenerator::connect(command.generator);
-  if (!generator) {
-    return fail(device_error(generator.error()));
+
+  Expected<void> switch_off() {
+    if (const auto off = generator_->set_output(false); !off) {
+      return fail(ErrorCode::device,
+                  fmt::format("THE OUTPUT OF THE GENERATOR MAY BE ON: switch it off by hand if you "
+                              "can; a process goes on trying for ten minutes ({})",
+                              off.error().message));
+    }
+    guard_.dismiss();
+    return {};
   }
-  const auto set = (*generator)
-                       ->set_rectangle(command.by == "rectangle")
-                       .and_then([&] { return (*generator)->set_frequency(command.frequency_hz); })
-                       .and_then([&] { return (*generator)->set_amplitude_v(command.amplitude_v); })
-                       .and_then([&] { return (*generator)->set_output(true); });
-  if (!set) {
-    return fail(device_error(set.error()));
-  }
-  return std::move(*generator);
-}
+
+private:
+  DrivenGenerator(OutputGuard guard, std::unique_ptr<ScpiGenerator> generator)
+      : guard_(std::move(guard)), generator_(std::move(generator)) {}
+
+  OutputGuard guard_;
+  std::unique_ptr<ScpiGenerator> generator_;
+};
 
 Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
                          const analysis::Frequency& frequency, const std::stop_token& stop) {
@@ -176,11 +204,20 @@ int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::
         {ErrorCode::bad_argument,
          fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
   }
-  const auto generator = start_generator(command); // its destruction switches the output off
-  if (!generator) {
-    return report_error(generator.error());
+  std::optional<DrivenGenerator> driven;
+  if (!command.generator.empty()) {
+    auto started = DrivenGenerator::start(command);
+    if (!started) {
+      return report_error(started.error());
+    }
+    driven.emplace(std::move(*started));
   }
   const auto delays = measure(command, *frequency, stop);
+  if (driven) {
+    if (const auto off = driven->switch_off(); !off) {
+      return report_error(off.error());
+    }
+  }
   if (!delays) {
     return report_error(delays.error());
   }

@@ -31,6 +31,12 @@ CLI::Validator vendor_validator() {
           "{" + names + "}", "vendor"};
 }
 
+// As a program under nohup has it.
+bool is_ignored(int signal) {
+  struct sigaction present {};
+  return sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_IGN;
+}
+
 } // namespace
 
 void add_network_options(CLI::App& app, NetworkOptions& options) {
@@ -75,17 +81,22 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
 }
 
 std::stop_token stop_on_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
+  sigset_t asks_again;
+  sigemptyset(&asks_again);
+  sigaddset(&asks_again, SIGINT);
+  sigaddset(&asks_again, SIGTERM);
+  sigset_t signals = asks_again;
+  if (!is_ignored(SIGHUP)) {
+    sigaddset(&signals, SIGHUP);
+  }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::stop_source stop;
-  std::thread([signals, stop]() mutable {
+  std::thread([signals, asks_again, stop]() mutable {
     int signal = 0;
     sigwait(&signals, &signal);
     stop.request_stop();
-    sigwait(&signals, &signal);
+    // A terminal that is closed says so more than once.
+    sigwait(&asks_again, &signal);
     _exit(interrupted_status);
   }).detach();
   return stop.get_token();

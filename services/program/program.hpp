@@ -39,9 +39,10 @@ struct NetworkUse {
 [[nodiscard]] Expected<bus::Participant>
 join_network(const NetworkOptions& options, const std::string& program, const NetworkUse& use = {});
 
-// Stopped once SIGINT or SIGTERM has come; a second one ends the process at once. REQUIRES: called
-// once, before other threads start, since the signals are blocked in all threads and waited for in
-// one of their own, which lasts as long as the process.
+// Stopped once SIGINT, SIGTERM or SIGHUP has come, the last unless it is ignored (nohup); SIGINT or
+// SIGTERM after that ends the process at once. REQUIRES: called once, before other threads start,
+// since the signals are blocked in all threads and waited for in one of their own, which lasts as
+// long as the process.
 [[nodiscard]] std::stop_token stop_on_signals();
 
 // Blocks until `stop` is requested.

@@ -2,11 +2,13 @@
 // 236(1) ns after the trigger.
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <numeric>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/system/instrument_question.hpp"
 #include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
@@ -25,13 +27,25 @@ protected:
     ASSERT_TRUE(bench_->wait_for_error_text("ports", patience));
     const auto ports = read_json(folder_ / "ports.json");
     oscilloscope_ = "127.0.0.1:" + ports["dso"].dump();
-    generator_ = "127.0.0.1:" + ports["generator"].dump();
+    generator_port_ = ports["generator"].get<int>();
+    generator_ = "127.0.0.1:" + std::to_string(generator_port_);
+  }
+  // "ON" or "OFF", as soon as it is so.
+  [[nodiscard]] bool wait_for_output(const std::string& state) const {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (ask_instrument(generator_port_, ":OUTPut1?") == state) {
+        return true;
+      }
+    }
+    return false;
   }
 
   std::filesystem::path folder_;
   std::optional<ProgramRun> bench_;
   std::string oscilloscope_;
   std::string generator_;
+  int generator_port_ = 0;
 };
 
 TEST_P(CalibrateDsoDelay, Finds236NanosecondsWithinItsStatedNanosecond) {
@@ -67,6 +81,25 @@ TEST_P(CalibrateDsoDelay, RepeatsShotsThatABadLineSpoils) {
   EXPECT_GT(json["failed_shots"], 0);
   EXPECT_EQ(json["shots"], 20);
   EXPECT_NEAR(json["value_s"].get<double>(), 236e-9, 1.5e-9);
+}
+
+// A terminal that is closed, and a program that is killed: nobody is there who could see to the
+// output but the process that guards it.
+TEST_P(CalibrateDsoDelay, LeavesTheOutputOffHoweverItEnds) {
+  start_bench({});
+  for (const int signal : {SIGHUP, SIGKILL}) {
+    const auto work =
+        fresh_folder(std::string("calibrate-dso-delay-end-") + GetParam() + std::to_string(signal));
+    ProgramRun calibrate("dyncal",
+                         {"calibrate", "dso-delay", "--oscilloscope", oscilloscope_, "--generator",
+                          generator_, "--by", GetParam(), "--shots", "100000", "--output",
+                          work / "delay.json"},
+                         work);
+    ASSERT_TRUE(wait_for_output("ON")) << calibrate.errors();
+    calibrate.send(signal);
+    ASSERT_TRUE(calibrate.wait(patience));
+    EXPECT_TRUE(wait_for_output("OFF")) << "after signal " << signal;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(ByBothWays, CalibrateDsoDelay, testing::Values("rectangle", "sine"),

@@ -16,6 +16,7 @@
 
 #include <fmt/core.h>
 
+#include "tests/system/instrument_question.hpp"
 #include "tests/system/laboratory.hpp"
 #include "tests/udp_port.hpp"
 
@@ -56,23 +57,7 @@ public:
   [[nodiscard]] nlohmann::json truth() const { return read_json(folder_ / "truth.json"); }
   // The answer of the bench's generator.
   [[nodiscard]] std::string ask_generator(const std::string& query) const {
-    const int socket_number = socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(generator_port_));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    std::string answer;
-    const std::string line = query + "\n";
-    if (connect(socket_number, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0 &&
-        send(socket_number, line.data(), line.size(), MSG_NOSIGNAL) ==
-            static_cast<ssize_t>(line.size())) {
-      for (char byte = 0;
-           query.ends_with('?') && recv(socket_number, &byte, 1, 0) == 1 && byte != '\n';) {
-        answer += byte;
-      }
-    }
-    close(socket_number);
-    return answer;
+    return ask_instrument(generator_port_, query);
   }
   void tell_generator(const std::string& command) const {
     static_cast<void>(ask_generator(command));
