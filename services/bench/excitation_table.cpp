@@ -10,6 +10,10 @@ namespace dyncal::services {
 namespace {
 
 constexpr int max_attempts = 10;
+constexpr int max_repetitions = 1000;
+constexpr double max_step_s = 86'400.0; // settling or duration of one step: a day
+// What one message of the plan carries, and more than anybody waits for.
+constexpr std::size_t max_steps = 10'000;
 
 void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
   const std::size_t frequencies = excitation.frequencies_hz.size();
@@ -51,6 +55,18 @@ void read_window(TomlTable& table, ExcitationSettings& excitation) {
   }
 }
 
+void check_number_of_steps(TomlTable& table, const ExcitationSettings& excitation) {
+  const std::size_t steps =
+      excitation.frequencies_hz.size() * static_cast<std::size_t>(excitation.repetitions);
+  if (excitation.repetitions > max_repetitions) {
+    table.refuse("repetitions", fmt::format("must be between 1 and {}", max_repetitions));
+  } else if (steps > max_steps) {
+    table.refuse("repetitions",
+                 fmt::format("makes {} steps of {} frequencies; a run has at most {}", steps,
+                             excitation.frequencies_hz.size(), max_steps));
+  }
+}
+
 } // namespace
 
 ExcitationSettings read_excitation(TomlTable table) {
@@ -76,17 +92,18 @@ ExcitationSettings read_excitation(TomlTable table) {
     table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
   }
   excitation.repetitions = table.whole_number("repetitions", 1, 1);
+  check_number_of_steps(table, excitation);
   excitation.attempts = table.whole_number("attempts", excitation.attempts, 1);
   if (excitation.attempts > max_attempts) {
     table.refuse("attempts", fmt::format("must be between 1 and {}", max_attempts));
   }
   excitation.settling_s = table.number("settling_s", excitation.settling_s, "seconds");
   excitation.duration_s = table.number("duration_s", excitation.duration_s, "seconds");
-  if (excitation.settling_s < 0.0) {
-    table.refuse("settling_s", "must not be negative");
+  if (!(excitation.settling_s >= 0.0 && excitation.settling_s <= max_step_s)) {
+    table.refuse("settling_s", fmt::format("must be between 0 and {} s, a day", max_step_s));
   }
-  if (excitation.duration_s <= 0.0) {
-    table.refuse("duration_s", "must be positive");
+  if (!(excitation.duration_s > 0.0 && excitation.duration_s <= max_step_s)) {
+    table.refuse("duration_s", fmt::format("must be above 0 and at most {} s, a day", max_step_s));
   }
   excitation.settling_from_data =
       table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";

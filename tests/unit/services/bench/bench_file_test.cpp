@@ -252,6 +252,29 @@ TEST(BenchFile, ListsTheMainsThatAreLookedFor) {
   EXPECT_THAT(problem_of(with("[50, 0]")), HasSubstr("must be positive"));
 }
 
+TEST(BenchFile, RefusesPlansThatNobodyCouldWaitFor) {
+  for (const char* repetitions : {"1001", "10000000", "2147483647"}) {
+    EXPECT_THAT(problem_of(replaced(complete, "repetitions = 3",
+                                    std::string("repetitions = ") + repetitions)),
+                HasSubstr("between 1 and 1000"));
+  }
+  std::string many = "[\"10\"";
+  for (int i = 11; i < 70; ++i) {
+    many += ", \"" + std::to_string(i) + "\"";
+  }
+  std::string text = replaced(complete, "[\"10\", \"12.5\"]", many + "]");
+  EXPECT_THAT(problem_of(replaced(text, "repetitions = 3", "repetitions = 1000")),
+              HasSubstr("60000 steps"));
+  for (const char* seconds : {"1e300", "86401", "inf", "nan"}) {
+    EXPECT_THAT(
+        problem_of(replaced(complete, "duration_s = 2", std::string("duration_s = ") + seconds)),
+        HasSubstr("duration_s"));
+    EXPECT_THAT(
+        problem_of(replaced(complete, "settling_s = 0.5", std::string("settling_s = ") + seconds)),
+        HasSubstr("settling_s"));
+  }
+}
+
 TEST(BenchFile, RefusesWholeRecordsOfSeveralSteps) {
   EXPECT_THAT(problem_of(replaced(complete, "repetitions = 3", "window = \"whole-record\"")),
               HasSubstr("key 'excitation.window' can be \"whole-record\" for one frequency"));
