@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/printable_text.hpp"
+#include "services/program/last_words.hpp"
 
 namespace dyncal::services {
 
@@ -87,6 +88,7 @@ void write_at_once(const std::string& program) {
 } // namespace
 
 void set_up_log(const std::string& program, LogWriting writing) {
+  set_last_words(program);
   if (writing == LogWriting::at_once) {
     write_at_once(program);
     return;

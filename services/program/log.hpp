@@ -14,7 +14,7 @@ enum class LogWriting {
   by_thread // by a thread of the log
 };
 
-// Before other threads start.
+// Before other threads start. Sets the last words of the program too (last_words.hpp).
 void set_up_log(const std::string& program, LogWriting writing = LogWriting::at_once);
 
 // Writes what is held; later lines are written at once. When other threads have ended.
