@@ -197,14 +197,13 @@ Expected<void> KeptRun::finish(const RunOutcome& outcome) {
   disk_->log.write(
       written ? fmt::format("ended, {} results are in {}", outcome.results.size(), result_file_name)
               : written.error().message);
-  if (!written) {
-    return written;
-  }
-  add_to_store(outcome);
-  return {};
+  return written;
 }
 
 void KeptRun::add_to_store(const RunOutcome& outcome) {
+  if (!disk_) {
+    return;
+  }
   const std::string place = store_place(options_.store, *options_.folder);
   if (place.empty()) {
     return;

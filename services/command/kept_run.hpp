@@ -54,6 +54,8 @@ public:
   void note(const RunProgress& progress);
   // When the run is over. Fails (bad_file) when the final results cannot be written.
   [[nodiscard]] Expected<void> finish(const RunOutcome& outcome);
+  // After everything else, for a database may let wait. REQUIRES: finish() has not failed.
+  void add_to_store(const RunOutcome& outcome);
   // Of a run that has excited nothing.
   void discard();
   // Nothing when none is kept.
@@ -76,7 +78,6 @@ private:
   void note_recording();
   void end_recording();
   void say(const std::string& sentence);
-  void add_to_store(const RunOutcome& outcome);
 
   KeepOptions options_;
   const BenchFile& bench_;

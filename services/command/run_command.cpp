@@ -1,5 +1,6 @@
 #include "services/command/run_command.hpp"
 
+#include <cstdio>
 #include <utility>
 
 #include <fmt/core.h>
@@ -137,12 +138,14 @@ Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
   return conduct(run, name_of_run(run.command, 1));
 }
 
-// The folder first, which is what is left if the rest fails.
+// The folder first, which is what is left if the rest fails; the database last, which may let wait.
 Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
   const auto kept = run.kept->finish(run.outcome);
   auto shown = show_outcome(run.outcome, command.json, command.figures);
   if (const auto folder = run.kept->folder(); folder && kept) {
     fmt::print("kept in {}\n", folder->string());
+    std::fflush(stdout);
+    run.kept->add_to_store(run.outcome);
   }
   Expected<void> done = kept ? std::move(shown) : fail(kept.error());
   if (!done && run.outcome.output_may_be_on) {

@@ -86,6 +86,15 @@ private:
   bool finished_ = false;
 };
 
+// The name is on the disk as well. A file system that cannot do that leaves the file as it is.
+void synchronise_folder(const std::filesystem::path& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.is_open()) {
+    ::fsync(opened.number());
+  }
+}
+
 } // namespace
 
 Expected<void> write_output_file(const std::filesystem::path& path, std::string_view text) {
@@ -102,6 +111,7 @@ Expected<void> write_output_file(const std::filesystem::path& path, std::string_
   if (::fsync(file.descriptor()) != 0 || !file.take_name(path)) {
     return not_written(path, errno);
   }
+  synchronise_folder(path);
   return {};
 }
 

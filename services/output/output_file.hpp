@@ -1,6 +1,7 @@
 // Files that programs write for people and for other programs: whole, or not at all.
 //
-// The text goes to a file beside, NAME.part, reaches the disk, and only then takes the name. A full
+// The text goes to a file beside, NAME.part, reaches the disk, and only then takes the name, which
+// is on the disk as well when the function returns. A full
 // disk or a kill leaves an older file of that name as it was, and a reader that polls for the name
 // never sees a part. What is not a regular file (/dev/stdout, a pipe) is written as it is.
 //
