@@ -13,8 +13,9 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double weakest_signal = 8.0; // u: what a search finds in pure noise stays below
-constexpr double weak_phasor = 10.0;   // u: below, magnitude and phase are not normal any more
+constexpr double weakest_signal = 8.0;   // u: what a search finds in pure noise stays below
+constexpr double weak_phasor = 10.0;     // u: below, magnitude and phase are not normal any more
+constexpr double worth_correcting = 0.1; // u of the amplitude
 
 tl::unexpected<Error> of_channel(const std::string& channel, Error error) {
   error.message = channel + ": " + error.message;
@@ -92,11 +93,33 @@ Expected<std::vector<std::span<const double>>> values_of(std::span<const Channel
   return channels;
 }
 
+// Puts back what the scatter of the stamps took off the amplitude, where that is worth it.
+void correct_shortening(double step, RecordedChannel& recorded) {
+  ChannelFit& result = recorded.result;
+  StampScatter& scatter = result.scatter;
+  scatter = measure_stamp_scatter(result.frequency, result.fit, result.phase_origin_ns,
+                                  recorded.stamps_ns, recorded.values(), step);
+  const double shortening = scatter.correction_rel();
+  if (shortening * result.fit.amplitude() > worth_correcting * result.fit.u_amplitude()) {
+    recorded.lengthening = 1.0 / (1.0 - shortening);
+  }
+}
+
+void add_scatter_row(Budget& budget, const std::string& what, const RecordedChannel& recorded) {
+  if (recorded.lengthening > 1.0) {
+    const double u = recorded.result.scatter.u_correction_rel();
+    budget.add({.kind = ContributionKind::stamp_jitter,
+                .subject = "the stamps of " + what + ", as corrected",
+                .u_magnitude_rel = u,
+                .u_lasting_magnitude_rel = u});
+  }
+}
+
 RecordedChannel recorded_channel(const Frequency& frequency, double u_frequency_hz,
                                  std::span<const std::int64_t> stamps_ns,
                                  const ChannelSamples& samples, CleanedFit fit) {
   RecordedChannel recorded{
-      {samples.name, frequency, u_frequency_hz, middle_ns(stamps_ns), fit.fit, {}},
+      {samples.name, frequency, u_frequency_hz, middle_ns(stamps_ns), fit.fit, {}, {}},
       std::move(fit.values),
       samples,
       stamps_ns};
@@ -111,6 +134,7 @@ RecordedChannel recorded_channel(const Frequency& frequency, double u_frequency_
   if (kernel::is_significant(fit.plain.fit)) {
     recorded.result.integrity =
         measure_integrity(frequency, fit.plain, stamps_ns, samples.values, expected);
+    correct_shortening(expected.resolution, recorded);
   }
   return recorded;
 }
@@ -222,6 +246,9 @@ void add_signal_rows(Budget& budget, const std::string& what, const RecordedChan
               .distribution = Distribution::rectangular,
               .u_magnitude_rel = steps.u_amplitude * relative,
               .u_phase_rad = steps.u_phase_rad});
+  if (counts_in == CountsIn::magnitude_and_phase) {
+    add_scatter_row(budget, what, recorded);
+  }
 }
 
 void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jitter_s) {
@@ -239,6 +266,7 @@ void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jit
               .distribution = Distribution::rectangular,
               .u_magnitude_rel = sensor.steps.u_amplitude * relative,
               .u_phase_rad = weak ? 0.0 : sensor.steps.u_phase_rad});
+  add_scatter_row(budget, "the sensor", recorded);
   if (weak) {
     budget.add({.kind = ContributionKind::rice,
                 .u_magnitude_rel = 0.5 * std::pow(sensor.u_amplitude * relative, 2)});

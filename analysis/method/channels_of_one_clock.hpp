@@ -10,6 +10,8 @@
 //                 of its own: w^2 A^2 s_t^2 / 2 of s^2
 //   quantisation  quantisation.hpp, where the noise does not hide the steps; where nobody stated
 //                 them, they are looked for in the values (found_resolution.hpp)
+//   stamp jitter  what scatter of the stamps took off the amplitude, where its residuals show it
+//                 (stamp_scatter.hpp), is put back, and its uncertainty is a row
 //   Rice          u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
 //                 phase is that of phasor.hpp
 //
@@ -51,8 +53,13 @@ struct RecordedChannel {
   [[nodiscard]] std::span<const double> values() const {
     return cleaned.empty() ? samples.values : std::span<const double>(cleaned);
   }
-  [[nodiscard]] std::complex<double> phasor() const { return {result.fit.sine, result.fit.cosine}; }
-  [[nodiscard]] double amplitude() const { return result.fit.amplitude(); }
+  // Of the sine before the scatter of stamps shortened it.
+  [[nodiscard]] std::complex<double> phasor() const {
+    return std::complex<double>(result.fit.sine, result.fit.cosine) * lengthening;
+  }
+  [[nodiscard]] double amplitude() const { return result.fit.amplitude() * lengthening; }
+
+  double lengthening = 1.0;
 };
 
 struct ChannelsOfOneClock {

@@ -15,6 +15,7 @@
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/mains.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/stamp_scatter.hpp"
 #include "analysis/step/signal_integrity.hpp"
 #include "analysis/uncertainty/contribution.hpp"
 
@@ -37,6 +38,7 @@ struct ChannelFit { // the sine fitted to one recorded channel
   SineFit fit;
   // Of the samples as they came; empty where the channel is without excitation.
   std::optional<SignalIntegrity> integrity{};
+  StampScatter scatter{}; // of its stamps, as its residuals show it; `fit` is without correction
 };
 
 struct TransferPoint {

@@ -10,12 +10,12 @@
 #include "analysis/base/statistics.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/sine_values.hpp"
+#include "analysis/step/held_values.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
 constexpr int max_harmonic = 10;
-constexpr double resolved = 1.5;           // distance of lines in 1 / T
 constexpr std::uint64_t min_equal = 5;     // values at an extreme: fewer are chance
 constexpr double model_error = 0.05;       // of the amplitude, of a sine fitted to a clipped one
 constexpr std::uint64_t min_stuck_run = 4; // samples
@@ -23,27 +23,6 @@ constexpr double fine_resolution = 0.02;   // of the amplitude
 constexpr double worth_modelling = 3.0;    // standard uncertainties of a harmonic
 constexpr double beyond_range = 0.05;      // of half the range: noise behind an end stop is less
 constexpr double min_beyond_part = 0.01;   // of the values: fewer are bumps
-
-// Orders whose folded frequencies are apart from the signal, the mean, half the rate (where only
-// one of sine and cosine is sampled) and each other.
-std::vector<int> resolved_harmonics(double frequency_hz, double duration_s, double rate_hz) {
-  const auto folded = [rate_hz](double hz) {
-    return std::abs(hz - rate_hz * std::round(hz / rate_hz));
-  };
-  std::vector<double> taken{0.0, folded(frequency_hz)};
-  std::vector<int> orders;
-  for (int k = 2; k <= max_harmonic; ++k) {
-    const double line = folded(k * frequency_hz);
-    const bool apart = std::all_of(taken.begin(), taken.end(), [&](double other) {
-      return std::abs(line - other) * duration_s > resolved;
-    });
-    if (apart && (0.5 * rate_hz - line) * duration_s > 0.5 * resolved) {
-      taken.push_back(line);
-      orders.push_back(k);
-    }
-  }
-  return orders;
-}
 
 // The model of some samples at a time: the fitted sine and the harmonics that stand out.
 class ModelBlock {
@@ -93,7 +72,7 @@ public:
         middle_ns_(middle_of_record_ns(stamps_ns)) {
     const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
     const double rate_hz = static_cast<double>(values.size() - 1) / duration_s;
-    const std::vector<int> orders = resolved_harmonics(frequency.hz(), duration_s, rate_hz);
+    orders = resolved_harmonics(frequency.hz(), duration_s, rate_hz);
     double squares = channel.fit.rss;
     for (const HarmonicLine& harmonic : channel.harmonics) {
       if (std::find(orders.begin(), orders.end(), harmonic.order) == orders.end()) {
@@ -143,6 +122,7 @@ public:
   int harmonics = 0;
   double residual_sd = 0.0;
   double low = 0.0, high = 0.0; // of the values
+  std::vector<int> orders;      // of harmonics that are apart from all else
 
 private:
   [[nodiscard]] double measure_neighbour_noise() const {
@@ -368,8 +348,17 @@ SignalIntegrity measure_integrity(const Frequency& frequency, const PlainChannel
   integrity.u_thd =
       std::sqrt(of_noise * std::sqrt(static_cast<double>(model.harmonics))) / integrity.amplitude;
   integrity.noise_sd = std::max(model.neighbour_noise(), expected.resolution / std::sqrt(12.0));
+  integrity.shape = sine_shape(frequency, channel, stamps_ns, model.orders, expected.resolution,
+                               integrity.residual_sd);
   measure_limits(model, expected, integrity);
   measure_runs(model, expected, integrity);
+  const double periods = integrity.shape.periods;
+  integrity.repeated_beyond_chance_part = repeated_beyond_chance(
+      values, channel.blocks,
+      {.amplitude = integrity.amplitude,
+       .turn_rad = 2.0 * std::numbers::pi * periods / static_cast<double>(values.size() - 1),
+       .noise_sd = model.neighbour_noise(),
+       .step = expected.resolution});
   return integrity;
 }
 

@@ -33,6 +33,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/sine/sine_residuals.hpp"
+#include "analysis/step/peak_shape.hpp"
 
 namespace dyncal::analysis {
 
@@ -54,6 +55,8 @@ struct SignalIntegrity {
   double stuck_part = 0.0;         // of all samples, in such runs
   std::uint64_t repeats = 0;       // shorter runs
   std::uint64_t longest_repeat = 0;
+  double repeated_beyond_chance_part = 0.0; // of neighbours (held_values.hpp)
+  SineShape shape;                          // for a comparison with the reference's
   double thd = 0.0;
   double u_thd = 0.0; // what noise alone gives
   double residual_sd = 0.0;

@@ -8,9 +8,13 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/frequency_estimate.hpp"
 #include "analysis/sine/sine_fit.hpp"
+#include "analysis/sine/sine_residuals.hpp"
+#include "analysis/sine/stamp_scatter.hpp"
+#include "analysis/uncertainty/found_resolution.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/json_text.hpp"
 #include "services/program/program.hpp"
@@ -22,6 +26,8 @@ namespace {
 
 // The estimate is good to this many bins 1/T (analysis/sine/frequency_estimate.hpp).
 constexpr double estimate_bins = 1.5;
+// Part of u of an amplitude from which on it is corrected for scatter of the stamps.
+constexpr double worth_correcting = 0.1;
 
 struct Fit {
   analysis::Frequency frequency = analysis::Frequency::from_hz(1.0); // until it is known
@@ -30,6 +36,7 @@ struct Fit {
   std::size_t out_of_order = 0; // samples left out for their stamps
   std::vector<std::string> names;
   std::vector<analysis::SineFit> fits;
+  std::vector<double> shortening_rel; // put back, for each of them; 0: nothing to be seen
 };
 
 Error at(const FitCommand& command, const analysis::Error& error) {
@@ -131,6 +138,40 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
       });
 }
 
+// The amplitude without what scatter of the stamps took off it, and what is not known of that.
+void lengthen(const analysis::StampScatter& scatter, analysis::SineFit& fit) {
+  const double factor = 1.0 / (1.0 - scatter.correction_rel());
+  const double u_rel = scatter.u_correction_rel();
+  fit.sine *= factor;
+  fit.cosine *= factor;
+  fit.covariance[0] += std::pow(u_rel * fit.sine, 2);
+  fit.covariance[1] += u_rel * u_rel * fit.sine * fit.cosine;
+  fit.covariance[3] += std::pow(u_rel * fit.cosine, 2);
+}
+
+// Each column is looked at beside its harmonics, hum and drift, which are no scatter. Where that
+// cannot be fitted, nothing is corrected.
+void correct_scatter(const SeriesFile& series, const std::vector<std::span<const double>>& columns,
+                     Fit& fit) {
+  fit.shortening_rel.assign(columns.size(), 0.0);
+  const std::int64_t middle_ns = analysis::middle_of_record_ns(series.stamps_ns);
+  const auto beside =
+      analysis::fit_sine_beside_disturbances(fit.frequency, middle_ns, series.stamps_ns, columns);
+  for (std::size_t i = 0; beside && i < columns.size(); ++i) {
+    const analysis::CleanedFit& clean = (*beside)[i];
+    const std::span<const double> values =
+        clean.values.empty() ? columns[i] : std::span<const double>(clean.values);
+    const analysis::StampScatter scatter =
+        analysis::measure_stamp_scatter(fit.frequency, clean.fit, middle_ns, series.stamps_ns,
+                                        values, analysis::found_resolution(columns[i]));
+    analysis::SineFit& one = fit.fits[i];
+    if (scatter.correction_rel() * one.amplitude() > worth_correcting * one.u_amplitude()) {
+      fit.shortening_rel[i] = scatter.correction_rel();
+      lengthen(scatter, one);
+    }
+  }
+}
+
 void print_json(const Fit& fit) {
   nlohmann::ordered_json columns = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
@@ -150,6 +191,9 @@ void print_json(const Fit& fit) {
                              {"covariance", one.covariance}, // AA, AB, AC, BB, BC, CC
                              {"rss", one.rss},
                              {"samples", one.samples}};
+    if (fit.shortening_rel[i] > 0.0) {
+      columns[fit.names[i]]["corrected_shortening_rel"] = fit.shortening_rel[i];
+    }
   }
   nlohmann::ordered_json json{{"frequency_hz", fit.frequency.hz()}};
   if (fit.u_frequency_hz) {
@@ -184,6 +228,12 @@ void print_table(const Fit& fit) {
                amplitude.value, amplitude.u, phase.value, phase.u, offset.value, offset.u,
                one.samples);
   }
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    if (fit.shortening_rel[i] > 0.0) {
+      fmt::print("{}: its stamps scatter, which had shortened the sine by {:.2g} %; corrected\n",
+                 fit.names[i], 100.0 * fit.shortening_rel[i]);
+    }
+  }
 }
 
 Expected<Fit> fit_file(const FitCommand& command) {
@@ -214,6 +264,7 @@ Expected<Fit> fit_file(const FitCommand& command) {
   if (!fitted) {
     return fail(at(command, fitted.error()));
   }
+  correct_scatter(*series, *columns, fit);
   return fit;
 }
 

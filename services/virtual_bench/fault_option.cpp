@@ -118,6 +118,40 @@ Expected<void> read_over_range(FaultText& text, BenchFaults& faults) {
   return {};
 }
 
+Expected<void> read_soft_ends(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto limit = text.value("LIMIT", 1e-3, 1e4);
+  if (!channel || !limit) {
+    return fail(!channel ? channel.error() : limit.error());
+  }
+  const std::string end = text.take("end").value_or("both");
+  if (end != "both" && end != "upper" && end != "lower") {
+    return text.refuse("write end=both, end=upper or end=lower");
+  }
+  (*channel)->soft_upper = end == "lower" ? 0.0 : *limit;
+  (*channel)->soft_lower = end == "upper" ? 0.0 : *limit;
+  return {};
+}
+
+Expected<void> read_held(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", 0.0, 1.0);
+  if (!channel || !part) {
+    return fail(!channel ? channel.error() : part.error());
+  }
+  (*channel)->held_part = *part;
+  return {};
+}
+
+Expected<void> read_fifo(FaultText& text, BenchFaults& faults) {
+  const auto samples = text.value("SAMPLES", 2.0, 1e6);
+  if (!samples) {
+    return fail(samples.error());
+  }
+  faults.fifo_samples = static_cast<std::size_t>(*samples);
+  return {};
+}
+
 Expected<void> read_stuck(FaultText& text, BenchFaults& faults) {
   const auto channel = channel_of(text, faults);
   const auto samples = text.value("SAMPLES", 1.0, 1e6);
@@ -256,8 +290,11 @@ struct Fault {
   Expected<void> (*read)(FaultText&, BenchFaults&);
 };
 
-constexpr std::array<Fault, 12> known_faults{{
+constexpr std::array<Fault, 15> known_faults{{
     {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
+    {"soft-ends", "soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
+    {"held", "held=PART,at=CHANNEL", read_held},
+    {"fifo", "fifo=SAMPLES", read_fifo},
     {"stuck", "stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
     {"hum", "hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
     {"drift", "drift=PART_PER_SECOND,at=CHANNEL", read_drift},

@@ -2,6 +2,9 @@
 // with the bench (drivers/virtual_bench/model/bench_faults.hpp).
 //
 //   over-range=LIMIT,at=CHANNEL        end stops at +-LIMIT in m/s^2 or V
+//   soft-ends=LIMIT,at=CHANNEL         likewise, before noise and converter; end=upper or end=lower
+//   held=PART,at=CHANNEL               of the samples have the value of the one before
+//   fifo=SAMPLES                       of the sensor are read at once, with stamps 10 ns apart
 //   stuck=SAMPLES,at=CHANNEL           for so many samples, every second, or every=SECONDS
 //   hum=PART,at=CHANNEL                of the signal, at 50 Hz, or frequency=HZ; while=driven: only
 //                                      while the generator's output is on

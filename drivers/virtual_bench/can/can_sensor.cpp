@@ -65,9 +65,10 @@ CanFrame CanSensor::measure(double time_s, const device::Excitation& excitation)
     const device::AxisResponse& response = settings_.preset.axes[axis];
     const device::Motion motion =
         excitation.motion(time_s - (response.delay_s - settings_.latency_s));
-    const double value =
-        excitation.acceleration(motion, device::harmonic_gains(response, motion.frequency_hz)) +
-        offset_m_s2_[axis] + noise_.normal(noise_m_s2_) + disturbances_[axis].added(time_s, motion);
+    const double value = disturbances_[axis].cut(excitation.acceleration(
+                             motion, device::harmonic_gains(response, motion.frequency_hz))) +
+                         offset_m_s2_[axis] + noise_.normal(noise_m_s2_) +
+                         disturbances_[axis].added(time_s, motion);
     const double counts = disturbances_[axis].held(
         std::clamp(std::rint(value / resolution_m_s2_), -counts_per_range, counts_per_range - 1.0),
         time_s);

@@ -56,9 +56,10 @@ void AcsInstrument::sample_until(double time_s, const Excitation& excitation, Ac
        at_s = static_cast<double>(++next_sample_) * interval_s) {
     const Motion motion = excitation.motion(at_s);
     const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
-    const double reference = excitation.acceleration(motion, reference_gains_) +
-                             reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2) +
-                             reference_disturbance_.added(at_s, motion);
+    const double reference =
+        reference_disturbance_.cut(excitation.acceleration(motion, reference_gains_)) +
+        reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2) +
+        reference_disturbance_.added(at_s, motion);
     const double sync_v = settings_.sync_is_first_output ? motion.generator_v
                           : motion.sync_on               ? settings_.sync_amplitude_v
                                                          : 0.0;

@@ -5,6 +5,8 @@
 // as the ACS records them, sync as the unit's ADC does. Each may have
 //
 //   range      end stops at +-range, which its description states, whatever the level
+//   soft ends  end stops before the channel's own noise and converter, at one end or both
+//   held       samples, drawn one by one, that have the value of the one before
 //   stuck      the value of one sample for so many samples, again and again
 //   hum        mains: an added sine of constant amplitude, between the steps too, or only while the
 //              generator's output is on
@@ -23,7 +25,10 @@
 namespace dyncal::drivers::virtual_bench {
 
 struct ChannelFaults {
-  double range = 0.0; // in the channel's unit; 0: one that holds the highest level
+  double range = 0.0;      // in the channel's unit; 0: one that holds the highest level
+  double soft_upper = 0.0; // in the channel's unit; 0: none
+  double soft_lower = 0.0; // of the opposite sign
+  double held_part = 0.0;
   std::size_t stuck_samples = 0;
   double stuck_every_s = 1.0;
   double hum_rel = 0.0;
@@ -67,6 +72,7 @@ struct BenchFaults {
   SampleLoss acs_loss;
   SeriesStart series_start;
   StampFaultProbabilities stamps;
+  std::size_t fifo_samples = 0; // of the sensor: read so many at once, stamped 10 ns apart
   DelayChange delay_change;
   Wandering wandering;
   double exciter_gain = 1.0; // times level_per_volt: an amplifier that somebody turned up

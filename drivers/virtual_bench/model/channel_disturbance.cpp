@@ -1,10 +1,10 @@
 #include "drivers/virtual_bench/model/channel_disturbance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
-
-#include "drivers/virtual_bench/model/random.hpp"
+#include <utility>
 
 namespace dyncal::drivers::virtual_bench {
 namespace {
@@ -15,7 +15,7 @@ constexpr double knock_s = 0.01;
 
 ChannelDisturbance::ChannelDisturbance(std::uint64_t seed, std::string_view name,
                                        const ChannelFaults& faults, double signal)
-    : faults_(faults), signal_(signal) {
+    : faults_(faults), signal_(signal), held_draws_(seed, "held values of " + std::string(name)) {
   Random draws(seed, "disturbance of " + std::string(name));
   hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
   next_stuck_s_ = draws.uniform(0.0, faults.stuck_every_s);
@@ -37,7 +37,16 @@ double ChannelDisturbance::added(double time_s, const Motion& motion) const {
   return signal_ * value;
 }
 
+double ChannelDisturbance::cut(double value) const {
+  const double upper = faults_.soft_upper > 0.0 ? std::min(value, faults_.soft_upper) : value;
+  return faults_.soft_lower > 0.0 ? std::max(upper, -faults_.soft_lower) : upper;
+}
+
 double ChannelDisturbance::held(double value, double time_s) {
+  if (faults_.held_part > 0.0) {
+    const double now = std::exchange(before_, value);
+    value = held_draws_.happens(faults_.held_part) ? now : value;
+  }
   if (faults_.stuck_samples == 0) {
     return value;
   }

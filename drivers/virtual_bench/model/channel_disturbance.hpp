@@ -2,7 +2,9 @@
 //
 //   added    signal (hum_rel sin(2 pi hum_hz t + phase) + drift_rel_per_s s + knock)
 //            s: seconds since the generator was last changed, 0 while its output is off
-//   held     every `stuck_every_s` the value of one sample in place of the next ones
+//   cut      -soft_lower .. soft_upper
+//   held     the value before in a held_part of the samples; every `stuck_every_s` the value of one
+//   sample in place of the next ones
 //
 // End stops are the instrument's own matter: it alone knows its converter. The phase of the hum and
 // the first instant of being stuck are drawn from seed and name. One thread.
@@ -13,6 +15,7 @@
 
 #include "drivers/virtual_bench/model/bench_faults.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
+#include "drivers/virtual_bench/model/random.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
@@ -24,6 +27,8 @@ public:
 
   // To add before the converter, in the channel's unit.
   [[nodiscard]] double added(double time_s, const Motion& motion) const;
+  // What its soft ends leave of the signal, before noise.
+  [[nodiscard]] double cut(double value) const;
   // What the converter delivers in place of `value`. REQUIRES: times rise.
   [[nodiscard]] double held(double value, double time_s);
 
@@ -34,6 +39,8 @@ private:
   double next_stuck_s_ = 0.0;
   std::size_t stuck_left_ = 0;
   double stuck_value_ = 0.0;
+  Random held_draws_;
+  double before_ = 0.0;
 };
 
 } // namespace dyncal::drivers::virtual_bench

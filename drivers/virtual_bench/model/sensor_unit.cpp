@@ -137,7 +137,8 @@ void SensorUnit::measure_acceleration(UnitSample& sample, double time_s,
     if (change.by_s != 0.0 && motion.since_change_s > change.after_s) {
       motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s - change.by_s);
     }
-    const double value = excitation.acceleration(motion, gains(axis, motion.frequency_hz)) +
+    const double value = sensor_disturbances_[axis].cut(
+                             excitation.acceleration(motion, gains(axis, motion.frequency_hz))) +
                          offset_m_s2_[axis] + noise_.normal(noise_m_s2_) +
                          sensor_disturbances_[axis].added(time_s, motion);
     sample.data[axis] = static_cast<float>(
@@ -176,6 +177,19 @@ void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitatio
   }
 }
 
+// A buffer that is read as a whole: its samples have the stamp of the reading, 10 ns apart.
+void SensorUnit::stamp_of_fifo(UnitSample& sample) {
+  if (settings_.fifo_samples < 2) {
+    return;
+  }
+  const auto place = static_cast<std::int64_t>(fifo_place_);
+  if (place == 0) {
+    fifo_first_ns_ = sample.utc_ns;
+  }
+  sample.utc_ns = fifo_first_ns_ + 10 * place;
+  fifo_place_ = (fifo_place_ + 1) % settings_.fifo_samples;
+}
+
 std::optional<UnitSample> SensorUnit::next_before(double time_s, const Excitation& excitation) {
   for (;;) {
     if (!edge_) {
@@ -196,6 +210,7 @@ std::optional<UnitSample> SensorUnit::next_before(double time_s, const Excitatio
     sample.utc_ns = stamp.utc_ns;
     sample.uncertainty_ns = stamp.uncertainty_ns;
     sample.ticks = stamp.ticks;
+    stamp_of_fifo(sample);
     measure_acceleration(sample, edge.time_s, excitation);
     measure_rest(sample, edge.temperature_degc);
     measure_adcs(sample, edge.time_s, excitation);

@@ -43,6 +43,7 @@ struct SensorUnitSettings {
   ChannelFaults sync_faults;
   SampleLoss loss;
   StampFaultProbabilities stamp_faults;
+  std::size_t fifo_samples = 0; // bench_faults.hpp
 };
 
 class SensorUnit {
@@ -74,6 +75,7 @@ private:
   void describe_temperature(double minimum, double maximum, double steps);
   void describe_adc(std::size_t index, const char* name);
   void measure_acceleration(UnitSample& sample, double time_s, const Excitation& excitation);
+  void stamp_of_fifo(UnitSample& sample);
   void measure_rest(UnitSample& sample, double temperature_degc);
   void measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation);
   [[nodiscard]] float quantised(double value, double step, double range) const;
@@ -84,6 +86,8 @@ private:
   DauClock clock_;
   std::unique_ptr<SensorClock> sensor_clock_;
   StampFaults stamp_faults_;
+  std::size_t fifo_place_ = 0;
+  std::int64_t fifo_first_ns_ = 0;
   Random loss_;
   std::vector<ChannelDisturbance> sensor_disturbances_; // x, y, z
   ChannelDisturbance sync_disturbance_;

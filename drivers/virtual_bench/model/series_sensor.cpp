@@ -54,8 +54,8 @@ std::optional<RecordedSeries> SeriesSensor::advance_to(double time_s,
       continue;
     }
     const Motion motion = excitation.motion(at_s - settings_.response.delay_s);
-    const double value =
-        excitation.acceleration(motion, harmonic_gains(settings_.response, motion.frequency_hz));
+    const double value = disturbance_.cut(
+        excitation.acceleration(motion, harmonic_gains(settings_.response, motion.frequency_hz)));
     const double counts = std::rint(
         (value + random_.normal(settings_.noise_m_s2) + disturbance_.added(at_s, motion)) /
         settings_.step_m_s2);

@@ -93,6 +93,7 @@ SensorUnitSettings unit_settings(const BenchSettings& settings, const SyncAdcMod
   unit.sync_faults = settings.faults.sync_dau;
   unit.loss = settings.faults.sensor_loss;
   unit.stamp_faults = settings.faults.stamps;
+  unit.fifo_samples = settings.faults.fifo_samples;
   return unit;
 }
 

@@ -8,6 +8,7 @@
 #include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
+#include "services/evaluation/method/shape_check.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 
 namespace dyncal::services {
@@ -115,11 +116,17 @@ std::vector<StepResult> results_without_value(const RecipeStep& step,
 void add_check(const SignalCheck& check, StepResult& result) {
   result.signals.push_back(check.signal);
   result.flags.insert(result.flags.end(), check.flags.begin(), check.flags.end());
-  if (check.refusal.empty() || !result.valid) {
+  if (!check.refusal.empty()) {
+    add_refusal(check.refusal, result);
+  }
+}
+
+void add_refusal(const std::string& sentence, StepResult& result) {
+  if (!result.valid) {
     return;
   }
   result.valid = false;
-  result.problem = check.refusal;
+  result.problem = sentence;
   result.magnitude = result.u_magnitude = StepResult::nan_value;
   result.phase_rad = result.u_phase_rad = StepResult::nan_value;
   result.budget.clear();
@@ -169,6 +176,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
       add_check(check, result);
     }
     add_check(check_signal(step->points[i].dut), result);
+    check_shape(step->common_fits.front(), step->points[i].dut, result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(check_lines(*task.recipe, {"the sensor"}, step->points[i].dut,
                                 *input.first_dut.selected, input.first_dut.index + i));

@@ -58,6 +58,9 @@ struct StepInput {
 // Gives the numbers of a check, flags what it has found; takes the value away where it refuses it.
 void add_check(const SignalCheck& check, StepResult& result);
 
+// Takes the value away, where there is one.
+void add_refusal(const std::string& sentence, StepResult& result);
+
 // Flags a level that is off the plan and samples that were left out, and adds up what was lost.
 // REQUIRES: the first of the result's fits is that of the reference.
 void add_input(const StepTask& task, const StepInput& input, StepResult& result);

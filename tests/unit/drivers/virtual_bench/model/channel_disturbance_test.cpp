@@ -51,6 +51,25 @@ TEST(ChannelDisturbance, DriftRisesWithTheTimeSinceTheGeneratorWasChanged) {
   EXPECT_EQ(added(faults, {.sync_on = false, .since_change_s = 1.5}).front(), 0.0);
 }
 
+TEST(ChannelDisturbance, SoftEndsCutTheSignalAtEither) {
+  const ChannelDisturbance both(3, "sensor", {.soft_upper = 9.0, .soft_lower = 8.0}, 20.0);
+  EXPECT_EQ(both.cut(9.5), 9.0);
+  EXPECT_EQ(both.cut(-9.5), -8.0);
+  EXPECT_EQ(both.cut(3.0), 3.0);
+  EXPECT_EQ(ChannelDisturbance(3, "sensor", {.soft_upper = 9.0}, 20.0).cut(-9.5), -9.5);
+}
+
+TEST(ChannelDisturbance, HeldSamplesHaveTheValueOfTheOneBefore) {
+  ChannelDisturbance disturbance(3, "sensor", {.held_part = 0.1}, 20.0);
+  int held = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double value = disturbance.held(i, i * interval_s);
+    EXPECT_TRUE(value == i || value == i - 1) << value;
+    held += value == i - 1 ? 1 : 0;
+  }
+  EXPECT_NEAR(held, 1000, 120);
+}
+
 TEST(ChannelDisturbance, StuckRepeatsOneValueForSoManySamplesEverySoOften) {
   ChannelDisturbance disturbance(3, "sensor", {.stuck_samples = 50, .stuck_every_s = 0.25}, 20.0);
   int wrong = 0;

@@ -1,0 +1,202 @@
+#include "analysis/sine/stamp_scatter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/base/statistics.hpp"
+#include "analysis/sine/sine_values.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr std::size_t block_samples = 512;
+constexpr std::size_t max_blocks = 16;
+constexpr std::size_t min_samples = 64;
+constexpr double min_periods = 2.0;    // of a block, for a sine of its own
+constexpr double certain = 6.0;        // standard uncertainties: 1e-9 of normal noise, whose
+                                       // squares have heavier tails
+constexpr double smallest = 1e-6;      // of the amplitude: nobody states less
+constexpr double open_part = 0.05;     // of the correction: what kind of scatter it is
+constexpr double step_part = 0.125;    // of the square of a step
+constexpr double heavy_tails = 6.0;    // kurtosis: normal ones that follow the slope have 4.5
+constexpr double far_from_rest = 10.0; // robust standard deviations: latencies have hardly any
+constexpr std::uint64_t min_far_off = 4;
+// Of the squares, by cos^2 of the phase: 3/4 for values of other instants, 1/2 for any others.
+constexpr double on_slopes = 0.54;
+constexpr double at_end = 0.85;       // of the amplitude
+constexpr double batched = 0.05;      // of the mean interval
+constexpr double min_variance = 0.05; // of cos(2 phi), which is a half where phases are even
+
+struct Sample {
+  double sine = 0.0; // of the phase of the fitted sine
+  double cosine = 0.0;
+  double residual = 0.0;
+};
+
+// Takes an offset and a sine of their own out of the residuals of a block.
+void remove_slow(std::span<Sample> block) {
+  double n = static_cast<double>(block.size());
+  double s = 0.0, c = 0.0, ss = 0.0, sc = 0.0, cc = 0.0, e = 0.0, es = 0.0, ec = 0.0;
+  for (const Sample& one : block) {
+    s += one.sine;
+    c += one.cosine;
+    ss += one.sine * one.sine;
+    sc += one.sine * one.cosine;
+    cc += one.cosine * one.cosine;
+    e += one.residual;
+    es += one.residual * one.sine;
+    ec += one.residual * one.cosine;
+  }
+  // About the means, two unknowns are left.
+  ss -= s * s / n;
+  sc -= s * c / n;
+  cc -= c * c / n;
+  es -= e * s / n;
+  ec -= e * c / n;
+  const double determinant = ss * cc - sc * sc;
+  if (!(determinant > 0.1 * ss * cc)) {
+    return;
+  }
+  const double by_sine = (es * cc - ec * sc) / determinant;
+  const double by_cosine = (ec * ss - es * sc) / determinant;
+  const double offset = (e - by_sine * s - by_cosine * c) / n;
+  for (Sample& one : block) {
+    one.residual -= offset + by_sine * one.sine + by_cosine * one.cosine;
+  }
+}
+
+// Evenly spaced blocks of the record, as phases of the fitted sine and residuals.
+std::vector<Sample> samples_of(const Frequency& frequency, const SineFit& fit,
+                               std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns,
+                               std::span<const double> values) {
+  const std::size_t all = (stamps_ns.size() + block_samples - 1) / block_samples;
+  const std::size_t stride = (all + max_blocks - 1) / max_blocks;
+  const double amplitude = fit.amplitude();
+  const double a = fit.sine / amplitude, b = fit.cosine / amplitude;
+  std::array<double, block_samples> sine, cosine;
+  std::vector<Sample> samples;
+  samples.reserve(std::min(stamps_ns.size(), max_blocks * block_samples));
+  for (std::size_t k = 0; k < all; k += stride) {
+    const std::size_t first = k * block_samples;
+    const std::size_t n = std::min(block_samples, stamps_ns.size() - first);
+    fill_sine_cosine(frequency, origin_ns, stamps_ns.subspan(first, n), sine.data(), cosine.data());
+    const std::size_t before = samples.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double of_phase = a * sine[i] + b * cosine[i];
+      samples.push_back({of_phase, a * cosine[i] - b * sine[i],
+                         values[first + i] - fit.offset - amplitude * of_phase});
+    }
+    const double duration_s =
+        static_cast<double>(stamps_ns[first + n - 1] - stamps_ns[first]) * 1e-9;
+    if (duration_s * frequency.hz() > min_periods) {
+      remove_slow(std::span(samples).subspan(before));
+    }
+  }
+  return samples;
+}
+
+double batched_part(std::span<const std::int64_t> stamps_ns) {
+  const double mean_ns = static_cast<double>(stamps_ns.back() - stamps_ns.front()) /
+                         static_cast<double>(stamps_ns.size() - 1);
+  const auto limit_ns = static_cast<std::int64_t>(batched * mean_ns);
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
+    count += stamps_ns[i] - stamps_ns[i - 1] < limit_ns ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(stamps_ns.size() - 1);
+}
+
+std::uint64_t peak_jumps(const std::vector<Sample>& samples, double amplitude) {
+  std::uint64_t at_peaks = 0, all = 0;
+  for (const Sample& one : samples) {
+    if (std::abs(one.residual) > amplitude) {
+      ++all;
+      at_peaks += std::abs(one.sine) > at_end ? 1 : 0;
+    }
+  }
+  return 10 * at_peaks >= 9 * all ? at_peaks : 0;
+}
+
+std::uint64_t far_off(const std::vector<Sample>& samples) {
+  std::vector<double> sizes;
+  sizes.reserve(samples.size());
+  for (const Sample& one : samples) {
+    sizes.push_back(std::abs(one.residual));
+  }
+  const double limit = far_from_rest * mad_to_sd * upper_median(sizes);
+  double steep = 0.0, all = 0.0;
+  std::uint64_t count = 0;
+  for (const Sample& one : samples) {
+    if (std::abs(one.residual) > limit) {
+      ++count;
+      all += one.residual * one.residual;
+      steep += one.residual * one.residual * one.cosine * one.cosine;
+    }
+  }
+  return count >= min_far_off && steep > on_slopes * all ? count : 0;
+}
+
+} // namespace
+
+double StampScatter::correction_rel() const {
+  const bool is_certain = shortening_rel > certain * u_shortening_rel && shortening_rel > smallest;
+  return is_certain && shortening_rel < 1.0 ? shortening_rel : 0.0;
+}
+
+double StampScatter::u_correction_rel() const {
+  const double correction = correction_rel();
+  return correction > 0.0 ? std::hypot(u_shortening_rel, open_part * correction) : 0.0;
+}
+
+StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fit,
+                                   std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns,
+                                   std::span<const double> values, double step) {
+  StampScatter scatter;
+  if (stamps_ns.size() < min_samples || !(fit.amplitude() > 0.0)) {
+    return scatter;
+  }
+  const std::vector<Sample> samples = samples_of(frequency, fit, origin_ns, stamps_ns, values);
+  const double n = static_cast<double>(samples.size());
+  scatter.samples = samples.size();
+  scatter.batched_part = batched_part(stamps_ns);
+  double m = 0.0, mm = 0.0, squares = 0.0, fourth = 0.0, products = 0.0;
+  for (const Sample& one : samples) {
+    const double turned = one.cosine * one.cosine - one.sine * one.sine; // cos(2 phi)
+    const double square = one.residual * one.residual;
+    m += turned;
+    mm += turned * turned;
+    squares += square;
+    fourth += square * square;
+    products += square * turned;
+  }
+  if (!(squares > 0.0)) {
+    return scatter;
+  }
+  if (n * fourth > heavy_tails * squares * squares) {
+    scatter.peak_jumps = peak_jumps(samples, fit.amplitude());
+    scatter.far_off = far_off(samples);
+  }
+  const double mean = m / n, spread = mm - m * mean;
+  if (spread < min_variance * n) {
+    return scatter;
+  }
+  const double slope = (products - squares * mean) / spread;
+  double about_line = 0.0;
+  for (const Sample& one : samples) {
+    const double turned = one.cosine * one.cosine - one.sine * one.sine - mean;
+    const double rest = one.residual * one.residual - squares / n - slope * turned;
+    about_line += turned * turned * rest * rest;
+  }
+  const double amplitude_square = fit.amplitude() * fit.amplitude();
+  const double v = 2.0 * slope;
+  scatter.u_shortening_rel = std::sqrt(about_line) / spread / amplitude_square;
+  if (std::abs(v) < step_part * step * step) {
+    return scatter;
+  }
+  scatter.shortening_rel = 1.0 - std::sqrt(std::clamp(1.0 - v / amplitude_square, 0.0, 2.0));
+  return scatter;
+}
+
+} // namespace dyncal::analysis

@@ -1,0 +1,162 @@
+#include "analysis/step/peak_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analysis/step/signal_integrity.hpp"
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+struct Channel {
+  double frequency_hz = 80.3;
+  double rate_hz = 1003.05;
+  double noise = 0.001;
+  double upper = none; // ends, of the amplitude
+  double lower = none;
+  double delay_rad = 0.3;
+  std::vector<double> harmonics{0.001, 0.0005}; // of the exciter, second, third ...
+  std::vector<double> own{};                    // of the channel itself
+  std::size_t mean_of = 1;                      // samples of its filter, behind the ends
+  double seconds = 1.5;
+};
+
+SineShape shape_of(const Channel& channel, double exciter_phase, std::mt19937_64& random) {
+  std::normal_distribution<double> noise(0.0, 1.0);
+  const auto sine = [&](double t) {
+    const double turn =
+        2.0 * std::numbers::pi * channel.frequency_hz * t + exciter_phase - channel.delay_rad;
+    double value = std::sin(turn);
+    for (std::size_t k = 0; k < channel.harmonics.size(); ++k) {
+      const double order = static_cast<double>(k + 2);
+      value += channel.harmonics[k] * std::sin(order * turn + 1.7 * order);
+    }
+    for (std::size_t k = 0; k < channel.own.size(); ++k) {
+      const double order = static_cast<double>(k + 2);
+      value += channel.own[k] * std::sin(order * turn + 0.5 * std::numbers::pi * (order - 1.0));
+    }
+    return std::clamp(value, -channel.lower, channel.upper);
+  };
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<double> values;
+  const double n = static_cast<double>(channel.mean_of);
+  for (double i = 0.0; i < channel.seconds * channel.rate_hz; i += 1.0) {
+    double value = 0.0;
+    for (double k = 0.0; k < n; k += 1.0) {
+      value += sine((i + (k - 0.5 * (n - 1.0)) / n) / channel.rate_hz) / n;
+    }
+    stamps_ns.push_back(std::llround(i * 1e9 / channel.rate_hz));
+    values.push_back(value + channel.noise * noise(random));
+  }
+  const auto integrity =
+      measure_integrity(Frequency::from_hz(channel.frequency_hz), stamps_ns, values, {});
+  EXPECT_TRUE(integrity) << integrity.error().message;
+  return integrity ? integrity->shape : SineShape{};
+}
+
+BentPeaks peaks_of(const Channel& sensor, Channel reference, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const double phase = std::uniform_real_distribution<double>(-3.0, 3.0)(random);
+  reference.frequency_hz = sensor.frequency_hz;
+  reference.harmonics = sensor.harmonics;
+  reference.delay_rad = 0.0;
+  reference.rate_hz = 5000.0;
+  return find_bent_peaks(shape_of(sensor, phase, random), shape_of(reference, phase, random));
+}
+
+// What the fundamental of a sine with cut peaks loses, by Fourier's integral.
+double lost(double limit) {
+  const double d = std::acos(limit);
+  return (d - std::sin(d) * std::cos(d)) / std::numbers::pi;
+}
+
+TEST(PeakShape, CutPeaksAreFoundWithWhatTheyTakeAway) {
+  for (const double limit : {0.99, 0.97, 0.9}) {
+    for (const double frequency_hz : {12.5, 31.5, 80.3, 160.2}) {
+      for (unsigned seed = 1; seed <= 3; ++seed) {
+        Channel sensor{.frequency_hz = frequency_hz};
+        sensor.upper = sensor.lower = limit;
+        const BentPeaks both = peaks_of(sensor, {}, seed);
+        EXPECT_TRUE(both.found) << limit << " of " << frequency_hz << " Hz";
+        EXPECT_NEAR(both.amplitude_error_rel, 2.0 * lost(limit), 0.3 * 2.0 * lost(limit));
+        sensor.upper = none;
+        const BentPeaks one = peaks_of(sensor, {}, seed);
+        EXPECT_TRUE(one.found) << "lower at " << limit << " of " << frequency_hz << " Hz";
+        EXPECT_NEAR(one.amplitude_error_rel, lost(limit), 0.3 * lost(limit) + 1e-4);
+        EXPECT_GT(one.lower_rel, 3.0 * std::abs(one.upper_rel));
+      }
+    }
+  }
+}
+
+TEST(PeakShape, FilterBehindTheEndsHidesNothing) {
+  for (const double frequency_hz : {12.5, 31.5, 63.2, 125.2}) {
+    Channel sensor{.frequency_hz = frequency_hz, .noise = 0.002, .mean_of = 16};
+    sensor.upper = sensor.lower = 0.97;
+    const BentPeaks peaks = peaks_of(sensor, {}, 1);
+    EXPECT_TRUE(peaks.found) << frequency_hz << " Hz";
+    EXPECT_GT(peaks.amplitude_error_rel, lost(0.97));
+  }
+}
+
+TEST(PeakShape, ReferenceWithCutPeaksIsTold) {
+  Channel reference;
+  reference.upper = reference.lower = 0.95;
+  const BentPeaks peaks = peaks_of({.frequency_hz = 16.0}, reference, 1);
+  EXPECT_TRUE(peaks.found);
+  EXPECT_LT(peaks.amplitude_error_rel, -0.5 * lost(0.95));
+}
+
+// Harmonics of the exciter, squares and cubes of a good sensor, any noise: nothing is bent.
+TEST(PeakShape, SoundChannelsRaiseNoAlarm) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int found = 0;
+  std::ostringstream which;
+  constexpr int runs = 500;
+  for (int run = 0; run < runs; ++run) {
+    Channel sensor{.frequency_hz = 5.0 * std::pow(80.0, part(random)),
+                   .noise = 1e-4 * std::pow(3e3, part(random)),
+                   .seconds = 1.0};
+    sensor.harmonics = {0.03 * part(random), 0.03 * part(random), 0.003 * part(random)};
+    sensor.own = {0.002 * part(random), 0.0015 * part(random)};
+    const BentPeaks peaks = peaks_of(sensor, {.seconds = 1.0}, static_cast<unsigned>(run));
+    if (peaks.found) {
+      ++found;
+      which << " " << sensor.frequency_hz << " Hz, noise " << sensor.noise << ", error "
+            << peaks.amplitude_error_rel << " u " << peaks.u << "\n";
+    }
+  }
+  EXPECT_LE(found, runs / 500) << which.str();
+}
+
+// The step of a quarter in H between f and 2 f, 3 f of a sensor is not a bent peak.
+TEST(PeakShape, ResponseThatFallsIsAllowedFor) {
+  int found = 0;
+  for (unsigned run = 0; run < 100; ++run) {
+    std::mt19937_64 random(run);
+    const double phase = std::uniform_real_distribution<double>(-3.0, 3.0)(random);
+    const Channel reference{.rate_hz = 5000.0, .delay_rad = 0.0, .harmonics = {0.02, 0.02}};
+    Channel sensor = reference;
+    sensor.rate_hz = 1003.05;
+    sensor.delay_rad = 0.4;
+    sensor.harmonics = {0.015, 0.014};
+    found +=
+        find_bent_peaks(shape_of(sensor, phase, random), shape_of(reference, phase, random)).found
+            ? 1
+            : 0;
+  }
+  EXPECT_EQ(found, 0);
+}
+
+} // namespace
+} // namespace dyncal::analysis
