@@ -73,14 +73,17 @@ SignalCheck check_trace(const TriggeredRecord& trace, std::span<const double> va
 } // namespace
 
 SignalCheck check_series(const CheckedShots& checked, const ChannelName& channel,
-                         std::size_t column) {
+                         std::size_t column, std::vector<analysis::SineShape>& shapes) {
   const std::vector<std::int64_t> stamps_ns = series_stamps_ns(checked);
   const drivers::ChannelDescription& description = checked.sensor.description().channels[column];
   return first_finding(checked.shots, [&](const ShotRecord::Shot& shot) {
     const std::span<const double> values = shot.series->channel(column);
-    return check_signal(channel.text(),
-                        analysis::measure_integrity(checked.task.step().frequency, stamps_ns,
-                                                    values, expected_of(description, values)));
+    const auto integrity = analysis::measure_integrity(checked.task.step().frequency, stamps_ns,
+                                                       values, expected_of(description, values));
+    if (integrity) {
+      shapes.push_back(integrity->shape);
+    }
+    return check_signal(channel.text(), integrity);
   });
 }
 

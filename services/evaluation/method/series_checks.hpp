@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/method/series_stamping.hpp"
+#include "analysis/step/peak_shape.hpp"
 #include "services/evaluation/method/signal_check.hpp"
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/record/shot_record.hpp"
@@ -27,8 +28,10 @@ struct CheckedShots {
 // Of the series of one channel, and of the traces of sync. The first shot in which something is
 // found speaks for the step, or else the very first. Traces carry phase only: nothing refuses them;
 // but one that is shorter than a period of sync cannot be judged.
+// `shapes` gets what those shots show that were looked at (shape_check.hpp).
 [[nodiscard]] SignalCheck check_series(const CheckedShots& checked, const ChannelName& channel,
-                                       std::size_t column);
+                                       std::size_t column,
+                                       std::vector<analysis::SineShape>& shapes);
 [[nodiscard]] SignalCheck check_traces(const CheckedShots& checked, const ChannelName& sync);
 
 // What every shot shows of the lines, of which none may tell any from the excitation.

@@ -12,6 +12,7 @@
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/series_checks.hpp"
 #include "services/evaluation/method/series_shots.hpp"
+#include "services/evaluation/method/shape_check.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
@@ -233,7 +234,9 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
     for (const SignalCheck& check : {reference, sync, traces}) {
       add_check(check, result);
     }
-    add_check(check_series(checked, roles.dut[i], column), result);
+    std::vector<analysis::SineShape> shapes;
+    add_check(check_series(checked, roles.dut[i], column, shapes), result);
+    check_shape_of_shots(evaluated.result.reference, roles.dut[i].text(), shapes, result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(lines_of_series(checked, roles.dut[i], column));
     add_lines(std::move(lines), result);

@@ -8,7 +8,7 @@ import functools
 
 import numpy as np
 
-from class_presets import bench
+from class_presets import SERIES, bench
 from expected_row import VALUE, Row
 from faults.fault import Fault
 
@@ -146,6 +146,12 @@ CLASSES = {
     "sensor's codes overflow at 1.01 A": bench(
         LITTLE, sensor_offset_rel=0.0125, fault=functools.partial(WrappedPeaks, limit=1.01)
     ),
+    "series cut at 0.9 A before its noise": bench(
+        SERIES,
+        frequencies=("20", "31.5", "40", "63", "80"),
+        sensor_noise_rel=0.003,
+        fault=functools.partial(SoftSeries, limit=0.9),
+    ),
     # The opposite: nothing is cut.
     "clean, exciter with harmonics of 3, 2, 1 %": bench(harmonics_rel=(0.03, 0.02, 0.01)),
     "clean, sensor with harmonics of its own": bench(
@@ -175,6 +181,7 @@ EXPECTED = [
             "sensor with a soft knee at 0.95 A",
             "reference cut at 0.9 A",
             "sensor's codes overflow at 1.01 A",
+            "series cut at 0.9 A before its noise",
         )
     ),
     *(Row(name, VALUE, "covered, no flag") for name in CLASSES if name.startswith("clean")),
