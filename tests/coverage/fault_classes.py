@@ -155,8 +155,14 @@ MORE_DRAWS = {
 }
 
 
+# Kinds of faults have several strengths each, so that a third of the draws says as much of a kind.
+PART_OF_KINDS = 3
+
+
 def draws_of(fault_class, usual):
     """Numbers of the calibrations that are drawn."""
     if fault_class in CHOSEN_DRAWS:
         return CHOSEN_DRAWS[fault_class]
+    if fault_class in faults.CLASSES:
+        usual = max(1, usual // PART_OF_KINDS)
     return range(usual * MORE_DRAWS.get(fault_class, 1))
