@@ -1,48 +1,29 @@
 // The ratio of two sines in blocks along their records: whether it stays, what it is where both
 // wander alike, and by how much its scatter exceeds white noise.
 //
-//   L_k = ln(P_k / P)                        of one signal; real: magnitude, imaginary: phase
-//   d_k = L_num(t_k) - L_den(t_k + offset)   of the ratio; P_k: phasor_blocks.hpp
+//   d_k = L_num(t_k) - L_den(t_k + offset)   L: of one signal (block_series.hpp)
 //
-// 1. Phases may be referred to a pilot on the same clock (sync), so that clock and generator
-// cancel.
-// 2. Two clocks that are linked by sync alone are apart by an offset that is known modulo a period,
+// 1. Two clocks that are linked by sync alone are apart by an offset that is known modulo a period,
 //    and to `reach_s` from where the records begin (a triangle). Each candidate has the weight of
 //    that triangle and of the likelihood of its d_k, constant but for noise.
-// 3. Where either signal varies more than white noise does (once in 10^5), the ratio of the whole
+// 2. Where either signal varies more than white noise does (once in 10^5), the ratio of the whole
 //    records is not the best estimate: blocks of different phase add to a shorter phasor, and the
 //    records do not cover the same part of what both share. `correction` is the weighted mean of
 //    d_k, ln(ratio in blocks / ratio of the records), with what is lost within blocks, 1/24 of the
 //    square of the phase's advance in one; else it is 0, so that clean records keep their value.
-// 4. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
-// 5. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
+// 3. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
+// 4. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
 //    noise as white as stated or as large as what the split leaves.
 //
-// No series for a signal whose blocks are weaker than 5 u even in groups. Any thread.
+// Any thread.
 #pragma once
 
 #include <complex>
 #include <optional>
-#include <span>
-#include <vector>
 
-#include "analysis/sine/phasor_blocks.hpp"
+#include "analysis/uncertainty/block_series.hpp"
 
 namespace dyncal::analysis {
-
-struct BlockSeries {
-  std::vector<double> time_s;
-  std::vector<std::complex<double>> log_ratio; // L_k
-  double variance_magnitude = 0.0;             // of one block, for white noise as within the blocks
-  double variance_phase = 0.0;
-  bool varies = false;     // in phase, by so much that the phasor of the record is visibly shorter
-  double shortening = 0.0; // of the magnitude, by the advance of the phase within blocks
-};
-
-[[nodiscard]] std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks,
-                                                      const SineFit& fit);
-// Subtracts the pilot's phase `offset_s` later in its own time.
-void refer_phase(BlockSeries& series, const BlockSeries& pilot, double offset_s);
 
 struct BlockAlignment {
   double offset_s = 0.0; // added to the numerator's times
