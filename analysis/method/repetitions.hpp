@@ -45,7 +45,7 @@ struct Repetition {
   double freedom_magnitude = infinite_degrees_of_freedom;
   double freedom_phase = infinite_degrees_of_freedom;
   double u_not_noise_magnitude_rel = 0.0; // part of u_random that is no noise of the phasor
-  std::uint32_t sweep = 0; // which sweep over the frequencies it is of; 0: not known
+  std::uint32_t sweep = 0;                // which sweep over the frequencies it is of; 0: not known
 };
 
 // Divides a budget: rows that are drawn anew in every repetition are random, but for the part of

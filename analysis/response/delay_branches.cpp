@@ -39,7 +39,7 @@ std::vector<double> unwrap_along(std::span<const PhasePoint> points, double dela
   return result;
 }
 
-bool is_of_a_sensor(const PhaseLine& line) {
+bool is_of_a_sensor(const DelayLine& line) {
   const double from_zero = std::abs(wrap_phase(line.intercept_rad));
   const double away = std::min(from_zero, pi - from_zero);
   const double slack_s = 3.0 * std::sqrt(line.variance_delay);
@@ -49,11 +49,11 @@ bool is_of_a_sensor(const PhaseLine& line) {
 
 } // namespace
 
-double PhaseLine::at(double frequency_hz) const {
+double DelayLine::at(double frequency_hz) const {
   return intercept_rad - 2.0 * pi * frequency_hz * delay_s;
 }
 
-PhaseLine fit_phase_line(std::span<const PhasePoint> points,
+DelayLine fit_delay_line(std::span<const PhasePoint> points,
                          const std::vector<double>& unwrapped_rad) {
   double weight_sum = 0.0, mean_w = 0.0, mean_phase = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -71,7 +71,7 @@ PhaseLine fit_phase_line(std::span<const PhasePoint> points,
     ww += weight * w * w;
     wp += weight * w * (unwrapped_rad[i] - mean_phase);
   }
-  PhaseLine line;
+  DelayLine line;
   line.delay_s = -wp / ww;
   line.intercept_rad = mean_phase + mean_w * line.delay_s;
   line.variance_delay = 1.0 / ww;
@@ -101,7 +101,7 @@ std::vector<DelayBranch> delay_branches(std::span<const PhasePoint> points) {
       continue;
     }
     DelayBranch branch{{}, unwrap_along(points, delay_s, std::arg(sum))};
-    branch.line = fit_phase_line(points, branch.unwrapped_rad);
+    branch.line = fit_delay_line(points, branch.unwrapped_rad);
     const bool known =
         !result.empty() && std::abs(branch.line.delay_s - result.back().line.delay_s) < step_s;
     if (!known && branch.line.chi_squared <= freedom * chi_squared_limit(freedom) &&

@@ -18,7 +18,7 @@
 
 namespace dyncal::analysis {
 
-struct PhaseLine {
+struct DelayLine {
   double delay_s = 0.0;
   double intercept_rad = 0.0;
   double variance_delay = 0.0;
@@ -32,14 +32,14 @@ struct PhaseLine {
 // Through unwrapped phases. Errors in common lie in the space of the model, so they change neither
 // estimate nor residuals and only add to the covariance: weights of the independent parts alone
 // give the estimate of generalised least squares.
-[[nodiscard]] PhaseLine fit_phase_line(std::span<const PhasePoint> points,
+[[nodiscard]] DelayLine fit_delay_line(std::span<const PhasePoint> points,
                                        const std::vector<double>& unwrapped_rad);
 
 // Chi-squared / dof that is exceeded once in a thousand (Wilson and Hilferty).
 [[nodiscard]] double chi_squared_limit(double degrees_of_freedom);
 
 struct DelayBranch {
-  PhaseLine line;
+  DelayLine line;
   std::vector<double> unwrapped_rad;
 };
 

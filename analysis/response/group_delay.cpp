@@ -147,7 +147,7 @@ Expected<Choice> choose_branch(const std::vector<PhasePoint>& points) {
   }
   Choice choice;
   if (unwrapped) {
-    choice.branch = {fit_phase_line(points, *unwrapped), std::move(*unwrapped)};
+    choice.branch = {fit_delay_line(points, *unwrapped), std::move(*unwrapped)};
   }
   const bool fits = unwrapped && (freedom < 1.0 || choice.branch.line.chi_squared <=
                                                        freedom * chi_squared_limit(freedom));
@@ -184,7 +184,7 @@ std::vector<double> covariance_of(std::span<const PhasePoint> points,
 // Points that do not count follow the line; all are moved by whole turns so that the line starts
 // within (-pi, pi].
 std::vector<double> place_on_line(std::span<const PhasePoint> points,
-                                  const std::vector<double>& counted, const PhaseLine& line,
+                                  const std::vector<double>& counted, const DelayLine& line,
                                   double shift) {
   std::vector<double> result;
   std::size_t next = 0;
@@ -214,7 +214,7 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
   if (!choice) {
     return fail(choice.error());
   }
-  const PhaseLine& line = choice->branch.line;
+  const DelayLine& line = choice->branch.line;
   GroupDelay result;
   result.alternatives_s = choice->alternatives_s;
   result.delay_s = line.delay_s;

@@ -20,6 +20,8 @@ CHANCE = 1e-3
 FAR_OFF = 3.0
 # An interval so wide that it always holds the truth says nothing: U against the rms of the errors.
 WIDEST = 12.0
+# The same of clean means, whose intervals hold what few repetitions may hide.
+WIDEST_CLEAN = 3.0
 # Sync is always connected here.
 MISLEADING = "is the sync signal connected"
 # Members of a point that count samples which did not count.
@@ -198,7 +200,8 @@ class Tally:
         if not usual or min(usual.values()) <= 0.0:
             return 0.0
         errors = np.array([one.error / usual[one.frequency] for one in self.numbers])
-        return 1.0 / max(float(np.sqrt(np.mean(errors**2))), 1e-12)
+        rms = float(np.sqrt(np.mean(errors**2)))
+        return 1.0 / rms if rms > 0.0 else 0.0  # a count that is exact is not too wide
 
     def finding(self, wanted, chance=CHANCE):
         """What is wrong in a sentence; empty when nothing is."""
@@ -220,7 +223,7 @@ class Tally:
             return ""
         if too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance):
             return f"{self.warned} of {n} carry a flag"
-        return self._too_wide(2.0 / least_rms(n))
+        return self._too_wide(WIDEST_CLEAN if self.few_repeats else 2.0 / least_rms(n))
 
     def _wrong_among(self, claims, chance, which=""):
         n, covered = len(claims), sum(one.covered for one in claims)

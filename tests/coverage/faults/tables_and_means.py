@@ -44,12 +44,19 @@ class ReferenceTable(Fault):
 
 
 class Inverting(ReferenceTable):
-    """A charge amplifier that inverts: 179.9, -179.8 ... degrees."""
+    """A charge amplifier that inverts: 179.9, -179.8 ... degrees; `wave_degrees` up and down within
+    three points."""
 
     points_hz = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 
+    def __init__(self, calibration, rng, wave_degrees=0.0):
+        self.wave_degrees = wave_degrees
+        super().__init__(calibration, rng)
+
     def response(self, frequency_hz):
-        degrees = 179.9 + 0.25 * math.sin(2.0 * math.log(frequency_hz))
+        octaves = math.log2(frequency_hz / 57.0)
+        degrees = 180.05 + 0.15 * octaves + 0.02 * octaves**2
+        degrees += self.wave_degrees * math.sin(2.0 * math.log(frequency_hz))
         return 1.0, math.radians(math.remainder(degrees, 360.0))
 
 
@@ -141,6 +148,9 @@ def sweeps_scatter(preset, repetitions, scatter_rel):
 
 CLASSES = {
     "table of an inverting reference, between points": bench(TABLE, fault=Inverting),
+    "table that turns back between its points": bench(
+        TABLE, fault=functools.partial(Inverting, wave_degrees=0.25)
+    ),
     **{
         f"table of a reference {1e3 * delay_s:g} ms late, between points": bench(
             TABLE, fault=functools.partial(Late, delay_s=delay_s)
@@ -169,6 +179,12 @@ CLASSES = {
 
 EXPECTED = [
     Row("table of an inverting reference, between points", VALUE, COVERED),
+    Row(
+        "table that turns back between its points",
+        ("phase",),
+        COVERED,
+        fails_at="points too far apart for what lies between: u is half of the error at some",
+    ),
     *(
         Row(f"table of a reference {name} ms late, between points", VALUE, COVERED_OR_FLAGGED)
         for name in ("0.5", "5")

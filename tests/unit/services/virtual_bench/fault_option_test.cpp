@@ -20,14 +20,26 @@ BenchFaults faults_of(const std::vector<std::string>& texts) {
 }
 
 TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
-  const BenchFaults faults = faults_of(
-      {"over-range=30,at=sensor", "over-range=5,at=reference", "stuck=50,at=sync_acs,every=0.5",
-       "hum=0.001,at=sync_dau,frequency=60", "drift=-0.02,at=reference",
-       "loss=0.01,at=sensor,counted=no", "loss=0.05,at=acs", "soft-ends=9.7,at=sensor",
-       "soft-ends=9,at=reference,end=lower", "held=0.1,at=sensor", "fifo=8", "free-running",
-       "start-jitter=50e-6", "exciter-gain=50", "ring-down=0.2",
-       "hum=0.002,at=sensor,frequency=16.7,while=driven", "second-slip=0.001",
-       "knock=5,at=reference,after=1.5", "delay-change=1e-3,after=2", "wandering=0.02,period=0.3"});
+  const BenchFaults faults = faults_of({"over-range=30,at=sensor",
+                                        "over-range=5,at=reference",
+                                        "stuck=50,at=sync_acs,every=0.5",
+                                        "hum=0.001,at=sync_dau,frequency=60",
+                                        "drift=-0.02,at=reference",
+                                        "loss=0.01,at=sensor,counted=no",
+                                        "loss=0.05,at=acs",
+                                        "soft-ends=9.7,at=sensor",
+                                        "soft-ends=9,at=reference,end=lower",
+                                        "held=0.1,at=sensor",
+                                        "fifo=8",
+                                        "free-running",
+                                        "start-jitter=50e-6",
+                                        "exciter-gain=50",
+                                        "ring-down=0.2",
+                                        "hum=0.002,at=sensor,frequency=16.7,while=driven",
+                                        "second-slip=0.001",
+                                        "knock=5,at=reference,after=1.5",
+                                        "delay-change=1e-3,after=2",
+                                        "wandering=0.02,period=0.3"});
   EXPECT_EQ(faults.sensor.range, 30.0);
   EXPECT_EQ(faults.reference.range, 5.0);
   EXPECT_EQ(faults.sensor.soft_upper, 9.7);

@@ -13,7 +13,9 @@ using testing::HasSubstr;
 // A channel whose shape has lost `error` of its amplitude at both peaks, by a narrow cut: odd
 // harmonics as large as the loss, in phase for the third, against it for the fifth, and so on.
 analysis::SineShape shape(double error) {
-  analysis::SineShape made{.order_of_half_rate = 40.0, .periods = 100.0};
+  analysis::SineShape made;
+  made.order_of_half_rate = 40.0;
+  made.periods = 100.0;
   for (int order = 2; order <= 10; ++order) {
     const double sign = order % 4 == 3 ? 1.0 : -1.0;
     made.harmonics.push_back({order, order % 2 == 1 ? sign * error : 0.0, 1e-5});
@@ -22,7 +24,7 @@ analysis::SineShape shape(double error) {
 }
 
 analysis::ChannelFit channel(const std::string& name, double error) {
-  analysis::ChannelFit made{.channel = name, .frequency = analysis::Frequency::from_hz(20.0)};
+  analysis::ChannelFit made{name, analysis::Frequency::from_hz(20.0), 0.0, 0, {}, {}};
   made.integrity.emplace();
   made.integrity->shape = shape(error);
   return made;
