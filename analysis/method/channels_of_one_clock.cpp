@@ -98,7 +98,8 @@ void correct_shortening(double step, RecordedChannel& recorded) {
   ChannelFit& result = recorded.result;
   StampScatter& scatter = result.scatter;
   scatter = measure_stamp_scatter(result.frequency, result.fit, result.phase_origin_ns,
-                                  recorded.stamps_ns, recorded.values(), step);
+                                  recorded.stamps_ns, recorded.values(), step,
+                                  SlowScatter::corrected_in_blocks);
   const double shortening = scatter.correction_rel();
   if (shortening * result.fit.amplitude() > worth_correcting * result.fit.u_amplitude()) {
     recorded.lengthening = 1.0 / (1.0 - shortening);

@@ -14,7 +14,11 @@ namespace {
 constexpr std::size_t block_samples = 512;
 constexpr std::size_t max_blocks = 16;
 constexpr std::size_t min_samples = 64;
-constexpr double min_periods = 2.0;    // of a block, for a sine of its own
+constexpr double min_slow_blocks = 4.0; // these four as in phasor_blocks.cpp
+constexpr double max_slow_blocks = 256.0;
+constexpr double min_slow_s = 0.02;
+constexpr double min_slow_samples = 12.0;
+constexpr double lost_to_slow = 5.0;   // samples' worth of V that offset, sine and cosine take away
 constexpr double certain = 6.0;        // standard uncertainties: 1e-9 of normal noise, whose
                                        // squares have heavier tails
 constexpr double smallest = 1e-6;      // of the amplitude: nobody states less
@@ -32,7 +36,8 @@ constexpr double min_variance = 0.05; // of cos(2 phi), which is a half where ph
 struct Sample {
   double sine = 0.0; // of the phase of the fitted sine
   double cosine = 0.0;
-  double residual = 0.0;
+  double residual = 0.0; // without what is slow
+  double whole = 0.0;    // with it, where ticks beat with the samples: these are not far off
 };
 
 // Takes an offset and a sine of their own out of the residuals of a block.
@@ -67,17 +72,41 @@ void remove_slow(std::span<Sample> block) {
   }
 }
 
+struct Residuals {
+  std::vector<Sample> samples;
+  double kept = 1.0; // of V, by what was taken away as slow
+};
+
+// As the blocks that the ratio is looked at in (phasor_blocks.hpp), so that what is slower than
+// they are is corrected there, and only what is quicker here. 0: none fits.
+std::size_t slow_block(const Frequency& frequency, std::span<const std::int64_t> stamps_ns) {
+  const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
+  const double sample_s = duration_s / static_cast<double>(stamps_ns.size() - 1);
+  const double periods = std::floor(frequency.hz() * duration_s);
+  if (periods < min_slow_blocks) {
+    return 0;
+  }
+  const double shortest_s =
+      std::max({min_slow_s, min_slow_samples * sample_s, duration_s / max_slow_blocks});
+  const double in_block = std::max(
+      1.0, std::floor(std::min(std::ceil(shortest_s * frequency.hz()), periods / min_slow_blocks)));
+  const auto block = static_cast<std::size_t>(std::round(in_block / (frequency.hz() * sample_s)));
+  return block <= block_samples ? block : 0;
+}
+
 // Evenly spaced blocks of the record, as phases of the fitted sine and residuals.
-std::vector<Sample> samples_of(const Frequency& frequency, const SineFit& fit,
-                               std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns,
-                               std::span<const double> values) {
+Residuals residuals_of(const Frequency& frequency, const SineFit& fit, std::int64_t origin_ns,
+                       std::span<const std::int64_t> stamps_ns, std::span<const double> values,
+                       std::size_t slow) {
   const std::size_t all = (stamps_ns.size() + block_samples - 1) / block_samples;
   const std::size_t stride = (all + max_blocks - 1) / max_blocks;
   const double amplitude = fit.amplitude();
   const double a = fit.sine / amplitude, b = fit.cosine / amplitude;
   std::array<double, block_samples> sine, cosine;
-  std::vector<Sample> samples;
+  Residuals residuals;
+  std::vector<Sample>& samples = residuals.samples;
   samples.reserve(std::min(stamps_ns.size(), max_blocks * block_samples));
+  residuals.kept = slow > 0 ? 1.0 - lost_to_slow / static_cast<double>(slow) : 1.0;
   for (std::size_t k = 0; k < all; k += stride) {
     const std::size_t first = k * block_samples;
     const std::size_t n = std::min(block_samples, stamps_ns.size() - first);
@@ -85,16 +114,18 @@ std::vector<Sample> samples_of(const Frequency& frequency, const SineFit& fit,
     const std::size_t before = samples.size();
     for (std::size_t i = 0; i < n; ++i) {
       const double of_phase = a * sine[i] + b * cosine[i];
-      samples.push_back({of_phase, a * cosine[i] - b * sine[i],
-                         values[first + i] - fit.offset - amplitude * of_phase});
+      const double residual = values[first + i] - fit.offset - amplitude * of_phase;
+      samples.push_back({of_phase, a * cosine[i] - b * sine[i], residual, residual});
     }
-    const double duration_s =
-        static_cast<double>(stamps_ns[first + n - 1] - stamps_ns[first]) * 1e-9;
-    if (duration_s * frequency.hz() > min_periods) {
-      remove_slow(std::span(samples).subspan(before));
+    if (slow > 0) {
+      const std::size_t whole = n / slow * slow;
+      samples.resize(before + whole);
+      for (std::size_t i = 0; i < whole; i += slow) {
+        remove_slow(std::span(samples).subspan(before + i, slow));
+      }
     }
   }
-  return samples;
+  return residuals;
 }
 
 double batched_part(std::span<const std::int64_t> stamps_ns) {
@@ -111,7 +142,7 @@ double batched_part(std::span<const std::int64_t> stamps_ns) {
 std::uint64_t peak_jumps(const std::vector<Sample>& samples, double amplitude) {
   std::uint64_t at_peaks = 0, all = 0;
   for (const Sample& one : samples) {
-    if (std::abs(one.residual) > amplitude) {
+    if (std::abs(one.whole) > amplitude) {
       ++all;
       at_peaks += std::abs(one.sine) > at_end ? 1 : 0;
     }
@@ -123,16 +154,16 @@ std::uint64_t far_off(const std::vector<Sample>& samples) {
   std::vector<double> sizes;
   sizes.reserve(samples.size());
   for (const Sample& one : samples) {
-    sizes.push_back(std::abs(one.residual));
+    sizes.push_back(std::abs(one.whole));
   }
   const double limit = far_from_rest * mad_to_sd * upper_median(sizes);
   double steep = 0.0, all = 0.0;
   std::uint64_t count = 0;
   for (const Sample& one : samples) {
-    if (std::abs(one.residual) > limit) {
+    if (std::abs(one.whole) > limit) {
       ++count;
-      all += one.residual * one.residual;
-      steep += one.residual * one.residual * one.cosine * one.cosine;
+      all += one.whole * one.whole;
+      steep += one.whole * one.whole * one.cosine * one.cosine;
     }
   }
   return count >= min_far_off && steep > on_slopes * all ? count : 0;
@@ -152,29 +183,34 @@ double StampScatter::u_correction_rel() const {
 
 StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fit,
                                    std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns,
-                                   std::span<const double> values, double step) {
+                                   std::span<const double> values, double step, SlowScatter slow) {
   StampScatter scatter;
   if (stamps_ns.size() < min_samples || !(fit.amplitude() > 0.0)) {
     return scatter;
   }
-  const std::vector<Sample> samples = samples_of(frequency, fit, origin_ns, stamps_ns, values);
+  const Residuals residuals =
+      residuals_of(frequency, fit, origin_ns, stamps_ns, values,
+                   slow == SlowScatter::counts ? 0 : slow_block(frequency, stamps_ns));
+  const std::vector<Sample>& samples = residuals.samples;
   const double n = static_cast<double>(samples.size());
   scatter.samples = samples.size();
   scatter.batched_part = batched_part(stamps_ns);
-  double m = 0.0, mm = 0.0, squares = 0.0, fourth = 0.0, products = 0.0;
+  double m = 0.0, mm = 0.0, squares = 0.0, products = 0.0, second = 0.0, fourth = 0.0;
   for (const Sample& one : samples) {
     const double turned = one.cosine * one.cosine - one.sine * one.sine; // cos(2 phi)
     const double square = one.residual * one.residual;
     m += turned;
     mm += turned * turned;
     squares += square;
-    fourth += square * square;
+    const double whole = one.whole * one.whole;
+    second += whole;
+    fourth += whole * whole;
     products += square * turned;
   }
   if (!(squares > 0.0)) {
     return scatter;
   }
-  if (n * fourth > heavy_tails * squares * squares) {
+  if (n * fourth > heavy_tails * second * second) {
     scatter.peak_jumps = peak_jumps(samples, fit.amplitude());
     scatter.far_off = far_off(samples);
   }
@@ -190,8 +226,8 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
     about_line += turned * turned * rest * rest;
   }
   const double amplitude_square = fit.amplitude() * fit.amplitude();
-  const double v = 2.0 * slope;
-  scatter.u_shortening_rel = std::sqrt(about_line) / spread / amplitude_square;
+  const double v = 2.0 * slope / residuals.kept;
+  scatter.u_shortening_rel = std::sqrt(about_line) / spread / residuals.kept / amplitude_square;
   if (std::abs(v) < step_part * step * step) {
     return scatter;
   }

@@ -11,8 +11,9 @@
 // about that line, whatever its distribution. It is known far better than the amplitude itself
 // where the noise is below the signal: u(1 - rho) = 2 (s0 / A)^2 / sqrt(n) beside sqrt(2 / n) s0 /
 // A. Jitter of the instants that the stamps show rightly leaves no such residuals. What is slow (an
-// exciter that wanders, a filter that switches) is taken away by a sine in each block of 512
-// samples that holds two periods.
+// exciter that wanders, a filter that switches, ticks that beat with the samples) is taken away by
+// a sine in each block where another correction takes care of it: blocks are as long as those in
+// which the ratio is compared (phasor_blocks.hpp).
 //
 // Evenly spaced blocks of at most 8192 samples in all. `peak_jumps` are residuals above the
 // amplitude at the ends of the sine where there are hardly any elsewhere: samples that a converter
@@ -43,11 +44,14 @@ struct StampScatter {
   [[nodiscard]] double u_correction_rel() const;
 };
 
+enum class SlowScatter { counts, corrected_in_blocks };
+
 // `fit` about `origin_ns`, of `values`, which are without other disturbances. `step` is the
 // converter's, whose errors depend on the phase: below an eighth of its square nothing is found.
 [[nodiscard]] StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fit,
                                                  std::int64_t origin_ns,
                                                  std::span<const std::int64_t> stamps_ns,
-                                                 std::span<const double> values, double step);
+                                                 std::span<const double> values, double step,
+                                                 SlowScatter slow);
 
 } // namespace dyncal::analysis

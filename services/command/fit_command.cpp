@@ -161,9 +161,9 @@ void correct_scatter(const SeriesFile& series, const std::vector<std::span<const
     const analysis::CleanedFit& clean = (*beside)[i];
     const std::span<const double> values =
         clean.values.empty() ? columns[i] : std::span<const double>(clean.values);
-    const analysis::StampScatter scatter =
-        analysis::measure_stamp_scatter(fit.frequency, clean.fit, middle_ns, series.stamps_ns,
-                                        values, analysis::found_resolution(columns[i]));
+    const analysis::StampScatter scatter = analysis::measure_stamp_scatter(
+        fit.frequency, clean.fit, middle_ns, series.stamps_ns, values,
+        analysis::found_resolution(columns[i]), analysis::SlowScatter::counts);
     analysis::SineFit& one = fit.fits[i];
     if (scatter.correction_rel() * one.amplitude() > worth_correcting * one.u_amplitude()) {
       fit.shortening_rel[i] = scatter.correction_rel();
@@ -230,7 +230,8 @@ void print_table(const Fit& fit) {
   }
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     if (fit.shortening_rel[i] > 0.0) {
-      fmt::print("{}: its stamps scatter, which had shortened the sine by {:.2g} %; corrected\n",
+      fmt::print("{}: its stamps scatter or its phase wanders, which had shortened the sine by "
+                 "{:.2g} %; corrected\n",
                  fit.names[i], 100.0 * fit.shortening_rel[i]);
     }
   }
