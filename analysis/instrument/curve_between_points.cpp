@@ -86,7 +86,7 @@ CurveValue curve_between_points(std::span<const double> frequencies_hz,
   const double rise = values[i + 1] - values[i];
   result.value = values[i] + result.weight * rise;
   result.missed = x.size() > 2 ? half_curvature(x, values, i) * (at - x[i]) * (x[i + 1] - at)
-                               : std::abs((log_weight - result.weight) * rise);
+                               : below_both * std::abs((log_weight - result.weight) * rise);
   return result;
 }
 

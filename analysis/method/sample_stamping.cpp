@@ -114,6 +114,17 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
   return transfer_point(dut, with.link * factor_of(ratio), budget);
 }
 
+// Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
+// G; all of it but P_dos.
+std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                             const RecordedChannel& sync_dau) {
+  const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
+  const std::complex<double> late =
+      std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
+  return unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
+         (acs.others.front().phasor() * late / input.reference_response.phasor());
+}
+
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
@@ -138,15 +149,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const BlocksOfClock acs_blocks = learn_from_blocks(*acs);
   const BlocksOfClock dau_blocks = learn_from_blocks(*dau);
 
-  // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
-  // G.
-  const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
-  const std::complex<double> late =
-      std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
-  const std::complex<double> link = unit_phasor(acs->pilot.phasor()) /
-                                    (unit_phasor(dau->pilot.phasor()) / adc) /
-                                    (reference.phasor() * late / input.reference_response.phasor());
-
+  const std::complex<double> link = link_of(input, *acs, dau->pilot);
   const Budget noise = common_noise(input, *acs, dau->pilot);
   const Budget systematic = systematic_rows(input, dau->pilot);
   const Comparison with{.link = link,

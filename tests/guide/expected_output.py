@@ -68,7 +68,13 @@ def _with_numbers_of(shown, printed):
     if "..." not in shown and not RUN.search(shown):
         return printed.rstrip()
     numbers = iter(re.fullmatch(_pattern(shown), " ".join(printed.split())).groups())
-    return NUMBER.sub(lambda _: next(numbers), shown)
+
+    def brought(number):
+        printed_number = next(numbers)
+        is_begun = shown.startswith("...", number.end())  # 1.0... stands for any further digits
+        return number[0] if is_begun else printed_number
+
+    return NUMBER.sub(brought, shown)
 
 
 def first_difference(shown, printed):

@@ -203,21 +203,22 @@ TEST(SampleStamping, CoversTheTruthWhenTheGeneratorIsOffByAThousandth) {
 }
 
 // Not white: no exact coverage is promised, but the error stays within what is said.
-void expect_within_four_u(const Bench& bench) {
+void expect_within(double limit_u, const Bench& bench) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const Simulation simulation = simulate(bench, seed);
     const auto result = evaluate_sample_stamping(input_for(simulation, bench));
     ASSERT_TRUE(result.has_value());
     const TransferPoint& point = result->points.front();
-    EXPECT_LE(std::abs(point.magnitude - bench.magnitude), 4.0 * point.u_magnitude) << seed;
-    EXPECT_LE(std::abs(wrap_phase(point.phase_rad - true_phase(bench))), 4.0 * point.u_phase_rad)
+    EXPECT_LE(std::abs(point.magnitude - bench.magnitude), limit_u * point.u_magnitude) << seed;
+    EXPECT_LE(std::abs(wrap_phase(point.phase_rad - true_phase(bench))),
+              limit_u * point.u_phase_rad)
         << seed;
   }
 }
 
 TEST(SampleStamping, StaysHonestWithHarmonicsOfTheExciter) {
   for (const double f : {10.0, 12.7, 46.7}) {
-    expect_within_four_u({.frequency_hz = f, .dut_noise = 1e-3, .harmonic_rel = 0.01});
+    expect_within(4.0, {.frequency_hz = f, .dut_noise = 1e-3, .harmonic_rel = 0.01});
   }
 }
 
@@ -235,7 +236,8 @@ TEST(SampleStamping, HarmonicsThatAreFoundCostNoUncertainty) {
 }
 
 TEST(SampleStamping, StaysHonestWhileTheExciterStillSettles) {
-  expect_within_four_u({.dut_noise = 1e-3, .settling_rel = 0.003});
+  // Of the scatter of a few blocks, u has few degrees of freedom.
+  expect_within(5.0, {.dut_noise = 1e-3, .settling_rel = 0.003});
 }
 
 TEST(SampleStamping, AChannelThatIsNotExcitedHasNoPhaseAndNoFalseMagnitude) {

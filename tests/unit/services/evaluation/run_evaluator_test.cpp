@@ -96,7 +96,10 @@ TEST(RunEvaluator, FlagsWhatTheRecipeLeavesUnstated) {
     EXPECT_THAT(sentences_of(result.flags), both);
   }
   ASSERT_FALSE(output.transfer_functions.empty());
-  EXPECT_THAT(sentences_of(output.transfer_functions.front().flags), both);
+  const auto of_function = sentences_of(output.transfer_functions.front().flags);
+  EXPECT_THAT(of_function,
+              testing::Contains(HasSubstr("uncertainty of the reference is not stated")));
+  EXPECT_THAT(of_function, testing::Contains(HasSubstr("sync ADC not calibrated")));
 }
 
 TEST(RunEvaluator, TakesTheUncertaintyOfAnAdcThatIsNotCalibratedIntoTheBudget) {
@@ -136,7 +139,8 @@ TEST(RunEvaluator, BoundsHumBesideAStepByOtherStepsAndByQuietTime) {
                                     "excitation"));
       EXPECT_FALSE(settled.provisional);
       if (run == &others) { // else the amplifier may hum while it drives
-        EXPECT_THAT(sentences_of(settled.flags), testing::IsEmpty());
+        EXPECT_THAT(sentences_of(settled.flags),
+                    testing::Not(testing::Contains(HasSubstr("cannot be told"))));
       }
       EXPECT_EQ(settled.step, first.step);
       EXPECT_EQ(settled.magnitude, first.magnitude);
@@ -478,9 +482,10 @@ TEST(RunEvaluator, FlagsASensorThatAnswersBeforeItsExcitation) {
     EXPECT_EQ(output.transfer_functions.size(), 1U);
     return sentences_of(output.transfer_functions.front().flags);
   };
-  EXPECT_THAT(flags_of(-1.5e-3), testing::ElementsAre(HasSubstr("answers before its excitation")));
-  EXPECT_THAT(flags_of(1.5e-3), testing::IsEmpty());
-  EXPECT_THAT(flags_of(0.0), testing::IsEmpty());
+  const auto answers_before = testing::Contains(HasSubstr("answers before its excitation"));
+  EXPECT_THAT(flags_of(-1.5e-3), answers_before);
+  EXPECT_THAT(flags_of(1.5e-3), testing::Not(answers_before));
+  EXPECT_THAT(flags_of(0.0), testing::Not(answers_before));
 }
 
 TEST(RunEvaluator, FlagsALevelThatIsOffThePlan) {

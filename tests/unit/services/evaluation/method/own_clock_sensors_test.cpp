@@ -77,6 +77,7 @@ wire::Measurement absolute(const tests::SyntheticRun& run) {
   measurement.method(wire::METHOD_ABSOLUTE_TIME);
   measurement.sync_acs("");
   measurement.sync_dau("");
+  measurement.u_acs_delay_s(0.0); // of the clock of the ACS nothing is known
   measurement.dut() = {"can/acceleration_z", "other/acceleration_z"};
   return measurement;
 }
