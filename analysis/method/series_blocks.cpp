@@ -10,6 +10,7 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr double usual_blocks = 8.0;
+constexpr double least_u = 1e-9; // of a series without noise: arithmetic leaves less
 constexpr std::size_t least_blocks = 4;
 constexpr std::size_t least_samples = 8;         // of a block
 constexpr double rare = 3.719;                   // normal quantile of 1e-4
@@ -137,8 +138,8 @@ std::optional<Blocks> make_blocks(const Frequency& frequency,
     }
   }
   all.u = std::sqrt(squares / freedom * 2.0 / static_cast<double>(borders[1]));
-  all.u *= excess_of_neighbours(all);
-  return all.u > 0.0 ? std::optional(all) : std::nullopt;
+  all.u = std::max(least_u, all.u * excess_of_neighbours(all));
+  return all;
 }
 
 // Chi-squared that chance exceeds as a normal deviate exceeds `quantile`.

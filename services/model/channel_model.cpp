@@ -100,9 +100,10 @@ void warn_of_other_delays(ChannelModel& model) {
 }
 
 void warn_of_values(ChannelModel& model) {
-  constexpr std::array incomplete{"clock_uncertainty_unknown", "trigger_phase_not_corrected",
-                                  "answers_before_excitation", "adc_not_calibrated",
-                                  "reference_uncertainty_not_stated"};
+  constexpr std::array incomplete{
+      "clock_uncertainty_unknown", "trigger_phase_not_corrected",      "answers_before_excitation",
+      "adc_not_calibrated",        "reference_uncertainty_not_stated", "trigger_delay_not_stated",
+      "acs_delay_not_stated"};
   std::set<std::string> missing, kept;
   for (const MeasuredValue& value : model.measured.values) {
     for (const std::string& flag : value.flag_names) {

@@ -299,7 +299,13 @@ bool makes_unusable(const std::string& flag_name) {
                               "polarity_inverted",
                               "answers_before_excitation",
                               "adc_not_calibrated",
-                              "reference_uncertainty_not_stated"};
+                              "reference_uncertainty_not_stated",
+                              "disturbance_cut_out",
+                              "stamps_scatter",
+                              "trigger_delay_not_stated",
+                              "acs_delay_not_stated",
+                              "group_delay_ambiguous",
+                              "group_delay_not_constant"};
   return std::find(usable.begin(), usable.end(), flag_name) == usable.end();
 }
 

@@ -163,7 +163,8 @@ TEST_F(FailureLine, ChannelThatDoesNotExist) {
   laboratory.start("dyncal-analysis", {}, "fastdds");
   laboratory.start("dyncal-acs", {bench}, "fastdds");
   EXPECT_THAT(run_line(text),
-              HasSubstr("source 'acs' has no channel 'referense'; it has: reference, sync"));
+              HasSubstr("names channel 'referense', which source 'acs' does not have; did you mean "
+                        "'reference'?"));
 }
 
 TEST_F(FailureLine, PortInUse) {
