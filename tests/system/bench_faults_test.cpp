@@ -159,11 +159,12 @@ INSTANTIATE_TEST_SUITE_P(
                          .seen = Case::Seen::flagged,
                          .flag = "samples_lost",
                          .sentence = "dau: samples lost"},
-                    // The unit numbers what it has; its stamps then contradict its numbers.
+                    // The unit numbers what it has; its stamps then show what it lacks.
                     Case{.name = "lost_and_not_counted",
                          .faults = {"loss=0.01,at=sensor,counted=no"},
-                         .seen = Case::Seen::refused,
-                         .sentence = "of its time stamps are not trusted"},
+                         .seen = Case::Seen::flagged,
+                         .flag = "samples_lost",
+                         .sentence = "dau: samples lost"},
                     Case{.name = "frames_of_the_acs_lost",
                          .faults = {"loss=0.3,at=acs"},
                          .seen = Case::Seen::flagged,
