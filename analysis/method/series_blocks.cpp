@@ -162,6 +162,7 @@ public:
   explicit TimePolynomials(const std::vector<double>& time) {
     for (std::size_t order = 0; order < orders; ++order) {
       std::vector<double> values;
+      values.reserve(time.size());
       for (const double t : time) {
         values.push_back(std::pow(t, static_cast<double>(order)));
       }
