@@ -293,19 +293,20 @@ Text SignalAnswers::fit_text(const std::string& bench, std::string& problem) {
   const auto fitted = [&](const std::string& channel) {
     return fitted_json(bench, channel, *step);
   };
-  Json json;
-  if (step) { // between steps too: samples from before a step show where it begins
-    json = {{"step", step->step},
+  if (!step) {
+    problem = "no step is excited on this bench now";
+    return nullptr;
+  }
+  Json json{{"step", step->step},
             {"attempt", step->attempt},
             {"frequency_text_hz", step->frequency_hz},
             {"reference", fitted(step->plan.reference)},
             {"sync", fitted(step->plan.sync_acs)},
             {"dau_phase",
              fitted(step->plan.sync_dau.empty() ? step->plan.sync_dso : step->plan.sync_dau)}};
-  }
-  if (!step || !step->is_excited) {
-    problem = "no step is excited on this bench now";
-    return nullptr;
+  if (!step->is_excited) { // asked for all the same: earlier samples show where a step begins
+    json["step"] = 0;
+    json["reference"] = json["sync"] = json["dau_phase"] = nullptr;
   }
   return text_of(json);
 }
