@@ -5,6 +5,7 @@
 namespace dyncal::drivers::files {
 namespace {
 
+constexpr long double longest_interval_ns = 9.2e18L; // more is none
 constexpr unsigned rising_before_trust = 8;
 constexpr std::int64_t intervals_ahead = 8;
 constexpr std::size_t looked_at_behind = 64;
@@ -16,7 +17,8 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
   const bool rises = !last_ns_ || stamp_ns > before_ns_;
   before_ns_ = stamp_ns;
   if (!last_ns_ || stamp_ns > *last_ns_) {
-    interval_ns_ = last_ns_ ? stamp_ns - *last_ns_ : 0;
+    const auto interval_ns = last_ns_ ? static_cast<long double>(stamp_ns) - *last_ns_ : 0.0L;
+    interval_ns_ = interval_ns < longest_interval_ns ? static_cast<std::int64_t>(interval_ns) : 0;
     last_ns_ = stamp_ns;
     behind_ = 0;
     return 0;
@@ -31,22 +33,29 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
 }
 
 std::size_t StampOrder::ahead(std::span<const std::int64_t> stamps_ns) const {
-  const std::int64_t most_ns = intervals_ahead * interval_ns_;
-  if (!last_ns_ || interval_ns_ <= 0 || stamps_ns.front() - *last_ns_ <= most_ns) {
+  if (!last_ns_ || interval_ns_ <= 0) {
+    return 0;
+  }
+  // Exact for every stamp, and never beyond its range, whatever a file says.
+  const auto from_last_ns = [&](std::int64_t stamp_ns) {
+    return static_cast<long double>(stamp_ns) - static_cast<long double>(*last_ns_);
+  };
+  const auto interval_ns = static_cast<long double>(interval_ns_);
+  if (from_last_ns(stamps_ns.front()) <= intervals_ahead * interval_ns) {
     return 0;
   }
   const std::size_t looked_at = std::min(stamps_ns.size(), looked_at_behind + 1);
   for (std::size_t i = 1; i < looked_at; ++i) {
-    const std::int64_t from_last_ns = stamps_ns[i] - *last_ns_;
+    const long double back_ns = from_last_ns(stamps_ns[i]);
     // It comes back where it would be with as many intervals as samples, and is not a later one of
     // those that were set back.
-    if (from_last_ns > 0 && from_last_ns <= static_cast<std::int64_t>(i + 1) * 2 * interval_ns_ &&
+    if (back_ns > 0.0L && back_ns <= 2.0L * static_cast<long double>(i + 1) * interval_ns &&
         stamps_ns[i] < stamps_ns[i - 1]) {
       return i;
     }
   }
   const bool nothing_behind = stamps_ns.size() == 1;
-  return nothing_behind && stamps_ns.front() - *last_ns_ > second_ns ? 1 : 0;
+  return nothing_behind && from_last_ns(stamps_ns.front()) > second_ns ? 1 : 0;
 }
 
 void StampOrder::check(SampleBlock& block) {
