@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/base/chi_squared_limit.hpp"
+#include "analysis/base/statistics.hpp"
 #include "analysis/sine/sine_values.hpp"
 
 namespace dyncal::analysis {
@@ -18,7 +20,6 @@ constexpr double rare_in_one_of_many = 4.5;      // of 3e-6, for there are many 
 constexpr double noticed = 2.0;                  // standard uncertainties of a bend
 constexpr std::size_t differences_to_judge = 20; // as few tell no scale
 constexpr double square_of_difference = 6.0;     // 1 + 4 + 1
-constexpr double of_median = 1.4826;             // standard deviation of normal values
 
 // Deviations of the blocks, shot by shot.
 struct Blocks {
@@ -94,9 +95,8 @@ double excess_of_neighbours(const Blocks& all) {
   if (differences.size() < differences_to_judge || !(all.u > 0.0)) {
     return 1.0;
   }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(1.0, of_median * *middle / (std::sqrt(square_of_difference) * all.u));
+  return std::max(1.0, mad_to_sd * upper_median(differences) /
+                           (std::sqrt(square_of_difference) * all.u));
 }
 
 std::optional<Blocks> make_blocks(const Frequency& frequency,
@@ -140,20 +140,6 @@ std::optional<Blocks> make_blocks(const Frequency& frequency,
   all.u = std::sqrt(squares / freedom * 2.0 / static_cast<double>(borders[1]));
   all.u = std::max(least_u, all.u * excess_of_neighbours(all));
   return all;
-}
-
-// Chi-squared that chance exceeds as a normal deviate exceeds `quantile`.
-double limit_of_chi_squared(double degrees_of_freedom, double quantile) {
-  const double spread = 2.0 / (9.0 * degrees_of_freedom);
-  return degrees_of_freedom * std::pow(1.0 - spread + quantile * std::sqrt(spread), 3.0);
-}
-
-double mean_of(const double* values, std::size_t n) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    sum += values[i];
-  }
-  return sum / static_cast<double>(n);
 }
 
 // Powers of the time, orthogonal to each other on the blocks.
@@ -218,7 +204,7 @@ void judge_rates(const Blocks& all, const TimePolynomials& powers,
     chi_squared += std::pow((slope - mean_slope) / u, 2);
   }
   const double freedom = static_cast<double>(all.shots) - 1.0;
-  result.rates_differ = freedom > 0.0 && chi_squared > limit_of_chi_squared(freedom, rare);
+  result.rates_differ = freedom > 0.0 && chi_squared > freedom * chi_squared_limit(freedom, rare);
   if (!result.rates_differ) {
     return;
   }
@@ -249,9 +235,9 @@ void judge_phases(const Blocks& all, const TimePolynomials& powers,
     largest = std::max(largest, of_shot);
   }
   const double freedom = static_cast<double>(all.blocks) - 2.0;
-  result.phases_change =
-      total > limit_of_chi_squared(freedom * static_cast<double>(all.shots), rare) ||
-      largest > limit_of_chi_squared(freedom, rare_in_one_of_many);
+  const double all_freedom = freedom * static_cast<double>(all.shots);
+  result.phases_change = total > all_freedom * chi_squared_limit(all_freedom, rare) ||
+                         largest > freedom * chi_squared_limit(freedom, rare_in_one_of_many);
 }
 
 // The mean over all shots, block by block.
@@ -272,15 +258,15 @@ void judge_mean(const Blocks& all, const TimePolynomials& powers, SeriesAgreemen
   const double offset = powers.coefficient(0, phase.data());
   const double slope = powers.coefficient(1, phase.data());
   const std::vector<double> magnitude = mean_shot(all, all.magnitude);
-  const double level = mean_of(magnitude.data(), magnitude.size());
+  const double level = mean(magnitude);
   double of_phase = 0.0, of_magnitude = 0.0;
   for (std::size_t k = 0; k < all.blocks; ++k) {
     of_phase += std::pow((phase[k] - offset - slope * powers.at(1, k)) / u, 2);
     of_magnitude += std::pow((magnitude[k] - level) / u, 2);
   }
   const double blocks = static_cast<double>(all.blocks);
-  result.phases_change |= of_phase > limit_of_chi_squared(blocks - 2.0, rare);
-  result.magnitudes_change = of_magnitude > limit_of_chi_squared(blocks - 1.0, rare);
+  result.phases_change |= of_phase > (blocks - 2.0) * chi_squared_limit(blocks - 2.0, rare);
+  result.magnitudes_change = of_magnitude > (blocks - 1.0) * chi_squared_limit(blocks - 1.0, rare);
   double square = 0.0;
   for (std::size_t order = 2; order < TimePolynomials::orders; ++order) {
     const double bend = powers.coefficient(order, phase.data());
@@ -308,7 +294,7 @@ std::optional<SeriesAgreement> compare_series(const Frequency& frequency,
     slopes.push_back(powers.coefficient(1, all->of_shot(all->phase, j)));
   }
   SeriesAgreement result;
-  judge_rates(*all, powers, slopes, mean_of(slopes.data(), slopes.size()), result);
+  judge_rates(*all, powers, slopes, mean(slopes), result);
   judge_phases(*all, powers, slopes, result);
   judge_mean(*all, powers, result);
   const double half_record_s = 0.5e-9 * static_cast<double>(stamps_ns.back());

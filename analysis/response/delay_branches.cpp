@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
@@ -84,15 +85,11 @@ DelayLine fit_delay_line(std::span<const PhasePoint> points,
   return line;
 }
 
-double chi_squared_limit(double degrees_of_freedom) {
-  const double spread = 2.0 / (9.0 * degrees_of_freedom);
-  return std::pow(1.0 - spread + 3.0902 * std::sqrt(spread), 3.0);
-}
-
 std::vector<DelayBranch> delay_branches(std::span<const PhasePoint> points) {
   std::vector<DelayBranch> result;
   const double step_s = step_turns / span_hz(points);
   const double freedom = std::max(1.0, static_cast<double>(points.size()) - 2.0);
+  const double most = freedom * chi_squared_limit(freedom, once_in_a_thousand);
   const double last = std::min(max_steps, longest_delay_s / step_s + 1.0);
   for (double number = -1.0; number <= last; number += 1.0) {
     const double delay_s = number * step_s;
@@ -104,8 +101,7 @@ std::vector<DelayBranch> delay_branches(std::span<const PhasePoint> points) {
     branch.line = fit_delay_line(points, branch.unwrapped_rad);
     const bool known =
         !result.empty() && std::abs(branch.line.delay_s - result.back().line.delay_s) < step_s;
-    if (!known && branch.line.chi_squared <= freedom * chi_squared_limit(freedom) &&
-        is_of_a_sensor(branch.line)) {
+    if (!known && branch.line.chi_squared <= most && is_of_a_sensor(branch.line)) {
       result.push_back(std::move(branch));
     }
   }

@@ -35,9 +35,6 @@ struct DelayLine {
 [[nodiscard]] DelayLine fit_delay_line(std::span<const PhasePoint> points,
                                        const std::vector<double>& unwrapped_rad);
 
-// Chi-squared / dof that is exceeded once in a thousand (Wilson and Hilferty).
-[[nodiscard]] double chi_squared_limit(double degrees_of_freedom);
-
 struct DelayBranch {
   DelayLine line;
   std::vector<double> unwrapped_rad;

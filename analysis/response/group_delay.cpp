@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/base/phasor.hpp"
 #include "analysis/response/delay_branches.hpp"
 
@@ -149,8 +150,9 @@ Expected<Choice> choose_branch(const std::vector<PhasePoint>& points) {
   if (unwrapped) {
     choice.branch = {fit_delay_line(points, *unwrapped), std::move(*unwrapped)};
   }
-  const bool fits = unwrapped && (freedom < 1.0 || choice.branch.line.chi_squared <=
-                                                       freedom * chi_squared_limit(freedom));
+  const bool fits =
+      unwrapped && (freedom < 1.0 || choice.branch.line.chi_squared <=
+                                         freedom * chi_squared_limit(freedom, once_in_a_thousand));
   if (!fits && fitting.empty()) {
     return choice; // no straight line
   }
@@ -225,7 +227,9 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
   const double ratio =
       result.degrees_of_freedom > 0.0 ? result.chi_squared / result.degrees_of_freedom : 0.0;
   const double birge =
-      ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom)) ? ratio : 1.0;
+      ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom), once_in_a_thousand)
+          ? ratio
+          : 1.0;
   result.is_constant = std::sqrt(birge) <= most_birge;
   result.u_delay_s = std::sqrt(birge * line.variance_delay + common.delay_s * common.delay_s);
   result.u_intercept_rad =

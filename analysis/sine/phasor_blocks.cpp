@@ -16,25 +16,6 @@ constexpr double max_blocks = 256.0;
 constexpr double min_block_ns = 20e6; // what moves faster is noise to the ratio of two channels
 constexpr double min_samples = 12.0;
 
-struct Division {
-  double blocks = 0.0; // 0: too short
-  double block_ns = 0.0;
-};
-
-Division divide(double period_ns, std::span<const std::int64_t> stamps_ns) {
-  const double span_ns = static_cast<double>(stamps_ns.back() - stamps_ns.front());
-  const double sample_ns = span_ns / static_cast<double>(stamps_ns.size() - 1);
-  const double periods = std::floor(span_ns / period_ns);
-  if (periods < min_blocks) {
-    return {};
-  }
-  const double shortest_ns =
-      std::max({min_block_ns, min_samples * sample_ns, span_ns / max_blocks});
-  const double in_block = std::min(std::ceil(shortest_ns / period_ns), periods / min_blocks);
-  const double block_ns = std::max(1.0, std::floor(in_block)) * period_ns;
-  return {std::floor(span_ns / block_ns), block_ns};
-}
-
 void add(DesignSums& total, const DesignSums& part) {
   total = {total.s + part.s, total.c + part.c, total.ss + part.ss, total.sc + part.sc};
 }
@@ -112,6 +93,22 @@ private:
 
 } // namespace
 
+BlockDivision divide_into_blocks(const Frequency& frequency,
+                                 std::span<const std::int64_t> stamps_ns) {
+  const double period_ns = 1e9 / frequency.hz();
+  const double span_ns = static_cast<double>(stamps_ns.back() - stamps_ns.front());
+  const double sample_ns = span_ns / static_cast<double>(stamps_ns.size() - 1);
+  const double periods = std::floor(span_ns / period_ns);
+  if (periods < min_blocks) {
+    return {};
+  }
+  const double shortest_ns =
+      std::max({min_block_ns, min_samples * sample_ns, span_ns / max_blocks});
+  const double in_block = std::min(std::ceil(shortest_ns / period_ns), periods / min_blocks);
+  const double block_ns = std::max(1.0, std::floor(in_block)) * period_ns;
+  return {std::floor(span_ns / block_ns), block_ns};
+}
+
 NoiseWithinBlocks noise_within(std::span<const PhasorBlock> blocks) {
   NoiseWithinBlocks noise;
   for (const PhasorBlock& block : blocks) {
@@ -130,7 +127,7 @@ std::vector<std::vector<PhasorBlock>> phasors_in_blocks(const Frequency& frequen
   if (stamps_ns.size() < 2) {
     return none;
   }
-  const Division division = divide(1e9 / frequency.hz(), stamps_ns);
+  const BlockDivision division = divide_into_blocks(frequency, stamps_ns);
   Blocks blocks(frequency, phase_origin_ns, stamps_ns, channels);
   auto first = stamps_ns.begin();
   for (double k = 1.0; k <= division.blocks; k += 1.0) {

@@ -29,6 +29,14 @@ struct PhasorBlock {
   std::complex<double> phasor;
 };
 
+struct BlockDivision {
+  double blocks = 0.0; // 0: the record is too short
+  double block_ns = 0.0;
+};
+// REQUIRES: two stamps.
+[[nodiscard]] BlockDivision divide_into_blocks(const Frequency& frequency,
+                                               std::span<const std::int64_t> stamps_ns);
+
 struct FittedValues {
   std::span<const double> values;
   SineFit fit;

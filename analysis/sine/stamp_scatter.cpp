@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
+#include "analysis/sine/phasor_blocks.hpp"
 #include "analysis/sine/sine_values.hpp"
 
 namespace dyncal::analysis {
@@ -14,10 +15,6 @@ namespace {
 constexpr std::size_t block_samples = 512;
 constexpr std::size_t max_blocks = 16;
 constexpr std::size_t min_samples = 64;
-constexpr double min_slow_blocks = 4.0; // these four as in phasor_blocks.cpp
-constexpr double max_slow_blocks = 256.0;
-constexpr double min_slow_s = 0.02;
-constexpr double min_slow_samples = 12.0;
 constexpr double lost_to_slow = 5.0;   // samples' worth of V that offset, sine and cosine take away
 constexpr double certain = 6.0;        // standard uncertainties: 1e-9 of normal noise, whose
                                        // squares have heavier tails
@@ -80,17 +77,10 @@ struct Residuals {
 // As the blocks that the ratio is looked at in (phasor_blocks.hpp), so that what is slower than
 // they are is corrected there, and only what is quicker here. 0: none fits.
 std::size_t slow_block(const Frequency& frequency, std::span<const std::int64_t> stamps_ns) {
-  const double duration_s = static_cast<double>(stamps_ns.back() - stamps_ns.front()) * 1e-9;
-  const double sample_s = duration_s / static_cast<double>(stamps_ns.size() - 1);
-  const double periods = std::floor(frequency.hz() * duration_s);
-  if (periods < min_slow_blocks) {
-    return 0;
-  }
-  const double shortest_s =
-      std::max({min_slow_s, min_slow_samples * sample_s, duration_s / max_slow_blocks});
-  const double in_block = std::max(
-      1.0, std::floor(std::min(std::ceil(shortest_s * frequency.hz()), periods / min_slow_blocks)));
-  const auto block = static_cast<std::size_t>(std::round(in_block / (frequency.hz() * sample_s)));
+  const double sample_ns = static_cast<double>(stamps_ns.back() - stamps_ns.front()) /
+                           static_cast<double>(stamps_ns.size() - 1);
+  const auto block = static_cast<std::size_t>(
+      std::round(divide_into_blocks(frequency, stamps_ns).block_ns / sample_ns));
   return block <= block_samples ? block : 0;
 }
 

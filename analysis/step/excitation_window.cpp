@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/base/phasor.hpp"
 #include "analysis/base/statistics.hpp"
 #include "analysis/step/frame_sine.hpp"
 #include "analysis/step/phase_line.hpp"
@@ -31,10 +32,6 @@ std::int64_t frame_length_ns(const Frequency& frequency) {
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
   const std::int64_t quotient = value / divisor;
   return value % divisor < 0 ? quotient - 1 : quotient;
-}
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * pi);
 }
 
 } // namespace
@@ -153,7 +150,7 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
   frame.max_neighbours_rms = fit->max_neighbours_rms;
   const std::int64_t centre_ns = begin_ns + frame_ns_ / 2;
   frame.phase_rad =
-      wrapped(fit->phase_rad - 2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
+      wrap_phase(fit->phase_rad - 2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
   frame.usable = true;
   return frame;
 }
@@ -202,7 +199,7 @@ bool ExcitationWindowFinder::continues(const Frame& frame, double& unwrapped_rad
   const double tolerance =
       phase_margin_rad + noise +
       (slope_known ? phase_margin_rad * (step - 1.0) / std::min(span, 50.0) : max_advance * step);
-  const double deviation = wrapped(frame.phase_rad - last.phase_rad - advance * step);
+  const double deviation = wrap_phase(frame.phase_rad - last.phase_rad - advance * step);
   if (tolerance >= pi || std::abs(deviation) > tolerance) {
     return false;
   }
@@ -386,8 +383,8 @@ void ExcitationWindowFinder::describe_sine(Frames part, ExcitationWindow& window
   window.frequency_hz = frequency_.hz() * (1.0 + line.slope_rad / (2.0 * pi * turns_a_frame));
   window.u_frequency_rel = line.u_slope_rad / (2.0 * pi * turns_a_frame);
   window.middle_ns = first * frame_ns_ + std::llround((line.x_mean + 0.5) * frame_ns);
-  window.phase_rad =
-      wrapped(line.mean_rad + 2.0 * pi * frequency_.reduced_turns(window.middle_ns - *origin_ns_));
+  window.phase_rad = wrap_phase(
+      line.mean_rad + 2.0 * pi * frequency_.reduced_turns(window.middle_ns - *origin_ns_));
   window.u_phase_rad = line.u_mean_rad;
 }
 

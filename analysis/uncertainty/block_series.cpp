@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "analysis/uncertainty/chi_squared_limit.hpp"
+#include "analysis/base/chi_squared_limit.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -14,10 +14,6 @@ using Complex = std::complex<double>;
 constexpr std::size_t min_blocks = min_blocks_of_series;
 constexpr double weakest_snr = 5.0;       // of a block: below, its logarithm is not normal any more
 constexpr double varies_quantile = 4.265; // once in 10^5
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
 
 // Means of `group` neighbours; what is left over at the end is left out.
 BlockSeries grouped(const BlockSeries& series, std::size_t group) {
@@ -143,7 +139,7 @@ std::optional<BlockSeries> block_series(std::span<const PhasorBlock> blocks, con
       ratio += blocks[k].phasor / whole / static_cast<double>(group);
       time_s += blocks[k].centre_s / static_cast<double>(group);
     }
-    before += wrapped(std::arg(ratio) - before);
+    before += wrap_phase(std::arg(ratio) - before);
     series.time_s.push_back(time_s);
     series.log_ratio.emplace_back(std::log(std::max(std::abs(ratio), 1e-3)), before);
   }

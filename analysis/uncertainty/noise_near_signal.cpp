@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/sine/sine_values.hpp"
-#include "analysis/uncertainty/chi_squared_limit.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -18,7 +18,6 @@ using Complex = std::complex<double>;
 constexpr std::size_t min_blocks = 16;
 constexpr double narrows_quantile = -3.719; // once in 10^4
 constexpr double wanders_quantile = 4.265;  // once in 10^5
-constexpr double slow_quantile = 3.0902;    // once in a thousand
 constexpr double near_a_line = 0.75;        // 1 / T: nearer, a bin has what the fit left of it
 // Enough for 4 p bins: the mean over one of them is hardly less than the coefficient there.
 constexpr std::size_t time_bins = 128;
@@ -126,9 +125,9 @@ NoiseNearSignal noise_of_few_periods(const Frequency& frequency, std::int64_t ph
   const double white =
       2.0 * fit.residual_sd() * fit.residual_sd() / static_cast<double>(stamps_ns.size());
   const double ratio = near.ratio(white);
-  const bool larger = ratio > chi_squared_limit(near.freedom(), slow_quantile) ||
-                      slow.ratio(white) > chi_squared_limit(slow.freedom(), slow_quantile);
-  const bool smaller = ratio < chi_squared_limit(near.freedom(), -slow_quantile);
+  const bool larger = ratio > chi_squared_limit(near.freedom(), once_in_a_thousand) ||
+                      slow.ratio(white) > chi_squared_limit(slow.freedom(), once_in_a_thousand);
+  const bool smaller = ratio < chi_squared_limit(near.freedom(), -once_in_a_thousand);
   return (larger && ratio > 1.0) || smaller
              ? NoiseNearSignal{false, std::sqrt(ratio), near.freedom()}
              : NoiseNearSignal{};

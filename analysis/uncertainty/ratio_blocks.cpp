@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "analysis/uncertainty/chi_squared_limit.hpp"
+#include "analysis/base/chi_squared_limit.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -19,10 +19,6 @@ constexpr double significant_gain = 29.5;
 // A split that leaves most of the scatter where it was describes something else: hum that beats, a
 // knock.
 constexpr double min_explained = 0.4;
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
 
 // d_k for one offset.
 struct Difference {
@@ -48,7 +44,7 @@ public:
         const Complex d = numerator_.log_ratio[k] - *value;
         const double before = difference.values.empty() ? 0.0 : difference.values.back().imag();
         difference.time_s.push_back(numerator_.time_s[k]);
-        difference.values.emplace_back(d.real(), before + wrapped(d.imag() - before));
+        difference.values.emplace_back(d.real(), before + wrap_phase(d.imag() - before));
       }
     }
     if (difference.values.size() >= min_blocks) {
@@ -215,7 +211,7 @@ void add_correction(const std::vector<Difference>& all, double shortening, Ratio
     magnitude += one.weight / weights * std::pow(one.mean.real() - mean.real(), 2);
     phase += one.weight / weights * std::pow(one.mean.imag() - mean.imag(), 2);
   }
-  result.correction = {mean.real() + shortening, wrapped(mean.imag())};
+  result.correction = {mean.real() + shortening, wrap_phase(mean.imag())};
   result.u_correction_magnitude_rel = std::hypot(std::sqrt(magnitude), 0.5 * shortening);
   result.u_correction_phase_rad = std::sqrt(phase);
 }
@@ -260,8 +256,7 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
 }
 
 double significant_excess(double observed, double expected, double degrees_of_freedom) {
-  constexpr double normal_quantile = 3.0902; // once in a thousand
-  const double limit = chi_squared_limit(degrees_of_freedom, normal_quantile);
+  const double limit = chi_squared_limit(degrees_of_freedom, once_in_a_thousand);
   const double ratio = observed * observed - limit * expected * expected;
   return ratio > 0.0 ? std::sqrt(observed * observed - expected * expected) : 0.0;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/base/phasor.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::services {
@@ -35,10 +36,6 @@ struct Block {
   double phase_rad = 0.0; // about the newest sample, of the planned frequency
   double u_amplitude = 0.0;
 };
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
 
 // Blocks from the newest sample backwards.
 class Blocks {
@@ -128,7 +125,7 @@ bool goes_on(const std::vector<Block>& newer, const Block& older, double periods
   if (std::abs(older.amplitude - mean) > amplitude_break_rel * mean + noise) {
     return false;
   }
-  const double turned = wrapped(older.phase_rad - last.phase_rad);
+  const double turned = analysis::wrap_phase(older.phase_rad - last.phase_rad);
   const double most = 2.0 * std::numbers::pi * frequency_off_rel * periods + noise / mean;
   if (std::abs(turned) > most) {
     return false;
@@ -136,8 +133,8 @@ bool goes_on(const std::vector<Block>& newer, const Block& older, double periods
   if (newer.size() < 2) {
     return true;
   }
-  const double before = wrapped(last.phase_rad - newer[newer.size() - 2].phase_rad);
-  return std::abs(wrapped(turned - before)) <= phase_break_rad + 2.0 * noise / mean;
+  const double before = analysis::wrap_phase(last.phase_rad - newer[newer.size() - 2].phase_rad);
+  return std::abs(analysis::wrap_phase(turned - before)) <= phase_break_rad + 2.0 * noise / mean;
 }
 
 struct Amplitudes {
@@ -188,7 +185,7 @@ double frequency_offset_hz(std::span<const Block> blocks, double length_s) {
   double weights = 0.0;
   const double middle = 0.5 * static_cast<double>(blocks.size() - 1);
   for (std::size_t i = 1; i < blocks.size(); ++i) {
-    phase += wrapped(blocks[i].phase_rad - blocks[i - 1].phase_rad);
+    phase += analysis::wrap_phase(blocks[i].phase_rad - blocks[i - 1].phase_rad);
     sum += (static_cast<double>(i) - middle) * phase;
   }
   for (std::size_t i = 0; i < blocks.size(); ++i) {

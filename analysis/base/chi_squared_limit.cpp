@@ -1,4 +1,4 @@
-#include "analysis/uncertainty/chi_squared_limit.hpp"
+#include "analysis/base/chi_squared_limit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,8 @@
 
 namespace dyncal::analysis {
 
+inline constexpr double once_in_a_thousand = 3.0902; // normal quantile
+
 [[nodiscard]] double chi_squared_limit(double degrees_of_freedom, double normal_quantile);
 
 } // namespace dyncal::analysis
