@@ -108,8 +108,11 @@ const std::vector<LineBounds::Measured>& LineBounds::in_quiet(const Line& line) 
 // driven; empty where no step shows both.
 std::optional<double> LineBounds::driven_to_quiet(const Line& line,
                                                   const StepOfChannel& where) const {
+  if (in_quiet(line).empty()) {
+    return std::nullopt;
+  }
   std::map<StepOfChannel, double> squares;
-  for (const Measured& one : in_quiet(line).empty() ? in_quiet(line) : driven(line)) {
+  for (const Measured& one : driven(line)) {
     squares.emplace(one.where, square_of(one.line));
   }
   std::vector<double> ratios;

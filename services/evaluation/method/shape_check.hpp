@@ -6,9 +6,8 @@
 //   over_range         single samples jump by more than the amplitude at the peaks
 //   stamps_scatter     the amplitude was corrected by more than its u
 //   values_off_stamps  values are held so often that it moves the phase by a tenth of its u; a
-//   fifth
-//                      of the stamps follow the one before at once, as when a buffer is read; or
-//                      some values are far beside the sine where it is steep
+//                      fifth of the stamps follow the one before at once, as when a buffer is
+//                      read; or some values are far beside the sine where it is steep
 //
 // Refused: bent by more than a hundredth, or shortened by scatter to less than nine tenths. Appends
 // to flags and, as signal_check.hpp, takes a refused value away. Plain functions, any thread.
