@@ -22,6 +22,8 @@ constexpr double third_of_sensor = 1e-3;  // cubic term
 constexpr double higher_of_sensor = 1e-4;
 constexpr double certain = 4.0; // u: 6e-5 a trial, and about five independent ones a step
 constexpr double explained = 0.4;
+constexpr double passed_place = 0.5; // of half the rate: what sensors let pass
+constexpr double confirmed = 0.25;   // of a harmonic of the reference, at least, by the sensor
 
 // E_k of a peak as wide as `d` to either side.
 double lost_at(int k, double d) {
@@ -123,6 +125,62 @@ Match match_of(const std::vector<Excess>& excess, double width_rad, Ends ends) {
   return match;
 }
 
+Match best_match(const std::vector<Excess>& excess) {
+  Match best;
+  for (const double width_rad : widths_rad) {
+    for (const Ends ends : {Ends::both, Ends::upper, Ends::lower, Ends::each}) {
+      const Match match = match_of(excess, width_rad, ends);
+      const double handicap = ends == Ends::each ? 4.0 : 0.0; // of one more unknown
+      if (match.gain > best.gain + handicap) {
+        best = match;
+      }
+    }
+  }
+  return best;
+}
+
+BentPeaks judged(const std::vector<Excess>& excess) {
+  double all = 0.0;
+  for (const Excess& one : excess) {
+    all += std::norm(one.value / one.u);
+  }
+  Match best = best_match(excess);
+  const double noise = 2.0 * static_cast<double>(excess.size());
+  BentPeaks& peaks = best.peaks;
+  peaks.found = std::abs(peaks.amplitude_error_rel) > certain * peaks.u &&
+                best.gain > explained * (all - noise) && best.gain > certain * certain;
+  return peaks;
+}
+
+// Whether the sensor, where it would let them pass, shows nothing of the reference's harmonics.
+bool lacks_harmonics_of(const SineShape& sensor, const SineShape& reference) {
+  double shown = 0.0, square = 0.0, u2 = 0.0;
+  for (const ShapeHarmonic& one : sensor.harmonics) {
+    for (const ShapeHarmonic& other : reference.harmonics) {
+      if (other.order == one.order && one.order <= passed_place * sensor.order_of_half_rate) {
+        shown += (one.relative * std::conj(other.relative)).real();
+        square += std::norm(other.relative);
+        u2 += std::norm(other.relative) * one.u * one.u;
+      }
+    }
+  }
+  return square > 0.0 && shown + certain * std::sqrt(u2) < confirmed * square;
+}
+
+// By itself, where orders that the sensor does not show tell it.
+BentPeaks bent_reference(const SineShape& sensor, const SineShape& reference) {
+  if (!lacks_harmonics_of(sensor, reference)) {
+    return {};
+  }
+  std::vector<Excess> excess;
+  for (const ShapeHarmonic& one : reference.harmonics) {
+    const double u = std::hypot(one.u, reference.steps_rel);
+    excess.push_back({one.order, -one.relative, std::hypot(u, own_part(one.order))});
+  }
+  const BentPeaks peaks = judged(excess);
+  return peaks.amplitude_error_rel < 0.0 ? peaks : BentPeaks{};
+}
+
 } // namespace
 
 std::vector<int> resolved_harmonics(double frequency_hz, double duration_s, double rate_hz) {
@@ -177,25 +235,8 @@ BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference) {
   if (excess.size() < min_orders || sensor.periods < min_periods) {
     return {};
   }
-  double all = 0.0;
-  for (const Excess& one : excess) {
-    all += std::norm(one.value / one.u);
-  }
-  Match best;
-  for (const double width_rad : widths_rad) {
-    for (const Ends ends : {Ends::both, Ends::upper, Ends::lower, Ends::each}) {
-      const Match match = match_of(excess, width_rad, ends);
-      const double handicap = ends == Ends::each ? 4.0 : 0.0; // of one more unknown
-      if (match.gain > best.gain + handicap) {
-        best = match;
-      }
-    }
-  }
-  const double noise = 2.0 * static_cast<double>(excess.size());
-  BentPeaks& peaks = best.peaks;
-  peaks.found = std::abs(peaks.amplitude_error_rel) > certain * peaks.u &&
-                best.gain > explained * (all - noise) && best.gain > certain * certain;
-  return peaks;
+  const BentPeaks peaks = judged(excess);
+  return peaks.found ? peaks : bent_reference(sensor, reference);
 }
 
 } // namespace dyncal::analysis

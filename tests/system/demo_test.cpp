@@ -1,5 +1,6 @@
 // `dyncal demo` for every preset, over either DDS implementation and both mixed: it ends in time,
 // and every value agrees with the bench's truth.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -64,6 +65,34 @@ double worst_deviation(const nlohmann::json& result, const nlohmann::json& truth
   return worst;
 }
 
+// Largest ratio of u, of magnitude in parts of it or of phase, between neighbouring frequencies of
+// the excited axis: no step is suspected of what its neighbours do not show.
+double largest_step_of_u(const nlohmann::json& result) {
+  double largest = 1.0;
+  const nlohmann::json* before = nullptr;
+  for (const auto& point : result["transfer_function"]) {
+    if (point["channel"] != "dau/acceleration_z") {
+      continue;
+    }
+    const auto ratio = [&](double u, double u_before) {
+      largest = std::max({largest, u / u_before, u_before / u});
+    };
+    const auto relative = [](const nlohmann::json& one) {
+      return one["u_magnitude"].get<double>() / one["magnitude"].get<double>();
+    };
+    if (before != nullptr) {
+      EXPECT_GT(point["frequency_hz"], (*before)["frequency_hz"]);
+      ratio(relative(point), relative(*before));
+      ratio(point["u_phase_rad"].get<double>(), (*before)["u_phase_rad"].get<double>());
+    }
+    before = &point;
+  }
+  EXPECT_NE(before, nullptr);
+  return largest;
+}
+
+constexpr double max_step_of_u = 1.5;
+
 class Demo : public testing::TestWithParam<Case> {};
 
 TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
@@ -83,6 +112,7 @@ TEST_P(Demo, AgreesWithTheTruthWithinFourStandardUncertainties) {
   std::size_t compared = 0;
   EXPECT_LE(worst_deviation(result, truth, compared), 4.0);
   EXPECT_GE(compared, 3U * 7U); // three axes
+  EXPECT_LT(largest_step_of_u(result), max_step_of_u);
   for (const auto& point : result["points"]) {
     EXPECT_TRUE(point["valid"].get<bool>()) << point;
     EXPECT_EQ(point["lost"], 0) << point["step"];
@@ -117,6 +147,7 @@ TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
   EXPECT_THAT(demo.output(), HasSubstr("dau/acceleration_z"));
   EXPECT_THAT(demo.output(), HasSubstr("group delay"));
   EXPECT_THAT(demo.errors(), HasSubstr("step 51 of 51"));
+  EXPECT_LT(largest_step_of_u(read_json(folder / "files" / "result.json")), max_step_of_u);
 }
 
 TEST(DemoFigures, CountsLostAndDoubledDatagramsAndStillAgreesWithTheTruth) {

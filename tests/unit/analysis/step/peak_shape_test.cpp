@@ -116,6 +116,37 @@ TEST(PeakShape, ReferenceWithCutPeaksIsTold) {
   EXPECT_LT(peaks.amplitude_error_rel, -0.5 * lost(0.95));
 }
 
+// At an eighth of the sensor's rate it shows the second alone of the reference's harmonics.
+TEST(PeakShape, ReferenceIsTooWhereTheSensorShowsFewOrders) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Channel reference;
+    reference.upper = 0.9;
+    const BentPeaks peaks = peaks_of({.frequency_hz = 125.2, .seconds = 2.0}, reference, seed);
+    EXPECT_TRUE(peaks.found);
+    EXPECT_NEAR(peaks.amplitude_error_rel, -lost(0.9), 0.3 * lost(0.9));
+  }
+}
+
+// An amplifier that clips moves both, and a filter of the sensor takes half of its second harmonic.
+TEST(PeakShape, PeaksThatTheExciterBendsAreNotTheReferences) {
+  int found = 0;
+  for (unsigned run = 0; run < 100; ++run) {
+    std::mt19937_64 random(run);
+    const double phase = std::uniform_real_distribution<double>(-3.0, 3.0)(random);
+    Channel reference{.frequency_hz = 125.2, .rate_hz = 5000.0, .delay_rad = 0.0};
+    reference.upper = 0.9;
+    Channel sensor = reference;
+    sensor.rate_hz = 1003.05;
+    sensor.delay_rad = 0.4;
+    SineShape shown = shape_of(sensor, phase, random);
+    for (ShapeHarmonic& one : shown.harmonics) {
+      one.relative *= 0.5;
+    }
+    found += find_bent_peaks(shown, shape_of(reference, phase, random)).found ? 1 : 0;
+  }
+  EXPECT_EQ(found, 0);
+}
+
 // Harmonics of the exciter, squares and cubes of a good sensor, any noise: nothing is bent.
 TEST(PeakShape, SoundChannelsRaiseNoAlarm) {
   std::mt19937_64 random(7);
