@@ -17,10 +17,10 @@
 // Bent: a_+ + a_- beyond 4 u, and the shape explains 40 % of what is more than u at all, which
 // chance meets in fewer than one of 1000 steps. Power, with 1500 samples: an error of 0.12 % of the
 // amplitude is just found at 1 % noise, of 0.03 % at 0.1 %. Above an eighth of the sensor's rate
-// harmonics fold and filters take them away: 0.8 % at a fifth. The sensor is bent where the error is
-// positive, the reference where it is negative; that, too, where its own harmonics alone show it and
-// the sensor shows less than a quarter of those up to a quarter of its rate. A soft knee may lose
-// up to three times as much. Any thread.
+// harmonics fold and filters take them away: 0.8 % at a fifth. The sensor is bent where the error
+// is positive, the reference where it is negative; that, too, where its own harmonics alone show it
+// and the sensor shows less than a quarter of those up to a quarter of its rate. A soft knee may
+// lose up to three times as much. Any thread.
 #pragma once
 
 #include <complex>
