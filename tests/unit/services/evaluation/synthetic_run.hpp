@@ -27,7 +27,7 @@ struct SyntheticRun {
   bool range_is_stated = true;           // in its description
   double sensor_hum = 0.0;               // all the time
   double sensor_hum_hz = 50.0;
-  std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
+  std::size_t lost_block = 0; // number of a DAU block that does not arrive; 0: none
 
   [[nodiscard]] wire::Measurement measurement() const;
   [[nodiscard]] wire::SourceDescription acs_description() const;
