@@ -3,7 +3,7 @@
 #include <charconv>
 #include <utility>
 
-#include "analysis/base/text.hpp"
+#include "drivers/generator/generator_output.hpp"
 #include "drivers/link/scpi_answer.hpp"
 
 namespace dyncal::drivers::generator {
@@ -67,13 +67,7 @@ Expected<void> ScpiGenerator::reconnect() {
 }
 
 Expected<std::optional<bool>> ScpiGenerator::output_is_on() {
-  return query(":OUTPut1?").map([](const std::string& answer) -> std::optional<bool> {
-    const std::string_view state = trimmed(answer);
-    if (state == "ON" || state == "1") {
-      return true;
-    }
-    return state == "OFF" || state == "0" ? std::optional(false) : std::nullopt;
-  });
+  return query(":OUTPut1?").map(parse_output_state);
 }
 
 Expected<void> ScpiGenerator::confirm_off() {
@@ -82,10 +76,7 @@ Expected<void> ScpiGenerator::confirm_off() {
     return fail(on.error());
   }
   if (on->value_or(false)) {
-    return fail(ErrorCode::refused,
-                "generator " + address_ +
-                    " takes :OUTPut1 OFF without an error, but its OUTPUT IS STILL ON: switch it "
-                    "off by hand; is its front panel locked, or does it need another command?");
+    return fail(still_on(address_));
   }
   return {};
 }

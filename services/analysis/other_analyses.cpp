@@ -3,7 +3,7 @@
 namespace dyncal::services {
 
 void OtherAnalyses::add(const wire::ServiceStatus& status, Instant now) {
-  if (status.run().to_string().empty()) {
+  if (status.run().to_string().empty() || !status.guarded_generator().empty()) {
     return; // a recorder or a guard: they lead no run
   }
   const std::string service = status.service().to_string();

@@ -67,9 +67,10 @@ void LaboratoryWatch::take() {
     if (!status.guarded_generator().empty()) {
       const std::string bench = status.bench().to_string();
       view_.guards[bench + " " + status.service().to_string()] = status;
+      return; // the run that it names is one that it does not hear
     }
     if (status.run().to_string().empty()) {
-      return; // of a guard, or a recorder
+      return; // of a recorder
     }
     view_.analyses[status.service().to_string()] = status;
   });

@@ -1,6 +1,7 @@
 #include "services/guard/exciter_guard.hpp"
 
-#include <algorithm>
+#include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,8 +12,9 @@
 namespace dyncal::services {
 namespace {
 
+using State = ExciterWatch::State;
+
 constexpr std::chrono::milliseconds look_interval{100};
-constexpr std::size_t max_runs = 100;                       // of a bench, which has one at a time
 constexpr std::chrono::milliseconds status_write_limit{50}; // it is repeated
 
 wire::ServiceStatus status_of(const ProgramIdentity& own, const GuardedExciter& exciter) {
@@ -34,21 +36,33 @@ bool is_driven(const wire::Excitation& excitation) {
   return excitation.window_end_utc_ns() == 0;
 }
 
+std::string text_of(const OutputSettings& settings) {
+  return fmt::format(
+      "{:.6g} Hz{}", settings.frequency_hz,
+      settings.voltage_vpp ? fmt::format(", {:.4g} V peak to peak", *settings.voltage_vpp) : "");
+}
+
 } // namespace
 
 Expected<std::unique_ptr<ExciterGuard>>
 ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
                      const GuardedExciter& exciter, std::chrono::milliseconds unattended_limit,
-                     SwitchOff switch_off, bus::Clock& clock) {
+                     std::unique_ptr<GuardedOutput> output, DrivenRecord record,
+                     bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto excitation = participant.reader(bus::topics::excitation, exciter.bench, wake_up);
   auto status = participant.writer(bus::topics::service_status, exciter.bench);
   if (const auto error = first_error(excitation, status)) {
     return fail(*error);
   }
-  return std::unique_ptr<ExciterGuard>(
-      new ExciterGuard(status_of(own, exciter), unattended_limit, std::move(switch_off), clock,
-                       std::move(wake_up), {std::move(*excitation), std::move(*status)}));
+  ExciterWatch watch(unattended_limit, exciter.planned, record.read(), clock.now());
+  if (!watch.run().run.empty()) {
+    spdlog::info("bench {}: run {} drove the generator when this guard was last there",
+                 exciter.bench, watch.run().run);
+  }
+  return std::unique_ptr<ExciterGuard>(new ExciterGuard(
+      status_of(own, exciter), exciter, std::move(watch), std::move(output), std::move(record),
+      clock, std::move(wake_up), {std::move(*excitation), std::move(*status)}));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
@@ -63,26 +77,18 @@ void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()
 
 void ExciterGuard::work() {
   take_messages();
-  for (auto& [name, run] : runs_) {
-    attend(name, run);
-  }
+  act();
+  keep_record();
+  report();
   if (clock_.now() >= next_status_) {
     publish();
   }
 }
 
 GuardFigures ExciterGuard::figures() const {
-  return {.bench = bench_,
+  return {.bench = exciter_.bench,
           .switched_off = times_switched_off_,
-          .may_be_on = status_.health() == wire::HEALTH_FAILED};
-}
-
-void ExciterGuard::set_health(wire::HealthState health, const std::string& message) {
-  if (status_.health() != health || status_.message() != message) {
-    status_.health(health);
-    status_.message(message);
-    publish();
-  }
+          .may_be_on = !watch_.may_be_on().empty()};
 }
 
 void ExciterGuard::publish() {
@@ -91,59 +97,112 @@ void ExciterGuard::publish() {
   next_status_ = clock_.now() + status_interval;
 }
 
-ExciterGuard::Run& ExciterGuard::heard(const std::string& run) {
-  if (runs_.size() >= max_runs && !runs_.contains(run)) {
-    runs_.erase(std::min_element(runs_.begin(), runs_.end(), [](const auto& a, const auto& b) {
-      return a.second.heard < b.second.heard;
-    }));
+OutputSettings ExciterGuard::settings_of(const wire::Excitation& excitation) const {
+  OutputSettings settings;
+  const std::string& text = excitation.frequency_text_hz();
+  std::from_chars(text.data(), text.data() + text.size(), settings.frequency_hz);
+  if (!exciter_.has_closed_loop) {
+    settings.voltage_vpp = 2.0 * excitation.level_m_s2() / exciter_.level_per_volt;
   }
-  Run& one = runs_[run];
-  one.heard = clock_.now();
-  one.served = false;
-  return one;
+  return settings;
 }
 
 void ExciterGuard::take_messages() {
   endpoints_.excitation.take([&](const wire::Excitation& excitation) {
-    if (excitation.bench().to_string() != bench_) {
+    if (excitation.bench().to_string() != exciter_.bench) {
       return;
     }
     const std::string name = excitation.run().to_string();
-    if (!runs_.contains(name)) {
-      spdlog::info("bench {}: watching over run {}", bench_, name);
+    if (is_driven(excitation) && name != watch_.run().run) {
+      spdlog::info("bench {}: watching over run {}", exciter_.bench, name);
     }
-    heard(name).driven = is_driven(excitation);
-    set_health(wire::HEALTH_OK, ""); // whoever drives it has hold of it
+    watch_.heard(
+        {.run = name, .is_driven = is_driven(excitation), .settings = settings_of(excitation)},
+        clock_.now());
   });
 }
 
-void ExciterGuard::attend(const std::string& name, Run& run) {
-  const Instant now = clock_.now();
-  if (!run.driven || run.served || now - run.heard <= unattended_limit_ || now < run.next_try) {
+void ExciterGuard::act() {
+  if (const auto answer = output_->answer()) {
+    watch_.answered(*answer, clock_.now());
+  }
+  switch (watch_.due(clock_.now())) {
+  case ExciterWatch::Action::none:
+    break;
+  case ExciterWatch::Action::ask:
+    output_->ask();
+    break;
+  case ExciterWatch::Action::switch_off: {
+    const auto unheard = clock_.now() - watch_.heard_at();
+    const auto off = output_->switch_off();
+    watch_.switched_off(off, clock_.now());
+    if (off) {
+      ++times_switched_off_;
+      spdlog::warn("bench {}: nothing was heard of run {} for {:.1f} s while its exciter was "
+                   "driven; the output of the generator was switched off",
+                   exciter_.bench, watch_.run().run,
+                   std::chrono::duration<double>(unheard).count());
+    }
+    break;
+  }
+  }
+}
+
+void ExciterGuard::keep_record() {
+  if (watch_.run() == recorded_) {
     return;
   }
-  const auto off = switch_off_();
-  if (off) {
-    run.served = true;
-    ++times_switched_off_;
-    spdlog::warn("bench {}: nothing was heard of run {} for {:.1f} s while its exciter was driven; "
-                 "the output of the generator was switched off",
-                 bench_, name, std::chrono::duration<double>(now - run.heard).count());
-    set_health(wire::HEALTH_OK,
-               fmt::format("nothing was heard of run {} while its exciter was driven; the output "
-                           "of the generator was switched off",
-                           name));
+  recorded_ = watch_.run();
+  const auto written = record_.write(recorded_);
+  if (!written && !std::exchange(record_failed_, true)) {
+    spdlog::error("bench {}: after a restart this guard will not know what was driven: {}",
+                  exciter_.bench, written.error().message);
+  }
+  record_failed_ = !written;
+}
+
+std::string ExciterGuard::message() const {
+  if (!watch_.may_be_on().empty()) {
+    return fmt::format("nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE ON: "
+                       "switch it off by hand if you can; trying again until it is off ({})",
+                       watch_.run().run, watch_.may_be_on());
+  }
+  if (watch_.left_on()) {
+    return fmt::format("the output of the generator is on ({}), which is not what run {} drove: it "
+                       "is left on",
+                       text_of(*watch_.left_on()), watch_.run().run);
+  }
+  if (watch_.has_switched_off()) {
+    return fmt::format("nothing was heard of run {} while its exciter was driven; the output of "
+                       "the generator was switched off",
+                       watch_.run().run);
+  }
+  return "";
+}
+
+// As soon as it has changed.
+void ExciterGuard::report() {
+  const bool has_failed = !watch_.may_be_on().empty();
+  if (has_failed && clock_.now() >= next_report_) {
+    next_report_ = clock_.now() + report_interval;
+    spdlog::error("bench {}: {}", exciter_.bench, message());
+  } else if (!has_failed) {
+    next_report_ = {};
+  }
+  const std::string unheard = watch_.state() == State::silent ? watch_.run().run : "";
+  const auto health = has_failed ? wire::HEALTH_FAILED : wire::HEALTH_OK;
+  const std::string now = message();
+  if (status_.health() == health && status_.message() == now &&
+      status_.run().to_string() == unheard) {
     return;
   }
-  set_health(wire::HEALTH_FAILED,
-             fmt::format("nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE ON: "
-                         "switch it off by hand if you can; trying again until it is off ({})",
-                         name, off.error().message));
-  run.next_try = clock_.now() + retry_interval;
-  if (clock_.now() >= run.next_report) {
-    run.next_report = clock_.now() + report_interval;
-    spdlog::error("bench {}: {}", bench_, status_.message());
+  if (watch_.left_on() && status_.message() != now) {
+    spdlog::warn("bench {}: {}", exciter_.bench, now);
   }
+  status_.health(health);
+  status_.message(now);
+  status_.run(unheard);
+  publish();
 }
 
 } // namespace dyncal::services

@@ -4,43 +4,47 @@
 // The exciter is driven while the newest Excitation of a run has no end of its window. The
 // conductor repeats it every half second while it has hold of the generator (idl/README.md, "The
 // run protocol"); nothing heard for `unattended_limit` means that nobody attends, whatever else is
-// heard of the run. Then the output is switched off, and tried again every `retry_interval` until
-// that is confirmed, or the conductor is heard again. It is done once for each silence: a conductor
-// that comes back finds the output off and repeats the step.
+// heard of the run. What is done then, and what the generator is asked for, stands in
+// exciter_watch.hpp; here are the bus, the generator, the record and the log.
 //
-// It says every second that it is there and which generator it guards (ServiceStatus), and whether
-// an output may be on that it cannot reach: `dyncal run` tells its operator where no guard is
+// It says every second that it is there and which generator it guards (ServiceStatus), whether an
+// output may be on that it cannot switch off (FAILED), and in `run` which run it does not hear:
+// that run pauses, for it drives unguarded. `dyncal run` tells its operator where no guard is
 // heard.
 //
-// `switch_off` returns when the output is known to be off, and may block for seconds; the guard of
-// one bench therefore has a thread of its own, the only one that uses it.
+// Switching off may block for seconds; the guard of one bench therefore has a thread of its own,
+// the only one that uses it.
 #pragma once
 
 #include <chrono>
 #include <functional>
-#include <map>
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/contract/program_identity.hpp"
+#include "services/guard/driven_record.hpp"
+#include "services/guard/exciter_watch.hpp"
+#include "services/guard/guarded_output.hpp"
 #include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 
 struct GuardedExciter {
   std::string bench;
-  std::string generator; // its address
+  std::string generator;               // its address
+  std::vector<OutputSettings> planned; // by the bench file
+  double level_per_volt = 1.0;         // m/s^2 per V
+  bool has_closed_loop = false;        // of the level: the voltage is not known before
 };
 
 class ExciterGuard {
 public:
   using Instant = bus::Clock::Instant;
-  using SwitchOff = std::function<Expected<void>()>;
 
-  static constexpr std::chrono::seconds retry_interval{1};
   static constexpr std::chrono::seconds report_interval{60}; // while it cannot be switched off
   static constexpr std::chrono::seconds status_interval{1};
 
@@ -48,8 +52,8 @@ public:
   // writers do.
   [[nodiscard]] static Expected<std::unique_ptr<ExciterGuard>>
   create(bus::Participant& participant, const ProgramIdentity& own, const GuardedExciter& exciter,
-         std::chrono::milliseconds unattended_limit, SwitchOff switch_off,
-         bus::Clock& clock = bus::system_clock());
+         std::chrono::milliseconds unattended_limit, std::unique_ptr<GuardedOutput> output,
+         DrivenRecord record, bus::Clock& clock = bus::system_clock());
 
   // Until `stop` is requested. Calls `turned` at every turn of its loop, which a generator that
   // does not answer holds up.
@@ -60,42 +64,38 @@ public:
   [[nodiscard]] GuardFigures figures() const;
 
 private:
-  struct Run {
-    bool driven = false;
-    bool served = false; // switched off since it was heard last
-    Instant heard;
-    Instant next_try{};
-    Instant next_report{};
-  };
-
   struct Endpoints {
     bus::Reader<wire::Excitation> excitation;
     bus::Writer<wire::ServiceStatus> status;
   };
 
-  ExciterGuard(wire::ServiceStatus status, std::chrono::milliseconds unattended_limit,
-               SwitchOff switch_off, bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
-               Endpoints endpoints)
-      : bench_(status.bench().to_string()), unattended_limit_(unattended_limit),
-        switch_off_(std::move(switch_off)), clock_(clock), wake_up_(std::move(wake_up)),
-        endpoints_(std::move(endpoints)), status_(std::move(status)) {}
+  ExciterGuard(wire::ServiceStatus status, GuardedExciter exciter, ExciterWatch watch,
+               std::unique_ptr<GuardedOutput> output, DrivenRecord record, bus::Clock& clock,
+               std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints)
+      : exciter_(std::move(exciter)), watch_(std::move(watch)), output_(std::move(output)),
+        record_(std::move(record)), clock_(clock), wake_up_(std::move(wake_up)),
+        endpoints_(std::move(endpoints)), status_(std::move(status)), recorded_(watch_.run()) {}
 
   void take_messages();
-  Run& heard(const std::string& run);
-  void attend(const std::string& name, Run& run);
-  // Says so as soon as it has changed.
-  void set_health(wire::HealthState health, const std::string& message);
+  void act();
+  void keep_record();
+  void report();
   void publish();
+  [[nodiscard]] OutputSettings settings_of(const wire::Excitation& excitation) const;
+  [[nodiscard]] std::string message() const;
 
-  std::string bench_;
-  std::chrono::milliseconds unattended_limit_;
-  SwitchOff switch_off_;
+  GuardedExciter exciter_;
+  ExciterWatch watch_;
+  std::unique_ptr<GuardedOutput> output_;
+  DrivenRecord record_;
   bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   Endpoints endpoints_;
   wire::ServiceStatus status_; // as published last
+  DrivenRun recorded_;
+  bool record_failed_ = false;
   Instant next_status_{};
-  std::map<std::string, Run> runs_;
+  Instant next_report_{};
   std::uint64_t times_switched_off_ = 0;
 };
 

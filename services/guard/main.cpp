@@ -1,5 +1,6 @@
 // dyncal-guard BENCH.toml...: runs where the generators of these benches can be reached, and
 // switches an exciter off when the run that drives it has no conductor any more.
+#include <charconv>
 #include <chrono>
 #include <memory>
 #include <thread>
@@ -7,8 +8,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "drivers/generator/scpi_generator.hpp"
-#include "services/device_error.hpp"
 #include "services/guard/exciter_guard.hpp"
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
@@ -18,13 +17,23 @@ namespace {
 
 constexpr std::chrono::milliseconds unattended_limit{2000};
 
-// Connecting switches the output off.
-Expected<void> switch_off(const std::string& address) {
-  const auto generator = drivers::generator::ScpiGenerator::connect(address);
-  if (!generator) {
-    return fail(device_error(generator.error()));
+// The settings of the generator that a bench file plans.
+GuardedExciter exciter_of(const BenchFile& bench) {
+  GuardedExciter exciter;
+  exciter.bench = bench.bench;
+  exciter.generator = bench.generator.address;
+  exciter.level_per_volt = bench.generator.level_per_volt;
+  exciter.has_closed_loop = bench.generator.level_tolerance_rel.has_value();
+  for (std::size_t i = 0; i < bench.excitation.frequencies_hz.size(); ++i) {
+    OutputSettings settings;
+    const std::string& text = bench.excitation.frequencies_hz[i];
+    std::from_chars(text.data(), text.data() + text.size(), settings.frequency_hz);
+    if (!exciter.has_closed_loop && i < bench.excitation.levels_m_s2.size()) {
+      settings.voltage_vpp = 2.0 * bench.excitation.levels_m_s2[i] / exciter.level_per_volt;
+    }
+    exciter.planned.push_back(settings);
   }
-  return {};
+  return exciter;
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
@@ -46,8 +55,9 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
                       "there is nothing to guard");
     }
     auto guard = ExciterGuard::create(
-        *participant, supervisor.identity(), {bench.bench, bench.generator.address},
-        unattended_limit, [address = bench.generator.address] { return switch_off(address); });
+        *participant, supervisor.identity(), exciter_of(bench), unattended_limit,
+        std::make_unique<GeneratorOutput>(bench.generator.address),
+        DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address));
     if (!guard) {
       return fail(guard.error());
     }

@@ -253,7 +253,8 @@ void Laboratory::take(const wire::ServiceStatus& message) {
     return;
   }
   take_service(*bench, message);
-  if (message.run().to_string().empty()) { // of a recorder or guard
+  // Of a recorder or guard; the run that a guard names is one that it does not hear.
+  if (message.run().to_string().empty() || !message.guarded_generator().empty()) {
     return;
   }
   Run* run = run_of(*bench, message.run().to_string());

@@ -18,7 +18,7 @@ void GuardWatch::take(const wire::ServiceStatus& status, Instant now) {
       (guards_.size() >= max_guards && !guards_.contains(service))) {
     return;
   }
-  guards_[service] = {status.host(), status.guarded_generator(),
+  guards_[service] = {status.host(), status.run().to_string(), status.guarded_generator(),
                       status.health() == wire::HEALTH_FAILED ? status.message() : "", now};
 }
 
@@ -54,6 +54,18 @@ std::string GuardWatch::lack(Instant now) const {
   }
   return fmt::format("the dyncal-guard on {} has gone silent: {}; look after it there",
                      newest->host, consequence);
+}
+
+std::string GuardWatch::deafness(const std::string& run, Instant now) const {
+  for (const auto& [service, guard] : guards_) {
+    if (guard.unheard == run && now - guard.heard <= limit &&
+        may_be_one_generator(guard.generator, generator_)) {
+      return fmt::format("the dyncal-guard on {} does not hear this run and has switched the "
+                         "exciter off, if it can: is the way from here to there open",
+                         guard.host);
+    }
+  }
+  return "";
 }
 
 std::optional<std::string> GuardWatch::notice(Instant now) {

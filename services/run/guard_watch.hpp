@@ -5,7 +5,9 @@
 // exciter of a conductor whose host or link fails would stay on, so that the operator is told: when
 // none is heard within `limit` of the beginning, when the last one falls silent, and when one
 // guards another generator (services/bench/generator_address.hpp). What a guard says of an output
-// that it cannot switch off is passed on, whatever others say. Belongs to one thread.
+// that it cannot switch off is passed on, whatever others say. A run that a guard names is one that
+// it does not hear while it hears the guard: that run pauses until it is heard. Belongs to one
+// thread.
 #pragma once
 
 #include <chrono>
@@ -35,9 +37,13 @@ public:
   // What the operator is to know now, once until it changes.
   [[nodiscard]] std::optional<std::string> notice(Instant now);
 
+  // Which guard of this generator does not hear `run`, as a sentence; empty: none says so.
+  [[nodiscard]] std::string deafness(const std::string& run, Instant now) const;
+
 private:
   struct Guard {
     std::string host;
+    std::string unheard; // the run that it does not hear
     std::string generator;
     std::string message; // of one that cannot switch off
     Instant heard;

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "drivers/generator/scpi_generator.hpp"
+#include "drivers/generator/generator_output.hpp"
 #include "services/program/child_process.hpp"
 #include "services/program/program.hpp"
 
@@ -35,12 +35,11 @@ Error cannot_start(const std::string& why) {
           fmt::format("the guard of the generator's output cannot be started: {}", why)};
 }
 
-// Connecting switches the output off.
 int switch_off(const std::string& generator_address) {
   const auto deadline = std::chrono::steady_clock::now() + try_limit;
   for (int attempt = 1;; ++attempt) {
-    const auto generator = drivers::generator::ScpiGenerator::connect(generator_address);
-    if (generator) {
+    const auto off = drivers::generator::switch_output_off(generator_address);
+    if (off) {
       fmt::print(
           stderr,
           "dyncal: the run has ended without it; the output of the generator {} was switched "
@@ -49,18 +48,17 @@ int switch_off(const std::string& generator_address) {
       return 0;
     }
     if (std::chrono::steady_clock::now() > deadline) {
-      return report_error(
-          {ErrorCode::device,
-           fmt::format("the output of the generator {} MAY STILL BE ON after {} "
-                       "min of trying: switch it off by hand ({})",
-                       generator_address, try_limit.count(), generator.error().message)});
+      return report_error({ErrorCode::device,
+                           fmt::format("the output of the generator {} MAY STILL BE ON after {} "
+                                       "min of trying: switch it off by hand ({})",
+                                       generator_address, try_limit.count(), off.error().message)});
     }
     if (attempt == quiet_attempts) {
       fmt::print(
           stderr,
           "dyncal: the run has ended and the output of the generator {} MAY BE ON: switch it "
           "off by hand if you can; trying for {} min ({})\n",
-          generator_address, try_limit.count(), generator.error().message);
+          generator_address, try_limit.count(), off.error().message);
     }
     std::this_thread::sleep_for(pause);
   }

@@ -228,8 +228,9 @@ std::size_t RunMessages::take(RunOutcome& outcome) {
 void RunMessages::take_status(RunOutcome& outcome) {
   bool is_of_older_contract = false;
   endpoints_.status.take([&](const wire::ServiceStatus& status) {
-    guard_.take(status, clock_->now());
-    if (status.run().to_string() == run_ && follows(status)) {
+    if (!status.guarded_generator().empty()) {
+      guard_.take(status, clock_->now());
+    } else if (status.run().to_string() == run_ && follows(status)) {
       is_of_older_contract = status.contract_version() < contract_versions::partitions_of_runs;
       const bool reports_work = !status.message().empty() && status.health() != wire::HEALTH_FAILED;
       const bool is_news = !analysis_ || analysis_->message() != status.message();

@@ -69,6 +69,10 @@ public:
   [[nodiscard]] std::optional<std::string> notice_of_guard() {
     return guard_.notice(clock_->now());
   }
+  // Why a guard watches in vain; empty: none does.
+  [[nodiscard]] std::string deafness_of_guard() const {
+    return guard_.deafness(run_, clock_->now());
+  }
 
 private:
   struct ResultReaders {

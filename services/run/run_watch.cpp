@@ -74,7 +74,12 @@ void RunWatch::follow(const std::string& phase) {
 }
 
 RunOutlook RunWatch::outlook() const {
-  return run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
+  const RunOutlook outlook =
+      run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
+  std::string deafness = messages_.deafness_of_guard();
+  return outlook.kind == RunOutlook::Kind::well && !deafness.empty()
+             ? RunOutlook{RunOutlook::Kind::waits, {ErrorCode::device, std::move(deafness)}}
+             : outlook;
 }
 
 void RunWatch::show_step(std::size_t place, std::uint32_t attempt) {

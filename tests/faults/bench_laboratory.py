@@ -211,7 +211,10 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
         place = self.folder / f"{len(self.started):02}-{program}"
         place.mkdir(exist_ok=True)
         command = [*on_host, str(self.programs / program), *map(str, arguments)]
-        environment = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+        environment = {
+            "XDG_CACHE_HOME": str(self.folder / "cache"),
+            "XDG_STATE_HOME": str(self.folder / "state"),
+        }
         environment.update(self.environments.get(program, {}))
         self.started.append(Program(command, place / "log.txt", environment))
         return self.started[-1]

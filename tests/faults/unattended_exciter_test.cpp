@@ -1,6 +1,8 @@
 // An exciter that is driven while nobody attends: the conductor hangs, so that neither it nor what
 // watches over its process can switch the output off; the guard on the bench's side does.
 #include <csignal>
+#include <filesystem>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@ namespace dyncal::tests {
 namespace {
 
 using testing::HasSubstr;
+namespace fs = std::filesystem;
 
 LiveBenchSettings long_steps(const std::string& dds) {
   LiveBenchSettings settings;
@@ -20,6 +23,14 @@ LiveBenchSettings long_steps(const std::string& dds) {
   settings.rest = "adc_delay_s = 1e-6\n";
   settings.dds = dds;
   return settings;
+}
+
+bool appears(const fs::path& file) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!fs::exists(file) && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  return fs::exists(file);
 }
 
 class UnattendedExciter : public testing::TestWithParam<std::string> {};
@@ -54,6 +65,46 @@ TEST_P(UnattendedExciter, IsToldOfWhereThereIsNoGuard) {
   guard.send(SIGCONT);
   run.send(SIGINT);
   EXPECT_TRUE(run.wait(patience)) << run.errors();
+}
+
+// One power cut of both hosts; the generator has another supply.
+TEST_P(UnattendedExciter, IsSwitchedOffByAGuardThatStartsAfterItsConductorDied) {
+  LiveBench bench(fresh_folder("orphaned_exciter_" + GetParam()), long_steps(GetParam()));
+  ProgramRun& guard = bench.start_service("dyncal-guard");
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
+  ASSERT_TRUE(guard.wait_for_error_text("watching over run", patience));
+  ASSERT_TRUE(appears(fs::path(bench.bench_file()).parent_path() / "state/dyncal-guard/live.json"));
+  run.send(SIGSTOP); // its own guard of the output sleeps on
+  guard.send(SIGKILL);
+  ASSERT_TRUE(guard.wait(patience));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "ON");
+  ProgramRun& again = bench.start_service("dyncal-guard");
+  EXPECT_TRUE(bench.wait_for_output("OFF")) << again.errors();
+  EXPECT_TRUE(
+      again.wait_for_error_text("drove the generator when this guard was last there", patience));
+  EXPECT_TRUE(again.wait_for_error_text("the output of the generator was switched off", patience));
+  run.send(SIGCONT);
+  run.send(SIGINT);
+  EXPECT_TRUE(run.wait(patience)) << run.errors();
+}
+
+TEST_P(UnattendedExciter, IsLeftToAPersonAfterTheRun) {
+  LiveBench bench(fresh_folder("persons_exciter_" + GetParam()), long_steps(GetParam()));
+  ProgramRun& guard = bench.start_service("dyncal-guard");
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("ON"));
+  run.send(SIGINT);
+  EXPECT_TRUE(run.wait(patience)) << run.errors();
+  ASSERT_TRUE(bench.wait_for_output("OFF"));
+  bench.tell_generator(":SOURce1:FREQuency 80");
+  bench.tell_generator(":OUTPut1 ON");
+  EXPECT_TRUE(guard.wait_for_error_text("the output of the generator is on (80 Hz", patience));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "ON");
+  bench.tell_generator(":SOURce1:FREQuency 40"); // exactly what the run drove
+  EXPECT_TRUE(bench.wait_for_output("OFF")) << guard.errors();
 }
 
 INSTANTIATE_TEST_SUITE_P(EachVendor, UnattendedExciter, testing::Values("fastdds", "cyclonedds"),

@@ -47,6 +47,7 @@ services::ChildProcess started(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                services::ChildOutput output, const std::filesystem::path& runs) {
   setenv("DYNCAL_RUNS", runs.c_str(), 1); // run folders stay with the test
+  setenv("XDG_STATE_HOME", (runs.parent_path().parent_path() / "state").c_str(), 1); // a guard's
   setenv("DYNCAL_DOMAIN", std::to_string(own_dds_domain()).c_str(), 1);
   auto process = services::ChildProcess::start(program, arguments, std::move(output));
   if (!process) {

@@ -5,6 +5,7 @@
 
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -12,6 +13,43 @@ namespace {
 using namespace std::chrono_literals;
 
 const ProgramIdentity own{"dyncal-guard", "lab-2", 7, "dyncal 1", "memory"};
+
+struct PlayedOutput {
+  bool reachable = true;
+  bool is_on = false;
+  OutputSettings settings{40.0, 0.8};
+  int tries = 0;
+};
+
+class PlayedGeneratorOutput : public GuardedOutput {
+public:
+  explicit PlayedGeneratorOutput(PlayedOutput& output) : output_(output) {}
+  Expected<void> switch_off() override {
+    ++output_.tries;
+    if (!output_.reachable) {
+      return fail(ErrorCode::device, "no route to host");
+    }
+    output_.is_on = false;
+    return {};
+  }
+  void ask() override { asked_ = true; }
+  std::optional<Expected<OutputReading>> answer() override {
+    if (!std::exchange(asked_, false)) {
+      return std::nullopt;
+    }
+    if (!output_.reachable) {
+      return fail(ErrorCode::device, "no route to host");
+    }
+    OutputReading reading;
+    reading.is_on = output_.is_on;
+    reading.settings = output_.settings;
+    return reading;
+  }
+
+private:
+  PlayedOutput& output_;
+  bool asked_ = false;
+};
 
 class ExciterGuardTest : public testing::Test {
 protected:
@@ -23,27 +61,31 @@ protected:
       conductor_.writer(bus::topics::excitation, "b1").value();
   bus::Writer<wire::Measurement> measurement_ =
       conductor_.writer(bus::topics::measurement, "b1").value();
-  bool reachable_ = true;
-  int tries_ = 0;
+  PlayedOutput output_;
+  bool& reachable_ = output_.reachable;
+  int& tries_ = output_.tries;
+  tests::TemporaryFolder folder_;
   bus::Reader<wire::ServiceStatus> status_ =
       conductor_.reader(bus::topics::service_status, "b1", nullptr).value();
-  std::unique_ptr<ExciterGuard> guard_ = ExciterGuard::create(
-                                             bench_side_, own, {"b1", "192.0.2.7:5025"}, 2s,
-                                             [this]() -> Expected<void> {
-                                               ++tries_;
-                                               if (!reachable_) {
-                                                 return fail(ErrorCode::device, "no route to host");
-                                               }
-                                               return {};
-                                             },
-                                             clock_)
-                                             .value();
+  std::unique_ptr<ExciterGuard> guard_ = start();
 
+  std::unique_ptr<ExciterGuard> start() {
+    GuardedExciter exciter;
+    exciter.bench = "b1";
+    exciter.generator = "192.0.2.7:5025";
+    exciter.level_per_volt = 50.0;
+    return ExciterGuard::create(
+               bench_side_, own, exciter, 2s, std::make_unique<PlayedGeneratorOutput>(output_),
+               DrivenRecord(folder_.path(), exciter.bench, exciter.generator), clock_)
+        .value();
+  }
   void announce(wire::ExcitationState state, const std::string& bench = "b1") {
     wire::Excitation excitation;
     excitation.bench(bench);
     excitation.run("r1");
     excitation.state(state);
+    excitation.frequency_text_hz("40");
+    excitation.level_m_s2(20.0);
     excitation.window_end_utc_ns(state == wire::EXCITATION_DONE ? 2 : 0);
     excitation_.write(excitation);
   }
@@ -145,16 +187,56 @@ TEST_F(ExciterGuardTest, WatchesAgainAfterItHasSwitchedOff) {
 
 TEST_F(ExciterGuardTest, FindsAnExciterThatWasDrivenBeforeItBegan) {
   announce(wire::EXCITATION_STEADY);
-  guard_ = ExciterGuard::create(
-               bench_side_, own, {"b1", "192.0.2.7:5025"}, 2s,
-               [this]() -> Expected<void> {
-                 ++tries_;
-                 return {};
-               },
-               clock_)
-               .value();
+  guard_ = start();
   pass(3s);
   EXPECT_EQ(tries_, 1);
+}
+
+// One power cut takes the conductor's host and its own.
+TEST_F(ExciterGuardTest, SwitchesOffWhatWasDrivenBeforeItsHostWentDown) {
+  announce(wire::EXCITATION_STEADY);
+  pass(1s);
+  output_.is_on = true;
+  guard_.reset();
+  excitation_ = conductor_.writer(bus::topics::excitation, "b2").value(); // what it wrote is gone
+  guard_ = start();
+  pass(1900ms);
+  EXPECT_TRUE(output_.is_on);
+  pass(300ms);
+  EXPECT_FALSE(output_.is_on);
+  pass(121s);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path())) << "nothing is driven any more";
+}
+
+TEST_F(ExciterGuardTest, SaysWhatItLeavesOn) {
+  announce(wire::EXCITATION_STEADY);
+  pass(100ms);
+  announce(wire::EXCITATION_DONE);
+  output_.is_on = true;
+  output_.settings = {100.0, 0.8};
+  pass(2s);
+  wire::ServiceStatus last;
+  status_.take([&](const wire::ServiceStatus& one) { last = one; });
+  EXPECT_EQ(last.message(), "the output of the generator is on (100 Hz, 0.8 V peak to peak), which "
+                            "is not what run r1 drove: it is left on");
+  EXPECT_EQ(last.health(), wire::HEALTH_OK);
+  EXPECT_EQ(tries_, 0);
+}
+
+TEST_F(ExciterGuardTest, NamesTheRunThatItDoesNotHear) {
+  const auto newest = [this] {
+    wire::ServiceStatus last;
+    status_.take([&](const wire::ServiceStatus& one) { last = one; });
+    return last.run().to_string();
+  };
+  announce(wire::EXCITATION_STEADY);
+  pass(1900ms);
+  EXPECT_EQ(newest(), "");
+  pass(300ms);
+  EXPECT_EQ(newest(), "r1");
+  announce(wire::EXCITATION_DONE);
+  pass(100ms);
+  EXPECT_EQ(newest(), "");
 }
 
 TEST_F(ExciterGuardTest, SaysEverySecondThatItIsThere) {

@@ -78,6 +78,25 @@ TEST_F(GuardWatchTest, SaysNothingWhereThereIsNothingToGuard) {
   EXPECT_EQ(notice(), std::nullopt);
 }
 
+TEST_F(GuardWatchTest, PausesTheRunThatAGuardDoesNotHear) {
+  wire::ServiceStatus status;
+  status.service("guard@lab-2:7");
+  status.host("lab-2");
+  status.guarded_generator("192.0.2.7:5025");
+  status.run("r1");
+  watch_.take(status, now_);
+  EXPECT_THAT(watch_.deafness("r1", now_), HasSubstr("on lab-2 does not hear this run"));
+  EXPECT_EQ(watch_.deafness("r2", now_), "");
+  EXPECT_EQ(watch_.deafness("r1", now_ + 6s), "") << "it is gone";
+  status.run("");
+  watch_.take(status, now_);
+  EXPECT_EQ(watch_.deafness("r1", now_), "");
+  status.run("r1");
+  status.guarded_generator("192.0.2.8:5025");
+  watch_.take(status, now_);
+  EXPECT_EQ(watch_.deafness("r1", now_), "") << "it guards another generator";
+}
+
 TEST_F(GuardWatchTest, PassesOverOtherServicesAndHoldsNoMoreThanItsBound) {
   wire::ServiceStatus status;
   for (int i = 0; i < 1000; ++i) {

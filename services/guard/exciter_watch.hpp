@@ -1,0 +1,109 @@
+// What the guard of an exciter has to do, from what it hears of runs and what the generator
+// answers: a state machine without sockets, DDS and clock.
+//
+//   state    begins when                          the output is on             is left for idle
+//   idle     nothing was driven                   (it is not asked)            -
+//   driven   an Excitation has no end             it is noted with what        -
+//   silent   that was not heard for 2 s           the run's: off               120 s after off
+//   ended    the Excitation has its end           the run's, for 2 s: off      120 s after the end
+//
+// The generator is asked every second in all states but idle. Where silent begins the output is
+// switched off unasked. A guard that starts with the record of a run that was driven begins in
+// driven, heard now, and switches off only what is on with the recorded settings.
+//
+// "The run's" is what has the frequency and the voltage with which the generator was seen while the
+// run was heard (or as announced, where it was not seen); in a silence also what the bench file
+// plans, for a conductor that is not heard may drive on. Anything else is a person's: it is said
+// and left. An output that must be off is tried every second until it has answered that it is, with
+// no limit; until then it may be on. A silent run whose generator does not answer may be on, too.
+//
+// A generator that does not answer while it is driven takes one connection, the conductor's: it is
+// asked again when nothing was heard for 2 s. One thread.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/generator/generator_output.hpp"
+#include "services/bus/clock.hpp"
+#include "services/error.hpp"
+
+namespace dyncal::services {
+
+using drivers::generator::OutputReading;
+using drivers::generator::OutputSettings;
+
+// What is known of a run that has driven the generator; kept over restarts.
+struct DrivenRun {
+  std::string run; // empty: none
+  bool has_ended = false;
+  std::vector<OutputSettings> settings; // newest last, at most ExciterWatch::max_settings
+
+  friend bool operator==(const DrivenRun&, const DrivenRun&) = default;
+};
+
+struct ExciterAnnouncement {
+  std::string run;
+  bool is_driven = false;
+  OutputSettings settings; // without a voltage where a closed loop finds it
+};
+
+class ExciterWatch {
+public:
+  using Instant = bus::Clock::Instant;
+  enum class State { idle, driven, silent, ended };
+  enum class Action { none, ask, switch_off };
+
+  static constexpr std::chrono::seconds interval{1};        // between two questions or attempts
+  static constexpr std::chrono::seconds watched_after{120}; // a silence or a run
+  static constexpr int failures_of_silence = 2; // unanswered questions: a single one may be lost
+  static constexpr std::size_t max_settings = 8;
+
+  // `planned`: of the bench file.
+  ExciterWatch(std::chrono::milliseconds unattended_limit, std::vector<OutputSettings> planned,
+               DrivenRun recorded, Instant now);
+
+  void heard(const ExciterAnnouncement& announcement, Instant now);
+  void answered(const Expected<OutputReading>& answer, Instant now);
+  void switched_off(const Expected<void>& outcome, Instant now);
+  // What is due now; the caller does it and reports the outcome.
+  [[nodiscard]] Action due(Instant now);
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] const DrivenRun& run() const { return run_; }
+  [[nodiscard]] Instant heard_at() const { return heard_; }
+  // Why nobody knows that the output is off; empty: nothing speaks for it.
+  [[nodiscard]] const std::string& may_be_on() const { return may_be_on_; }
+  // An output that is on and is a person's.
+  [[nodiscard]] const std::optional<OutputSettings>& left_on() const { return left_on_; }
+  // Since the run was last heard.
+  [[nodiscard]] bool has_switched_off() const { return has_switched_off_; }
+
+private:
+  void step_to(State state, Instant now);
+  void note(const OutputSettings& settings);
+  void found_on(const OutputReading& reading, Instant now);
+  [[nodiscard]] bool is_of_run(const OutputReading& reading) const;
+  [[nodiscard]] bool may_ask(Instant now) const;
+
+  std::chrono::milliseconds unattended_limit_;
+  std::vector<OutputSettings> planned_;
+  DrivenRun run_;
+  State state_ = State::idle;
+  Instant heard_{};
+  bool is_from_record_ = false; // not heard since the start
+  bool must_be_off_ = false;    // and is not known to be
+  bool has_switched_off_ = false;
+  bool answers_in_run_ = true; // the generator, another connection than the conductor's
+  int failures_ = 0;           // of questions, one after the other
+  std::string may_be_on_;
+  std::optional<OutputSettings> left_on_;
+  std::optional<Instant> on_since_;  // ended: with the run's settings
+  std::optional<Instant> idle_from_; // nothing: not before an answer
+  Instant next_question_{};
+  Instant next_attempt_{};
+};
+
+} // namespace dyncal::services
