@@ -50,7 +50,7 @@ std::filesystem::path guard_state_folder() {
     const char* value = std::getenv(name);
     return std::filesystem::path(value != nullptr ? value : "");
   };
-  if (const auto folder = variable("STATE_DIRECTORY"); !folder.empty()) {
+  if (auto folder = variable("STATE_DIRECTORY"); !folder.empty()) {
     return folder;
   }
   if (const auto folder = variable("XDG_STATE_HOME"); !folder.empty()) {
