@@ -31,6 +31,13 @@ Grid common_prior(double freedom) {
   return result;
 }
 
+// Of what single runs add to the scatter of sweeps: with room for nothing, however few frequencies
+// there are. Without it sweeps pass for independent runs (n = 2, four frequencies: 92 % covered).
+const Grid& steps_prior() {
+  static const Grid prior = common_prior(seen_freedom);
+  return prior;
+}
+
 const Grid& log_scatter_prior() {
   static const Grid logarithms = [] {
     Grid result{};
@@ -109,21 +116,21 @@ void add_independent(const RepeatedQuantity& own, const ScatterHypothesis& hypot
 }
 
 // What the other frequencies and the prior make of each tau_d, at most over all tau_c.
-Grid most_of_sweeps(const ScatterHypothesis& hypothesis, std::size_t f, const Grid& prior) {
+Grid most_of_sweeps(const ScatterHypothesis& hypothesis, std::size_t f) {
   Grid result{};
   for (std::size_t j = 0; j < scatter_grid_points; ++j) {
-    result[j] = std::log(sweeps_scatter * prior[j]) + hypothesis.log_steps_sum[j] -
+    result[j] = std::log(sweeps_scatter * steps_prior()[j]) + hypothesis.log_steps_sum[j] -
                 hypothesis.log_steps[f][j] + hypothesis.sweeps[j].most_without(f);
   }
   return result;
 }
 
 void add_sweeps(const RepeatedQuantity& own, const ScatterHypothesis& hypothesis, std::size_t f,
-                const Grid& prior, std::vector<Candidate>& candidates) {
+                std::vector<Candidate>& candidates) {
   if (hypothesis.sweeps.empty()) {
     return;
   }
-  const Grid most = most_of_sweeps(hypothesis, f, prior);
+  const Grid most = most_of_sweeps(hypothesis, f);
   const double least = *std::max_element(most.begin(), most.end()) + std::log(out_of_reach);
   for (std::size_t j = 0; j < scatter_grid_points; ++j) {
     if (most[j] < least) {
@@ -157,7 +164,7 @@ MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
   std::vector<Candidate> candidates;
   for (const ScatterHypothesis& hypothesis : hypotheses) {
     add_independent(own, hypothesis, f, prior, candidates);
-    add_sweeps(own, hypothesis, f, prior, candidates);
+    add_sweeps(own, hypothesis, f, candidates);
   }
   double largest = -1e300;
   for (const Candidate& candidate : candidates) {

@@ -20,8 +20,8 @@ CHANCE = 1e-3
 FAR_OFF = 3.0
 # An interval so wide that it always holds the truth says nothing: U against the rms of the errors.
 WIDEST = 12.0
-# The same of clean means, whose intervals hold what few repetitions may hide.
-WIDEST_CLEAN = 3.0
+# By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
+BEYOND_STUDENT = 1.2
 # Sync is always connected here.
 MISLEADING = "is the sync signal connected"
 # Members of a point that count samples which did not count.
@@ -31,6 +31,7 @@ LOSSES = ("lost", "not_trusted", "not_measured", "out_of_order")
 COVERED_NO_FLAG = "covered, no flag"  # nothing is wrong, and no person is bothered
 COVERED = "covered"  # flags are free
 COVERED_NO_MORE = "covered, no more"  # by as many as stated; for the scatter of repetitions
+COVERED_AS_STUDENT = "covered, as Student"  # of few repetitions: as wide as the k they state
 COVERED_OR_FLAGGED = "covered or flagged"  # never wrong in silence
 FLAGGED = "flagged"  # a person must know, whatever the number is
 
@@ -42,6 +43,7 @@ class Claim:
     flagged: bool = False
     refused: bool = False  # no number, and a reason that does not mislead
     frequency: str = ""
+    k: float = 2.0  # as stated
 
     @property
     def warned(self):
@@ -61,15 +63,20 @@ def expanded_uncertainty(entry, quantity):
     if entry.get(f"U_{quantity}") is not None:
         return entry[f"U_{quantity}"]
     u = entry.get(f"u_{quantity}")
-    k = entry.get(f"k_{quantity}") or 2.0
-    return math.nan if u is None else k * u
+    return math.nan if u is None else coverage_factor(entry, quantity) * u
+
+
+def coverage_factor(entry, quantity):
+    """As stated, or that of a normal distribution."""
+    return entry.get(f"k_{quantity.removesuffix('_rad')}") or 2.0
 
 
 def claim_of(entry, quantity, error, flagged, frequency=""):
     value, expanded = entry.get(quantity), expanded_uncertainty(entry, quantity)
     if value is None or math.isnan(expanded):  # null: it says that it does not know
         return Claim(flagged=flagged, refused=True, frequency=frequency)
-    return Claim(error(value), expanded, flagged, frequency=frequency)
+    k = coverage_factor(entry, quantity)
+    return Claim(error(value), expanded, flagged, frequency=frequency, k=k)
 
 
 def phase_error(phase_rad, true_rad):
@@ -217,13 +224,20 @@ class Tally:
         finding = self._wrong_among(self.claims, chance)
         if finding or wanted == COVERED:
             return finding or self._too_wide(WIDEST)
+        if wanted == COVERED_AS_STUDENT:
+            return self._too_wide(self.widest_mean())
         if too_many(self.covered, n, PROBABILITY, chance):
             return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_NO_MORE:
             return ""
         if too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance):
             return f"{self.warned} of {n} carry a flag"
-        return self._too_wide(WIDEST_CLEAN if self.few_repeats else 2.0 / least_rms(n))
+        return self._too_wide(self.widest_mean() if self.few_repeats else 2.0 / least_rms(n))
+
+    def widest_mean(self):
+        """U against the rms of the errors, by the usual factor of those that the results state."""
+        k = float(np.median([one.k for one in self.numbers]))
+        return BEYOND_STUDENT * k / least_rms(len(self.numbers))
 
     def _wrong_among(self, claims, chance, which=""):
         n, covered = len(claims), sum(one.covered for one in claims)

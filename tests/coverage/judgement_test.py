@@ -16,6 +16,7 @@ import expected_outcomes
 import fault_classes
 from judgement import (
     COVERED,
+    COVERED_AS_STUDENT,
     COVERED_NO_FLAG,
     COVERED_NO_MORE,
     COVERED_OR_FLAGGED,
@@ -27,7 +28,14 @@ from judgement import (
     refusal,
 )
 
-WANTED = (COVERED_NO_FLAG, COVERED, COVERED_NO_MORE, COVERED_OR_FLAGGED, FLAGGED)
+WANTED = (
+    COVERED_NO_FLAG,
+    COVERED,
+    COVERED_NO_MORE,
+    COVERED_AS_STUDENT,
+    COVERED_OR_FLAGGED,
+    FLAGGED,
+)
 TRUTH = bench_simulator.Truth(
     magnitude={"10": 1.0, "20": 0.9},
     phase_rad={"10": -0.1, "20": -0.2},
@@ -90,6 +98,24 @@ class TallyOfClaims(unittest.TestCase):
         claims = normal_claims(360) + [Claim(10.0, 2.0)]
         self.assertIn("more than 3 U", Tally(claims).finding(COVERED))
         self.assertEqual(Tally(claims, few_repeats=True).finding(COVERED), "")
+
+    def test_a_mean_may_be_as_wide_as_the_factor_that_it_states(self):
+        def finding(k, u_too_large, wanted):
+            claims = [
+                Claim(one.error, k * u_too_large, k=k) for one in normal_claims(720)
+            ]
+            return Tally(claims, few_repeats=True).finding(wanted)
+
+        self.assertEqual(finding(4.5, 1.0, COVERED_AS_STUDENT), "")
+        self.assertEqual(finding(2.0, 1.1, COVERED_AS_STUDENT), "")
+        for k, u_too_large in ((4.5, 1.5), (2.8, 1.5), (2.0, 1.5)):
+            self.assertIn("times the rms", finding(k, u_too_large, COVERED_AS_STUDENT))
+
+    def test_the_factor_is_that_of_the_result(self):
+        given = result([point(10.0, 1.0, -0.1, k_magnitude=3.0, k_phase=4.0)])
+        claims = claims_of(given, TRUTH)
+        self.assertEqual(of(claims, "mean magnitude")[0].k, 3.0)
+        self.assertEqual(of(claims, "mean phase")[0].k, 4.0)
 
     def test_an_uncertainty_of_zero_covers_nothing(self):
         claims = [Claim(1e-9, 0.0) for _ in range(12)]
