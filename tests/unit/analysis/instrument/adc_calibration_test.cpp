@@ -1,5 +1,6 @@
 #include "analysis/instrument/adc_calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -119,6 +120,38 @@ TEST(AdcCalibration, RepeatedMeasurementsGiveTheirMeanAndPooledScatter) {
               1e-15);
   EXPECT_NEAR(points[3].u_phase_lag_rad, 6e-5 / std::sqrt(3.0), 1.2e-5);
   EXPECT_NEAR(points[3].u_gain / points[3].gain, 2e-5 / std::sqrt(3.0), 5e-6);
+}
+
+// Lags about half a turn, each as it was measured: some positive, some negative.
+TEST(AdcCalibration, AnInvertingFrontEndIsNoWorse) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise;
+  const TrueFrontEnd adc;
+  std::vector<AdcCalibrationPoint> upright, inverting;
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    for (AdcCalibrationPoint point : points_of(adc)) {
+      point.phase_lag_rad += 6e-5 * noise(random);
+      upright.push_back(point);
+      point.phase_lag_rad = std::remainder(point.phase_lag_rad + pi, 2.0 * pi);
+      inverting.push_back(point);
+    }
+  }
+  const auto both_signs =
+      std::minmax_element(inverting.begin(), inverting.end(), [](const auto& a, const auto& b) {
+        return a.phase_lag_rad < b.phase_lag_rad;
+      });
+  ASSERT_LT(both_signs.first->phase_lag_rad, -3.0);
+  ASSERT_GT(both_signs.second->phase_lag_rad, 3.0);
+  const auto straight = adc_calibration_points(upright);
+  const auto turned = adc_calibration_points(inverting);
+  for (const double f : {1.0, 1.7, 10.0, 46.7, 999.0, 62000.0}) {
+    const auto is = adc_response_at(turned, f);
+    const auto wanted = adc_response_at(straight, f);
+    ASSERT_TRUE(is && wanted) << f;
+    EXPECT_NEAR(std::remainder(is->phase_lag_rad - wanted->phase_lag_rad - pi, 2.0 * pi), 0.0, 2e-5)
+        << f;
+    EXPECT_NEAR(is->u_phase_lag_rad / wanted->u_phase_lag_rad, 1.0, 0.1) << f;
+  }
 }
 
 TEST(AdcCalibration, WhatRepetitionsHaveInCommonIsAddedToTheirScatter) {
