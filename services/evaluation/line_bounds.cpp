@@ -230,6 +230,10 @@ void LineBounds::settle_harmonics(const ChannelLines& channel, StepResult& resul
           result);
 }
 
+bool LineBounds::concerns(const StepResult& result) const {
+  return result.provisional || settled(result).budget.size() != result.budget.size();
+}
+
 StepResult LineBounds::settled(StepResult result) const {
   result.flags.erase(std::remove_if(result.flags.begin(), result.flags.end(), is_of_line),
                      result.flags.end());

@@ -39,6 +39,9 @@ public:
   // place of the earlier one.
   void add(const StepResult& result);
 
+  // Whether settled() would change the budget or the flags.
+  [[nodiscard]] bool concerns(const StepResult& result) const;
+
   // The result with its final budget and flags; not provisional any more. Its Monte Carlo check is
   // not drawn again.
   [[nodiscard]] StepResult settled(StepResult result) const;

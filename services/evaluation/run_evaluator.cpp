@@ -242,7 +242,7 @@ void RunEvaluator::keep(const StepResult& result) {
     return other.step == result.step && other.repetition == result.repetition &&
            other.channel == result.channel;
   });
-  if (result.provisional) {
+  if (!result.lines.empty()) {
     results_.push_back(result);
   }
 }
@@ -319,6 +319,7 @@ EvaluationOutput RunEvaluator::take_output() {
 
 Evaluation RunEvaluator::settlement() {
   std::vector<StepResult> concerned = std::exchange(results_, {});
+  std::erase_if(concerned, [&](const StepResult& one) { return !line_bounds_.concerns(one); });
   if (count_) {
     count_->begin("settling", "results", concerned.size());
   }
@@ -327,9 +328,7 @@ Evaluation RunEvaluator::settlement() {
     std::vector<StepResult> settled;
     for (const StepResult& one : concerned) {
       settled.push_back(bounds.settled(one));
-      if (settled.back().budget.size() != one.budget.size()) {
-        redo_monte_carlo_check(trials, stop, settled.back());
-      }
+      redo_monte_carlo_check(trials, stop, settled.back());
       if (count) {
         count->add_done();
       }

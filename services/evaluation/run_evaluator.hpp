@@ -8,9 +8,9 @@
 // of it in a source, when a source has ended without it, or when the run is over. The same samples
 // give the same results bit for bit.
 //
-// A result is provisional until the end of the run, when all steps tell what there is at its
-// frequency beside the excitation (line_bounds.hpp): its u may grow then. Beside a mains line, or
-// with a harmonic folded onto it, it is flagged until then.
+// A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
+// the end of the run, when all steps tell how large that line may be (line_bounds.hpp). Where they
+// show something else at its frequency, its u grows then, although it was not provisional.
 //
 // A step may be excited again after the planned ones, as announced: it is searched behind all that
 // was found, and its results take the place of those before. Where steps are announced at all, the
@@ -50,8 +50,9 @@ struct EvaluationOutput {
   std::vector<StepResult> results;
   std::vector<TransferFunction> transfer_functions; // at the end of the run
   std::vector<ClockReport> clock_reports;           // at the end of the run
-  // At the end of the run: those that were provisional, to take the place of what was handed over
-  // with the same channel, step and repetition.
+  // At the end of the run: those that were provisional, and those in whose background the other
+  // steps found something; to take the place of what was handed over with the same channel, step
+  // and repetition.
   std::vector<StepResult> settled;
 };
 

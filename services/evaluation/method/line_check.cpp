@@ -219,11 +219,11 @@ void add_lines(std::vector<ChannelLines> lines, StepResult& result) {
   }
   for (const ChannelLines& channel : lines) {
     for (const analysis::UnresolvedLine& line : channel.unresolved) {
+      result.provisional = true;
       result.flags.push_back(flag_of_line(channel.channel, line));
     }
   }
   result.lines = std::move(lines);
-  result.provisional = !result.lines.empty();
 }
 
 Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& line) {

@@ -42,8 +42,8 @@ struct LineSubject {
 // whether there is hum at all where the line itself is never told from an excitation.
 [[nodiscard]] std::vector<double> kindred_lines_hz(const analysis::UnresolvedLine& line);
 
-// Gives a valid result its lines, and a flag for each that could not be told. It is provisional
-// then: what other steps show of these lines may make its u larger.
+// Gives a valid result its lines, and a flag for each that could not be told: it is provisional
+// then.
 void add_lines(std::vector<ChannelLines> lines, StepResult& result);
 
 // "dau/dos: hum at 50 Hz cannot be told from the excitation".

@@ -158,7 +158,7 @@ std::vector<wire::SampleBlock> SyntheticRun::dau_blocks() const {
       const double t = static_cast<double>(t_ns) * 1e-9;
       block.stamps_ns().push_back(dau_epoch_ns + t_ns);
       block.values()[i] = signal(t, magnitude, delay_s) + 10.0 * normal(random) +
-                          sensor_hum * std::sin(2.0 * std::numbers::pi * sensor_hum_hz * t + 0.4);
+                          sensor_hum * std::sin(2.0 * std::numbers::pi * 50.0 * t + 0.4);
       if (sensor_range > 0.0) {
         block.values()[i] = std::clamp(block.values()[i], -sensor_range, sensor_range);
       }

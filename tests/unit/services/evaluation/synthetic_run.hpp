@@ -25,9 +25,8 @@ struct SyntheticRun {
   std::size_t block_samples = 50;        // of the DAU; ten times as many of the ACS
   double sensor_range = 0.0;             // the sensor's end stops, plus and minus; 0: none
   bool range_is_stated = true;           // in its description
-  double sensor_hum = 0.0;               // all the time
-  double sensor_hum_hz = 50.0;
-  std::size_t lost_block = 0; // number of a DAU block that does not arrive; 0: none
+  double sensor_hum = 0.0;               // at 50 Hz, all the time
+  std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
 
   [[nodiscard]] wire::Measurement measurement() const;
   [[nodiscard]] wire::SourceDescription acs_description() const;

@@ -81,13 +81,11 @@ TEST(LineCheck, AStepBesideALineTellsNothingOfIt) {
   }
 }
 
-// Other steps may show something at its frequency, too.
-TEST(LineCheck, EveryResultWithAValueIsProvisionalAndOneBesideALineIsFlagged) {
+TEST(LineCheck, AResultWithSuchALineIsProvisional) {
   StepResult far, beside, refused;
   far.valid = beside.valid = true;
   add_lines({lines_of(recipe_of({"80"}), 80.0)}, far);
-  EXPECT_TRUE(far.provisional);
-  EXPECT_TRUE(far.flags.empty());
+  EXPECT_FALSE(far.provisional);
   add_lines({lines_of(recipe_of({"50.1"}), 50.1)}, beside);
   EXPECT_TRUE(beside.provisional);
   EXPECT_THAT(sentences_of(beside.flags),
