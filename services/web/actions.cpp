@@ -28,6 +28,12 @@ void answer_action(bool accepted, const std::string& by, const std::string& mess
   response.set_content(json_text(json), "application/json");
 }
 
+// A member of what a visitor sent; empty: it is no object, or has no such text.
+std::string text_of(const Json& body, const char* member) {
+  const Json text = body.is_object() ? body.value(member, Json()) : Json();
+  return text.is_string() ? text.get<std::string>() : "";
+}
+
 std::optional<wire::CommandKind> kind_of(const std::string& word) {
   const std::map<std::string, wire::CommandKind> kinds{{"repeat", wire::COMMAND_REPEAT},
                                                        {"abort", wire::COMMAND_ABORT},
@@ -128,14 +134,15 @@ Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Cloc
   }
 }
 
-bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response) {
+bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response,
+                           TokenUse use) {
   if (!token_) {
     door_.refuse(Refusal::not_permitted, 403,
                  "this daemon takes no actions; it was started without --token-file", request,
                  response);
     return false;
   }
-  switch (token_->check(request.get_header_value("Authorization"))) {
+  switch (token_->check(request.get_header_value("Authorization"), request.remote_addr, use)) {
   case TokenAnswer::right:
     return true;
   case TokenAnswer::wrong:
@@ -145,8 +152,8 @@ bool Actions::is_permitted(const httplib::Request& request, httplib::Response& r
   case TokenAnswer::too_many:
     break;
   }
-  door_.refuse(Refusal::too_many_tokens, 429, "too many wrong tokens; try again in a minute",
-               request, response);
+  door_.refuse(Refusal::too_many_tokens, 429,
+               "too many wrong tokens from this address; try again in a minute", request, response);
   response.set_header("Retry-After", "60");
   return false;
 }
@@ -157,13 +164,16 @@ bool Actions::post(const httplib::Request& request, httplib::Response& response)
   if (!is_command && request.path != "/api/run") {
     return false;
   }
-  if (!is_permitted(request, response)) {
+  const Json body = Json::parse(request.body, nullptr, false);
+  const std::string word = text_of(body, "command");
+  const bool stops = is_command && kind_of(word) == wire::COMMAND_ABORT;
+  if (!is_permitted(request, response, stops ? TokenUse::stops_the_exciter : TokenUse::ordinary)) {
     return true;
   }
   if (is_command) {
-    command(address->bench, request, response);
+    command(address->bench, body, request, response);
   } else {
-    start_run(request, response);
+    start_run(text_of(body, "file"), response);
   }
   spdlog::info("{} of {}: {} {}", request.path, request.remote_addr, response.status,
                response.body);
@@ -180,13 +190,9 @@ bool Actions::get(const httplib::Request& request, httplib::Response& response) 
   return true;
 }
 
-void Actions::command(const std::string& bench, const httplib::Request& request,
+void Actions::command(const std::string& bench, const Json& body, const httplib::Request& request,
                       httplib::Response& response) {
-  const Json body = Json::parse(request.body, nullptr, false);
-  const std::string word =
-      body.is_object()
-          ? body.value("command", Json()).is_string() ? body["command"].get<std::string>() : ""
-          : "";
+  const std::string word = text_of(body, "command");
   const auto kind = kind_of(word);
   const Json step = body.is_object() ? body.value("step", Json()) : Json();
   const Json run = body.is_object() ? body.value("run", Json()) : Json();
@@ -247,7 +253,10 @@ void Actions::send(const wire::Command& command, const std::string& word,
 
 Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
                                              std::uint32_t attempt_before) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_, std::defer_lock);
+  if (command.kind() != wire::COMMAND_ABORT) { // which waits for no other command
+    lock.lock();
+  }
   auto writer = participant_.writer(bus::topics::command, command.bench().to_string());
   if (!writer) {
     spdlog::error("{}", writer.error().message);
@@ -284,15 +293,12 @@ void Actions::list_bench_files(httplib::Response& response) const {
                        "application/json");
 }
 
-void Actions::start_run(const httplib::Request& request, httplib::Response& response) {
-  const Json body = Json::parse(request.body, nullptr, false);
-  const Json file = body.is_object() ? body.value("file", Json()) : Json();
+void Actions::start_run(const std::string& name, httplib::Response& response) {
   const std::vector<std::string> known = bench_files_of(options_.benches_folder);
-  if (!file.is_string() || std::find(known.begin(), known.end(), file) == known.end()) {
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
     answer_action(false, "", "there is no such bench file in the folder of --benches", response);
     return;
   }
-  const auto name = file.get<std::string>();
   const std::lock_guard lock(mutex_);
   if (const auto run = runs_.find(name); run != runs_.end() && !run->second.running()) {
     runs_.erase(run);

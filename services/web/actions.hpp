@@ -5,7 +5,7 @@
 // than any visitor: the answer says that the conductor has been asked. A run is a `dyncal run` of a
 // bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
 // It is asked to end when the daemon ends. Every request is logged with its outcome. Any thread;
-// one command at a time.
+// one command at a time, but for an abort, which waits for none.
 #pragma once
 
 #include <filesystem>
@@ -50,15 +50,16 @@ public:
   [[nodiscard]] bool get(const httplib::Request& request, httplib::Response& response);
 
 private:
-  [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response);
-  void command(const std::string& bench, const httplib::Request& request,
-               httplib::Response& response);
+  [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response,
+                                  TokenUse use = TokenUse::ordinary);
+  void command(const std::string& bench, const nlohmann::ordered_json& body,
+               const httplib::Request& request, httplib::Response& response);
   enum class Effect { none, heard, shown };
 
   void send(const wire::Command& command, const std::string& word, httplib::Response& response);
   [[nodiscard]] Effect repeat_until_effect(const wire::Command& command,
                                            std::uint32_t attempt_before);
-  void start_run(const httplib::Request& request, httplib::Response& response);
+  void start_run(const std::string& name, httplib::Response& response);
   void list_bench_files(httplib::Response& response) const;
 
   ActionOptions options_;

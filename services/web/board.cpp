@@ -1,6 +1,7 @@
 #include "services/web/board.hpp"
 
-#include <fmt/core.h>
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "services/json_text.hpp"
@@ -42,29 +43,68 @@ Json runs_json(const live::Bench& bench) {
 
 } // namespace
 
-Text Board::young(const std::string& key) {
+const Board::Made* Board::find(const TextKey& key) {
   const auto found = texts_.find(key);
-  const bool is_young =
-      found != texts_.end() && laboratory_.clock().now() - found->second.when < text_age;
-  return is_young ? found->second.text : nullptr;
+  if (found == texts_.end()) {
+    return nullptr;
+  }
+  found->second.asked = laboratory_.clock().now();
+  return &found->second;
 }
 
-Text Board::keep(const std::string& key, const Json& json, std::uint64_t number) {
-  Text text = std::make_shared<const std::string>(json_text(json));
-  std::size_t bytes = text->size();
-  for (const auto& [other, made] : texts_) {
-    bytes += made.text->size();
-  }
-  if (texts_.size() >= max_texts || bytes > max_bytes) {
-    texts_.clear();
-  }
-  texts_[key] = Made{text, laboratory_.clock().now(), number};
+Text Board::young(const TextKey& key) {
+  const Made* made = find(key);
+  const bool is_young = made != nullptr && laboratory_.clock().now() - made->when < text_age;
+  return is_young ? made->text : nullptr;
+}
+
+Text Board::keep(const TextKey& key, const Json& json, std::uint64_t number) {
+  std::string whole = json_text(json);
+  whole.shrink_to_fit(); // it has grown by doubling
+  Text text = std::make_shared<const std::string>(std::move(whole));
+  texts_.erase(key);
+  make_room(text->size());
+  const bus::Clock::Instant now = laboratory_.clock().now();
+  texts_[key] = Made{text, now, number, now};
   return text;
+}
+
+void Board::make_room(std::size_t needed) {
+  while (!texts_.empty() && (texts_.size() >= max_texts || bytes() + needed > max_bytes)) {
+    texts_.erase(std::min_element(texts_.begin(), texts_.end(), [](const auto& a, const auto& b) {
+      return a.second.asked < b.second.asked;
+    }));
+  }
+}
+
+void Board::drop_what_is_not_shown() {
+  const bus::Clock::Instant now = laboratory_.clock().now();
+  std::erase_if(texts_, [&](const auto& held) {
+    const auto& [key, made] = held;
+    if (now - made.asked >= forgotten_after) {
+      return true;
+    }
+    const live::Bench* bench = key.run.empty() ? nullptr : laboratory_.bench(key.bench);
+    return !key.run.empty() && (bench == nullptr || find_run(*bench, key.run) == nullptr);
+  });
+}
+
+std::size_t Board::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [key, made] : texts_) {
+    sum += made.text->size();
+  }
+  return sum;
+}
+
+Board::Held Board::held() const {
+  const std::lock_guard lock(mutex_);
+  return {texts_.size(), bytes()};
 }
 
 Text Board::laboratory() {
   const std::lock_guard lock(mutex_);
-  const std::string key = "laboratory";
+  const TextKey key{"laboratory", "", "", ""};
   if (Text text = young(key)) {
     return text;
   }
@@ -79,7 +119,7 @@ Text Board::bench(const std::string& name) {
   if (bench == nullptr) {
     return nullptr;
   }
-  const std::string key = "bench " + name;
+  const TextKey key{"bench", name, "", ""};
   if (Text text = young(key)) {
     return text;
   }
@@ -94,12 +134,12 @@ Text Board::results(const std::string& name, const std::string& run_name,
   if (run == nullptr) {
     return nullptr;
   }
-  const std::string key = "run " + name + "/" + run->name;
+  const TextKey key{"run", name, run->name, ""};
   const std::uint64_t number = run->results_number;
-  const auto made = texts_.find(key);
+  const Made* made = find(key);
   const bool is_over = run->is_over(); // then files come and go
-  if (made != texts_.end() && made->second.number == number && (!is_over || young(key))) {
-    return made->second.text;
+  if (made != nullptr && made->number == number && (!is_over || young(key))) {
+    return made->text;
   }
   Json json{{"number", number},
             {"now_utc_ms", milliseconds(laboratory_.clock().utc_now_ns())},
@@ -119,11 +159,11 @@ Text Board::figures(const std::string& name, const std::string& run_name,
     return nullptr;
   }
   const std::string bars = bars_name(error_bars);
-  const std::string key = fmt::format("figures {}\n{}\n{}\n{}", bars, name, run->name, channel);
+  const TextKey key{"figures " + bars, name, run->name, channel};
   const std::uint64_t number = run->results_number;
-  const auto made = texts_.find(key);
-  if (made != texts_.end() && made->second.number == number) {
-    return made->second.text;
+  const Made* made = find(key);
+  if (made != nullptr && made->number == number) {
+    return made->text;
   }
   Json pictures = Json::array();
   for (const services::figures::Figure& figure :

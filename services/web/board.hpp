@@ -3,10 +3,14 @@
 // Texts of JSON are made when somebody asks, at most once in `text_age`, and shared by all who ask
 // meanwhile: visitors cost writing, not counting. Results and figures are made anew only when they
 // change.
-// Policy: the newest wins, nothing queues. Any thread.
+//
+// Memory follows what is shown: a run's texts go with the run, every text once nobody has asked for
+// it for `forgotten_after`, and the one not asked for longest where `max_texts` or `max_bytes` are
+// reached. Policy: the newest wins, nothing queues. Any thread.
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -27,8 +31,11 @@ using Text = std::shared_ptr<const std::string>;
 class Board {
 public:
   static constexpr std::chrono::milliseconds text_age{200};
+  // A page asks for what it shows at least every second.
+  static constexpr std::chrono::seconds forgotten_after{20};
   static constexpr std::size_t max_texts = 256;
-  static constexpr std::size_t max_bytes = std::size_t{32} * 1024 * 1024; // of all of them
+  // Of all of them: results and figures of a run of 36 steps are 0.25 MB, of 8 runs 2 MB.
+  static constexpr std::size_t max_bytes = std::size_t{8} * 1024 * 1024;
   // Adds what the daemon knows of itself to the laboratory.
   using AddDaemon = std::function<void(nlohmann::ordered_json&)>;
 
@@ -40,6 +47,7 @@ public:
   void change(Change&& change) {
     const std::lock_guard lock(mutex_);
     change(laboratory_);
+    drop_what_is_not_shown();
   }
   template <class Look>
   auto look(Look&& look) const {
@@ -60,22 +68,43 @@ public:
   // Of the laboratory, or of the results of the current run of a bench.
   [[nodiscard]] std::uint64_t number() const;
   [[nodiscard]] std::uint64_t results_number(const std::string& bench) const;
+  // Texts held, and their bytes.
+  struct Held {
+    std::size_t texts = 0;
+    std::size_t bytes = 0;
+  };
+  [[nodiscard]] Held held() const;
 
 private:
+  struct TextKey {
+    std::string kind; // "laboratory", "bench", "run", "figures U"
+    std::string bench;
+    std::string run; // empty: the text is of no run
+    std::string channel;
+
+    // NOLINTNEXTLINE(modernize-use-nullptr): the check takes the comparison for a pointer
+    auto operator<=>(const TextKey&) const = default;
+  };
   struct Made {
     Text text;
     bus::Clock::Instant when;
     std::uint64_t number = 0; // of results
+    bus::Clock::Instant asked;
   };
 
-  [[nodiscard]] Text keep(const std::string& key, const nlohmann::ordered_json& json,
+  [[nodiscard]] Text keep(const TextKey& key, const nlohmann::ordered_json& json,
                           std::uint64_t number = 0);
-  [[nodiscard]] Text young(const std::string& key);
+  // Null: there is none. Notes that it was asked for.
+  [[nodiscard]] const Made* find(const TextKey& key);
+  [[nodiscard]] Text young(const TextKey& key);
+  void drop_what_is_not_shown();
+  void make_room(std::size_t bytes);
+  [[nodiscard]] std::size_t bytes() const;
 
   mutable std::mutex mutex_;
   live::Laboratory laboratory_;
   AddDaemon add_daemon_;
-  std::map<std::string, Made> texts_;
+  std::map<TextKey, Made> texts_;
 };
 
 } // namespace dyncal::services::web

@@ -1,4 +1,6 @@
 // dyncal-web: serves a page that shows what the benches of a laboratory do.
+#include <malloc.h>
+
 #include <filesystem>
 #include <string>
 
@@ -12,6 +14,10 @@
 
 namespace dyncal::services {
 namespace {
+
+// Of glibc, which gives one to every thread that asks while others are busy, up to eight a core:
+// with 75 threads what was freed in 16 of them made 63 MB of what in one was 51.
+constexpr int malloc_arenas = 2;
 
 struct WebProgram {
   NetworkOptions network;
@@ -80,6 +86,7 @@ int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the
   services::add_options(app, program);
   CLI11_PARSE(app, argc, argv);
   services::set_up_log("dyncal-web");
+  mallopt(M_ARENA_MAX, services::malloc_arenas);
   const std::stop_token stop = services::stop_on_signals();
   const auto served = services::serve(program, stop);
   if (!served) {

@@ -170,6 +170,9 @@ Text SignalAnswers::signal_text(const Question& question) {
             {"maximum", json_number(found->maximum)},
             {"missed", std::to_string(tap_.missed())}};
   json.update(trace_json(trace));
+  std::erase_if(texts_, [now = clock_.now()](const auto& held) {
+    return now - held.second.when >= text_age; // nobody is answered with it any more
+  });
   if (texts_.size() >= max_texts) {
     texts_.clear();
   }

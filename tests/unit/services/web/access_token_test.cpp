@@ -22,25 +22,74 @@ TEST(IsSameSecret, ComparesWholeTexts) {
   EXPECT_FALSE(is_same_secret(secret, ""));
 }
 
+constexpr const char* right_header = "Bearer 0123456789abcdef0123";
+
 TEST(AccessToken, TakesTheRightOneWithItsScheme) {
   bus::SteppedClock clock;
   AccessToken token(secret, clock);
-  EXPECT_EQ(token.check(std::string("Bearer ") + secret), TokenAnswer::right);
-  EXPECT_EQ(token.check(secret), TokenAnswer::wrong);
-  EXPECT_EQ(token.check(""), TokenAnswer::wrong);
+  for (const char* scheme : {"Bearer ", "bearer ", "BEARER "}) {
+    EXPECT_EQ(token.check(scheme + std::string(secret), "192.0.2.7"), TokenAnswer::right) << scheme;
+  }
+  for (const std::string& header : {std::string(secret), std::string(), std::string("Bearer"),
+                                    std::string("Bearer "), std::string("Basic ") + secret}) {
+    AccessToken other(secret, clock);
+    EXPECT_EQ(other.check(header, "192.0.2.7"), TokenAnswer::wrong) << header;
+  }
 }
 
-TEST(AccessToken, IsGuessedAtFiveTimesAMinute) {
+void guess(AccessToken& token, const std::string& address, TokenUse use = TokenUse::ordinary) {
+  for (std::size_t i = 0; i < AccessToken::max_wrong; ++i) {
+    EXPECT_EQ(token.check("Bearer wrong", address, use), TokenAnswer::wrong) << i;
+  }
+  EXPECT_EQ(token.check("Bearer wrong", address, use), TokenAnswer::too_many);
+}
+
+TEST(AccessToken, IsGuessedAtFiveTimesAMinuteFromOneAddress) {
   bus::SteppedClock clock;
   AccessToken token(secret, clock);
-  for (std::size_t i = 0; i < AccessToken::max_wrong; ++i) {
-    EXPECT_EQ(token.check("Bearer wrong"), TokenAnswer::wrong);
-    clock.advance(1s);
+  guess(token, "192.0.2.7");
+  EXPECT_EQ(token.check(right_header, "192.0.2.7"), TokenAnswer::too_many);
+  EXPECT_EQ(token.check(right_header, "192.0.2.8"), TokenAnswer::right) << "another's guesses";
+  clock.advance(AccessToken::wrong_period - 1s);
+  EXPECT_EQ(token.check(right_header, "192.0.2.7"), TokenAnswer::too_many);
+  clock.advance(1s);
+  EXPECT_EQ(token.check(right_header, "192.0.2.7"), TokenAnswer::right);
+}
+
+TEST(AccessToken, NeverLocksWhatStopsTheExciterForTheRightOne) {
+  bus::SteppedClock clock;
+  AccessToken token(secret, clock);
+  guess(token, "192.0.2.7", TokenUse::stops_the_exciter);
+  for (const char* address : {"192.0.2.7", "192.0.2.8", "::1"}) {
+    EXPECT_EQ(token.check(right_header, address, TokenUse::stops_the_exciter), TokenAnswer::right);
   }
-  EXPECT_EQ(token.check("Bearer wrong"), TokenAnswer::too_many);
-  EXPECT_EQ(token.check(std::string("Bearer ") + secret), TokenAnswer::too_many);
-  clock.advance(56s);
-  EXPECT_EQ(token.check(std::string("Bearer ") + secret), TokenAnswer::right);
+  EXPECT_EQ(token.check("Bearer wrong", "192.0.2.7", TokenUse::stops_the_exciter),
+            TokenAnswer::too_many);
+  EXPECT_EQ(token.check(right_header, "192.0.2.7"), TokenAnswer::too_many)
+      << "what does not stop it stays locked";
+}
+
+TEST(AccessToken, HoldsAsManyAddressesAsItHasRoomFor) {
+  bus::SteppedClock clock;
+  AccessToken token(secret, clock);
+  guess(token, "192.0.2.7");
+  for (std::size_t i = 0; i < 2 * AccessToken::max_addresses; ++i) {
+    clock.advance(1ms);
+    const std::string address = "10.0." + std::to_string(i / 256) + "." + std::to_string(i % 256);
+    EXPECT_EQ(token.check("Bearer wrong", address), TokenAnswer::wrong) << address;
+  }
+  EXPECT_EQ(token.counted_addresses(), AccessToken::max_addresses);
+  clock.advance(AccessToken::wrong_period);
+  EXPECT_EQ(token.check(right_header, "192.0.2.7"), TokenAnswer::right);
+  EXPECT_EQ(token.counted_addresses(), 0U);
+}
+
+TEST(CountedAddress, IsTheNetworkThatOneComputerHas) {
+  EXPECT_EQ(counted_address("192.0.2.7"), "192.0.2.7");
+  EXPECT_EQ(counted_address("::ffff:192.0.2.7"), "192.0.2.7");
+  EXPECT_EQ(counted_address("2001:db8:0:1:a::7"), counted_address("2001:db8:0:1::8"));
+  EXPECT_NE(counted_address("2001:db8:0:1::7"), counted_address("2001:db8:0:2::7"));
+  EXPECT_EQ(counted_address("2001:db8:0:1::7"), "2001:db8:0:1::/64");
 }
 
 class ReadToken : public testing::Test {

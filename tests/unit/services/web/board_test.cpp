@@ -1,5 +1,7 @@
 #include "services/web/board.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -143,6 +145,50 @@ TEST_F(BoardTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
   second.message("the second");
   take(second);
   EXPECT_NE(*results("r1"), *old);
+}
+
+// A run's texts go with it, whoever has asked for them: what stays does not grow with the runs.
+TEST_F(BoardTest, HoldsTextsOfTheRunsItHoldsOnly) {
+  Board::Held most;
+  Board::Held after_300; // then the list of events is full
+  for (int i = 0; i < 1000; ++i) {
+    const std::string run = "r" + std::to_string(i);
+    take(live::measurement_of("acc-1", run, wire::MEASUREMENT_DONE));
+    for (std::uint32_t step = 1; step <= 8; ++step) {
+      take(live::result_of("acc-1", run, step, 0.3));
+    }
+    clock_.advance(1s);
+    ASSERT_NE(results(run), nullptr);
+    ASSERT_NE(
+        board_.figures("acc-1", run, "dau/acceleration_z", services::figures::ErrorBars::none),
+        nullptr);
+    ASSERT_NE(board_.laboratory(), nullptr);
+    most.texts = std::max(most.texts, board_.held().texts);
+    most.bytes = std::max(most.bytes, board_.held().bytes);
+    after_300 = i == 299 ? board_.held() : after_300;
+  }
+  EXPECT_LE(most.texts, 2 * live::Limits{}.runs + 1);
+  EXPECT_GE(most.texts, 2 * live::Limits{}.runs) << "what is shown is held";
+  EXPECT_GT(after_300.bytes, 10'000U);
+  EXPECT_LT(most.bytes, after_300.bytes + after_300.bytes / 10);
+}
+
+TEST_F(BoardTest, ForgetsWhatNobodyAsksFor) {
+  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  take(live::result_of("acc-1", "r1", 1, 0.3));
+  const Text first = results();
+  for (int i = 0; i < 10; ++i) { // somebody looks: it is made once
+    clock_.advance(Board::forgotten_after / 2);
+    take(live::status_of("acc-1", "dau"));
+    EXPECT_EQ(results(), first);
+  }
+  EXPECT_EQ(made_, 1);
+  clock_.advance(Board::forgotten_after);
+  take(live::status_of("acc-1", "dau"));
+  EXPECT_EQ(board_.held().texts, 0U);
+  EXPECT_EQ(board_.held().bytes, 0U);
+  ASSERT_NE(results(), nullptr);
+  EXPECT_EQ(board_.held().texts, 1U);
 }
 
 TEST_F(BoardTest, HasNoTextOfABenchThatIsNotKnown) {
