@@ -1,5 +1,8 @@
 #include "services/web/http_door.hpp"
 
+#include <strings.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -10,9 +13,11 @@
 
 #include "services/json_text.hpp"
 #include "services/printable_text.hpp"
+#include "services/web/addresses.hpp"
 #include "services/web/host_rules.hpp"
 #include "services/web/page_files.hpp"
 #include "services/web/run_files.hpp"
+#include "services/web/served_file.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -26,6 +31,16 @@ constexpr const char* content_policy =
 // For a log line: what a visitor wrote, without anything that steers a terminal.
 std::string harmless(std::string_view text) {
   return printable(text.substr(0, 120));
+}
+
+// With parameters or without (RFC 9110, 8.3.1).
+bool is_json(std::string_view media_type) {
+  constexpr std::string_view json = "application/json";
+  const std::string_view rest = media_type.substr(std::min(json.size(), media_type.size()));
+  const auto next = rest.find_first_not_of(" \t");
+  return media_type.size() >= json.size() &&
+         strncasecmp(media_type.data(), json.data(), json.size()) == 0 &&
+         (next == std::string_view::npos || rest[next] == ';');
 }
 
 bool leads_out(const std::string& path) {
@@ -43,7 +58,10 @@ void answer_error(int status, const std::string& code, const std::string& messag
 }
 
 HttpDoor::HttpDoor(DoorOptions options, bus::Clock& clock)
-    : options_(std::move(options)), clock_(clock) {
+    : options_(std::move(options)), clock_(clock),
+      server_(refusals_, [this](const HeadRefusal& refusal, const std::string& visitor) {
+        log_refusal(refusal.reason, fmt::format("a request ({})", refusal.message), visitor);
+      }) {
   set_up();
 }
 
@@ -57,15 +75,16 @@ void HttpDoor::set_up() {
                                {"X-Frame-Options", "DENY"},
                                {"Referrer-Policy", "no-referrer"},
                                {"Cache-Control", "no-cache"}});
-  server_.set_mount_point("/javascript", options_.javascript_folder);
-  if (!options_.guide_folder.empty()) {
-    server_.set_mount_point("/guide", options_.guide_folder);
-  }
   server_.set_pre_routing_handler(
       [this](const httplib::Request& request, httplib::Response& response) {
-        const Outcome outcome = check(request, response);
-        return outcome == Outcome::Handled || request.method == "POST" ? outcome
-                                                                       : get(request, response);
+        if (check(request, response) == Outcome::Handled) {
+          return Outcome::Handled;
+        }
+        if (request.method == "POST") { // with its body
+          return Outcome::Unhandled;
+        }
+        get(request, response);
+        return Outcome::Handled;
       });
   server_.Post(".*", [this](const httplib::Request& request, httplib::Response& response) {
     post(request, response);
@@ -95,7 +114,7 @@ Expected<void> HttpDoor::start() {
                                                 "or port with --listen",
                                                 at.text(), reason));
   }
-  thread_ = std::thread([this] { server_.listen_after_bind(); });
+  server_.begin();
   return {};
 }
 
@@ -105,25 +124,28 @@ bool HttpDoor::wait_until(std::chrono::steady_clock::time_point time) {
 }
 
 void HttpDoor::stop() {
-  if (thread_.joinable()) {
-    {
-      const std::lock_guard lock(end_mutex_);
-      server_.end();
-    }
-    end_.notify_all();
-    thread_.join();
+  {
+    const std::lock_guard lock(end_mutex_);
+    server_.end();
   }
+  end_.notify_all();
+  server_.join();
 }
 
 void HttpDoor::refuse(Refusal refusal, int status, const std::string& message,
                       const httplib::Request& request, httplib::Response& response) {
   refusals_.count(refusal);
   answer_error(status, to_string(refusal), message, response);
+  log_refusal(refusal,
+              fmt::format("{} {} ({})", harmless(request.method), harmless(request.path), message),
+              request.remote_addr);
+}
+
+void HttpDoor::log_refusal(Refusal refusal, const std::string& what, const std::string& visitor) {
   const std::lock_guard lock(log_mutex_);
   if (clock_.now() >= next_line_) {
     next_line_ = clock_.now() + std::chrono::seconds(1);
-    spdlog::warn("refused {} {} of {}: {} ({})", harmless(request.method), harmless(request.path),
-                 request.remote_addr, message, to_string(refusal));
+    spdlog::warn("refused {} of {}: {}", what, visitor, to_string(refusal));
   }
 }
 
@@ -132,9 +154,6 @@ Outcome HttpDoor::check(const httplib::Request& request, httplib::Response& resp
     refuse(refusal, status, message, request, response);
     return Outcome::Handled;
   };
-  if (request.method != "GET" && request.method != "HEAD" && request.method != "POST") {
-    return refused(Refusal::malformed, 405, "only GET, HEAD and POST are answered");
-  }
   const std::string host = request.get_header_value("Host");
   if (!is_own_host(host, options_.own_names)) {
     return refused(Refusal::foreign_host, 421,
@@ -149,25 +168,56 @@ Outcome HttpDoor::check(const httplib::Request& request, httplib::Response& resp
   if (leads_out(request.path)) {
     return refused(Refusal::not_found, 404, "there is no such address");
   }
+  return check_method(request, response);
+}
+
+Outcome HttpDoor::check_method(const httplib::Request& request, httplib::Response& response) {
+  const char* methods = methods_of(request.path);
+  if (methods == nullptr) {
+    refuse(Refusal::not_found, 404, "there is no such address", request, response);
+    return Outcome::Handled;
+  }
+  if (request.method == "OPTIONS") {
+    response.set_header("Allow", methods);
+    response.status = 200;
+    return Outcome::Handled;
+  }
+  if (!allows(methods, request.method)) {
+    response.set_header("Allow", methods);
+    refuse(Refusal::malformed, 405, fmt::format("this address answers {}", methods), request,
+           response);
+    return Outcome::Handled;
+  }
   return Outcome::Unhandled;
 }
 
-Outcome HttpDoor::get(const httplib::Request& request, httplib::Response& response) {
-  const bool is_file =
-      request.path.starts_with("/javascript/") || request.path.starts_with("/guide/");
-  if (is_file) {
-    return Outcome::Unhandled;
-  }
-  if (serve_page(request, response)) {
-    return Outcome::Handled;
+void HttpDoor::get(const httplib::Request& request, httplib::Response& response) {
+  if (serve_page(request, response) ||
+      serve_folder("/javascript/", options_.javascript_folder, request, response) ||
+      serve_folder("/guide/", options_.guide_folder, request, response)) {
+    return;
   }
   for (const Handler& handler : get_handlers_) {
     if (handler(request, response)) {
-      return Outcome::Handled;
+      return;
     }
   }
   refuse(Refusal::not_found, 404, "there is no such address", request, response);
-  return Outcome::Handled;
+}
+
+// Debian's libraries link to each other, within their folder.
+bool HttpDoor::serve_folder(const std::string& prefix, const std::string& folder,
+                            const httplib::Request& request, httplib::Response& response) const {
+  if (!request.path.starts_with(prefix) || folder.empty()) {
+    return false;
+  }
+  std::string name = request.path.substr(prefix.size());
+  name += name.empty() || name.ends_with('/') ? "index.html" : "";
+  const auto file = open_beneath(folder, name, Links::within);
+  if (file) {
+    answer_with(*file, media_type(name), request, response);
+  }
+  return file.has_value();
 }
 
 bool HttpDoor::serve_page(const httplib::Request& request, httplib::Response& response) const {
@@ -188,7 +238,7 @@ bool HttpDoor::serve_page(const httplib::Request& request, httplib::Response& re
 }
 
 void HttpDoor::post(const httplib::Request& request, httplib::Response& response) {
-  if (!request.get_header_value("Content-Type").starts_with("application/json")) {
+  if (!is_json(request.get_header_value("Content-Type"))) {
     refuse(Refusal::malformed, 415, "Content-Type must be application/json", request, response);
     return;
   }

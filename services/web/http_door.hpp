@@ -13,7 +13,6 @@
 #include <mutex>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include <httplib.h>
@@ -61,7 +60,7 @@ public:
   [[nodiscard]] const Refusals& refusals() const { return refusals_; }
   // Returns false if the door is being closed, at once.
   [[nodiscard]] bool wait_until(std::chrono::steady_clock::time_point time);
-  // Counts, logs and answers.
+  // Counts, logs (a line a second) and answers.
   void refuse(Refusal refusal, int status, const std::string& message,
               const httplib::Request& request, httplib::Response& response);
 
@@ -70,15 +69,20 @@ private:
 
   void set_up();
   [[nodiscard]] Outcome check(const httplib::Request& request, httplib::Response& response);
-  [[nodiscard]] Outcome get(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] Outcome check_method(const httplib::Request& request, httplib::Response& response);
+  void get(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] bool serve_folder(const std::string& prefix, const std::string& folder,
+                                  const httplib::Request& request,
+                                  httplib::Response& response) const;
   [[nodiscard]] bool serve_page(const httplib::Request& request, httplib::Response& response) const;
+  void log_refusal(Refusal refusal, const std::string& what, const std::string& visitor);
   void post(const httplib::Request& request, httplib::Response& response);
   void complete_error(const httplib::Request& request, httplib::Response& response);
 
   DoorOptions options_;
   bus::Clock& clock_;
   Refusals refusals_;
-  LimitedServer server_{refusals_};
+  LimitedServer server_;
   std::vector<Handler> get_handlers_;
   std::vector<Handler> post_handlers_;
   std::mutex end_mutex_;
@@ -86,7 +90,6 @@ private:
   std::mutex log_mutex_;
   bus::Clock::Instant next_line_{};
   int port_ = 0;
-  std::thread thread_;
 };
 
 } // namespace dyncal::services::web

@@ -2,8 +2,6 @@
 
 #include <array>
 #include <charconv>
-#include <fstream>
-#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t file_part_bytes = std::size_t{64} * 1024;
 constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget", "signal",
                                                 "spectrum", "fit",     "command"};
 
@@ -47,28 +44,15 @@ void answer_text(const Text& text, const char* otherwise, httplib::Response& res
   }
 }
 
-void send_file(const RunFile& file, httplib::Response& response) {
-  auto stream = std::make_shared<std::ifstream>(file.path, std::ios::binary);
-  if (!*stream) {
-    answer_error(404, "not_known", "the file cannot be read", response);
-    return;
-  }
-  const std::string name = file.path.filename().string();
+void send_file(const ServedFile& file, const std::string& name, const httplib::Request& request,
+               httplib::Response& response) {
   const bool is_picture = name.ends_with(".svg");
   response.set_header("Content-Security-Policy",
                       "default-src 'none'; style-src 'unsafe-inline'; sandbox");
   response.set_header("Content-Disposition",
                       fmt::format("{}; filename*=UTF-8''{}", is_picture ? "inline" : "attachment",
                                   percent_encoded(name)));
-  response.set_content_provider(
-      file.bytes, media_type(name),
-      [stream](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-        std::vector<char> bytes(std::min(length, file_part_bytes));
-        stream->seekg(static_cast<std::streamoff>(offset));
-        stream->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        const auto count = static_cast<std::size_t>(stream->gcount());
-        return count > 0 && sink.write(bytes.data(), count);
-      });
+  answer_with(file, media_type(name), request, response);
 }
 
 } // namespace
@@ -186,8 +170,9 @@ bool LaboratoryAnswers::answer_file(const httplib::Request& request,
           ? std::nullopt
           : files_.find(rest.substr(0, first), rest.substr(first + 1, second - first - 1),
                         rest.substr(second + 1));
-  if (file) {
-    send_file(*file, response);
+  const auto opened = file ? files_.open(*file) : std::nullopt;
+  if (opened) {
+    send_file(*opened, file->path.filename().string(), request, response);
   } else {
     answer_error(404, "not_known", "the run has no such file", response);
   }

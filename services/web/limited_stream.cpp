@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 
 namespace dyncal::services::web {
@@ -15,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t buffer_bytes = 4096;
+constexpr std::chrono::milliseconds look_again = 50ms;
 
 void address_of(const sockaddr_storage& storage, std::string& ip, int& port) {
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -35,55 +34,33 @@ void address_of(const sockaddr_storage& storage, std::string& ip, int& port) {
 
 } // namespace
 
-LimitedStream::LimitedStream(socket_t socket, const std::atomic<bool>& stopping)
-    : socket_(socket), stopping_(stopping) {}
-
-bool LimitedStream::wait_readable(Clock::time_point until) const {
-  if (taken_ < buffer_.size()) {
-    return true;
-  }
-  while (!stopping_) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
-    if (left <= 0ms) {
-      return false;
-    }
-    pollfd one{.fd = socket_, .events = POLLIN, .revents = 0};
-    if (poll(&one, 1, static_cast<int>(std::min(left, 200ms).count())) > 0) {
-      return (one.revents & (POLLIN | POLLHUP)) != 0;
-    }
-  }
-  return false;
-}
+LimitedStream::LimitedStream(socket_t socket, std::string request,
+                             const std::atomic<bool>& stopping,
+                             const std::atomic<std::size_t>& waiting)
+    : socket_(socket), request_(std::move(request)), stopping_(stopping), waiting_(waiting) {}
 
 bool LimitedStream::is_writable() const {
-  const auto until = Clock::now() + write_limit;
-  while (!stopping_ && Clock::now() < until) {
+  const auto began = Clock::now();
+  while (!stopping_) {
     pollfd one{.fd = socket_, .events = POLLOUT, .revents = 0};
-    if (poll(&one, 1, 200) > 0) {
+    if (poll(&one, 1, static_cast<int>(look_again.count())) > 0) {
       return (one.revents & (POLLERR | POLLHUP)) == 0;
+    }
+    const auto passed = Clock::now() - began;
+    if (passed >= write_limit || (waiting_ > 0 && passed >= crowded_write_limit)) {
+      was_slow_ = true;
+      return false;
     }
   }
   return false;
-}
-
-bool LimitedStream::fill() {
-  if (!wait_readable(deadline_)) {
-    was_slow_ = was_slow_ || Clock::now() >= deadline_;
-    return false;
-  }
-  buffer_.resize(buffer_bytes);
-  const ssize_t count = recv(socket_, buffer_.data(), buffer_.size(), 0);
-  buffer_.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
-  taken_ = 0;
-  return count > 0;
 }
 
 ssize_t LimitedStream::read(char* data, size_t size) {
-  if (taken_ == buffer_.size() && !fill()) {
+  if (taken_ == request_.size()) {
     return -1;
   }
-  const std::size_t count = std::min(size, buffer_.size() - taken_);
-  std::memcpy(data, buffer_.data() + taken_, count);
+  const std::size_t count = std::min(size, request_.size() - taken_);
+  std::memcpy(data, request_.data() + taken_, count);
   taken_ += count;
   return static_cast<ssize_t>(count);
 }
@@ -109,6 +86,17 @@ void LimitedStream::get_local_ip_and_port(std::string& ip, int& port) const {
   if (getsockname(socket_, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
     address_of(storage, ip, port);
   }
+}
+
+std::string visitor_of(socket_t socket) {
+  std::string ip;
+  int port = 0;
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(storage);
+  if (getpeername(socket, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
+    address_of(storage, ip, port);
+  }
+  return ip;
 }
 
 } // namespace dyncal::services::web

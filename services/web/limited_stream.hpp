@@ -1,8 +1,10 @@
-// A connection as cpp-httplib reads and writes it, with time limits of whole requests: its own are
-// of single reads, so that a visitor who sends a byte a second would hold a thread for ever.
+// A connection as cpp-httplib reads and writes it: it reads one request, which has come as a whole
+// (limited_server.hpp), and writes to the visitor with a time limit, so that no thread waits for
+// anybody who sends or takes a byte a second.
 //
-// A read fails once the deadline of the request has passed, a write when the visitor takes nothing
-// for `write_limit`, and both when the server stops. One thread.
+// A read fails after the end of the request. A write fails when the visitor takes nothing for
+// `write_limit`, or for `crowded_write_limit` while others wait for a thread, and when the server
+// stops. One thread.
 #pragma once
 
 #include <atomic>
@@ -17,17 +19,17 @@ class LimitedStream final : public httplib::Stream {
 public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds write_limit{5};
+  // 400 who take nothing are through 64 threads in 1.4 s.
+  static constexpr std::chrono::milliseconds crowded_write_limit{200};
 
-  // `stopping` outlives the object, which does not close the socket.
-  LimitedStream(socket_t socket, const std::atomic<bool>& stopping);
+  // `stopping` and `waiting` (how many wait for a thread) outlive the object, which does not close
+  // the socket.
+  LimitedStream(socket_t socket, std::string request, const std::atomic<bool>& stopping,
+                const std::atomic<std::size_t>& waiting);
 
-  // The next request has so long to come.
-  void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
-  // Something can be read until then; false: nothing came, or the other side has closed.
-  [[nodiscard]] bool wait_readable(Clock::time_point until) const;
   [[nodiscard]] bool was_slow() const { return was_slow_; }
 
-  [[nodiscard]] bool is_readable() const override { return wait_readable(deadline_); }
+  [[nodiscard]] bool is_readable() const override { return taken_ < request_.size(); }
   [[nodiscard]] bool is_writable() const override;
   ssize_t read(char* data, size_t size) override;
   ssize_t write(const char* data, size_t size) override;
@@ -37,14 +39,15 @@ public:
   [[nodiscard]] socket_t socket() const override { return socket_; }
 
 private:
-  bool fill();
-
   socket_t socket_;
-  const std::atomic<bool>& stopping_;
-  Clock::time_point deadline_{};
-  std::string buffer_; // read, and not asked for yet
+  std::string request_;
   std::size_t taken_ = 0;
-  bool was_slow_ = false;
+  const std::atomic<bool>& stopping_;
+  const std::atomic<std::size_t>& waiting_;
+  mutable bool was_slow_ = false;
 };
+
+// "192.0.2.7"; empty: it is not connected any more.
+[[nodiscard]] std::string visitor_of(socket_t socket);
 
 } // namespace dyncal::services::web

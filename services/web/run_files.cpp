@@ -61,8 +61,10 @@ std::vector<RunFile> RunFiles::files_of(const std::string& bench, const std::str
   if (root_.empty() || !is_plain(bench) || run.empty()) {
     return files;
   }
+  std::error_code unknown;
   const fs::path folder = find_run_folder(root_, bench, run);
-  if (!folder.empty()) {
+  if (!folder.empty() && !fs::is_symlink(folder, unknown) &&
+      !fs::is_symlink(folder.parent_path(), unknown)) {
     add_files(folder, "", 1, files);
   }
   std::sort(files.begin(), files.end(),
@@ -76,6 +78,11 @@ std::optional<RunFile> RunFiles::find(const std::string& bench, const std::strin
   const auto found = std::find_if(files.begin(), files.end(),
                                   [&](const RunFile& file) { return file.name == name; });
   return found == files.end() ? std::nullopt : std::optional(*found);
+}
+
+std::optional<ServedFile> RunFiles::open(const RunFile& file) const {
+  const fs::path root = fs::absolute(root_).lexically_normal();
+  return open_beneath(root, file.path.lexically_relative(root).string(), Links::none);
 }
 
 std::string percent_encoded(const std::string& text) {

@@ -1,7 +1,8 @@
 // The files of runs, for downloads: what lies in a run folder, and nothing else of the disk.
 //
 // Only names that files_of() lists are opened: regular files of the folder and its folders (of
-// depth 2), not by symbolic links. Any thread.
+// depth 2). No symbolic link is followed below the root, be it a bench, a run or a file. Any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "services/web/served_file.hpp"
 
 namespace dyncal::services::web {
 
@@ -30,6 +33,9 @@ public:
                                               const std::string& run) const;
   [[nodiscard]] std::optional<RunFile> find(const std::string& bench, const std::string& run,
                                             const std::string& name) const;
+
+  // Nothing: it is not there any more, or by a link.
+  [[nodiscard]] std::optional<ServedFile> open(const RunFile& file) const;
 
 private:
   std::filesystem::path root_;

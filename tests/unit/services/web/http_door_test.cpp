@@ -171,7 +171,7 @@ TEST_F(HttpDoorTest, AnswersNobodyWhoCallsItByAnotherName) {
 }
 
 TEST_F(HttpDoorTest, RefusesWhatIsTooLargeOrNoRequest) {
-  EXPECT_EQ(command(secret, {}, std::string(LimitedServer::max_body_bytes + 1, ' '))->status, 413);
+  EXPECT_EQ(command(secret, {}, std::string(max_body_bytes + 1, ' '))->status, 413);
   EXPECT_EQ(visitor().Get("/" + std::string(2000, 'a'))->status, 414);
   EXPECT_GE(refused(Refusal::too_large), 2U);
   EXPECT_NE(answer_to("nonsense\r\n\r\n").find(" 400 "), std::string::npos);
@@ -204,8 +204,11 @@ TEST_F(HttpDoorTest, TakesActionsWithTheTokenOnly) {
   EXPECT_EQ(command("wrong")->status, 401);
   EXPECT_EQ(command("wrong")->status, 401);
   EXPECT_EQ(command("wrong")->status, 401);
-  const auto many = command(secret);
+  const auto many = command(secret, {}, R"({"command": "pause", "run": "r1"})");
   EXPECT_EQ(many->status, 429);
+  EXPECT_EQ(command(secret, {}, R"({"command": "abort", "run": "r1"})")->status, 409)
+      << "the emergency stop is never locked";
+  EXPECT_EQ(command("wrong", {}, R"({"command": "abort", "run": "r1"})")->status, 429);
   EXPECT_EQ(many->get_header_value("Retry-After"), "60");
   EXPECT_EQ(refused(Refusal::wrong_token), 5U);
 }

@@ -50,6 +50,33 @@ TEST_F(RunFilesTest, OpensNothingElse) {
   EXPECT_TRUE(RunFiles("").files_of("acc-1", "r1").empty());
 }
 
+// Whoever may write among the runs has no other folder served by it.
+TEST_F(RunFilesTest, FollowsNoLinkToABenchOrARun) {
+  const fs::path other = folder_.path() / "other" / "acc-2" / "20261122T101530.125Z-r2";
+  fs::create_directories(other);
+  std::ofstream(other / "result.json") << "{}";
+  const fs::path runs = folder_.path() / "runs";
+  fs::create_directory_symlink(other.parent_path(), runs / "acc-2");
+  fs::create_directory_symlink(other, runs / "acc-1" / other.filename());
+  EXPECT_TRUE(files_.files_of("acc-2", "r2").empty());
+  EXPECT_TRUE(files_.files_of("acc-1", "r2").empty());
+  const RunFiles by_link(folder_.path() / "link-to-runs"); // the folder itself may be one
+  fs::create_directory_symlink(runs, folder_.path() / "link-to-runs");
+  EXPECT_EQ(by_link.files_of("acc-1", "r1").size(), 2U);
+  const auto file = by_link.find("acc-1", "r1", "figures/magnitude.svg");
+  ASSERT_TRUE(file);
+  EXPECT_EQ(by_link.open(*file)->bytes, 6U);
+}
+
+TEST_F(RunFilesTest, OpensNoFileThatHasBecomeALink) {
+  const auto file = files_.find("acc-1", "r1", "result.json");
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(files_.open(*file));
+  fs::remove(file->path);
+  fs::create_symlink(folder_.path() / "secret", file->path);
+  EXPECT_FALSE(files_.open(*file));
+}
+
 TEST(PercentEncoded, LeavesNothingThatAnAddressDivides) {
   EXPECT_EQ(percent_encoded("acc-1_.~"), "acc-1_.~");
   EXPECT_EQ(percent_encoded("a/b c?\xc3\xa4"), "a%2Fb%20c%3F%C3%A4");
