@@ -4,7 +4,8 @@
 // Two adapters: sqlite_database (a file) and postgres_database (a server). The SQL is the same for
 // both: types TEXT, BIGINT, DOUBLE PRECISION, no generated keys, every parameter once and in order.
 // Doubles come back with the same bits. Fails (bad_file) with place, reason and what to do. Belongs
-// to one thread; programs that share a database wait for each other.
+// to one thread; programs that share a database wait for each other, for 10 s at most: that long a
+// server may take for a statement, too, and then is not asked again (connecting: 5 s an address).
 #pragma once
 
 #include <cstdint>

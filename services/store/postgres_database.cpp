@@ -3,10 +3,15 @@
 #include <fmt/core.h>
 
 #ifdef DYNCAL_HAVE_PQXX
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
+#include <optional>
 
 #include <pqxx/pqxx>
+
+#include "services/store/socket_deadline.hpp"
 #endif
 
 namespace dyncal::services {
@@ -16,6 +21,12 @@ namespace {
 
 // Of the programs that write: any number that no other application of the server uses.
 constexpr const char* lock_statement = "SELECT pg_advisory_xact_lock(6079466151)";
+
+// A server that is stopped, or whose host has lost its cable, says nothing, and libpq waits for it
+// for good. No statement of the store takes a second of a server that works.
+constexpr std::chrono::seconds answer_limit{10};
+// For each address of the server: `localhost` has two.
+constexpr int connect_limit_s = 5;
 
 // Types of columns by their numbers in PostgreSQL's catalogue (pg_type.dat).
 constexpr std::array<pqxx::oid, 3> integer_types{20, 21, 23};
@@ -56,6 +67,19 @@ DatabaseValue value_of(const pqxx::field& field) {
   return std::string(field.c_str(), field.size());
 }
 
+// The place with the limit for connecting, unless it states one.
+std::string with_connect_limit(const std::string& place) {
+  if (place.find("connect_timeout") != std::string::npos) {
+    return place;
+  }
+  if (place.find("://") == std::string::npos) {
+    return fmt::format("{} connect_timeout={}", place, connect_limit_s);
+  }
+  const std::size_t host = place.rfind('@'); // a password may hold anything
+  const bool has_settings = place.find('?', host == std::string::npos ? 0 : host) < place.size();
+  return fmt::format("{}{}connect_timeout={}", place, has_settings ? '&' : '?', connect_limit_s);
+}
+
 class PostgresDatabase : public Database {
 public:
   PostgresDatabase(std::unique_ptr<pqxx::connection> connection, std::string place)
@@ -64,7 +88,12 @@ public:
   using Database::execute;
   Expected<std::vector<DatabaseRow>> execute(const std::string& statement,
                                              const std::vector<DatabaseValue>& values) override {
+    if (silent_) {
+      return fail(no_answer()); // libpqxx would connect once more
+    }
+    std::optional<SocketDeadline> deadline;
     try {
+      deadline.emplace(connection_->sock(), answer_limit);
       const pqxx::result result =
           values.empty() ? work_.exec(statement) : execute_with(statement, values);
       std::vector<DatabaseRow> rows;
@@ -76,7 +105,8 @@ public:
       }
       return rows;
     } catch (const std::exception& problem) {
-      return fail(error(problem));
+      silent_ = deadline && deadline->has_passed();
+      return fail(silent_ ? no_answer() : error(problem));
     }
   }
 
@@ -99,6 +129,12 @@ private:
     });
     return begun ? Expected<void>{} : fail(begun.error());
   }
+  [[nodiscard]] Error no_answer() const {
+    return {ErrorCode::bad_file,
+            fmt::format("{}: the store has not answered within {} s; is its server, or the network "
+                        "to it, stopped?",
+                        without_password(place_), answer_limit.count())};
+  }
   [[nodiscard]] Error error(const std::exception& problem) const {
     std::string reason = problem.what();
     for (char& c : reason) {
@@ -111,13 +147,15 @@ private:
   std::unique_ptr<pqxx::connection> connection_;
   pqxx::nontransaction work_; // BEGIN and COMMIT are statements of Database
   std::string place_;
+  bool silent_ = false; // a statement had no answer: the connection is shut down
 };
 
 } // namespace
 
 Expected<std::unique_ptr<Database>> open_postgres(const std::string& place) {
   try {
-    return std::make_unique<PostgresDatabase>(std::make_unique<pqxx::connection>(place), place);
+    return std::make_unique<PostgresDatabase>(
+        std::make_unique<pqxx::connection>(with_connect_limit(place)), place);
   } catch (const std::exception& problem) {
     std::string reason = problem.what();
     for (char& c : reason) {

@@ -1,8 +1,15 @@
 #include "services/store/database.hpp"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,6 +99,25 @@ TEST_P(DatabaseTest, LeavesADatabaseOfANewerProgramAlone) {
   EXPECT_THAT(refused.error().message, HasSubstr("made by a newer dyncal"));
 }
 
+TEST_P(DatabaseTest, DoesNotWaitForGoodForAServer) {
+  if (GetParam() != tests::StoreKind::postgres) {
+    GTEST_SKIP() << "a file has no server";
+  }
+  const auto database = open();
+  ASSERT_TRUE(database->execute("SELECT pg_sleep(3)")); // slow, but there
+  const auto begun = std::chrono::steady_clock::now();
+  const auto failed = database->execute("SELECT pg_sleep(60)");
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error().message, HasSubstr("has not answered within 10 s"));
+  const auto again = database->execute("SELECT 1"); // as a ROLLBACK after it
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().message, failed.error().message);
+  const auto taken = std::chrono::steady_clock::now() - begun;
+  EXPECT_GE(taken, std::chrono::seconds(9));
+  EXPECT_LE(taken, std::chrono::seconds(15));
+  EXPECT_TRUE(open()->execute("SELECT 1"));
+}
+
 INSTANTIATE_TEST_SUITE_P(, DatabaseTest,
                          testing::Values(tests::StoreKind::sqlite, tests::StoreKind::postgres),
                          tests::kind_name);
@@ -116,6 +142,34 @@ TEST(OpenPostgres, SaysWhatIsWrongWithoutAServer) {
   ASSERT_FALSE(database);
   EXPECT_THAT(database.error().message, HasSubstr("password=..."));
   EXPECT_THAT(database.error().message, testing::Not(HasSubstr("secret")));
+}
+
+// It takes connections, and says nothing.
+TEST(OpenPostgres, DoesNotWaitForGoodForAConnection) {
+  const int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listening, 4), 0);
+  ASSERT_EQ(getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const int port = ntohs(address.sin_port);
+  for (const std::string& place :
+       {fmt::format("postgresql://lab:a?b@127.0.0.1:{}/dyncal", port),
+        fmt::format("host=127.0.0.1 port={} dbname=dyncal user=lab", port),
+        fmt::format("postgresql://lab@127.0.0.1:{}/dyncal?connect_timeout=2", port)}) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto database = open_postgres(place);
+    ASSERT_FALSE(database);
+    if (database.error().code == ErrorCode::bad_argument) {
+      close(listening);
+      GTEST_SKIP() << database.error().message;
+    }
+    EXPECT_THAT(database.error().message, HasSubstr("timeout expired"));
+    EXPECT_LE(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << place;
+  }
+  close(listening);
 }
 
 TEST(OpenSqlite, RefusesWhatIsNotADatabase) {
