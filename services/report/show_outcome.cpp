@@ -46,6 +46,20 @@ std::vector<std::string> channels_without_a_result(const RunOutcome& outcome) {
 
 } // namespace
 
+namespace {
+
+// Nothing is replaced there: it may be the only file of another run of that name.
+std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem) {
+  std::filesystem::path path = folder / (stem + ".json");
+  std::error_code unknown;
+  for (int number = 2; std::filesystem::exists(path, unknown); ++number) {
+    path = folder / fmt::format("{}-{}.json", stem, number);
+  }
+  return path;
+}
+
+} // namespace
+
 // Results that took hours are not lost with a full disk.
 Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::path& path) {
   const nlohmann::ordered_json json = result_json(outcome);
@@ -54,8 +68,9 @@ Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::p
     return written;
   }
   std::error_code unknown;
-  const std::filesystem::path refuge = std::filesystem::temp_directory_path(unknown) /
-                                       fmt::format("dyncal-{}-{}.json", outcome.bench, outcome.run);
+  const std::filesystem::path refuge =
+      free_name(std::filesystem::temp_directory_path(unknown),
+                fmt::format("dyncal-{}-{}", outcome.bench, outcome.run));
   if (!unknown && write_json(refuge, json)) {
     written.error().message += fmt::format("; the results are in {}", refuge.string());
   }

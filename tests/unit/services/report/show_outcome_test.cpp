@@ -1,7 +1,11 @@
 #include "services/report/show_outcome.hpp"
 
+#include <stdlib.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -21,6 +25,30 @@ RunOutcome outcome_of_steps(std::size_t planned, std::size_t measured) {
     }
   }
   return outcome;
+}
+
+TEST(ShowOutcome, FilesOfLastResortDoNotReplaceEachOther) {
+  const tests::TemporaryFolder folder;
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", folder.path().c_str(), 1);
+  std::vector<std::string> said;
+  for (const std::size_t measured : {1, 2, 3}) {
+    RunOutcome outcome = outcome_of_steps(3, measured);
+    outcome.bench = "acc-1";
+    outcome.run = "first";
+    const auto written = write_results(outcome, "/proc/none/result.json");
+    ASSERT_FALSE(written);
+    said.push_back(written.error().message);
+  }
+  before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
+  EXPECT_THAT(said, testing::ElementsAre(HasSubstr("dyncal-acc-1-first.json"),
+                                         HasSubstr("dyncal-acc-1-first-2.json"),
+                                         HasSubstr("dyncal-acc-1-first-3.json")));
+  for (const char* name : {"", "-2", "-3"}) {
+    const auto path = folder.path() / (std::string("dyncal-acc-1-first") + name + ".json");
+    EXPECT_GT(std::filesystem::file_size(path), 0U) << path;
+  }
 }
 
 TEST(ShowOutcome, ARunIsCompleteWhenEveryStepHasAResult) {
